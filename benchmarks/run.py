@@ -1,0 +1,355 @@
+"""Measure gcxform against LinuxCNC's interpreter and a plain C program, in one run.
+
+    python benchmarks/run.py [--lines N] [--rounds N] [--ten-million] [--check [--slack F]]
+
+Builds ``baseline.c``, writes the surfacing program and runs the programs in turn, round by round,
+so that a slow spell of the computer meets all of them. Prints the medians as Markdown, with the
+limits. Only the standard library is imported here: a child's peak memory is counted from the size
+of the process that starts it, so this one stays small and NumPy runs in a child.
+"""
+
+from __future__ import annotations
+
+import argparse
+import filecmp
+import os
+import platform
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+
+HERE = Path(__file__).resolve().parent
+EXAMPLE = HERE.parent / "examples" / "lddm"
+GCXFORM = Path(sys.executable).parent / "gcxform"
+HELP_RUNS = 10
+EXAMPLE_RUNS = 5
+MISSING = "not installed"
+
+READ, PLAIN = "`rs274 -g`", "plain C"
+VERIFIED, UNVERIFIED = "gcxform, verified", "gcxform, `--verify off`"
+TENFOLD = "gcxform, verified, ten times the lines"
+HELP, LDDM = "`gcxform --help`", "LDDM example"
+
+
+@dataclass(frozen=True)
+class Sample:
+    """What one run of a program took: seconds and megabytes."""
+
+    wall: float
+    cpu: float
+    peak: float
+
+
+@dataclass
+class Job:
+    """A command to measure, the file it writes (how it must end), and what was measured."""
+
+    name: str
+    command: list[str]
+    out: Path | None = None
+    lines: int = 0
+    last_word: bytes = b""
+    samples: list[Sample] = field(default_factory=list)
+    failure: str = ""
+
+    def middle(self, quantity: str) -> float | None:
+        """Return the median of a quantity, or None where nothing was measured."""
+        values = [getattr(sample, quantity) for sample in self.samples]
+        return median(values) if values and not self.failure else None
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A figure with the largest value that it may have."""
+
+    what: str
+    value: float | None
+    most: float
+    unit: str = ""
+
+    def state(self, slack: float) -> str:
+        """Say whether the limit is held, with ``slack`` as a factor on it."""
+        if self.value is None:
+            return "not measured"
+        if self.value <= self.most:
+            return "held"
+        return "within the slack" if self.value <= self.most * slack else "**missed**"
+
+
+# Running
+
+
+def run_once(job: Job, scratch: Path) -> None:
+    """Run a job once and keep its sample; after a failure it is not run again."""
+    if job.failure:
+        return
+    if job.out is not None:
+        job.out.unlink(missing_ok=True)
+    printed, complaints = scratch / "stdout", scratch / "stderr"
+    status, sample = timed(job.command, scratch, printed, complaints)
+    if status != 0:
+        job.failure = f"exit code {status}"
+        tail = complaints.read_text(encoding="utf-8", errors="replace").strip()[-2000:]
+        say(f"{job.name}: {job.failure}\n{tail}")
+    elif not complete(job):
+        job.failure = "output incomplete"
+        say(f"{job.name}: {job.failure}")
+    else:
+        job.samples.append(sample)
+
+
+def complete(job: Job) -> bool:
+    """Tell whether the output of a job is there to its last word."""
+    if job.out is None:
+        return True
+    if not job.out.exists() or job.out.stat().st_size == 0:
+        return False
+    with job.out.open("rb") as text:
+        text.seek(max(0, job.out.stat().st_size - 1000))
+        return job.last_word in text.read()
+
+
+def timed(command: list[str], cwd: Path, stdout: Path, stderr: Path) -> tuple[int, Sample]:
+    """Run a command to its end and return its exit code with what it took."""
+    with stdout.open("wb") as out, stderr.open("wb") as err:
+        start = perf_counter()
+        child = subprocess.Popen(command, cwd=cwd, stdin=subprocess.DEVNULL, stdout=out, stderr=err)
+        _, status, used = os.wait4(child.pid, 0)
+        wall = perf_counter() - start
+    child.returncode = os.waitstatus_to_exitcode(status)
+    return child.returncode, Sample(wall, used.ru_utime + used.ru_stime, megabytes(used.ru_maxrss))
+
+
+def megabytes(maxrss: int) -> float:
+    """Return a peak size in MB (10^6 bytes); Linux counts in KiB, macOS in bytes."""
+    return maxrss / 1e6 if sys.platform == "darwin" else maxrss * 1024 / 1e6
+
+
+def say(text: str) -> None:
+    """Tell how it goes on stderr: stdout carries the report only."""
+    print(text, file=sys.stderr, flush=True)
+
+
+# The jobs
+
+
+def build_baseline(scratch: Path) -> Path:
+    """Compile the plain C program and return where it is."""
+    binary = scratch / "baseline"
+    subprocess.run(["cc", "-O2", "-o", str(binary), str(HERE / "baseline.c")], check=True)
+    return binary
+
+
+def surfacing(scratch: Path, lines: int) -> Path:
+    """Write a surfacing program of that many lines and return where it is."""
+    path = scratch / f"surfacing-{lines}.nc"
+    command = [sys.executable, str(HERE / "surfacing.py"), "--lines", str(lines), str(path)]
+    subprocess.run(command, check=True)
+    return path
+
+
+def reading_job(source: Path, scratch: Path, lines: int) -> Job:
+    """LinuxCNC's interpreter reading the program, its canonical calls going to a file.
+
+    The file is named as an argument: rs274 does not buffer its standard output, which would
+    double its time.
+    """
+    out = scratch / "canon.txt"
+    rs274 = shutil.which("rs274")
+    command = [rs274 or "rs274", "-g", str(source), str(out)]
+    job = Job(READ, command, out, lines, b"PROGRAM_END()")
+    job.failure = "" if rs274 else MISSING
+    return job
+
+
+def gcxform_job(name: str, source: Path, out: Path, lines: int, *options: str) -> Job:
+    """Return the whole job: absolute, volumetric, emission and, unless it is off, proof."""
+    pipeline = str(HERE / "surfacing.toml")
+    command = [str(GCXFORM), "run", "-p", pipeline, "-o", str(out), *options, str(source)]
+    return Job(name, command, out, lines, b"M30")
+
+
+def main_jobs(scratch: Path, lines: int) -> list[Job]:
+    """Return the jobs which are compared with each other, on one program."""
+    source = surfacing(scratch, lines)
+    plain_out = scratch / "plain.nc"
+    plain = [str(build_baseline(scratch)), str(source), str(plain_out)]
+    return [
+        reading_job(source, scratch, lines),
+        Job(PLAIN, plain, plain_out, lines, b"M30"),
+        gcxform_job(VERIFIED, source, scratch / "verified.nc", lines),
+        gcxform_job(UNVERIFIED, source, scratch / "unverified.nc", lines, "--verify", "off"),
+    ]
+
+
+def small_jobs(scratch: Path) -> list[tuple[Job, int]]:
+    """Return the jobs that measure the start, each with the number of its runs."""
+    out = scratch / "linear_out.nc"
+    pipeline, source = str(EXAMPLE / "linear.toml"), str(EXAMPLE / "linear_in.nc")
+    example = [str(GCXFORM), "run", "-p", pipeline, "-o", str(out), source]
+    return [
+        (Job(HELP, [str(GCXFORM), "--help"]), HELP_RUNS),
+        (Job(LDDM, example, out), EXAMPLE_RUNS),
+    ]
+
+
+def measure(scratch: Path, lines: int, rounds: int, tenfold: bool) -> list[Job]:
+    """Run everything and return the jobs with their samples."""
+    jobs = main_jobs(scratch, lines)
+    small = small_jobs(scratch)
+    for job, runs in small:
+        repeat([job], runs, scratch)
+    repeat(jobs, rounds, scratch)
+    demand_same_output(jobs)
+    jobs += [job for job, _ in small]
+    if tenfold:
+        source = surfacing(scratch, 10 * lines)
+        big = gcxform_job(TENFOLD, source, scratch / "tenfold.nc", 10 * lines)
+        repeat([big], 1, scratch)
+        jobs.append(big)
+    return jobs
+
+
+def repeat(jobs: Iterable[Job], rounds: int, scratch: Path) -> None:
+    """Run the jobs in turn, so many times."""
+    for _ in range(rounds):
+        for job in jobs:
+            run_once(job, scratch)
+
+
+def demand_same_output(jobs: list[Job]) -> None:
+    """Fail the unverified job where it does not write what the verified one writes."""
+    verified, unverified = find(jobs, VERIFIED), find(jobs, UNVERIFIED)
+    if verified.failure or unverified.failure or not verified.out or not unverified.out:
+        return
+    if not filecmp.cmp(verified.out, unverified.out, shallow=False):
+        unverified.failure = "not the bytes of the verified run"
+        say(f"{unverified.name}: {unverified.failure}")
+
+
+# The report
+
+
+def find(jobs: list[Job], name: str) -> Job:
+    """Return the job of that name; one that was not asked for has no samples."""
+    return next((job for job in jobs if job.name == name), Job(name, []))
+
+
+def ratio(above: float | None, below: float | None) -> float | None:
+    """Return a quotient, or None where one of its parts was not measured."""
+    return above / below if above is not None and below else None
+
+
+def limits(jobs: list[Job]) -> list[Limit]:
+    """Return the figures that have a limit."""
+
+    def wall(name: str) -> float | None:
+        return find(jobs, name).middle("wall")
+
+    peak, tenfold = (find(jobs, name).middle("peak") for name in (VERIFIED, TENFOLD))
+    return [
+        Limit(f"{VERIFIED} / {READ}", ratio(wall(VERIFIED), wall(READ)), 1.0),
+        Limit(f"{UNVERIFIED} / {READ}", ratio(wall(UNVERIFIED), wall(READ)), 0.5),
+        Limit(f"{UNVERIFIED} / {PLAIN}", ratio(wall(UNVERIFIED), wall(PLAIN)), 2.0),
+        Limit(f"peak memory, {VERIFIED}", peak, 400.0, " MB"),
+        Limit("peak memory, ten times the lines / once", ratio(tenfold, peak), 1.1),
+        Limit(HELP, wall(HELP), 0.15, " s"),
+        Limit(LDDM, wall(LDDM), 0.5, " s"),
+    ]
+
+
+def report(jobs: list[Job], found: list[Limit], slack: float) -> Iterator[str]:
+    """Yield the lines of the report."""
+    yield f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
+    yield ""
+    yield from time_table(jobs)
+    yield ""
+    yield from limit_table(found, slack)
+
+
+def time_table(jobs: list[Job]) -> Iterator[str]:
+    """Yield the table of medians; ratios are of wall time, those of user + sys in brackets."""
+    yield "| program | lines | runs | wall s | user+sys s | peak MB | / rs274 | / C |"
+    yield "|---|--:|--:|--:|--:|--:|--:|--:|"
+    reading, plain = find(jobs, READ), find(jobs, PLAIN)
+    for job in jobs:
+        lines = f"{job.lines:,}" if job.lines else ""
+        if job.failure:
+            yield f"| {job.name} | {lines} | {job.failure} | | | | | |"
+            continue
+        comparable = job.lines == reading.lines
+        against = [ratio_cell(job, other) if comparable else "" for other in (reading, plain)]
+        times = [f"{job.middle(quantity):.3f}" for quantity in ("wall", "cpu")]
+        cells = [job.name, lines, str(len(job.samples)), *times, peak_cell(job), *against]
+        yield f"| {' | '.join(cells)} |"
+
+
+def ratio_cell(job: Job, other: Job) -> str:
+    """Return the ratios of two jobs: wall time (user + sys)."""
+    wall, cpu = (ratio(job.middle(kind), other.middle(kind)) for kind in ("wall", "cpu"))
+    return "not measured" if wall is None or cpu is None else f"{wall:.2f} ({cpu:.2f})"
+
+
+def peak_cell(job: Job) -> str:
+    """Return the peak memory, or that it was below what this process can see."""
+    own = megabytes(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+    peak = job.middle("peak") or 0.0
+    return f"{peak:.0f}" if peak > own else f"< {own:.0f}"
+
+
+def limit_table(found: list[Limit], slack: float) -> Iterator[str]:
+    """Yield the table of the limits."""
+    yield "| figure | measured | limit | |"
+    yield "|---|--:|--:|---|"
+    for limit in found:
+        digits = 0 if limit.most >= 10 else 3
+        value = "" if limit.value is None else f"{limit.value:.{digits}f}{limit.unit}"
+        yield f"| {limit.what} | {value} | {limit.most:g}{limit.unit} | {limit.state(slack)} |"
+
+
+def verdict(jobs: list[Job], found: list[Limit], slack: float) -> int:
+    """Return the exit code of ``--check``: 1 where a limit is missed or a program failed."""
+    states = [limit.state(slack) for limit in found]
+    missed, unmeasured = states.count("**missed**"), states.count("not measured")
+    failed = sum(bool(job.failure) and job.failure != MISSING for job in jobs)
+    say(f"{len(found)} limits: {missed} missed, {unmeasured} not measured; {failed} runs failed")
+    return 1 if missed or failed else 0
+
+
+def arguments() -> argparse.Namespace:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(description="Measure gcxform against rs274 and plain C.")
+    parser.add_argument("--lines", type=int, default=1_000_000, help="default: %(default)s")
+    parser.add_argument("--rounds", type=int, default=5, help="default: %(default)s")
+    parser.add_argument(
+        "--ten-million", action="store_true", help="also peak memory at ten times the lines"
+    )
+    parser.add_argument("--check", action="store_true", help="exit 1 if a limit is missed")
+    parser.add_argument("--slack", type=float, default=1.0, help="factor on every limit (1.0)")
+    options = parser.parse_args()
+    if options.rounds < 1 or options.lines < 10:
+        parser.error("--rounds is at least 1, --lines at least 10")
+    if not GCXFORM.exists():
+        parser.error(f"no gcxform beside {sys.executable}: install the package first")
+    return options
+
+
+def main() -> int:
+    """Measure, print the report and return the exit code."""
+    options = arguments()
+    with tempfile.TemporaryDirectory(prefix="gcxform-benchmark-") as scratch:
+        jobs = measure(Path(scratch), options.lines, options.rounds, options.ten_million)
+    found = limits(jobs)
+    print("\n".join(report(jobs, found, options.slack)))
+    return verdict(jobs, found, options.slack) if options.check else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,83 @@
+"""The contract of a pass: what it needs, what it promises, and how its work can be undone.
+
+A pass is a frozen dataclass whose fields are its options. It turns one toolpath into another, as a
+pure function, and declares a tolerance and an `undo`: the model of what the machine does with its
+output. The law, in the tests and on every run, is
+
+    deviation(before, undo(after)) <= tolerance
+
+along every move. `undo` uses the forward model and shares no code with what it checks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from gcxform.dialect import Dialect, NumberFormat
+from gcxform.toolpath.facts import Fact
+from gcxform.syntax.tree import Block
+from gcxform.toolpath.path import Toolpath
+
+if TYPE_CHECKING:
+    from gcxform.machine.machine import Machine
+
+
+@dataclass(frozen=True)
+class PassContext:
+    """What surrounds a pass: the dialects it works between, the output's numbers, the machine."""
+
+    source: type[Dialect]
+    target: type[Dialect]
+    numbers: NumberFormat
+    machine: Machine | None = None
+
+
+@dataclass(frozen=True)
+class Pass:
+    """The base of the passes that change toolpaths.
+
+    `name` is what a pipeline calls it; its docstring is its documentation. Override `tolerance`
+    when the pass may deviate, and `undo` when the machine turns its output into something else.
+    """
+
+    name: ClassVar[str] = ""
+    requires: ClassVar[frozenset[Fact]] = frozenset()
+    ensures: ClassVar[frozenset[Fact]] = frozenset()
+    clears: ClassVar[frozenset[Fact]] = frozenset()
+
+    @property
+    def tolerance(self) -> float:
+        """How far the path may deviate (mm); inf where nothing is promised."""
+        return 0.0
+
+    def begin(self, context: PassContext) -> None:
+        """Look at the context before any input is read; raise UsageError if it does not fit."""
+
+    def apply(self, path: Toolpath, context: PassContext) -> Toolpath:
+        """Return the changed path. Raises InputError, with lines, for what it cannot honour."""
+        raise NotImplementedError
+
+    def undo(self, path: Toolpath, context: PassContext) -> Toolpath:
+        """Return what the machine does with a path that came from this pass."""
+        return path
+
+
+@dataclass(frozen=True)
+class TextPass:
+    """The base of the passes that change text and no meaning: `edit` returns a block's new text.
+
+    `edit` gets the tree of a block and its number in the output, counted from 0 over the blocks
+    that stay; None drops the block. The words of a block, but for N, must stay as they are: this
+    is checked on every run.
+    """
+
+    name: ClassVar[str] = ""
+
+    def edit(self, block: Block, number: int) -> str | None:
+        """Return the block's new text, or None to drop it."""
+        raise NotImplementedError
+
+    def refuse(self, block: Block) -> str:
+        """Return why a program that has this block cannot be edited, or nothing."""
+        return ""

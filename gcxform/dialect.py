@@ -1,0 +1,114 @@
+"""A dialect: one controller's language, as class attributes that a plugin overrides.
+
+A new dialect inherits its nearest relative and overrides what differs:
+
+    class Acme(gx.Dialect):
+        "Acme 9000, firmware 3."
+        name = "acme"
+        axes = "XYZ"
+        arc_planes = frozenset({"XY"})
+
+Everything is data; the reader, the emitter and the verifier ask here and nowhere else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from gcxform.modal.codes import ISO, ISO_M, Code, MCode
+from gcxform.syntax.grammar import Grammar, load
+
+INCH = 25.4  # mm, exact by definition
+LINEAR = "XYZUVW"
+ROTARY = "ABC"
+
+
+@dataclass(frozen=True, slots=True)
+class NumberFormat:
+    """How numbers are written: decimals of lengths in mm and inch, of angles and of feeds.
+
+    A number always has its point on a distance word; trailing zeros are cut unless `zeros`.
+    """
+
+    mm: int = 3
+    inch: int = 4
+    angle: int = 3
+    feed: int = 3
+    zeros: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ArcRule:
+    """When the control accepts an arc whose start and end radius differ by `delta` (mm).
+
+    Accepted if delta <= `absolute`, or if delta <= `relative` * radius and delta <= `largest`.
+    `smallest` is the least radius; `r_short` is how much an R may fall short of the half chord.
+    """
+
+    absolute: float
+    relative: float = 0.0
+    largest: float = float("inf")
+    smallest: float = 0.0
+    r_short: float = 0.0
+
+
+class Dialect:
+    """The base every controller dialect inherits: the common part of ISO word-address programs."""
+
+    name: ClassVar[str] = ""
+    grammar: ClassVar[tuple[str, str]] = ("gcxform_grammars", "iso")
+    axes: ClassVar[str] = "XYZABC"
+    codes: ClassVar[Mapping[str, Code]] = ISO
+    m_codes: ClassVar[Mapping[int, MCode]] = ISO_M
+    unknown_m: ClassVar[MCode | None] = None
+    """What an M code outside `m_codes` is; None: it is refused."""
+    initial: ClassVar[Mapping[str, str]] = {
+        "motion": "G80",
+        "plane": "G17",
+        "distance": "G90",
+        "arc-distance": "G91.1",
+        "feed-mode": "G94",
+        "units": "G21",
+        "frame": "G54",
+    }
+    """The modal state a program is taken to start in; the certificate says what was taken."""
+    last_code_wins: ClassVar[bool] = False
+    """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
+    point_required: ClassVar[bool] = False
+    """A distance without a point counts in increments of the control, which must be configured."""
+    circle_needs_axis_word: ClassVar[bool] = False
+    turns_address: ClassVar[str] = ""
+    """The word that counts the turns of an arc (n - 1 full turns beyond the arc itself)."""
+    feed_mode_clears_feed: ClassVar[bool] = False
+    dwell: ClassVar[Mapping[str, float]] = {"P": 1.0}
+    """Seconds for one unit of each word that G4 takes; a value with a point is in seconds."""
+    block_delete: ClassVar[str] = ""
+    """What the control does with `/` blocks: "execute", "skip", or "" when a switch decides."""
+    stops_at_end: ClassVar[bool] = True
+    skips_first_text: ClassVar[bool] = False
+    line_length: ClassVar[int] = 0
+    """The longest block the control takes, in characters; 0: no limit."""
+    comments: ClassVar[str] = "("
+    """How a comment may begin: any of "(" and ";"."""
+    has_percent: ClassVar[bool] = True
+    has_program_number: ClassVar[bool] = True
+    words: ClassVar[str] = "DEFHIJKLNPQRST"
+    """Addresses the control knows, besides its axes and G, M, O."""
+    numbers: ClassVar[NumberFormat] = NumberFormat()
+    arc_planes: ClassVar[frozenset[str]] = frozenset({"XY", "ZX", "YZ"})
+    """Planes in which the control can cut arcs."""
+    arc_rotary: ClassVar[bool] = False
+    """Whether a rotary axis may turn along an arc."""
+    arc_rule: ClassVar[ArcRule] = ArcRule(absolute=0.01)
+
+    @classmethod
+    def load_grammar(cls) -> Grammar:
+        """Return the dialect's grammar, built once."""
+        return load(*cls.grammar)
+
+    @classmethod
+    def number_format(cls, **changes: object) -> NumberFormat:
+        """Return the number format with changes."""
+        return replace(cls.numbers, **changes)  # type: ignore[arg-type]

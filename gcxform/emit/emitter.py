@@ -1,0 +1,303 @@
+"""Toolpath to text: untouched blocks are copied, the others are written again in their own style.
+
+What decides is what the control believes. The emitter follows the formatted position and the modes
+of the output; a block is copied when its bytes say to that control what the path says, and is
+written anew otherwise, with every axis word whose formatted value changes. All of it is done for
+a whole window at once: lines become **pieces** (a split block has several), pieces that are
+written in the same way share a template, and each template is rendered as a matrix of bytes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.diagnostics import Diagnostic, InputError
+from gcxform.emit.arcs import ArcEnds, centre_words
+from gcxform.emit.copying import Copying
+from gcxform.emit.manner import Believed, Manner, Task
+from gcxform.emit.numbers import quantise
+from gcxform.emit.pieces import Pieces
+from gcxform.emit.positions import Positions, motion_kinds
+from gcxform.emit.render import Renderer, interleave
+from gcxform.emit.templates import (
+    Axis,
+    CannotSay,
+    Centre,
+    Copied,
+    Feed,
+    Field,
+    Key,
+    Literal,
+    Role,
+    TemplateWriter,
+)
+from gcxform.modal.arcs import TURN
+from gcxform.modal.interpreter import Interpreted
+from gcxform.modal.tables import MeaningTable
+from gcxform.syntax.scan import Window
+from gcxform.toolpath.path import Kind, Plane, Toolpath
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Emitted:
+    """Text of a window, and for each of its lines the line of the program it came from."""
+
+    text: bytes
+    source: Ints
+
+
+class Emitter:
+    """Writes the windows of one program in order."""
+
+    def __init__(self, manner: Manner, start: Floats, file: str = "-") -> None:
+        self.manner = manner
+        self.file = file
+        self.believed = Believed.at_start(manner, start)
+        self.line_end = b""
+        self.gap: bytes | None = None
+
+    def emit(
+        self, window: Window, table: MeaningTable, read: Interpreted, path: Toolpath
+    ) -> Emitted:
+        """Return the text of a window's path. Raises InputError for what the target cannot say."""
+        self._look_at_style(window, table)
+        task = Task(self.manner, window, table, read, path, self.file)
+        return _Job(task, self).run()
+
+    def _look_at_style(self, window: Window, table: MeaningTable) -> None:
+        """Take line end and gap between words from the first lines that show them."""
+        if not self.line_end and len(window):
+            self.line_end = window.text[int(window.end[0]) : int(window.next[0])] or b"\n"
+        if self.gap is None:
+            for shape in table.shapes.shapes:
+                words = list(shape.block.words)
+                if len(words) > 1:
+                    self.gap = b" " if words[1].start > words[0].end else b""
+                    break
+
+
+class _Job:
+    """The emission of one window."""
+
+    def __init__(self, task: Task, emitter: Emitter) -> None:
+        self.task = task
+        self.emitter = emitter
+        self.path = task.path
+        self.positions = Positions(task, emitter.believed)
+        self.kind = motion_kinds(task, self.positions)
+        self.pieces = Pieces(task, self.kind, emitter.believed)
+        self.copying = Copying(task, self.pieces, self.positions, emitter.believed)
+        self.centre = np.zeros((len(self.path), 2))
+
+    def run(self) -> Emitted:
+        copied = self.copying.lines
+        self._arcs()
+        chosen = np.flatnonzero(~copied[self.pieces.line] & ~self._without_words())
+        renderer = Renderer(self.task)
+        self._render(chosen, renderer)
+        text, lengths = renderer.text(len(chosen))
+        self._check_lengths(lengths, chosen)
+        whole, source = interleave(self.task, copied, self.pieces.line[chosen], text, lengths)
+        self._carry()
+        return Emitted(whole, source + self.task.window.first_line)
+
+    def _without_words(self) -> Flags:
+        """Return the inner pieces of split blocks that would have no word: nothing moves."""
+        still = ~self.positions.write.any(axis=1) & (self.kind < Kind.ARC_CW)
+        inner = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row
+        inner[self.pieces.has_row] &= still
+        return inner
+
+    # --- arcs ------------------------------------------------------------------------------------------
+
+    def _arcs(self) -> None:
+        """Compute the centre words of the arcs that are written anew."""
+        anew = ~self.copying.lines[self.path.block] & (self.kind >= Kind.ARC_CW)
+        if not anew.any():
+            return
+        start = self.path.start if not self.path.refit_centres else self._exact_starts()
+        for plane in Plane:
+            rows = np.flatnonzero(anew & (self.path.plane == plane))
+            if len(rows):
+                self._arcs_in_plane(plane, rows, start)
+
+    def _exact_starts(self) -> Floats:
+        """Return where rows start in the control: off the grid after blocks copied to the letter."""
+        exact = np.append(self.copying.believed_exact, self.copying.exact[:-1])
+        return np.where(exact[:, None], self.path.start, self.positions.before)
+
+    def _arcs_in_plane(self, plane: Plane, rows: Ints, start: Floats) -> None:
+        manner = self.task.manner
+        if plane.name not in manner.target.arc_planes:
+            message = f"{manner.target.name} has no arcs in {plane.name}"
+            self._refuse(rows, "GX501", message, 'put the pass "plane" before')
+        axes = list(plane.axes[:2])
+        refit = self.path.refit_centres
+        begin = start[np.ix_(rows, axes)]
+        absolute = self.path.blocks.absolute_centre[self.path.block[rows]]
+        inch = self.positions.inch[rows]
+        letter = "IJK"[axes[0]]
+        arcs = ArcEnds(
+            begin,
+            (self.positions.held if refit else self.path.end)[np.ix_(rows, axes)],
+            self.path.centre[np.ix_(rows, axes)],
+            np.where(absolute[:, None], 0.0, begin),
+            np.where(inch, manner.step(letter, True), manner.step(letter, False)),
+            self.path.sweep[rows],
+            self.path.sense[rows],
+        )
+        self.centre[rows], good = centre_words(arcs, manner.target.arc_rule, refit)
+        full = np.mod(self.path.sweep[rows] + 1e-9, TURN) < 2e-9
+        for axis in axes:
+            self.positions.write[rows[full], axis] = True
+        if refit and not good.all():
+            message = f"rounded, this arc is another one, or one that {manner.target.name} refuses"
+            hint = 'give more decimals, or turn arcs into lines with the pass "segment"'
+            self._refuse(rows[~good], "GX504", message, hint)
+
+    def _refuse(self, rows: Ints, code: str, message: str, hint: str) -> None:
+        lines = self.path.block[rows[:20]].tolist()
+        raise InputError(
+            tuple(Diagnostic(code, message, self.task.location(line), hint) for line in lines)
+        )
+
+    # --- rendering ---------------------------------------------------------------------------------------
+
+    def _turns(self) -> Ints:
+        """Return the full turns of each row beyond its arc."""
+        return np.maximum(np.ceil(self.path.sweep / TURN - 1 - 1e-9), 0).astype(np.int64)
+
+    def _ways(self, chosen: Ints) -> Ints:
+        """Return, per piece, one number for the way in which it has to be written."""
+        pieces = self.pieces
+        arc = np.zeros(len(pieces.line), np.int64)
+        arc[pieces.has_row] = self.kind >= Kind.ARC_CW
+        inch = self.path.blocks.inch[pieces.line]
+        way = self.task.shape[pieces.line].astype(np.int64)
+        parts = [
+            (pieces.role, 5),
+            (pieces.motion + 1, 128),
+            (pieces.inch + 1, 3),
+            (pieces.incremental + 1, 3),
+            (pieces.absolute_centre + 1, 3),
+            (pieces.feed, 3),
+            (inch, 2),
+        ]
+        if arc.any():
+            plane, turns = np.zeros((2, len(arc)), np.int64)
+            plane[pieces.has_row], turns[pieces.has_row] = self.path.plane, self._turns()
+            parts += [(arc, 2), (plane * arc, 3), (turns * arc, int(turns.max()) + 1)]
+        for part, size in parts:
+            way = way * size + part
+        return np.asarray(way[chosen])
+
+    def _render(self, chosen: Ints, renderer: Renderer) -> None:
+        """Render the pieces, one template after another."""
+        ways, which = np.unique(self._ways(chosen), return_inverse=True)
+        order = np.argsort(which, kind="stable")
+        bounds = np.searchsorted(which[order], np.arange(len(ways) + 1))
+        for index in range(len(ways)):
+            places = order[bounds[index] : bounds[index + 1]]
+            members = chosen[places]
+            renderer.begin(len(members))
+            for field in self._template(int(members[0])):
+                self._field(field, members, renderer)
+            lines = self.pieces.line[members]
+            renderer.line_ends(lines, self.pieces.ends[members], self.emitter.line_end)
+            renderer.finish(places)
+
+    def _template(self, piece: int) -> tuple[Field, ...]:
+        """Return the fields of a piece, which are those of all pieces written in its way."""
+        pieces = self.pieces
+        line = int(pieces.line[piece])
+        shape = int(self.task.shape[line])
+        row = int(pieces.row[piece])
+        arc = bool(pieces.has_row[piece]) and int(self.kind[row]) >= Kind.ARC_CW
+        key = Key(
+            Role(int(pieces.role[piece])),
+            int(pieces.motion[piece]),
+            int(pieces.inch[piece]),
+            int(pieces.incremental[piece]),
+            int(pieces.absolute_centre[piece]),
+            Feed(int(pieces.feed[piece])),
+            arc,
+            int(self.path.plane[row]) if arc else 0,
+            int(self._turns()[row]) if arc else 0,
+        )
+        writer = TemplateWriter(
+            self.task.table.shapes.shapes[shape],
+            self.task.table.meanings[shape],
+            self.task.manner,
+            self.path.axes,
+            b" " if self.emitter.gap is None else self.emitter.gap,
+        )
+        try:
+            return writer.write(key)
+        except CannotSay as error:
+            where = self.task.location(line, error.column, error.width)
+            raise InputError.one("GX501", error.message, where) from None
+
+    def _field(self, field: Field, members: Ints, renderer: Renderer) -> None:
+        """Render one field of the pieces of a template."""
+        manner, rows = self.task.manner, self.pieces.row[members]
+        inch = bool(self.path.blocks.inch[self.pieces.line[members[0]]])
+        if isinstance(field, Literal):
+            renderer.literal(field.text)
+        elif isinstance(field, Copied):
+            renderer.copied(self.pieces.line[members], field.slot)
+        elif isinstance(field, Axis):
+            column = self.path.axes.index(field.address)
+            present = self.positions.write[rows, column]
+            if present.any():
+                whole = self.positions.words_of(column, rows)
+                decimals = manner.decimals_of(field.address, inch)
+                prefix = field.gap + field.address.encode()
+                renderer.number(prefix, whole, decimals, present)
+        elif isinstance(field, Centre):
+            whole = self.centre[rows, field.index]
+            decimals = manner.decimals_of(field.address, inch)
+            prefix = field.gap + field.address.encode()
+            renderer.number(prefix, whole, decimals, np.ones(len(rows), np.bool_))
+        else:
+            decimals = manner.decimals_of("F", inch)
+            whole = quantise(self.pieces.feed_value[members], decimals)
+            everywhere = np.ones(len(rows), np.bool_)
+            renderer.number(field.gap + b"F", whole, decimals, everywhere, point=False)
+
+    # --- after -------------------------------------------------------------------------------------------
+
+    def _check_lengths(self, lengths: Ints, chosen: Ints) -> None:
+        limit = self.task.manner.target.line_length
+        if not limit or not len(lengths) or int(lengths.max()) <= limit:
+            return
+        worst = int(np.argmax(lengths))
+        line = int(self.pieces.line[chosen[worst]])
+        message = (
+            f"the block would have {int(lengths[worst])} characters; "
+            f"{self.task.manner.target.name} takes {limit}"
+        )
+        raise InputError.one("GX502", message, self.task.location(line))
+
+    def _carry(self) -> None:
+        """Leave what the control believes after the window."""
+        believed, pieces = self.emitter.believed, self.pieces
+        if len(self.path):
+            exact = bool(self.copying.exact[-1])
+            held = self.path.end[-1] if exact else self.positions.held[-1]
+            believed.position = np.array(held)
+            believed.exact = exact
+        if len(pieces.line):
+            believed.motion = int(pieces.motion_after[-1])
+            believed.feed = float(pieces.feed_after[-1])
+            for name in ("inch", "incremental", "absolute_centre"):
+                stated = getattr(pieces, name)
+                last = np.flatnonzero(stated >= 0)
+                if len(last):
+                    setattr(believed, name, int(stated[last[-1]]))

@@ -1,0 +1,110 @@
+"""How a program is to be written, and what the control believes while it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.diagnostics import Location
+from gcxform.dialect import INCH, LINEAR, Dialect, NumberFormat
+from gcxform.modal.interpreter import Interpreted
+from gcxform.modal.tables import NUMBER, MeaningTable
+from gcxform.syntax.scan import Window
+from gcxform.toolpath.path import Toolpath
+
+Floats = NDArray[np.float64]
+
+WORDS = ("changed", "programmed", "all")
+
+
+@dataclass(frozen=True, slots=True)
+class Manner:
+    """Dialects, numbers, and which axis words a changed block gets.
+
+    words     "changed": what changes or was programmed; "programmed": only that; "all": every axis
+    decimals  by address, where they differ from the number format
+    """
+
+    source: type[Dialect]
+    target: type[Dialect]
+    numbers: NumberFormat
+    words: str = "changed"
+    decimals: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def crossing(self) -> bool:
+        """Whether the program changes its dialect."""
+        return self.source is not self.target
+
+    def decimals_of(self, address: str, inch: bool) -> int:
+        """Return the decimals of an address."""
+        if address in self.decimals:
+            return self.decimals[address]
+        if address == "F":
+            return self.numbers.feed
+        if address not in LINEAR + "IJKR":
+            return self.numbers.angle
+        return self.numbers.inch if inch else self.numbers.mm
+
+    def step(self, address: str, inch: bool) -> float:
+        """Return the last decimal of an address in mm or degrees."""
+        unit = INCH if inch and address in LINEAR + "IJKR" else 1.0
+        return float(10.0 ** -self.decimals_of(address, inch)) * unit
+
+    def rounding(self, inch: bool) -> float:
+        """Return the largest distance (mm) of a formatted position from the exact one."""
+        return float(np.sqrt(sum((self.step(a, inch) / 2) ** 2 for a in "XYZ")))
+
+
+@dataclass(slots=True)
+class Believed:
+    """What the control believes after the text written so far.
+
+    `exact`: its position is that of the source to the last bit, because all was copied.
+    """
+
+    position: Floats
+    motion: int
+    inch: int
+    incremental: int
+    absolute_centre: int
+    feed: float = np.nan
+    exact: bool = True
+
+    @classmethod
+    def at_start(cls, manner: Manner, position: Floats) -> Believed:
+        """Return what a control believes before the first block."""
+        initial = manner.target.initial
+        return cls(
+            position.copy(),
+            NUMBER[initial["motion"]],
+            NUMBER[initial["units"]],
+            NUMBER[initial["distance"]],
+            NUMBER[initial["arc-distance"]],
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One window to be written: its text, what was read from it, and the path it shall have."""
+
+    manner: Manner
+    window: Window
+    table: MeaningTable
+    read: Interpreted
+    path: Toolpath
+    file: str
+
+    @property
+    def shape(self) -> NDArray[np.int64]:
+        """Shapes of the lines that the control executes."""
+        return self.window.shape[: self.read.live]
+
+    def location(self, line: int, column: int = 0, width: int = 0) -> Location:
+        """Return a place in a line of the window; column from 0."""
+        text = self.window.line(line).decode("latin-1")
+        number = self.window.first_line + line + 1
+        return Location(self.file, number, column + 1, text, width or max(1, len(text)))

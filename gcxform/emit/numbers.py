@@ -1,0 +1,94 @@
+"""Numbers to text, a column at a time.
+
+A coordinate is first rounded to a whole number of its last decimal, half away from zero: that
+integer is what the control believes. Its text is put together from tables of ready-made digits.
+Fields are padded with NUL, which the emitter drops when it puts the lines together.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Bytes = NDArray[np.uint8]
+Flags = NDArray[np.bool_]
+
+TIE = 1e-6  # of the last decimal: what is so close to a half is a half
+MOST_DECIMALS = 6
+LARGEST = 10**8  # a number has at most eight digits before the point
+WIDTH = 17  # sign, eight digits, point and up to six decimals, rounded up to whole words
+
+
+def quantise(value: Floats, decimals: int) -> Floats:
+    """Return value * 10**decimals rounded to whole numbers, half away from zero; nan stays."""
+    scaled = value * 10.0**decimals
+    whole = np.floor(np.abs(scaled) + (0.5 + TIE))
+    return np.copysign(whole, scaled)
+
+
+@cache
+def _whole_digits() -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+    """Return the text of 0 ... 9999, without and with leading zeros, as four bytes each."""
+    number = np.arange(10_000)
+    digits = np.stack([number // 1000, number // 100 % 10, number // 10 % 10, number % 10], axis=1)
+    padded = (digits + 48).astype(np.uint8)
+    leading = np.cumsum(digits, axis=1) == 0
+    leading[:, -1] = False
+    bare = np.where(leading, 0, padded).astype(np.uint8)
+    return bare.view(np.uint32)[:, 0], padded.view(np.uint32)[:, 0]
+
+
+@cache
+def _fractions(decimals: int, zeros: bool, point: bool) -> NDArray[np.uint64]:
+    """Return the texts `.000` ... `.999`, trailing zeros cut unless `zeros`, eight bytes each."""
+    number = np.arange(10**decimals)
+    text = np.zeros((len(number), 8), np.uint8)
+    text[:, 0] = 46
+    keep = np.full(len(number), zeros)
+    for place in range(decimals, 0, -1):
+        digit = number // 10 ** (decimals - place) % 10
+        keep |= digit > 0
+        text[:, place] = np.where(keep, digit + 48, 0)
+    if not point:
+        text[~keep, 0] = 0
+    return text.view(np.uint64)[:, 0]
+
+
+def number_field(
+    whole: Floats, decimals: int, zeros: bool, present: Flags, point: bool = True
+) -> Bytes:
+    """Return the texts (n, WIDTH) of whole / 10**decimals, padded with NUL; empty if not present.
+
+    `point`: the point stays when no decimal follows it. |whole| is below LARGEST * 10**decimals.
+    """
+    magnitude = np.where(present, np.abs(whole), 0.0).astype(np.int64)
+    integer = magnitude // 10**decimals
+    fraction = magnitude - integer * 10**decimals
+    bare, padded = _whole_digits()
+    field = np.zeros((len(whole), WIDTH), np.uint8)
+    field[:, 0] = np.where(present & (whole < 0), 45, 0)
+    low = integer
+    if (integer > 9999).any():
+        high = integer // 10_000
+        low = integer - high * 10_000
+        _put(field, 1, np.where(high > 0, bare[high], np.uint32(0)))
+        _put(field, 5, np.where(present, np.where(high > 0, padded[low], bare[low]), np.uint32(0)))
+    else:
+        _put(field, 5, np.where(present, bare[low], np.uint32(0)))
+    _put(field, 9, np.where(present, _fractions(decimals, zeros, point)[fraction], np.uint64(0)))
+    return field
+
+
+def _put(field: Bytes, column: int, words: NDArray[np.uint32] | NDArray[np.uint64]) -> None:
+    """Write words of bytes into columns of a field."""
+    size = words.dtype.itemsize
+    field[:, column : column + size] = words.view(np.uint8).reshape(-1, size)
+
+
+def text_of(value: float, decimals: int, zeros: bool = False, point: bool = True) -> str:
+    """Return the text of one number."""
+    whole = quantise(np.array([value]), decimals)
+    return bytes(number_field(whole, decimals, zeros, np.array([True]), point)).replace(b"\0", b"").decode()

@@ -1,0 +1,132 @@
+"""Lines become pieces: one for each row of the path, one for each block that does not move.
+
+For every piece it is settled here which codes and which feed have to be stated, by comparing what
+the piece needs with what the control believes before it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.dialect import INCH
+from gcxform.emit.manner import Believed, Task
+from gcxform.emit.templates import Feed, Role
+from gcxform.modal.interpreter import fill
+from gcxform.modal.tables import GROUPS
+from gcxform.toolpath.path import FeedMode, Kind
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Small = NDArray[np.int8]
+Flags = NDArray[np.bool_]
+
+NOTHING = np.int8(-1)
+
+
+class Pieces:
+    """The pieces of a window, in order.
+
+    line      (pieces,) line of the window
+    row       (pieces,) row of the path; only where `has_row`
+    role      (pieces,) `Role`
+    leads     (pieces,) whether it is the first piece of its line
+    motion, inch, incremental, absolute_centre   (pieces,) code to be stated, -1 for none
+    feed      (pieces,) `Feed`; `feed_value` is the number to write
+    repaired  (pieces,) whether something is stated that the source line did not state
+    """
+
+    def __init__(self, task: Task, kind: Small, believed: Believed) -> None:
+        self.task = task
+        self.kind = kind
+        self.believed = believed
+        self._lay_out()
+        self.repaired = np.zeros(len(self.line), np.bool_)
+        blocks = task.path.blocks
+        self.inch = self._mode("units", blocks.inch, believed.inch, self.has_row)
+        self.incremental = self._mode(
+            "distance", blocks.incremental, believed.incremental, self.has_row
+        )
+        arcs = self._of_rows(kind >= Kind.ARC_CW, False)
+        self.absolute_centre = self._mode(
+            "arc-distance", blocks.absolute_centre, believed.absolute_centre, arcs
+        )
+        self._motions()
+        self._feeds()
+
+    def _lay_out(self) -> None:
+        path, live = self.task.path, self.task.read.live
+        self.count = np.bincount(path.block, minlength=live)
+        pieces = np.maximum(self.count, 1)
+        self.line = np.repeat(np.arange(live), pieces)
+        self.has_row = self.count[self.line] > 0
+        self.row = np.cumsum(self.has_row) - 1
+        nth = np.arange(len(self.line)) - (np.cumsum(pieces) - pieces)[self.line]
+        self.leads = nth == 0
+        ends = nth == pieces[self.line] - 1
+        role = np.where(self.has_row, np.int8(Role.ONLY), np.int8(Role.NONE))
+        split = self.count[self.line] > 1
+        role[split] = Role.MIDDLE
+        role[split & self.leads] = Role.FIRST
+        role[split & ends] = Role.LAST
+        self.role = role
+        self.ends = ends
+
+    def _of_rows(self, values: NDArray, absent: object) -> NDArray:  # type: ignore[type-arg]
+        """Return a column over the rows as one over the pieces."""
+        column = np.full(len(self.line), absent, values.dtype)
+        column[self.has_row] = values
+        return column
+
+    def _stated_in(self, group: str) -> Flags:
+        """Return, per piece, whether its line has a code of a group and it is the piece for it."""
+        explicit = self.task.table.groups[self.task.shape, GROUPS.index(group)] >= 0
+        return explicit[self.line]
+
+    def _mode(self, group: str, wanted: Flags, before: int, needs: Flags) -> Small:
+        """Return the values of a mode that have to be stated."""
+        explicit = self._stated_in(group) & self.leads
+        here = wanted[self.line].astype(np.int8)
+        if not explicit.any() and (here == before).all():
+            return np.broadcast_to(NOTHING, (len(self.line),))
+        held = fill(here, explicit | needs, before)
+        missing = needs & (np.append(np.int8(before), held[:-1]) != here) & ~explicit
+        self.repaired |= missing
+        return np.where(explicit | missing, here, NOTHING)
+
+    def _motions(self) -> None:
+        """A motion code is stated where the source stated one, and where the motion changes."""
+        group = self.task.table.groups[self.task.shape, GROUPS.index("motion")]
+        sets = np.where(self.leads, group[self.line], NOTHING)
+        sets[self.has_row] = self.kind
+        self.motion_after = fill(sets, sets >= 0, self.believed.motion)
+        before = np.append(np.int8(self.believed.motion), self.motion_after[:-1])
+        explicit = self._stated_in("motion")
+        changes = self.has_row & (before != self.motion_after)
+        self.repaired |= changes & ~explicit
+        self.motion = np.where(self.has_row & (explicit | changes), self.motion_after, NOTHING)
+
+    def _feeds(self) -> None:
+        """A feed is stated where the source stated one, where it changes, and always in G93."""
+        modes, path = self.task.read.modes, self.task.path
+        slot = self.task.table.slots[self.task.shape, ord("F") - 65]
+        word = (slot >= 0)[self.line] & self.leads
+        feeding = self._of_rows(self.kind != Kind.RAPID, False)
+        feed = np.where(word, modes.feed[self.line], np.nan)
+        feed = np.where(feeding, self._of_rows(path.feed, np.nan), feed)
+        self.feed_after = fill(feed, ~np.isnan(feed), self.believed.feed)
+        before = np.append(self.believed.feed, self.feed_after[:-1])
+        inverse = modes.feed_mode == FeedMode.INVERSE_TIME
+        changes = feeding & (~_close(before, feed) | inverse[self.line])
+        unit = np.where(path.blocks.inch & ~inverse, INCH, 1.0)
+        same_unit = inverse | (path.blocks.inch == modes.inch)
+        kept = word & same_unit[self.line] & _close(feed, modes.feed[self.line])
+        self.feed = np.where(
+            kept, Feed.KEEP, np.where(word | changes, Feed.WRITE, Feed.NONE)
+        ).astype(np.int8)
+        self.repaired |= (self.feed == Feed.WRITE)
+        self.feed_value = feed / unit[self.line]
+
+
+def _close(a: Floats, b: Floats) -> Flags:
+    return np.asarray(np.abs(a - b) <= 1e-9 * np.abs(b))

@@ -1,0 +1,112 @@
+"""Formatted positions: what the control believes after each row, and which axis words that takes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.dialect import LINEAR
+from gcxform.emit.manner import Believed, Task
+from gcxform.emit.numbers import quantise
+from gcxform.modal.interpreter import fill
+from gcxform.toolpath.path import Small, column_major
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+class Positions:
+    """Per row and axis, column-major (rows, axes):
+
+    held        what the control believes after the row, mm or degrees
+    before      what it believes before it
+    step        (rows,) per axis: the last decimal, mm or degrees
+    programmed  whether the source line names the axis
+    write       whether the axis word is written
+    """
+
+    def __init__(self, task: Task, believed: Believed) -> None:
+        self.task = task
+        self.believed = believed
+        path = task.path
+        rows, axes = len(path), len(path.axes)
+        self.inch = path.blocks.inch[path.block]
+        self.held = column_major(rows, axes)
+        self.before = column_major(rows, axes)
+        self.step: list[Floats | float] = []
+        self.programmed = np.empty((axes, rows), np.bool_).T
+        self.write = np.empty((axes, rows), np.bool_).T
+        for column, axis in enumerate(path.axes):
+            slot = task.table.slots[task.shape, ord(axis) - 65]
+            self.programmed[:, column] = (slot >= 0)[path.block]
+            self._round(column, axis)
+            self._choose(column)
+
+    def _round(self, column: int, axis: str) -> None:
+        """Find what the control believes of one axis before and after each row."""
+        manner = self.task.manner
+        end = self.task.path.end[:, column]
+        decimals = manner.decimals_of(axis, False)
+        if axis in LINEAR and self.inch.any():
+            step = np.where(self.inch, manner.step(axis, True), manner.step(axis, False))
+            held = quantise(end / step, 0) * step
+            self.step.append(step)
+        else:
+            held = quantise(end, decimals) / 10.0**decimals
+            self.step.append(manner.step(axis, False))
+        if manner.words == "programmed":
+            held = fill(held, self.programmed[:, column], self.believed.position[column])
+        self.held[:, column] = held
+        self.before[1:, column] = held[:-1]
+        self.before[:1, column] = self.believed.position[column]
+
+    def _choose(self, column: int) -> None:
+        """Decide which words of an axis are needed: those that change or were programmed."""
+        words = self.task.manner.words
+        held, programmed = self.held[:, column], self.programmed[:, column]
+        known = ~np.isnan(held)
+        if words == "programmed":
+            self.write[:, column] = programmed & known
+        elif words == "all":
+            self.write[:, column] = known
+        else:
+            moved = ~(np.abs(held - self.before[:, column]) < 0.5 * self.step[column])
+            self.write[:, column] = (moved | (programmed & self._last)) & known
+
+    @property
+    def _last(self) -> Flags:
+        """Rows that are the last of their block."""
+        block = self.task.path.block
+        return np.append(block[1:] != block[:-1], True)[: len(block)]
+
+    def words_of(self, column: int, rows: NDArray[np.int64]) -> Floats:
+        """Return the numbers to be written, as whole numbers of the last decimal."""
+        step = self.step[column]
+        if isinstance(step, np.ndarray):
+            step = step[rows]
+        value = self.held[rows, column]
+        incremental = self.task.path.blocks.incremental[self.task.path.block[rows]]
+        if incremental.any():
+            value = np.where(incremental, value - self.before[rows, column], value)
+        return np.rint(value / step)
+
+
+def motion_kinds(task: Task, positions: Positions) -> Small:
+    """Return the kinds of the rows as they are written.
+
+    An arc whose ends are one point after rounding would be read as a full circle: it becomes a
+    line, unless it goes round.
+    """
+    path = task.path
+    kind = path.kind.copy()
+    arcs = np.flatnonzero(path.is_arc)
+    if not len(arcs):
+        return kind
+    chord = np.abs(positions.held[arcs, :3] - positions.before[arcs, :3])
+    radius = np.nan_to_num(path.centre[arcs] - path.end[arcs, :3])
+    length = path.sweep[arcs] * np.sqrt((radius**2).sum(axis=1))
+    first_step = positions.step[0]
+    step = first_step[arcs] if isinstance(first_step, np.ndarray) else first_step
+    same = np.nan_to_num(chord).max(axis=1) < 1e-9
+    kind[arcs[same & (length < 4 * step) & (path.sweep[arcs] < np.pi)]] = 1
+    return kind

@@ -1,0 +1,136 @@
+"""Pieces to bytes: each template fills rows of one matrix, whose padding is then dropped."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.diagnostics import InputError
+from gcxform.emit.numbers import LARGEST, number_field
+from gcxform.emit.manner import Task
+
+Bytes = NDArray[np.uint8]
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+
+class Renderer:
+    """Collects rendered templates and puts them in order."""
+
+    def __init__(self, task: Task) -> None:
+        self.task = task
+        self.window = task.window
+        self._parts: list[Bytes] = []
+        self._done: list[tuple[Ints, Bytes]] = []
+        self._rows = 0
+
+    def begin(self, rows: int) -> None:
+        """Begin a template of some rows."""
+        self._parts = []
+        self._rows = rows
+
+    def literal(self, text: bytes) -> None:
+        """Add bytes that all rows have."""
+        if b"\0" in text:
+            raise InputError.one("GX505", "a block with a NUL byte has to be written anew")
+        cell = np.frombuffer(text, np.uint8)
+        self._parts.append(np.broadcast_to(cell, (self._rows, len(cell))))
+
+    def copied(self, lines: Ints, slot: int) -> None:
+        """Add numbers as they stand in the source lines."""
+        number = self.window.first_number[lines] + slot
+        start, end = self.window.number_start[number], self.window.number_end[number]
+        self._bytes_between(start, end)
+
+    def _bytes_between(self, start: Ints, end: Ints) -> None:
+        width = int((end - start).max(initial=0))
+        text = np.frombuffer(self.window.text, np.uint8)
+        at = start[:, None] + np.arange(width)
+        inside = at < end[:, None]
+        cells = text[np.minimum(at, len(text) - 1)] if len(text) else np.zeros(at.shape, np.uint8)
+        self._parts.append(np.where(inside, cells, np.uint8(0)))
+
+    def number(
+        self, prefix: bytes, whole: Floats, decimals: int, present: Flags, point: bool = True
+    ) -> None:
+        """Add words: a prefix and whole / 10**decimals, in the rows where it is present."""
+        if not present.any():
+            return
+        if (np.abs(whole[present]) >= LARGEST * 10.0**decimals).any():
+            raise InputError.one("GX503", f"{prefix.decode().strip()} has too many digits")
+        cell = np.frombuffer(prefix, np.uint8)
+        if present.all():
+            self._parts.append(np.broadcast_to(cell, (self._rows, len(cell))))
+        else:
+            self._parts.append(np.where(present[:, None], cell, np.uint8(0)))
+        zeros = self.task.manner.numbers.zeros
+        self._parts.append(number_field(whole, decimals, zeros, present, point))
+
+    def line_ends(self, lines: Ints, last: Flags, usual: bytes) -> None:
+        """Add the line ends of the source lines; pieces before the last of a line get the usual."""
+        start, end = self.window.end[lines], self.window.next[lines]
+        if last.all():
+            self._bytes_between(start, end)
+            return
+        cell = np.frombuffer(usual, np.uint8)
+        self._parts.append(np.where(last[:, None], np.uint8(0), cell))
+        self._bytes_between(start, np.where(last, end, start))
+
+    def finish(self, places: Ints) -> None:
+        """End the template; its rows stand at these places among all pieces written."""
+        self._done.append((places, np.concatenate(self._parts, axis=1)))
+
+    def text(self, rows: int) -> tuple[bytes, Ints]:
+        """Return the text of all rows in order, and the length of each."""
+        if len(self._done) == 1:
+            matrix = self._done[0][1]
+        else:
+            width = max((part.shape[1] for _, part in self._done), default=0)
+            matrix = np.zeros((rows, width), np.uint8)
+            for places, part in self._done:
+                matrix[places, : part.shape[1]] = part
+        kept = matrix != 0
+        return matrix[kept].tobytes(), np.count_nonzero(kept, axis=1)
+
+
+def interleave(
+    task: Task, copied: Flags, written: Ints, text: bytes, lengths: Ints
+) -> tuple[bytes, Ints]:
+    """Return a window's new text and, for each of its lines, the line it came from.
+
+    `copied` (live,) says which lines are copied; `written` (k,) are the lines of the pieces whose
+    texts, of these lengths, follow one another in `text`. Lines the control does not reach are
+    copied.
+    """
+    window = task.window
+    total = len(window)
+    whole = np.concatenate([copied, np.ones(total - len(copied), np.bool_)])
+    keep = np.flatnonzero(whole)
+    order = np.argsort(np.concatenate([keep, written]), kind="stable")
+    source = np.concatenate([keep, written])[order]
+    if not len(written):
+        return window.text, source
+    is_copy = order < len(keep)
+    edges = np.flatnonzero(np.append(True, is_copy[1:] != is_copy[:-1]))
+    ends = np.append(edges[1:], len(order))
+    at = np.append(0, np.cumsum(lengths))
+    parts = []
+    done = 0
+    for first, last in zip(edges.tolist(), ends.tolist(), strict=True):
+        if is_copy[first]:
+            parts += _copied_runs(task, source[first:last])
+        else:
+            parts.append(text[int(at[done]) : int(at[done + last - first])])
+            done += last - first
+    return b"".join(parts), source
+
+
+def _copied_runs(task: Task, lines: Ints) -> list[bytes]:
+    """Return the source text of lines, one slice for each run of neighbours."""
+    window = task.window
+    breaks = np.flatnonzero(np.diff(lines) != 1) + 1
+    return [
+        window.text[int(window.start[run[0]]) : int(window.next[run[-1]])]
+        for run in np.split(lines, breaks)
+    ]

@@ -1,0 +1,385 @@
+"""Templates: how a block of a shape is written again, as a row of fields.
+
+A template is made once for each way in which a shape has to be written (which piece of a split
+block, which motion word, whether the feed must be stated ...). Its fields are literals copied from
+the source, numbers copied from the source, and numbers to be formatted from columns. Rendering is
+then a matter of whole arrays.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+from gcxform.emit.manner import Manner
+from gcxform.modal.codes import Code
+from gcxform.modal.meaning import Meaning
+from gcxform.syntax.shapes import CODES, Shape
+from gcxform.syntax.tree import BLANKS, Comment, Item, Mark, Number, Word
+
+
+class Role(IntEnum):
+    """Which piece of its block a line is; NONE: the block does not move."""
+
+    NONE = 0
+    ONLY = 1
+    FIRST = 2
+    MIDDLE = 3
+    LAST = 4
+
+
+class Feed(IntEnum):
+    """What happens to the feed word of a piece."""
+
+    NONE = 0
+    KEEP = 1
+    WRITE = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """All that decides how a piece of a block is written, but for its numbers.
+
+    `motion`, `inch`, `incremental`, `absolute_centre`: what has to be stated; -1: nothing.
+    `turns`: full turns beyond the arc. `arc`: whether centre words are written; `plane` their plane.
+    """
+
+    role: Role
+    motion: int
+    inch: int
+    incremental: int
+    absolute_centre: int
+    feed: Feed
+    arc: bool
+    plane: int
+    turns: int
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """Bytes written as they are."""
+
+    text: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Copied:
+    """The number in a slot of the source line, as it was written."""
+
+    slot: int
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """An axis word: left out where it need not be written."""
+
+    gap: bytes
+    address: str
+
+
+@dataclass(frozen=True, slots=True)
+class Centre:
+    """A centre word; `index` is 0 for the plane's first axis, 1 for its second."""
+
+    gap: bytes
+    address: str
+    index: int
+
+
+@dataclass(frozen=True, slots=True)
+class FeedWord:
+    """The feed, formatted."""
+
+    gap: bytes
+
+
+Field = Literal | Copied | Axis | Centre | FeedWord
+PLANE_AXES = ("XY", "ZX", "YZ")
+OFFSETS = {"X": "I", "Y": "J", "Z": "K"}
+
+
+class CannotSay(Exception):
+    """The target dialect has no words for something: column from 0, width, message."""
+
+    def __init__(self, column: int, width: int, message: str) -> None:
+        super().__init__(message)
+        self.column = column
+        self.width = width
+        self.message = message
+
+
+class TemplateWriter:
+    """Makes the templates of one shape."""
+
+    def __init__(
+        self,
+        shape: Shape,
+        meaning: Meaning,
+        manner: Manner,
+        axes: str,
+        gap: bytes,
+    ) -> None:
+        self.shape = shape
+        self.text = shape.block.text
+        self.meaning = meaning
+        self.source = manner.source
+        self.target = manner.target
+        self.axes = axes
+        self.gap = self._own_gap(gap)
+
+    def _own_gap(self, usual: bytes) -> bytes:
+        """Return what stands between the words of this block, or what is usual in the program."""
+        words = list(self.shape.block.words)
+        if len(words) < 2:
+            return usual
+        return b" " if any(b.start > a.end for a, b in zip(words, words[1:], strict=False)) else b""
+
+    def write(self, key: Key) -> tuple[Field, ...]:
+        """Return the fields of a piece of the block. Raises CannotSay."""
+        self.fields: list[Field] = []
+        self.key = key
+        self.axes_written = key.role is Role.NONE
+        self.centre_written = not key.arc
+        self.stated: set[str] = set()
+        at = slot = 0
+        whole = key.role in (Role.NONE, Role.ONLY, Role.FIRST)
+        self._repairs_wait = True
+        for item in self.shape.block.items:
+            lead = self.text[at : item.start].encode("latin-1") if whole else b""
+            at = item.end
+            self._item(item, lead, slot)
+            if isinstance(item, Word) and item.address not in CODES:
+                slot += isinstance(item.value, Number)
+        self._repair()
+        self._axes(b"")
+        self._centre(b"")
+        self._feed_at_end()
+        if whole and at < len(self.text):
+            self.fields.append(Literal(self.text[at:].encode("latin-1")))
+        return tuple(self.fields)
+
+    # --- one item ------------------------------------------------------------------------------
+
+    def _item(self, item: Item, lead: bytes, slot: int) -> None:
+        if isinstance(item, Word):
+            self._word(item, lead, slot)
+        elif isinstance(item, Comment):
+            if self.key.role not in (Role.MIDDLE, Role.LAST):
+                self._literal(lead, self._comment(item))
+        elif isinstance(item, Mark):
+            self._mark(item, lead)
+        else:
+            self._check_same(item, f"{item.kind.replace('_', ' ')}")
+            self._literal(lead, self.text[item.start : item.end])
+
+    def _literal(self, lead: bytes, text: str) -> None:
+        if lead or text:
+            self.fields.append(Literal(lead + text.encode("latin-1")))
+
+    def _check_same(self, item: Item, name: str) -> None:
+        if self.source is not self.target:
+            raise CannotSay(
+                item.start, item.end - item.start, f"{self.target.name} cannot say {name}"
+            )
+
+    def _comment(self, item: Comment) -> str:
+        text = self.text[item.start : item.end]
+        if text[0] in self.target.comments:
+            return text
+        inner = text[1:-1] if text[0] == "(" else text[1:]
+        if self.target.comments.startswith("("):
+            return "(" + inner.replace("(", "[").replace(")", "]") + ")"
+        return ";" + inner
+
+    def _mark(self, item: Mark, lead: bytes) -> None:
+        text = self.text[item.start : item.end]
+        if item.kind == "block_delete":
+            if self.source.block_delete != self.target.block_delete:
+                self._check_same(item, "a block with a slash in the same way")
+            self._literal(lead, text)
+        elif self.key.role in (Role.MIDDLE, Role.LAST):
+            return
+        elif item.kind == "percent" and not self.target.has_percent:
+            return
+        elif item.kind in ("program_id", "program_name") and not self.target.has_program_number:
+            return
+        else:
+            self._literal(lead, text)
+
+    # --- words -----------------------------------------------------------------------------------
+
+    def _word(self, word: Word, lead: bytes, slot: int) -> None:
+        address = word.address
+        if address not in "NO" and self._repairs_wait:
+            lead = self._repair_before(word, lead)
+        if address == "G":
+            self._g_word(word, lead)
+        elif address == "M":
+            self._m_word(word, lead)
+        elif address in self.meaning.slots and address in self.axes:
+            self._axes(lead)
+        elif address in self.meaning.slots and address in "IJKR":
+            self._centre(lead)
+        elif address in self.meaning.slots and address == self.source.turns_address:
+            return
+        elif address == "F" and "F" in self.meaning.slots:
+            self._feed(word, lead, slot)
+        elif address == "O" and not self.target.has_program_number:
+            return
+        elif self.key.role not in (Role.MIDDLE, Role.LAST):
+            self._copy(word, lead, slot)
+
+    def _copy(self, word: Word, lead: bytes, slot: int) -> None:
+        """Write a word as it stands in the source."""
+        if word.address not in self.target.words + self.target.axes + "GMO":
+            raise CannotSay(
+                word.start, word.end - word.start, f"{self.target.name} has no word {word.address}"
+            )
+        if word.address in CODES or not isinstance(word.value, Number):
+            self._literal(lead, self.text[word.start : word.end])
+            return
+        self._literal(lead, self.text[word.start : word.value.start])
+        self.fields.append(Copied(slot))
+
+    def _g_word(self, word: Word, lead: bytes) -> None:
+        assert isinstance(word.value, Number)
+        name = f"G{round(word.value.value, 6):g}"
+        code = self.source.codes.get(name)
+        group = code.group if code is not None else ""
+        text = self.text[word.start : word.end]
+        if self.key.role in (Role.MIDDLE, Role.LAST):
+            lead = self._gap(lead)
+        if group in STATED and group not in self.stated:
+            wanted = self._wanted(group)
+            self.stated.add(group)
+            if wanted is not None:
+                self._literal(lead, text if wanted == name else _like(text, wanted))
+                return
+            if group == "motion" and self.key.role is not Role.NONE:
+                return
+        if self.key.role in (Role.MIDDLE, Role.LAST):
+            return
+        self._check_code(word, name, code)
+        self._literal(lead, text)
+
+    def _check_code(self, word: Word, name: str, code: Code | None) -> None:
+        """Raise CannotSay unless a G code means the same in the target."""
+        if self.source is self.target or code is None:
+            return
+        other = self.target.codes.get(name)
+        same = other is not None and (other.group, other.effect) == (code.group, code.effect)
+        if not same or (code.takes != other.takes if other else True):
+            self._refuse(word, name)
+        if self.meaning.dwell and code.group == "non-modal" and self.source.dwell != self.target.dwell:
+            self._refuse(word, "this dwell")
+
+    def _refuse(self, word: Word, what: str) -> None:
+        raise CannotSay(word.start, word.end - word.start, f"{self.target.name} cannot say {what}")
+
+    def _m_word(self, word: Word, lead: bytes) -> None:
+        assert isinstance(word.value, Number)
+        number = int(word.value.value)
+        code = self.source.m_codes.get(number, self.source.unknown_m)
+        if self.source is not self.target:
+            other = self.target.m_codes.get(number, self.target.unknown_m)
+            if other is None or code is None or other.after != code.after:
+                self._refuse(word, f"M{number}")
+        after = code is not None and code.after
+        if self.key.role in (Role.NONE, Role.ONLY) or (self.key.role is Role.LAST) == after:
+            if self.key.role is not Role.MIDDLE:
+                lead = lead or (self.gap if self.fields else b"")
+                self._literal(lead, self.text[word.start : word.end])
+
+    # --- what has to be stated -------------------------------------------------------------------
+
+    def _wanted(self, group: str) -> str | None:
+        """Return the code that has to be stated for a group, if any."""
+        value = getattr(self.key, STATED[group][0])
+        return None if value < 0 else STATED[group][1][value]
+
+    def _repair_before(self, word: Word, lead: bytes) -> bytes:
+        """State what the source block leaves to modes that no longer hold, before its first word."""
+        self._repairs_wait = False
+        explicit = {code for code in self.meaning.groups if code in STATED}
+        texts = []
+        for group in STATED:
+            wanted = self._wanted(group)
+            if wanted is not None and group not in explicit:
+                texts.append(wanted)
+                self.stated.add(group)
+        if not texts:
+            return lead
+        self._literal(lead, self.gap.decode().join(texts))
+        return self.gap
+
+    def _repair(self) -> None:
+        """State what is still to be stated, in a block that had no word to put it before."""
+        if self._repairs_wait and self.key.role is not Role.NONE:
+            self._repairs_wait = False
+            texts = [w for g in STATED if (w := self._wanted(g)) is not None]
+            self._literal(b"", self.gap.decode().join(texts))
+
+    def _axes(self, lead: bytes) -> None:
+        """Write the axis words of the block, in its own order, and those it does not name."""
+        if self.axes_written:
+            return
+        self.axes_written = True
+        named = [w.address for w in self.shape.block.words if w.address in self.meaning.axes]
+        if named == sorted(named, key=self.axes.index):
+            order = list(self.axes)
+        else:
+            order = named + [a for a in self.axes if a not in named]
+        for address in order:
+            gap = self._gap(lead)
+            self.fields.append(Axis(gap, address))
+            lead = b""
+
+    def _gap(self, lead: bytes) -> bytes:
+        return lead or (self.gap if self.fields else b"")
+
+    def _centre(self, lead: bytes) -> None:
+        """Write the centre words of an arc and its turns."""
+        if self.centre_written:
+            return
+        self._axes(b"")
+        self.centre_written = True
+        for index, axis in enumerate(PLANE_AXES[self.key.plane]):
+            self.fields.append(Centre(self._gap(lead), OFFSETS[axis], index))
+            lead = b""
+        if self.key.turns:
+            if not self.target.turns_address:
+                raise CannotSay(
+                    0,
+                    len(self.text),
+                    f"{self.target.name} has no arcs of more than a turn",
+                )
+            self._literal(self._gap(b""), f"{self.target.turns_address}{self.key.turns + 1}")
+
+    def _feed(self, word: Word, lead: bytes, slot: int) -> None:
+        if self.key.feed is Feed.KEEP:
+            self._copy(word, self._gap(lead) if self.fields else lead, slot)
+        elif self.key.feed is Feed.WRITE:
+            self.fields.append(FeedWord(self._gap(lead)))
+        self.stated.add("feed")
+
+    def _feed_at_end(self) -> None:
+        if self.key.feed is Feed.WRITE and "feed" not in self.stated:
+            self.fields.append(FeedWord(self._gap(b"")))
+
+
+STATED = {
+    "units": ("inch", ("G21", "G20")),
+    "distance": ("incremental", ("G90", "G91")),
+    "arc-distance": ("absolute_centre", ("G91.1", "G90.1")),
+    "motion": ("motion", ("G0", "G1", "G2", "G3")),
+}
+"""Groups whose code may have to be stated: field of the key, and codes by value."""
+
+
+def _like(text: str, code: str) -> str:
+    """Return a code written like another: `g01` for G3 gives `g03`."""
+    letter, digits = text[0], text[1:].translate(BLANKS)
+    number = code[1:]
+    if len(digits.split(".")[0]) == 2 and len(number.split(".")[0]) == 1:
+        number = "0" + number
+    return letter + number

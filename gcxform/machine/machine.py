@@ -1,0 +1,354 @@
+"""Machines: axes with limits and speeds, work offsets and tools, read from a TOML file.
+
+Lengths are mm and angles degrees; a file may write them as strings with a unit (`"5 um"`,
+`"80 urad"`). `LENGTH` and `ANGLE` read such strings, here and in the options of passes.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from decimal import Decimal
+from functools import partial
+from pathlib import Path
+from typing import Annotated, Any
+
+import msgspec
+
+from gcxform.diagnostics import Diagnostic, Location, UsageError
+from gcxform.machine.modelfile import CODES, FORMAT
+from gcxform.tomltext import TomlText, convert, did_you_mean, read_toml
+
+LINEAR_AXES = tuple("XYZUVW")
+ROTARY_AXES = tuple("ABC")
+AXIS_LETTERS = LINEAR_AXES + ROTARY_AXES
+
+_QUANTITY = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*")
+_DEGREES = Decimal("57.29577951308232087679815481410517033240547246656")  # of a radian
+_WORK_OFFSET = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A physical quantity: its name, its unit inside gcxform, and what other units are worth."""
+
+    name: str
+    base: str
+    worth: Mapping[str, Decimal]
+    example: str
+
+    def parse(self, text: str, bare: bool = False) -> float:
+        """Return a string with a unit, in the base unit; `bare` allows a number alone.
+
+        Raises ValueError with a sentence that follows the name of what is read.
+        """
+        found = _QUANTITY.fullmatch(text)
+        if found is None:
+            raise ValueError(f"{text!r} is not {self.article}, such as {self.example}")
+        number, unit = found.groups()
+        if not unit and not bare:
+            raise ValueError(
+                f'{text!r} has no unit: write "{number} {self.base}", or {number} without quotes'
+            )
+        if unit and unit not in self.worth:
+            known = ", ".join(name for name in self.worth if name.isascii())
+            raise ValueError(f"{unit!r} is not a unit of {self.article}; units are {known}")
+        if not math.isfinite(float(number)):
+            raise ValueError(f"{number} is too large")
+        # Decimal, so that "7 um" is the double nearest to 0.007
+        return float(Decimal(number) * self.worth[unit or self.base])
+
+    @property
+    def article(self) -> str:
+        """The name with its article."""
+        return f"a{'n' * (self.name[0] in 'aeio')} {self.name}"
+
+
+LENGTH = Quantity(
+    "length",
+    "mm",
+    {
+        "mm": Decimal(1),
+        "um": Decimal("0.001"),
+        "µm": Decimal("0.001"),
+        "μm": Decimal("0.001"),
+        "m": Decimal(1000),
+        "in": Decimal("25.4"),
+    },
+    '"5 um", "0.2 mm" or 0.2',
+)
+ANGLE = Quantity(
+    "angle",
+    "deg",
+    {
+        "deg": Decimal(1),
+        "rad": _DEGREES,
+        "mrad": _DEGREES / 1000,
+        "urad": _DEGREES / 1_000_000,
+    },
+    '"10 deg", "80 urad" or 10',
+)
+
+
+def quantity_of(axis: str) -> Quantity:
+    """Return what the coordinate of an axis is: a length, or an angle for A, B and C."""
+    return ANGLE if axis in ROTARY_AXES else LENGTH
+
+
+_MARK = "a number, or a string with a unit"
+Value = Annotated[float, msgspec.Meta(description=_MARK)]
+Triple = tuple[Value, Value, Value]
+
+
+class Axis(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="kebab", kw_only=True):
+    """An axis: travel (mm or degrees), top speed (mm/min or deg/min), and where a rotary one turns.
+
+    `direction` is a unit vector along the axis and `point` (mm) lies on it, both in machine
+    coordinates with all axes at 0; `sign` is +1 where a positive command turns the tool
+    right-handed about `direction`, -1 where it turns the workpiece so; `wrap` is the modulo of the
+    display in degrees.
+    """
+
+    limits: tuple[Value, Value] | None = None
+    max_speed: float | None = None
+    direction: tuple[float, float, float] | None = None
+    point: Triple | None = None
+    sign: int | None = None
+    wrap: Value | None = None
+
+
+class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="kebab", kw_only=True):
+    """A tool: length from the gauge point to the tip, and radius, in mm."""
+
+    length: Value = 0.0
+    radius: Value = 0.0
+
+
+class MachineFile(
+    msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="kebab", kw_only=True
+):
+    """A machine file as it is written."""
+
+    format: int
+    name: str = ""
+    table: list[str] = []
+    head: list[str] = []
+    gauge_point: Triple = (0.0, 0.0, 0.0)
+    errors: str | None = None
+    axis: dict[str, Axis] = {}
+    work_offset: dict[str, dict[str, Value]] = {}
+    tool: dict[str, Tool] = {}
+
+
+class Machine(msgspec.Struct, frozen=True, kw_only=True):
+    """A machine: its axes by letter, work offsets by code (mm, degrees) and tools by number.
+
+    `table` and `head` name the rotary axes from the base to the workpiece and to the spindle;
+    `gauge_point` (mm) is that of the spindle with all axes at 0; `errors` is a file.
+    """
+
+    file: Path
+    name: str = ""
+    table: tuple[str, ...] = ()
+    head: tuple[str, ...] = ()
+    gauge_point: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    errors: Path | None = None
+    axes: dict[str, Axis] = {}
+    work_offsets: dict[str, dict[str, float]] = {}
+    tools: dict[int, Tool] = {}
+
+
+def load_machine(path: Path) -> Machine:
+    """Return the machine of a TOML file.
+
+    Raises UsageError, with the place in the file, for all that is wrong with it.
+    """
+    document = read_toml(path, CODES)
+    _check_version(document)
+    document = _without_units(document)
+    file = convert(document, MachineFile)
+    if found := tuple(_findings(document, file)):
+        raise UsageError(found)
+    return Machine(
+        file=path,
+        name=file.name or path.stem,
+        table=tuple(file.table),
+        head=tuple(file.head),
+        gauge_point=file.gauge_point,
+        errors=None if file.errors is None else path.parent / file.errors,
+        axes={letter: _normalised(axis) for letter, axis in file.axis.items()},
+        work_offsets=file.work_offset,
+        tools={int(number): tool for number, tool in file.tool.items()},
+    )
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON Schema of machine files."""
+    found: dict[str, Any] = msgspec.json.schema(MachineFile)
+    _admit_strings(found)
+    return found
+
+
+def _admit_strings(node: Any) -> None:
+    """Let strings in wherever a number may have a unit, in place."""
+    children = node.values() if isinstance(node, dict) else node if isinstance(node, list) else ()
+    if isinstance(node, dict) and node.get("description") == _MARK:
+        for part in node.get("anyOf", [node]):
+            if part.get("type") == "number":
+                part["type"] = ["number", "string"]
+    for child in children:
+        _admit_strings(child)
+
+
+def _check_version(document: TomlText) -> None:
+    version = document.values.get("format")
+    if version is None:
+        raise document.missing_key(("format",))
+    if version != FORMAT or isinstance(version, bool):
+        message = f"format {version!r} of machines is not known, only format = {FORMAT} is"
+        raise UsageError.one("GX406", message, document.where("format"))
+
+
+Keys = tuple[str | int, ...]
+
+
+def _quantity_at(keys: Keys) -> Quantity | None:
+    """Return what the value at a path of a machine file is, None if it has no unit."""
+    match keys:
+        case ("gauge-point", int()) | ("tool", _, "length" | "radius"):
+            return LENGTH
+        case ("axis", _, "point", int()):
+            return LENGTH
+        case ("axis", str(letter), "limits", int()) | ("work-offset", _, str(letter)):
+            return quantity_of(letter)
+        case ("axis", _, "wrap"):
+            return ANGLE
+    return None
+
+
+def _without_units(document: TomlText) -> TomlText:
+    """Return the document with numbers in the place of strings with a unit."""
+    found: list[Diagnostic] = []
+
+    def walk(node: Any, keys: Keys) -> Any:
+        if isinstance(node, dict):
+            return {key: walk(value, (*keys, key)) for key, value in node.items()}
+        if isinstance(node, list):
+            return [walk(value, (*keys, k)) for k, value in enumerate(node)]
+        try:
+            return _number(node, _quantity_at(keys))
+        except ValueError as error:
+            name = keys[-1] if isinstance(keys[-1], str) else keys[-2]
+            message = f"{name}: {error}"
+            found.append(Diagnostic(document.codes.wrong_value, message, document.where(*keys)))
+            return 0.0
+
+    values = walk(document.values, ())
+    if found:
+        raise UsageError(tuple(found))
+    return replace(document, values=values)
+
+
+def _number(node: Any, quantity: Quantity | None) -> Any:
+    """Return a leaf of the file, in the base unit of its quantity; ValueError if it has none."""
+    if isinstance(node, float) and not math.isfinite(node):
+        raise ValueError(f"{node} is not a finite number")
+    if isinstance(node, str) and quantity is not None:
+        return quantity.parse(node)
+    return node
+
+
+def _findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
+    """Yield what is wrong with a machine whose values have the right types."""
+    for letter, axis in file.axis.items():
+        if letter not in AXIS_LETTERS:
+            yield from document.unknown_key(("axis", letter), AXIS_LETTERS).diagnostics
+            continue
+        yield from _axis_findings(letter, axis, partial(document.where, "axis", letter))
+    yield from _chain_findings(document, file)
+    yield from _offset_findings(document, file)
+    yield from _tool_findings(document, file)
+
+
+def _axis_findings(
+    letter: str, axis: Axis, where: Callable[[str], Location]
+) -> Iterator[Diagnostic]:
+    rotary = letter in ROTARY_AXES
+    if axis.limits is not None and not axis.limits[0] < axis.limits[1]:
+        low, high = axis.limits
+        message = f"the limits of axis {letter} do not ascend: {low:g}, {high:g}"
+        yield Diagnostic("GX431", message, where("limits"), "the lower limit comes first")
+    if axis.direction is not None and not any(axis.direction):
+        message = f"the direction of axis {letter} is zero"
+        yield Diagnostic("GX432", message, where("direction"), "give a vector along the axis")
+    elif rotary and axis.direction is None:
+        message = f"the rotary axis {letter} needs a direction"
+        yield Diagnostic("GX432", message, where("direction"), "give a vector along the axis")
+    if axis.sign not in (None, -1, 1) or (rotary and axis.sign is None):
+        stated = "is missing" if axis.sign is None else f"is {axis.sign}"
+        message = f"the sign of axis {letter} {stated}, it has to be -1 or +1"
+        hint = "ISO 841: +1 where the axis turns the tool, -1 where it turns the workpiece"
+        yield Diagnostic("GX433", message, where("sign"), hint)
+    for key, value in (("max-speed", axis.max_speed), ("wrap", axis.wrap)):
+        if value is not None and not value > 0.0:
+            message = f"{key} of axis {letter} is {value:g}, it has to be above 0"
+            yield Diagnostic("GX434", message, where(key))
+
+
+def _chain_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
+    """Yield the rotary axes of the two chains which are not there, or stand twice."""
+    seen: set[str] = set()
+    rotary = [letter for letter in file.axis if letter in ROTARY_AXES]
+    for chain, letters in (("table", file.table), ("head", file.head)):
+        for k, letter in enumerate(letters):
+            where = document.where(chain, k)
+            if letter not in rotary:
+                message = f"{chain} names {letter!r}, which is not a rotary axis of this machine"
+                hint = f"add [axis.{letter}]" if letter in ROTARY_AXES else ""
+                yield Diagnostic("GX435", message, where, hint or did_you_mean(letter, rotary))
+            elif letter in seen:
+                message = f"the axis {letter} stands twice in table and head"
+                yield Diagnostic("GX435", message, where)
+            seen.add(letter)
+
+
+def _offset_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
+    for code, offset in file.work_offset.items():
+        if not _WORK_OFFSET.fullmatch(code):
+            yield Diagnostic(
+                "GX436",
+                f"{code!r} is not a work offset",
+                document.where("work-offset", code),
+                'known: G54 to G59, "G59.1" to "G59.3", "G54.1 P1"; quote a name with a point',
+            )
+        known = [letter for letter in AXIS_LETTERS if letter in (file.axis or AXIS_LETTERS)]
+        for letter in offset:
+            if letter not in known:
+                keys = ("work-offset", code, letter)
+                yield from document.unknown_key(keys, known).diagnostics
+
+
+def _tool_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
+    numbers: set[int] = set()
+    for number, tool in file.tool.items():
+        where = document.where("tool", number)
+        if not re.fullmatch("[0-9]{1,9}", number):
+            yield Diagnostic("GX437", f"{number!r} is not a tool number", where)
+        elif int(number) in numbers:
+            yield Diagnostic("GX437", f"the tool {int(number)} stands twice", where)
+        else:
+            numbers.add(int(number))
+        if tool.radius < 0.0:
+            message = f"radius of tool {number} is {tool.radius:g}, it cannot be negative"
+            yield Diagnostic("GX434", message, document.where("tool", number, "radius"))
+
+
+def _normalised(axis: Axis) -> Axis:
+    """Return the axis with a direction of length 1."""
+    if axis.direction is None:
+        return axis
+    x, y, z = axis.direction
+    length = math.hypot(x, y, z)
+    return msgspec.structs.replace(axis, direction=(x / length, y / length, z / length))

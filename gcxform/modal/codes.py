@@ -1,0 +1,91 @@
+"""What a code does, as data: its modal group, its effect, the words that belong to it.
+
+A dialect is a table of these. Nothing here is true of every control; `ISO` holds the codes on which
+all the first-party dialects agree, and each dialect adds to it or takes away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Effect(Enum):
+    """What the interpreter does with a code."""
+
+    MODAL = "sets its modal group"
+    DWELL = "waits"
+    INERT = "is kept as it is: it changes no position"
+    BARRIER = "is refused wherever a pass needs positions"
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """One G code. `takes` are the address letters of the words that are parameters to it."""
+
+    group: str
+    effect: Effect = Effect.MODAL
+    takes: str = ""
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class MCode:
+    """One M code. `after`: it acts after the motion of its block; `ends`: the program ends."""
+
+    group: str
+    after: bool = False
+    ends: bool = False
+    barrier: str = ""
+    loses_position: bool = False
+    takes: str = ""
+
+
+def inert(group: str, takes: str = "") -> Code:
+    """Return a code that changes no position."""
+    return Code(group, Effect.INERT, takes)
+
+
+def barrier(group: str, reason: str, takes: str = "") -> Code:
+    """Return a code that is refused by name wherever a pass needs positions."""
+    return Code(group, Effect.BARRIER, takes, reason)
+
+
+ISO: Mapping[str, Code] = {
+    **{code: Code("motion") for code in ("G0", "G1", "G2", "G3")},
+    "G4": Code("non-modal", Effect.DWELL),
+    **{code: Code("plane") for code in ("G17", "G18", "G19")},
+    **{code: Code("distance") for code in ("G90", "G91")},
+    **{code: Code("feed-mode") for code in ("G93", "G94")},
+    **{code: Code("units") for code in ("G20", "G21")},
+    "G40": inert("cutter-comp"),
+    "G49": inert("tool-length"),
+    **{code: Code("frame") for code in ("G54", "G55", "G56", "G57", "G58", "G59")},
+    "G80": Code("motion"),
+}
+
+ISO_M: Mapping[int, MCode] = {
+    0: MCode("stop", after=True),
+    1: MCode("stop", after=True),
+    2: MCode("stop", after=True, ends=True),
+    30: MCode("stop", after=True, ends=True),
+    3: MCode("spindle"),
+    4: MCode("spindle"),
+    5: MCode("spindle"),
+    6: MCode("tool"),
+    7: MCode("coolant"),
+    8: MCode("coolant"),
+    9: MCode("coolant"),
+}
+
+CYCLE = "a canned cycle moves axes in a way of its own; this version does not expand cycles"
+HOME = "it moves axes to a point that only the control knows"
+SHIFT = "it shifts the coordinates by values that only the control knows"
+LENGTH = "it shifts the tool by a length that only the control knows"
+COMP = "cutter compensation moves the path beside the programmed contour"
+TRANSFORM = "it turns, scales or mirrors the coordinates"
+CALL = "it runs a program that is not in this file"
+SYNCHRONISED = "its motion is tied to the spindle"
+PROBE = "its end is where the probe touches"
+"""Reasons for barriers, as they are shown to a user."""

@@ -1,0 +1,59 @@
+"""What speaks against a window, collected and raised together, each with its place and context."""
+
+from __future__ import annotations
+
+from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.modal.tables import MeaningTable
+from gcxform.syntax.scan import Window
+
+
+class Findings:
+    """Diagnostics about lines of one window."""
+
+    enough = 50
+
+    def __init__(self, file: str, window: Window, table: MeaningTable) -> None:
+        self.file = file
+        self.window = window
+        self.table = table
+        self.found: list[tuple[int, Diagnostic]] = []
+
+    def add(
+        self, line: int, code: str, message: str, address: str = "", hint: str = "", context: str = ""
+    ) -> None:
+        """Add a finding about a line, pointing at the word with an address if one is given."""
+        column, width = self._word_at(line, address)
+        where = self.location(line, column, width)
+        self.found.append((line, Diagnostic(code, message, where, hint, context)))
+
+    def add_refusal(self, line: int) -> None:
+        """Add what is wrong with the shape of a line."""
+        refusal = self.table.meanings[int(self.window.shape[line])].refusal
+        assert refusal is not None
+        where = self.location(line, refusal.column + 1, refusal.width)
+        self.found.append((line, Diagnostic(refusal.code, refusal.message, where, refusal.hint)))
+
+    def location(self, line: int, column: int, width: int) -> Location:
+        """Return a place in a line of the window."""
+        text = self.window.line(line).decode("latin-1")
+        return Location(self.file, self.window.first_line + line + 1, column, text, width)
+
+    def _word_at(self, line: int, address: str) -> tuple[int, int]:
+        """Return column (from 1) and width of a word; of the whole text if there is none."""
+        text = self.window.line(line)
+        slot = self.table.meanings[int(self.window.shape[line])].slots.get(address, -1)
+        if slot < 0:
+            blanks = len(text) - len(text.lstrip())
+            return blanks + 1, max(1, len(text.strip()))
+        number = int(self.window.first_number[line]) + slot
+        start = int(self.window.start[line])
+        begin = int(self.window.number_start[number]) - start
+        end = int(self.window.number_end[number]) - start
+        letter = max(text.rfind(address.encode(), 0, begin), text.rfind(address.lower().encode(), 0, begin))
+        return letter + 1, end - letter
+
+    def raise_if_any(self) -> None:
+        """Raise InputError with what was found, by line."""
+        if self.found:
+            self.found.sort(key=lambda entry: entry[0])
+            raise InputError(tuple(diagnostic for _, diagnostic in self.found))

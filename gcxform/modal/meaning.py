@@ -1,0 +1,227 @@
+"""What the blocks of one shape mean in a dialect: codes sorted into groups, words to their owners.
+
+This is done once per shape, by plain code; the interpreter then works on whole columns. Everything
+that can be refused without knowing the numbers is found here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from gcxform.dialect import Dialect
+from gcxform.modal.codes import Code, Effect, MCode
+from gcxform.syntax.shapes import CODES, Shape
+from gcxform.syntax.tree import Comment, Expression, Mark, Number, Statement, Word
+
+CENTRE = "IJK"
+UNTOUCHED_STATEMENTS: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """Why blocks of a shape are refused: a code of the catalogue, a column from 0, a sentence."""
+
+    code: str
+    column: int
+    width: int
+    message: str
+    hint: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class EventShape:
+    """An event of every block of a shape: its name, and the slots of the words it takes.
+
+    `order` sorts the events of a block; `after`: it happens after the block's motion.
+    """
+
+    order: int
+    what: str
+    slots: tuple[tuple[str, int], ...] = ()
+    after: bool = False
+
+
+@dataclass(slots=True)
+class Meaning:
+    """What a block of a shape does, but for its numbers."""
+
+    groups: dict[str, str] = field(default_factory=dict)
+    slots: dict[str, int] = field(default_factory=dict)
+    axes: str = ""
+    centres: str = ""
+    dwell: bool = False
+    deleted: bool = False
+    ends: bool = False
+    loses_position: bool = False
+    percent: bool = False
+    events: list[EventShape] = field(default_factory=list)
+    refusal: Refusal | None = None
+
+
+def meaning_of(shape: Shape, dialect: type[Dialect]) -> Meaning:
+    """Return what the blocks of a shape mean in a dialect."""
+    meaning = Meaning()
+    for refusal in _read(shape, dialect, meaning):
+        meaning.refusal = refusal
+        break
+    return meaning
+
+
+def _read(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
+    """Fill the meaning and yield what speaks against it, in the order in which it is looked for."""
+    if shape.block.error is not None:
+        column, message = shape.block.error
+        yield Refusal("GX101", column - 1, 1, f"this is not {dialect.name} G-code: {message}")
+    yield from _items(shape, dialect, meaning)
+    yield from _g_codes(shape, dialect, meaning)
+    yield from _m_codes(shape, dialect, meaning)
+    yield from _words(shape, dialect, meaning)
+    meaning.events.sort(key=lambda event: (event.after, event.order))
+
+
+def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
+    """Look at what is not a word, and number the slots."""
+    slot = 0
+    for item in shape.block.items:
+        if isinstance(item, Word):
+            if isinstance(item.value, Expression):
+                yield Refusal(
+                    "GX206",
+                    item.start,
+                    item.end - item.start,
+                    f"the value of {item.address} is an expression, which is not computed",
+                    "let the CAM write plain numbers, or use passes that keep positions",
+                )
+            elif item.address not in CODES:
+                if item.address in meaning.slots and item.address != "N":
+                    yield Refusal("GX203", item.start, 1, f"{item.address} stands here twice")
+                meaning.slots.setdefault(item.address, slot)
+                slot += 1
+        elif isinstance(item, Statement):
+            yield Refusal(
+                "GX206",
+                item.start,
+                item.end - item.start,
+                f"{item.kind.replace('_', ' ')} is code that would have to be run",
+                "let the CAM write plain blocks, or use passes that keep positions",
+            )
+        elif isinstance(item, Mark):
+            meaning.deleted |= item.kind == "block_delete"
+            meaning.percent |= item.kind == "percent"
+        elif isinstance(item, Comment):
+            text = shape.block.text[item.start : item.end]
+            if text[0] not in dialect.comments:
+                yield Refusal("GX101", item.start, 1, f"{dialect.name} has no such comments")
+
+
+def _code_of(word: Word) -> str:
+    """Return `G54.1` or `M3` for a code word as written; `G01` is `G1`."""
+    assert isinstance(word.value, Number)
+    value = round(word.value.value, 6)
+    return f"{word.address}{value:g}"
+
+
+def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
+    """Sort the G codes into their groups."""
+    owners: dict[str, Word] = {}
+    for word in shape.block.words:
+        if word.address != "G" or not isinstance(word.value, Number):
+            continue
+        name = _code_of(word)
+        code = dialect.codes.get(name)
+        width = word.end - word.start
+        if code is None:
+            yield Refusal("GX201", word.start, width, f"{dialect.name} has no code {name}")
+            continue
+        if code.group in owners and not dialect.last_code_wins:
+            yield Refusal(
+                "GX202",
+                word.start,
+                width,
+                f"{name} and {_code_of(owners[code.group])} are of one modal group",
+            )
+        owners[code.group] = word
+        meaning.groups[code.group] = name
+        if code.effect is Effect.BARRIER:
+            yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.reason}")
+    yield from _g_effects(dialect, meaning, owners)
+
+
+def _g_effects(
+    dialect: type[Dialect], meaning: Meaning, owners: dict[str, Word]
+) -> Iterator[Refusal]:
+    """Turn dwell and inert codes into events."""
+    for group, name in list(meaning.groups.items()):
+        code = dialect.codes[name]
+        if code.effect is Effect.MODAL:
+            continue
+        taken = _take(code, dialect, meaning)
+        if code.effect is Effect.DWELL:
+            meaning.dwell = True
+            if not taken:
+                yield Refusal("GX204", owners[group].start, 2, f"{name} needs a time")
+            meaning.events.append(EventShape(50, "DWELL", taken))
+        else:
+            meaning.events.append(EventShape(60, name, taken))
+
+
+def _take(code: Code | MCode, dialect: type[Dialect], meaning: Meaning) -> tuple[tuple[str, int], ...]:
+    """Take the words that are parameters to a code away from the block."""
+    letters = code.takes
+    if isinstance(code, Code) and code.effect is Effect.DWELL:
+        letters = "".join(dialect.dwell)
+    taken = tuple((a, meaning.slots[a]) for a in letters if a in meaning.slots)
+    for address, _ in taken:
+        del meaning.slots[address]
+    return taken
+
+
+def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
+    """Turn M codes into events."""
+    groups: dict[str, str] = {}
+    for word in shape.block.words:
+        if word.address != "M" or not isinstance(word.value, Number):
+            continue
+        name, width = _code_of(word), word.end - word.start
+        code = dialect.m_codes.get(int(word.value.value), dialect.unknown_m)
+        if code is None or word.value.value % 1:
+            yield Refusal("GX201", word.start, width, f"{dialect.name} has no code {name}")
+            continue
+        if code.group in groups and not dialect.last_code_wins:
+            message = f"{name} and {groups[code.group]} are of one modal group"
+            yield Refusal("GX202", word.start, width, message)
+        groups[code.group] = name
+        if code.barrier:
+            yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.barrier}")
+        meaning.ends |= code.ends
+        meaning.loses_position |= code.loses_position
+        order = {"tool": 30, "spindle": 40, "coolant": 41, "override": 42}.get(code.group, 43)
+        meaning.events.append(EventShape(order, name, _take(code, dialect, meaning), code.after))
+
+
+def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
+    """Give the remaining words to motion, feed, spindle and tool; what is left over is refused."""
+    slots = meaning.slots
+    for address, order in (("S", 10), ("T", 20)):
+        if address in slots:
+            event = EventShape(order, address, ((address, slots.pop(address)),))
+            meaning.events.append(event)
+    meaning.axes = "".join(a for a in dialect.axes if a in slots)
+    meaning.centres = "".join(a for a in CENTRE if a in slots)
+    motion = set(meaning.axes) | set(meaning.centres) | {"F", "N", "R", dialect.turns_address}
+    if "D" in slots and "D" in dialect.words and dialect.last_code_wins:
+        meaning.events.append(EventShape(45, "D", (("D", slots.pop("D")),)))
+    for word in shape.block.words:
+        address = word.address
+        known = address in dialect.axes or address in dialect.words or address in CODES
+        if address == "O" and not dialect.has_program_number:
+            known = False
+        if not known:
+            message = f"{dialect.name} has no word {address}"
+            yield Refusal("GX201", word.start, word.end - word.start, message)
+        elif address in slots and address not in motion:
+            message = f"{address} belongs to no code of this block"
+            yield Refusal("GX203", word.start, word.end - word.start, message)
+    if meaning.percent and not dialect.has_percent:
+        yield Refusal("GX201", 0, 1, f"{dialect.name} has no % sign")

@@ -1,0 +1,87 @@
+"""The meanings of all shapes as arrays, so that the interpreter can look a million lines up at once."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.dialect import Dialect
+from gcxform.modal.meaning import Meaning, meaning_of
+from gcxform.syntax.shapes import ShapeTable
+
+GROUPS = ("motion", "plane", "distance", "arc-distance", "feed-mode", "units", "frame")
+NUMBER = {
+    **{f"G{n}": n for n in (0, 1, 2, 3, 80)},
+    **{f"G{17 + n}": n for n in range(3)},
+    "G90": 0,
+    "G91": 1,
+    "G91.1": 0,
+    "G90.1": 1,
+    **{f"G{n}": n for n in (93, 94, 95)},
+    "G21": 0,
+    "G20": 1,
+    **{f"G{54 + n}": n for n in range(6)},
+    **{f"G59.{n}": 5 + n for n in (1, 2, 3)},
+}
+"""The number that stands for a code within its group."""
+
+FLAGS = (
+    "moves",
+    "has_centre",
+    "wrong",
+    "deleted",
+    "ends",
+    "loses_position",
+    "has_events",
+    "percent",
+)
+
+
+class MeaningTable:
+    """Meanings of the shapes of one shape table in one dialect; it grows with the shapes."""
+
+    def __init__(self, shapes: ShapeTable, dialect: type[Dialect]) -> None:
+        self.shapes = shapes
+        self.dialect = dialect
+        self.meanings: list[Meaning] = []
+        self.groups: NDArray[np.int8] = np.empty((0, len(GROUPS)), np.int8)
+        self.flags: NDArray[np.bool_] = np.empty((0, len(FLAGS)), np.bool_)
+        self.slots: NDArray[np.int16] = np.empty((0, 26), np.int16)
+
+    def update(self) -> None:
+        """Look at the shapes that are new."""
+        fresh = self.shapes.shapes[len(self.meanings) :]
+        if not fresh:
+            return
+        known = len(self.meanings)
+        self.meanings += [meaning_of(shape, self.dialect) for shape in fresh]
+        room = len(self.groups)
+        if room < len(self.meanings):
+            more = max(len(self.meanings) - room, room)
+            self.groups = np.vstack([self.groups, np.full((more, len(GROUPS)), -1, np.int8)])
+            self.flags = np.vstack([self.flags, np.zeros((more, len(FLAGS)), np.bool_)])
+            self.slots = np.vstack([self.slots, np.full((more, 26), -1, np.int16)])
+        for index in range(known, len(self.meanings)):
+            self._enter(index, self.meanings[index])
+
+    def _enter(self, index: int, meaning: Meaning) -> None:
+        for group, code in meaning.groups.items():
+            if group in GROUPS and code in NUMBER:
+                self.groups[index, GROUPS.index(group)] = NUMBER[code]
+        for address, slot in meaning.slots.items():
+            if address.isalpha():
+                self.slots[index, ord(address) - 65] = slot
+        self.flags[index] = (
+            bool(meaning.axes),
+            bool(meaning.centres) or "R" in meaning.slots,
+            meaning.refusal is not None,
+            meaning.deleted,
+            meaning.ends,
+            meaning.loses_position,
+            bool(meaning.events),
+            meaning.percent,
+        )
+
+    def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Return a flag of each line, given the lines' shapes."""
+        return self.flags[shape, FLAGS.index(name)]

@@ -1,0 +1,106 @@
+"""From a block's text to its tree, by the dialect's lark grammar: the only definition of a language.
+
+Grammars are read from packages; a grammar anywhere may build on ours with an absolute `%import
+iso (...)`.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from lark import Lark, Token, Tree
+from lark.exceptions import UnexpectedInput
+from lark.load_grammar import FromPackageLoader
+
+from gcxform.syntax.tree import (
+    Block,
+    Comment,
+    Expression,
+    Item,
+    Mark,
+    Number,
+    Statement,
+    Word,
+)
+
+GRAMMARS = "gcxform_grammars"
+MARKS = frozenset({"block_delete", "percent", "program_id", "program_name", "filler", "label"})
+
+
+class Grammar:
+    """One dialect's grammar: `parse` turns the text of a block into its tree."""
+
+    def __init__(self, package: str, name: str) -> None:
+        text = files(package).joinpath(f"{name}.lark").read_text("utf-8")
+        loaders = [FromPackageLoader(package, ("",)), FromPackageLoader(GRAMMARS, ("",))]
+        self.name = name
+        self._lark = Lark(
+            text,
+            parser="lalr",
+            import_paths=loaders,
+            propagate_positions=True,
+            maybe_placeholders=False,
+        )
+
+    def parse(self, text: str) -> Block:
+        """Return the tree of one block; what the grammar does not accept becomes `Block.error`."""
+        try:
+            tree = self._lark.parse(text)
+        except UnexpectedInput as error:
+            return Block(text, (), _refusal(error, text))
+        return Block(text, tuple(_item(child, text) for child in tree.children))
+
+
+@cache
+def load(package: str, name: str) -> Grammar:
+    """Return a grammar, built once."""
+    return Grammar(package, name)
+
+
+def _refusal(error: UnexpectedInput, text: str) -> tuple[int, str]:
+    """Return the column and a sentence for a text that the grammar does not accept."""
+    at = error.pos_in_stream
+    if at is None or at < 0 or at >= len(text):
+        return len(text) + 1, "the block ends in the middle of a word"
+    if text[at] == "(":
+        return at + 1, "this comment is not closed, or has a bracket inside"
+    return at + 1, f"{text[at]!r} does not fit here"
+
+
+def _rule(node: Tree[Token]) -> str:
+    """Return a rule's own name: lark puts the importing grammar's name in front."""
+    return str(node.data).rsplit("__", 1)[-1]
+
+
+def _span(node: Any) -> tuple[int, int]:
+    if isinstance(node, Token):
+        assert node.start_pos is not None
+        assert node.end_pos is not None
+        return node.start_pos, node.end_pos
+    return node.meta.start_pos, node.meta.end_pos
+
+
+def _item(node: Any, text: str) -> Item:
+    """Return the item a child of the start rule stands for."""
+    start, end = _span(node)
+    rule = _rule(node)
+    if rule == "word":
+        address, value = node.children
+        return Word(start, end, str(address).upper(), _value(value, text))
+    if rule == "comment":
+        return Comment(start, end)
+    if rule in MARKS:
+        return Mark(start, end, rule)
+    return Statement(start, end, rule, node)
+
+
+def _value(node: Any, text: str) -> Number | Expression:
+    """Return a literal, also one whose sign the grammar reads by itself, or an expression."""
+    start, end = _span(node)
+    if isinstance(node, Token):
+        return Number(start, end, text[start:end])
+    if _rule(node) == "negated" and isinstance(node.children[1], Token):
+        return Number(start, end, text[start:end])
+    return Expression(start, end, node)

@@ -1,0 +1,228 @@
+"""A window of text as columns: line ends, number columns and the shape of every line.
+
+lark reads some ten thousand lines a second, a finishing program has a million. So every line is
+reduced to its **shape**: its text with each number replaced by `#`, except the numbers that are
+codes (G, M, O). lark parses one line of each shape, once; all lines of that shape have its tree,
+with the numbers taken from the columns. This file finds numbers and shapes with whole-array
+operations and decides nothing about the language: a line that is not made of letters, numbers and
+blanks alone, or whose numbers are not plain, goes to lark by itself.
+
+    N10 G1 X1.5 Y-2.      shape  N# G1 X# Y#      numbers  10  1.5  -2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.syntax.shapes import OWN, NumberColumns, ShapeTable
+
+Bytes = NDArray[np.uint8]
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+LETTER, DIGIT, POINT, SIGN, BLANK, END, CODE, OTHER = 0, 1, 2, 3, 4, 5, 6, 7
+LONGEST = 8  # digits on either side of the point: together exact in 64 bits
+TEN_TO_INT = 10 ** np.arange(LONGEST + 1)
+TEN_TO = 10.0 ** np.arange(LONGEST + 1)
+EXACT = 2**53  # the mantissa of a number read here is exact as a double
+
+
+def _classes() -> bytes:
+    table = bytearray([OTHER]) * 256
+    for low in range(ord("a"), ord("z") + 1):
+        table[low] = table[low - 32] = LETTER
+    for code in b"GMOgmo":
+        table[code] = CODE
+    for kind, members in (
+        (DIGIT, b"0123456789"),
+        (POINT, b"."),
+        (SIGN, b"+-"),
+        (BLANK, b" \t"),
+        (END, b"\r\n"),
+    ):
+        for member in members:
+            table[member] = kind
+    return bytes(table)
+
+
+CLASS = _classes()
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """Some whole lines of a program. Per line: `start`, `end` (without the line end) and `next`
+    are offsets into `text`; `shape` is an index into the shape table; `first_number` is the index
+    of its first number. Per number: `value`, `decimals` (-1: no point), `number_start`,
+    `number_end` (offsets into `text`). `first_line` counts lines of the program from 0.
+    """
+
+    text: bytes
+    first_line: int
+    start: Ints
+    end: Ints
+    next: Ints
+    shape: Ints
+    first_number: Ints
+    value: Floats
+    decimals: Ints
+    number_start: Ints
+    number_end: Ints
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+    def line(self, index: int) -> bytes:
+        """Return the text of a line of this window without its line end."""
+        return self.text[int(self.start[index]) : int(self.end[index])]
+
+
+def scan(text: bytes, first_line: int, table: ShapeTable) -> Window:
+    """Return the columns of whole lines; new shapes are parsed and enter the table."""
+    raw = np.frombuffer(text, np.uint8)
+    kind = np.frombuffer(text.translate(CLASS), np.uint8)
+    start, end, following = _lines(raw, text)
+    runs = _runs(text, raw, kind)
+    own = _lines_by_themselves(kind, runs, following)
+    shape, numbers = _shapes(raw, kind, runs, own, (start, end), text, table)
+    return Window(text, first_line, start, end, following, shape, *numbers)
+
+
+def _lines(raw: Bytes, text: bytes) -> tuple[Ints, Ints, Ints]:
+    """Return start, end and start of the next line, for LF, CRLF and CR line ends."""
+    stops = np.flatnonzero(raw == 10)
+    width = 1
+    if b"\r" in text:
+        is_cr = raw == 13
+        lone = is_cr & ~np.append(raw[1:] == 10, False)
+        stops = np.flatnonzero((raw == 10) | lone)
+        before = np.append(False, is_cr[:-1])[stops] & (raw[stops] == 10)
+        width = 1 + before.astype(np.int64)
+    following = stops + 1
+    if not len(stops) or following[-1] != len(raw):
+        return (
+            np.append(0, following),
+            np.append(following - width, len(raw)),
+            np.append(following, len(raw)),
+        )
+    return np.append(0, following[:-1]), following - width, following
+
+
+@dataclass(slots=True)
+class _Runs:
+    """Runs of number characters: first and past-the-last offset, and what they hold."""
+
+    start: Ints
+    end: Ints
+    mantissa: Ints
+    decimals: Ints
+    negative: Flags
+    is_code: Flags
+    is_plain: Flags
+
+
+def _runs(text: bytes, raw: Bytes, kind: Bytes) -> _Runs:
+    """Find the runs of digits, points and signs and read them as integers with decimals."""
+    numeric = (kind - np.uint8(DIGIT)) < 3
+    edges = np.flatnonzero(numeric[1:] != numeric[:-1]) + 1
+    if len(raw) and numeric[0]:
+        edges = np.append(0, edges)
+    if len(edges) % 2:
+        edges = np.append(edges, len(raw))
+    start, end = edges[0::2].copy(), edges[1::2].copy()
+    before = kind[start - 1]
+    before[start == 0] = OTHER
+    first = start + (kind[start] == SIGN)
+    point, plain = _points(kind, numeric, first, start, end)
+    split = np.where(point >= 0, point, end)
+    decimals = np.where(point >= 0, end - point - 1, -1)
+    fraction = np.maximum(decimals, 0)
+    whole = split - first
+    plain &= (whole <= LONGEST) & (fraction <= LONGEST) & (whole + fraction > 0)
+    plain &= (before == LETTER) | (before == CODE)
+    mantissa = _eight_digits(text, split, whole) * TEN_TO_INT[np.minimum(fraction, LONGEST)]
+    mantissa += _eight_digits(text, end, fraction)
+    plain &= mantissa < EXACT
+    return _Runs(start, end, mantissa, decimals, raw[start] == 45, before == CODE, plain)
+
+
+def _points(
+    kind: Bytes, numeric: Flags, first: Ints, start: Ints, end: Ints
+) -> tuple[Ints, Flags]:
+    """Return the offset of each run's point (-1: none), and whether points and signs are right."""
+    points = np.append(np.flatnonzero(kind == POINT), [len(kind), len(kind)])
+    index = np.searchsorted(points, first)
+    point = np.where(points[index] < end, points[index], -1)
+    good = (point < 0) | (points[np.minimum(index + 1, len(points) - 1)] >= end)
+    signs = np.flatnonzero(kind == SIGN)
+    inner = signs[(signs > 0) & numeric[signs - 1]]
+    good[np.searchsorted(start, inner, side="right") - 1] = False
+    return point, good
+
+
+def _eight_digits(text: bytes, end: Ints, count: Ints) -> Ints:
+    """Return the values of the `count` (at most 8) digits that stand before the offsets `end`.
+
+    Eight bytes are loaded as one integer and their digits summed in pairs, fours and eights.
+    """
+    padded = b"0" * 8 + text
+    octets = np.ndarray((len(padded) - 7,), "<u8", padded, strides=(1,))
+    word = octets[end] ^ np.uint64(0x3030303030303030)
+    shift = (8 * (8 - np.clip(count, 0, 8))).astype(np.uint64)
+    word = np.where(shift < 64, (word >> (shift & 63)) << (shift & 63), 0)
+    word = (word & 0x0F0F0F0F0F0F0F0F) * 2561 >> 8
+    word = (word & 0x00FF00FF00FF00FF) * 6553601 >> 16
+    word = (word & 0x0000FFFF0000FFFF) * 42949672960001 >> 32
+    return word.astype(np.int64)
+
+
+def _lines_by_themselves(kind: Bytes, runs: _Runs, following: Ints) -> Ints:
+    """Return the lines that lark has to read one by one, ascending."""
+    odd = np.concatenate([np.flatnonzero(kind == OTHER), runs.start[~runs.is_plain]])
+    if not len(odd):
+        return odd
+    return np.unique(np.searchsorted(following, odd, side="right"))
+
+
+def _shapes(
+    raw: Bytes,
+    kind: Bytes,
+    runs: _Runs,
+    own: Ints,
+    lines: tuple[Ints, Ints],
+    text: bytes,
+    table: ShapeTable,
+) -> tuple[Ints, NumberColumns]:
+    """Return the shape of each line and the number columns."""
+    start, end = lines
+    keys = _reduced(raw, kind, runs, end).split(b"\n")[: len(start)]
+    for line in own.tolist():
+        keys[line] = OWN + text[int(start[line]) : int(end[line])]
+    shape = table.look_up(keys, text, start, end)
+    slots = ~runs.is_code
+    first = np.searchsorted(runs.start[slots], start)
+    value = runs.mantissa[slots] / TEN_TO[np.clip(runs.decimals[slots], 0, LONGEST)]
+    np.negative(value, out=value, where=runs.negative[slots])
+    columns = (first, value, runs.decimals[slots], runs.start[slots], runs.end[slots])
+    return shape, table.append_own(shape, own, columns, start)
+
+
+def _reduced(raw: Bytes, kind: Bytes, runs: _Runs, end: Ints) -> bytes:
+    """Return the text with one `#` for every number that is not a code, and LF line ends."""
+    copy = raw.copy()
+    keep = (kind - np.uint8(DIGIT)) >= 3
+    slots = ~runs.is_code
+    copy[runs.start[slots]] = 35
+    keep[runs.start[slots]] = True
+    at, stop = runs.start[runs.is_code], runs.end[runs.is_code]
+    while len(at):
+        keep[at] = True
+        at, stop = at[at + 1 < stop] + 1, stop[at + 1 < stop]
+    keep[kind == END] = False
+    stops = end[end < len(raw)]
+    copy[stops] = 10
+    keep[stops] = True
+    return copy[keep].tobytes()

@@ -1,0 +1,120 @@
+"""The shapes met so far, each with the tree of its first line.
+
+A shape is what a line looks like when its numbers are taken out (see `scan`). Its tree has slots
+in place of the numbers: the k-th number word that is not a code is slot k. A line that lark read by
+itself is a shape of its own, whose numbers come from the tree.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.syntax.grammar import Grammar
+from gcxform.syntax.tree import Block, Number, Word
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+NumberColumns = tuple[Ints, Floats, Ints, Ints, Ints]
+
+CODES = frozenset("GMO")
+OWN = b"\0"  # first byte of the key of a line read by itself: no plain line has it
+
+
+def slots_of(block: Block) -> list[Number]:
+    """Return the literal numbers of a block that vary within its shape, in order."""
+    return [
+        word.value
+        for word in block.words
+        if word.address not in CODES and isinstance(word.value, Number)
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """A tree and the literal numbers in its slots; `own`: it stands for one text only."""
+
+    block: Block
+    slots: tuple[Number, ...]
+    own: bool
+
+
+class ShapeTable:
+    """Shapes by key; an index, once given, stays. Shape 0 is that of an empty line."""
+
+    def __init__(self, grammar: Grammar) -> None:
+        self.grammar = grammar
+        self.shapes: list[Shape] = []
+        self._index: dict[bytes, int] = {}
+        self._add(b"", b"")
+
+    def __len__(self) -> int:
+        return len(self.shapes)
+
+    def look_up(self, keys: list[bytes], text: bytes, start: Ints, end: Ints) -> Ints:
+        """Return the shape of each line; `keys` are the reduced lines, new ones are parsed."""
+        known = self._index
+        for key in set(keys) - known.keys():
+            line = keys.index(key)
+            self._add(key, text[int(start[line]) : int(end[line])])
+        return np.fromiter(map(known.__getitem__, keys), np.int64, len(keys))
+
+    def _add(self, key: bytes, text: bytes) -> int:
+        block = self.grammar.parse(text.decode("latin-1"))
+        shape = Shape(block, tuple(slots_of(block)), key.startswith(OWN))
+        self.shapes.append(shape)
+        self._index[key] = len(self.shapes) - 1
+        return len(self.shapes) - 1
+
+    def append_own(self, shape: Ints, own: Ints, columns: NumberColumns, start: Ints) -> NumberColumns:
+        """Return the number columns with those of the lines read by themselves at the end."""
+        first, value, decimals, number_start, number_end = columns
+        more: list[tuple[float, int, int, int]] = []
+        for line in own.tolist():
+            first[line] = len(value) + len(more)
+            base = int(start[line])
+            more += [
+                (n.value, n.decimals, base + n.start, base + n.end)
+                for n in self.shapes[int(shape[line])].slots
+            ]
+        if not more:
+            return columns
+        extra = list(zip(*more, strict=True))
+        return (
+            first,
+            np.append(value, np.array(extra[0], np.float64)),
+            np.append(decimals, np.array(extra[1], np.int64)),
+            np.append(number_start, np.array(extra[2], np.int64)),
+            np.append(number_end, np.array(extra[3], np.int64)),
+        )
+
+
+def instantiate(shape: Shape, text: str, spans: list[tuple[int, int]]) -> Block:
+    """Return the tree of a line of this shape; `spans` are its slots' offsets in the line."""
+    if shape.own:
+        return shape.block
+    edges = [(0, 0)]
+    for slot, (start, end) in zip(shape.slots, spans, strict=True):
+        edges += [(slot.start, start), (slot.end, end)]
+
+    def moved(at: int) -> int:
+        before = max(edge for edge in edges if edge[0] <= at)
+        return at - before[0] + before[1]
+
+    values = {
+        slot: Number(start, end, text[start:end])
+        for slot, (start, end) in zip(shape.slots, spans, strict=True)
+    }
+    items = []
+    for item in shape.block.items:
+        item = replace(item, start=moved(item.start), end=moved(item.end))
+        if isinstance(item, Word) and isinstance(item.value, Number):
+            old = item.value
+            new = values.get(old) or replace(old, start=moved(old.start), end=moved(old.end))
+            item = replace(item, value=new)
+        items.append(item)
+    error = shape.block.error
+    moved_error = (moved(error[0] - 1) + 1, error[1]) if error else None
+    return Block(text, tuple(items), moved_error)

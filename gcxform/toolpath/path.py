@@ -1,0 +1,194 @@
+"""A toolpath: one row per canonical move, one array per quantity, read-only.
+
+Lengths are mm, angles of rotary axes degrees, sweeps of arcs radians. A position that is not known
+is nan. `start` is not stored: it is the end of the row before, `entry` for the first row. Passes
+return new paths made with `replace`, `take` and `with_rows`, which carry `source` along.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from dataclasses import replace as dataclass_replace
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Small = NDArray[np.int8]
+Flags = NDArray[np.bool_]
+
+
+class Kind(IntEnum):
+    """The canonical moves; the numbers are those of G0 to G3."""
+
+    RAPID = 0
+    LINE = 1
+    ARC_CW = 2
+    ARC_CCW = 3
+
+
+class Plane(IntEnum):
+    """The plane of an arc, in the order of axes that fixes its sense."""
+
+    XY = 0
+    ZX = 1
+    YZ = 2
+
+    @property
+    def axes(self) -> tuple[int, int, int]:
+        """First, second and normal axis, as indices of X, Y, Z."""
+        return ((0, 1, 2), (2, 0, 1), (1, 2, 0))[self]
+
+
+class FeedMode(IntEnum):
+    """What a feed means: 1/min (G93), mm/min (G94) or mm per turn of the spindle (G95)."""
+
+    INVERSE_TIME = 93
+    PER_MINUTE = 94
+    PER_TURN = 95
+
+
+@dataclass(frozen=True, slots=True)
+class Blocks:
+    """How the blocks of a window are to be written, one value per line: it changes no position.
+
+    first           line of the program, from 0, that the first value belongs to
+    inch            lengths are written in inches (G20)
+    incremental     axis words are distances from where the axis stands (G91)
+    absolute_centre I, J, K are the centre itself (G90.1)
+    """
+
+    first: int
+    inch: Flags
+    incremental: Flags
+    absolute_centre: Flags
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something done between moves: `row` is the move it stands before, `what` names it.
+
+    `values` are its numbers, in seconds for a dwell. `line` counts source lines from 0.
+    """
+
+    row: int
+    what: str
+    values: tuple[tuple[str, float], ...] = ()
+    line: int = 0
+
+
+COLUMNS = (
+    "kind",
+    "end",
+    "centre",
+    "sweep",
+    "plane",
+    "feed",
+    "feed_mode",
+    "frame",
+    "source",
+)
+
+
+@dataclass(frozen=True)
+class Toolpath:
+    """Rows of canonical moves.
+
+    axes            letters of the columns of `end`, X Y Z first
+    kind            (n,) `Kind`
+    end             (n, axes) mm and degrees, nan where unknown
+    centre          (n, 3) mm, in the plane of the arc; nan for other moves
+    sweep           (n,) rad, positive, full turns included; 0 for other moves
+    plane           (n,) `Plane`
+    feed, feed_mode (n,) mm/min, 1/min or mm/turn; nan where none is known; `FeedMode`
+    frame           (n,) index of the work offset: 0 is G54
+    source          (n,) line of the program, from 0, that the move came from
+    entry           (axes,) position before the first row
+    blocks          how the blocks the rows came from are to be written
+    events          what happens between the moves
+    slack           mm; how far a row may be from the curve it stands for
+    refit_centres   whether centres may be moved so that both ends are on the circle as formatted
+    """
+
+    axes: str
+    kind: Small
+    end: Floats
+    centre: Floats
+    sweep: Floats
+    plane: Small
+    feed: Floats
+    feed_mode: Small
+    frame: Small
+    source: Ints
+    entry: Floats
+    blocks: Blocks
+    events: tuple[Event, ...] = ()
+    slack: float = 0.0
+    refit_centres: bool = True
+
+    def __post_init__(self) -> None:
+        for name in (*COLUMNS, "entry"):
+            getattr(self, name).flags.writeable = False
+
+    def __len__(self) -> int:
+        return len(self.kind)
+
+    @property
+    def start(self) -> Floats:
+        """(n, axes) where each move starts."""
+        start = np.empty_like(self.end)
+        start[1:] = self.end[:-1]
+        start[:1] = self.entry
+        return start
+
+    @property
+    def is_arc(self) -> Flags:
+        """(n,) whether the move is an arc."""
+        return self.kind >= Kind.ARC_CW
+
+    @property
+    def sense(self) -> Floats:
+        """(n,) +1 for counter-clockwise arcs, -1 for clockwise ones, 0 for other moves."""
+        return np.where(self.is_arc, 2.0 * self.kind - 5.0, 0.0)
+
+    @property
+    def has_arcs(self) -> bool:
+        """Whether there is any arc."""
+        return bool((self.kind >= Kind.ARC_CW).any())
+
+    @property
+    def block(self) -> Ints:
+        """(n,) index into `blocks` of each move."""
+        return self.source - self.blocks.first
+
+    def replace(self, **changes: Any) -> Toolpath:
+        """Return the path with some columns changed."""
+        return dataclass_replace(self, **changes)
+
+    def take(self, rows: Ints | Flags) -> Toolpath:
+        """Return the path of some rows, in the order given; events and entry stay."""
+        return self.replace(**{name: getattr(self, name)[rows] for name in COLUMNS})
+
+    def with_rows(self, counts: Ints, **columns: Any) -> Toolpath:
+        """Return the path with row i standing `counts[i]` times, and some columns new.
+
+        Events move along with the row they stand before.
+        """
+        first = np.append(0, np.cumsum(counts))
+        events = tuple(dataclass_replace(e, row=int(first[e.row])) for e in self.events)
+        row = np.repeat(np.arange(len(self)), counts)
+        kept = {n: getattr(self, n)[row] for n in COLUMNS if n not in columns}
+        return self.replace(**kept, **columns, events=events)
+
+
+def column_major(rows: int, columns: int) -> Floats:
+    """Return an empty (rows, columns) array whose columns are contiguous."""
+    return np.empty((columns, rows)).T
+
+
+def constant(value: float, rows: int, dtype: type = np.float64) -> NDArray[Any]:
+    """Return a read-only column that holds one value and takes no memory."""
+    return np.broadcast_to(np.array(value, dtype), (rows,))

@@ -1,0 +1,1 @@
+"""First-party dialects, one controller family a file."""

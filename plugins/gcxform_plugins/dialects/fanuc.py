@@ -1,0 +1,99 @@
+"""Fanuc 0i and 30i series, milling. What depends on a parameter of the machine is an option.
+
+| what | Fanuc |
+|---|---|
+| a distance without a point | counts in the least input increment: `[input] increment` |
+| motion at start | parameter 3402: taken as unknown, so the first move needs its code |
+| units, distance mode at start | parameters: taken as G21 G90, and the certificate says so |
+| two codes of a group | the last is taken |
+| arc centre | incremental only; no centre at all: refused (parameter 3403 decides what is cut) |
+| R together with I J K | refused |
+| start and end radius | parameter 3410: taken as 0.01 mm |
+| M0 M1 M2 M30 M98 M99 | act after the motion of their block |
+| M5, M9 with a motion | the machine's PLC decides: kept in their block |
+| an M code not listed | may move axes: positions are unknown after it |
+| tool change | moves axes: positions are unknown after it |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import gcxform as gx
+from gcxform import vocabulary as v
+
+CYCLES = ("G73", "G74", "G76", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89")
+
+
+class Fanuc(gx.Dialect):
+    """Fanuc 0i/30i/31i mill."""
+
+    name = "fanuc"
+    grammar = ("gcxform_grammars", "fanuc")
+    axes = "XYZABCUVW"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **v.ISO,
+        "G80": v.inert("cycle"),
+        "G95": gx.Code("feed-mode"),
+        **{code: v.inert("path") for code in ("G61", "G62", "G64")},
+        "G63": v.barrier("path", v.SYNCHRONISED),
+        "G9": v.inert("non-modal"),
+        "G8": v.inert("non-modal", "P"),
+        "G5": v.inert("non-modal", "PQR"),
+        "G5.1": v.inert("non-modal", "PQR"),
+        **{code: v.inert("retract") for code in ("G98", "G99")},
+        "G97": v.inert("spindle-mode", "S"),
+        "G96": v.barrier("spindle-mode", v.SYNCHRONISED, "SP"),
+        **{
+            code: v.inert("cancel")
+            for code in ("G15", "G50", "G50.1", "G67", "G69", "G13.1", "G23")
+        },
+        "G22": v.inert("stroke", "XYZIJK"),
+        **{
+            code: v.barrier("non-modal", v.SHIFT, "LPRQ")
+            for code in ("G10", "G10.6", "G11", "G52", "G92", "G92.1")
+        },
+        **{
+            code: v.barrier("non-modal", v.HOME, "PR")
+            for code in ("G27", "G28", "G29", "G30", "G53", "G60")
+        },
+        **{code: v.barrier("frame", v.SHIFT, "P") for code in ("G54.1", "G54.2", "G54.4")},
+        **{code: v.barrier("cutter-comp", v.COMP, "DHIJK") for code in ("G41", "G42")},
+        **{
+            code: v.barrier("tool-length", v.LENGTH, "HIJK")
+            for code in ("G43", "G44", "G43.1", "G43.4", "G43.5")
+        },
+        **{
+            code: v.barrier("transform", v.TRANSFORM, "PRIJKQ")
+            for code in ("G16", "G51", "G51.1", "G68", "G68.2", "G68.3", "G68.4", "G53.1")
+        },
+        **{
+            code: v.barrier("transform", v.TRANSFORM, "PRIJKQ")
+            for code in ("G7.1", "G12.1", "G107", "G112")
+        },
+        **{code: v.barrier("cycle", v.CYCLE, "IJKLPQR") for code in CYCLES},
+        **{code: v.barrier("motion", v.SYNCHRONISED, "PQR") for code in ("G33", "G34")},
+        **{code: v.barrier("motion", "it cuts a spline", "PRK") for code in ("G6.2",)},
+        **{code: v.barrier("motion", "it cuts a spiral", "IJKRLPQ") for code in ("G2.2", "G3.2")},
+        "G31": v.barrier("non-modal", v.PROBE, "PQ"),
+        **{code: v.barrier("non-modal", v.PROBE, "PQRIJKH") for code in ("G36", "G37")},
+        **{
+            code: v.barrier("macro", v.CALL, "ABCDEFHIJKLMPQRSTUVW")
+            for code in ("G65", "G66", "G66.1")
+        },
+    }
+    m_codes: ClassVar[Mapping[int, gx.MCode]] = {
+        **v.ISO_M,
+        6: gx.MCode("tool", loses_position=True),
+        **{code: gx.MCode("override") for code in (48, 49)},
+        19: gx.MCode("spindle"),
+        29: gx.MCode("spindle", barrier=v.SYNCHRONISED),
+        **{code: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL") for code in (98, 198)},
+        99: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL"),
+    }
+    unknown_m = gx.MCode("user", loses_position=True)
+    last_code_wins = True
+    point_required = True
+    dwell: ClassVar[Mapping[str, float]] = {"X": 1.0, "U": 1.0, "P": 0.001}
+    arc_rule = gx.ArcRule(absolute=0.01)

@@ -1,0 +1,62 @@
+"""GRBL 1.1h, as its own parser executes programs.
+
+| what | GRBL |
+|---|---|
+| motion at start | G0 |
+| `/` | is dropped and the block is executed |
+| two codes of a group, a word twice, a word nobody uses | refused |
+| arc centre | incremental only |
+| full circle | at least one plane word must be there |
+| start and end radius | refused beyond 0.5 mm, or beyond 0.005 mm and 0.1 % |
+| `%`, O numbers | refused |
+| block | at most 79 characters after comments and blanks |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import gcxform as gx
+from gcxform import vocabulary as v
+
+
+class Grbl(gx.Dialect):
+    """GRBL 1.1h."""
+
+    name = "grbl"
+    grammar = ("gcxform_grammars", "grbl")
+    axes = "XYZ"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **v.ISO,
+        "G61": v.inert("path"),
+        "G91.1": gx.Code("arc-distance"),
+        **{
+            code: v.barrier("non-modal", v.SHIFT, "LP")
+            for code in ("G10", "G92", "G92.1")
+        },
+        **{
+            code: v.barrier("non-modal", v.HOME)
+            for code in ("G28", "G28.1", "G30", "G30.1", "G53")
+        },
+        "G43.1": v.barrier("tool-length", v.LENGTH),
+        **{
+            code: v.barrier("motion", v.PROBE)
+            for code in ("G38.2", "G38.3", "G38.4", "G38.5")
+        },
+    }
+    m_codes: ClassVar[Mapping[int, gx.MCode]] = {
+        code: code_of
+        for code, code_of in v.ISO_M.items()
+        if code not in (6,)  # M6 is error 20
+    }
+    initial: ClassVar[Mapping[str, str]] = {**gx.Dialect.initial, "motion": "G0"}
+    circle_needs_axis_word = True
+    block_delete = "execute"
+    stops_at_end = False
+    line_length = 79
+    comments = "(;"
+    has_percent = False
+    has_program_number = False
+    words = "FIJKLNPRST"
+    arc_rule = gx.ArcRule(absolute=0.005, relative=0.001, largest=0.5)

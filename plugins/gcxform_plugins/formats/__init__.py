@@ -1,0 +1,1 @@
+"""Importers of foreign error tables, one file each."""

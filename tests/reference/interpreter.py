@@ -1,0 +1,488 @@
+"""A slow scalar interpreter, written from the facts about three controls.
+
+It shares nothing with the package: it is what the vectorised interpreter is tested against, and
+it is itself tested against LinuxCNC. Every block is read, checked and executed by itself.
+
+Power-up state: millimetres, G90, G91.1, G17, G94; the motion mode is none (GRBL: G0). The
+position is unknown unless `start` is given.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from reference.arcs import (
+    FUZZ,
+    INCH,
+    Point,
+    centre_from_radius,
+    radii_agree,
+    radius_reaches,
+    sweep,
+)
+from reference.words import Block, Refused, Word, blocks
+
+__all__ = ["Move", "Program", "Refused", "interpret"]
+
+LINEAR = "XYZ"
+PLANES = {170: ("XY", "XYZ", "IJK"), 180: ("ZX", "ZXY", "KIJ"), 190: ("YZ", "YZX", "JKI")}
+GROUPS = {  # code times ten: modal group
+    **dict.fromkeys((0, 10, 20, 30, 800), "motion"),
+    **dict.fromkeys((170, 180, 190), "plane"),
+    **dict.fromkeys((900, 910), "distance"),
+    **dict.fromkeys((901, 911), "arc"),
+    **dict.fromkeys((930, 940, 950), "feed"),
+    **dict.fromkeys((200, 210), "units"),
+    **dict.fromkeys((540, 550, 560, 570, 580, 590), "frame"),
+    40: "dwell",
+    400: "radius",
+    490: "length",
+}
+STOPS, SPINDLE, COOLANT = (0, 1, 2, 30, 60), (3, 4, 5), (7, 8, 9)
+M_GROUPS = {
+    **dict.fromkeys(STOPS, "stop"),
+    **dict.fromkeys(SPINDLE, "spindle"),
+    **dict.fromkeys(COOLANT, "coolant"),
+    6: "change",
+}
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """What distinguishes the controls here."""
+
+    name: str
+    axes: str
+    missing: frozenset[int]  # G codes (times ten) of `GROUPS` that this control does not have
+    missing_m: frozenset[int] = frozenset()
+    motion: int = 800
+    frame: int | None = None
+    many_m: int = 4
+    late: frozenset[int] = frozenset(STOPS)  # M codes which act after the motion
+
+
+DIALECTS = {
+    "linuxcnc": Dialect("linuxcnc", "XYZABC", frozenset()),
+    "fanuc": Dialect(
+        "fanuc", "XYZABC", frozenset((901, 911)), many_m=3, late=frozenset((*STOPS, 5, 9))
+    ),
+    "grbl": Dialect(
+        "grbl", "XYZ", frozenset((901, 950)), frozenset((6, 7, 60)), motion=0, frame=540
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Move:
+    """One motion. Lengths in mm, rotary positions in degrees, `sweep` in radians (positive).
+
+    `turns` counts the full turns beyond the first one: `sweep` is in (2 pi turns,
+    2 pi (turns + 1)]. `feed` is mm/min or mm/rev (degrees if only rotary axes move) or 1/min.
+    """
+
+    kind: str
+    start: dict[str, float]
+    end: dict[str, float]
+    line: int
+    feed: float | None = None
+    feed_mode: str = "G94"
+    plane: str = "XY"
+    centre: tuple[float, float, float] | None = None
+    turns: int = 0
+    sweep: float = 0.0
+
+
+@dataclass
+class Program:
+    """Moves, and events as (index of the move before which it happens, text)."""
+
+    moves: list[Move] = field(default_factory=list)
+    events: list[tuple[int, str]] = field(default_factory=list)
+
+
+def interpret(
+    program: bytes,
+    dialect: str,
+    start: dict[str, float] | None = None,
+    increment: float | None = None,
+    *,
+    block_delete: bool = False,
+    same_frames: bool = False,
+) -> Program:
+    """Execute a program; raise `Refused`, whose `partial` holds what came before.
+
+    `increment` scales Fanuc distance words without a point, in the units in force.
+    `block_delete` is the switch: blocks with a slash are skipped. `same_frames` says that all
+    work offsets are equal, so that a change of frame leaves the position known.
+    """
+    machine = _Machine(DIALECTS[dialect], dict(start or {}), increment, same_frames)
+    try:
+        for block in blocks(program, dialect):
+            if block.words and not (block.deletable and block_delete):
+                machine.execute(block)
+            if machine.ended:
+                break
+    except Refused as refusal:
+        refusal.partial = machine.program  # type: ignore[attr-defined]
+        raise
+    return machine.program
+
+
+class _Machine:
+    """The modal state; `modal` maps a group to a code times ten."""
+
+    def __init__(
+        self,
+        dialect: Dialect,
+        position: dict[str, float],
+        increment: float | None,
+        same_frames: bool,
+    ) -> None:
+        self.dialect = dialect
+        self.position = position  # known axes only; mm, degrees
+        self.increment = increment
+        self.same_frames = same_frames
+        self.modal: dict[str, int | None] = {
+            "motion": dialect.motion,
+            "plane": 170,
+            "distance": 900,
+            "arc": 911,
+            "feed": 940,
+            "units": 210,
+            "frame": dialect.frame if not position or dialect.frame else 540,
+        }
+        self.feed: tuple[float, float] = (0.0, 0.0)  # linear (mm), rotary (degrees)
+        self.speed = 0.0
+        self.ended = False
+        self.program = Program()
+        self.line = 0
+
+    def execute(self, block: Block) -> None:
+        """Check one block, then do what it says in the order of the control."""
+        self.line = block.line
+        codes, dwell, ms, values = self._sort(block)
+        had_feed_mode, had_units = self.modal["feed"], self.modal["units"]
+        self._set_modes(codes)
+        motion = self._motion_of_block(codes, values)
+        self._check_words(codes, dwell, ms, values, motion)
+        self._set_feed(codes, values, had_feed_mode, had_units)
+        self._speeds_and_tools(values)
+        for m in sorted(ms, key=_rank):
+            if m not in self.dialect.late:
+                self._event(f"M{m}")
+        if dwell:
+            self._event(f"DWELL {self._dwell(values):.10g}")
+        if motion is not None:
+            self._move(motion, values, explicit="motion" in codes)
+        for m in sorted(ms, key=_rank):
+            if m in self.dialect.late:
+                self._event(f"M{m}")
+        if {2, 30} & set(ms):
+            self._end()
+
+    # --- reading the block
+
+    def _sort(self, block: Block) -> tuple[dict[str, int], bool, list[int], dict[str, Word]]:
+        """Split words into modal codes by group, dwell, M codes and values."""
+        codes: dict[str, int] = {}
+        ms: list[int] = []
+        values: dict[str, Word] = {}
+        for word in block.words:
+            if word.letter == "G":
+                self._add_code(codes, self._g_code(word))
+            elif word.letter == "M":
+                ms.append(self._m_code(word))
+            elif word.letter in values:
+                raise self._refused(f"repeated {word.letter} word")
+            else:
+                values[word.letter] = word
+        groups = [M_GROUPS[m] for m in ms]
+        if len(ms) > self.dialect.many_m or len(set(groups)) < len(groups):
+            raise self._refused("M codes clash")
+        return codes, codes.pop("dwell", None) is not None, ms, values
+
+    def _g_code(self, word: Word) -> int:
+        """Return the code times ten."""
+        code = round(word.value * 10)
+        if abs(word.value * 10 - code) > 0.01 or code in self.dialect.missing:
+            raise self._refused(f"G{word.value:g}")
+        if code not in GROUPS:
+            raise self._refused(f"G{word.value:g} is not in this language")
+        return code
+
+    def _m_code(self, word: Word) -> int:
+        code = round(word.value)
+        if abs(word.value - code) > 1e-4 or code in self.dialect.missing_m:
+            raise self._refused(f"M{word.value:g}")
+        if code not in M_GROUPS:
+            raise self._refused(f"M{word.value:g} is not in this language")
+        return code
+
+    def _add_code(self, codes: dict[str, int], code: int) -> None:
+        """Enter a code; a second one of its group wins (Fanuc), or is refused."""
+        group = GROUPS[code]
+        if self.dialect.name == "fanuc":
+            if code != 800:  # cycles are a group of their own there: G80 leaves motion alone
+                codes[group] = code
+            return
+        if group in codes:
+            both = {codes[group], code}
+            if self.dialect.name != "linuxcnc" or 800 not in both or both == {800}:
+                raise self._refused("two codes of one modal group")
+            code = min(both)  # G80 beside another motion code: the other one counts
+        codes[group] = code
+
+    def _motion_of_block(self, codes: dict[str, int], values: dict[str, Word]) -> int | None:
+        """Return the motion that this block performs, if any."""
+        axes = any(axis in values for axis in self.dialect.axes)
+        motion = self.modal["motion"]
+        if motion == 800:
+            if axes:
+                raise self._refused("axis words without a motion mode")
+            return None
+        arc_words = motion in (20, 30) and any(letter in values for letter in "IJKR")
+        if axes or "motion" in codes or (arc_words and self.dialect.name != "grbl"):
+            return motion
+        return None
+
+    def _check_words(
+        self,
+        codes: dict[str, int],
+        dwell: bool,
+        ms: list[int],
+        values: dict[str, Word],
+        motion: int | None,
+    ) -> None:
+        """Refuse letters which nothing in the block uses, and values out of their range."""
+        name = self.dialect.name
+        allowed = set("FST" + self.dialect.axes) | ({"N"} if name == "grbl" else set())
+        if dwell:
+            allowed |= set("PXU") if name == "fanuc" else {"P"}
+        if motion in (20, 30):
+            allowed |= set("IJKR") | ({"P"} if name == "linuxcnc" else set())
+        if stray := set(values) - allowed:
+            raise self._refused(f"nothing uses {sorted(stray)}")
+        if any(values[letter].value < 0 for letter in "FSTP" if letter in values):
+            raise self._refused("negative value")
+        if "T" in values and abs(values["T"].value - round(values["T"].value)) > 1e-4:
+            raise self._refused("T is an integer")
+        if dwell and motion in (20, 30) and "motion" in codes and name == "linuxcnc":
+            raise self._refused("G4 with G2 or G3")
+        if dwell and name == "fanuc" and ("motion" in codes or len(values) != 1):
+            raise self._refused("G4 stands alone")
+        if "length" in codes and name == "grbl" and ("motion" in codes or motion is not None):
+            raise self._refused("G49 with axis words")
+        if name == "fanuc":
+            self._check_points(values)
+
+    def _check_points(self, values: dict[str, Word]) -> None:
+        """Refuse Fanuc numbers whose unit depends on whether they have a point."""
+        if any(values[letter].pointed for letter in "STNPM" if letter in values):
+            raise self._refused("an integer word with a decimal point")
+        feed = values.get("F")
+        plain = self.modal["feed"] != 950 and self.modal["units"] == 210
+        if feed is not None and feed.value and not feed.pointed and not plain:
+            raise self._refused("F without a point here depends on parameters")
+
+    # --- acting
+
+    def _set_modes(self, codes: dict[str, int]) -> None:
+        """Take over the modal codes of the block."""
+        frame = codes.get("frame", self.modal["frame"])
+        if frame != self.modal["frame"] and not self.same_frames:
+            self.position = {}
+        self.modal.update(codes)
+
+    def _set_feed(
+        self,
+        codes: dict[str, int],
+        values: dict[str, Word],
+        old_mode: int | None,
+        old_units: int | None,
+    ) -> None:
+        """Apply the F word; a feed survives a change of units in mm, not one of feed mode."""
+        changed, inverse = self.modal["feed"] != old_mode, self.modal["feed"] == 930
+        name, inch = self.dialect.name, self.modal["units"] == 200
+        if changed or inverse or ("feed" in codes and name == "linuxcnc"):
+            self.feed = (0.0, 0.0)
+        if name == "fanuc" and self.modal["units"] != old_units:
+            self.feed = (0.0, 0.0)
+        if "F" in values:
+            if name == "grbl" and changed and not inverse and inch:
+                raise self._refused("GRBL forgets to convert this F to inches")
+            value = values["F"].value
+            self.feed = (value * INCH if inch and not inverse else value, value)
+
+    def _speeds_and_tools(self, values: dict[str, Word]) -> None:
+        if "S" in values:
+            self.speed = values["S"].value
+            self._event(f"S{self.speed:.10g}")
+        if "T" in values:
+            self._event(f"T{values['T'].value:.0f}")
+
+    def _dwell(self, values: dict[str, Word]) -> float:
+        """Return the dwell in seconds."""
+        if self.dialect.name != "fanuc":
+            if "P" not in values:
+                raise self._refused("dwell without a time")
+            return values["P"].value
+        word = next(iter(values.values()))
+        if word.letter != "P" and not word.pointed:
+            raise self._refused("dwell without a point")
+        return word.value / 1000 if word.letter == "P" else word.value
+
+    def _move(self, motion: int, values: dict[str, Word], *, explicit: bool) -> None:
+        """Perform a rapid, line or arc."""
+        if motion != 0:
+            self._check_feed(values)
+        start, end = dict(self.position), self._target(values)
+        if motion in (20, 30):
+            move = self._arc(motion == 20, values, start, end)
+        elif not any(axis in values for axis in self.dialect.axes):
+            return  # G0 or G1 alone moves nothing
+        else:
+            move = Move("LINE" if motion else "RAPID", start, end, self.line, **self._common())
+        if motion:
+            move = _with_feed(move, self.feed)
+        self.program.moves.append(move)
+        self.position = end
+
+    def _check_feed(self, values: dict[str, Word]) -> None:
+        if self.modal["feed"] == 930:
+            if "F" not in values or (self.dialect.name != "linuxcnc" and not self.feed[0]):
+                raise self._refused("G93 needs F in every block")
+        elif not self.feed[0]:
+            raise self._refused("no feed")
+        if self.modal["feed"] == 950 and self.dialect.name == "linuxcnc" and not self.speed:
+            raise self._refused("G95 without spindle speed")
+
+    def _target(self, values: dict[str, Word]) -> dict[str, float]:
+        """Return the position after the axis words, known axes only."""
+        end = dict(self.position)
+        for axis in self.dialect.axes:
+            if axis not in values:
+                continue
+            value = self._length(values[axis])
+            if self.modal["distance"] == 910:
+                if axis not in self.position:
+                    raise self._refused(f"incremental move of {axis} from an unknown position")
+                value += self.position[axis]
+            end[axis] = value
+        return end
+
+    def _length(self, word: Word) -> float:
+        """Return a distance word in mm, or degrees for a rotary axis."""
+        value = word.value
+        if self.dialect.name == "fanuc" and not word.pointed and value:
+            if self.increment is None:
+                raise self._refused(f"{word.letter} has no decimal point")
+            value *= self.increment
+        return value * INCH if self.modal["units"] == 200 and word.letter not in "ABC" else value
+
+    def _arc(
+        self, clockwise: bool, values: dict[str, Word], start: dict[str, float], end: dict
+    ) -> Move:
+        """Return the arc; its centre has the normal coordinate of the start (nan if unknown)."""
+        plane, axes, letters = PLANES[self.modal["plane"] or 170]
+        if not {axes[0], axes[1]} <= set(start) or axes[2] in set(end) - set(start):
+            raise self._refused("arc from an unknown position")
+        first: Point = (start[axes[0]], start[axes[1]])
+        last: Point = (end[axes[0]], end[axes[1]])
+        if self.dialect.name == "grbl" and not {axes[0], axes[1]} & set(values):
+            raise self._refused("no axis word of the plane")
+        if "R" in values:
+            centre = self._radius_centre(clockwise, values, first, last, axes)
+        else:
+            centre = self._offset_centre(values, first, last, letters)
+        extra = self._turns(values)
+        angle = sweep(first, last, centre, clockwise, FUZZ[self.dialect.name])
+        at = {axes[0]: centre[0], axes[1]: centre[1], axes[2]: start.get(axes[2], math.nan)}
+        return Move(
+            "ARC_CW" if clockwise else "ARC_CCW",
+            start,
+            end,
+            self.line,
+            centre=(at["X"], at["Y"], at["Z"]),
+            turns=extra,
+            sweep=angle + math.tau * extra,
+            **self._common(),
+        )
+
+    def _turns(self, values: dict[str, Word]) -> int:
+        """Return the turns beyond the first; LinuxCNC's P counts that one too."""
+        if "P" not in values:
+            return 0
+        turns = round(values["P"].value)
+        if abs(values["P"].value - turns) > 1e-3 or turns < 1:
+            raise self._refused("P is a positive integer")
+        return turns - 1
+
+    def _radius_centre(
+        self, clockwise: bool, values: dict[str, Word], first: Point, last: Point, axes: str
+    ) -> Point:
+        if set("IJK") & set(values) and self.dialect.name != "fanuc":
+            raise self._refused("R with I, J or K")
+        if not {axes[0], axes[1]} & set(values) or first == last:
+            raise self._refused("R needs another end point")
+        radius, inch = self._length(values["R"]), self.modal["units"] == 200
+        if not radius_reaches(radius, math.dist(first, last), self.dialect.name, inch):
+            raise self._refused("the radius does not reach the end point")
+        return centre_from_radius(first, last, radius, clockwise)
+
+    def _offset_centre(
+        self, values: dict[str, Word], first: Point, last: Point, letters: str
+    ) -> Point:
+        given = set("IJK") & set(values)
+        if not given & set(letters[:2]) or (letters[2] in given and self.dialect.name != "grbl"):
+            raise self._refused("centre words do not fit the plane")
+        i, j = (self._length(values[c]) if c in values else 0.0 for c in letters[:2])
+        if self.modal["arc"] == 901:
+            if letters[2] in given or not set(letters[:2]) <= given:
+                raise self._refused("an absolute centre needs both words")
+            centre = (i, j)
+        else:
+            centre = (first[0] + i, first[1] + j)
+        radii = math.dist(first, centre), math.dist(last, centre)
+        if not radii_agree(*radii, self.dialect.name, self.modal["units"] == 200):
+            raise self._refused(f"radii differ or vanish: {radii[0]:.6f}, {radii[1]:.6f} mm")
+        return centre
+
+    def _common(self) -> dict[str, str]:
+        """Return the modal fields of a move."""
+        plane = PLANES[self.modal["plane"] or 170][0]
+        return {"plane": plane, "feed_mode": f"G{(self.modal['feed'] or 940) // 10}"}
+
+    def _end(self) -> None:
+        """End the program; GRBL only resets its modes and executes what still comes."""
+        if self.dialect.name != "grbl":
+            self.ended = True
+            return
+        if self.modal["feed"] == 930:
+            self.feed = (0.0, 0.0)
+        reset = {"motion": 10, "plane": 170, "distance": 900, "feed": 940, "frame": 540}
+        self._set_modes(reset)
+
+    def _event(self, text: str) -> None:
+        self.program.events.append((len(self.program.moves), text))
+
+    def _refused(self, reason: str) -> Refused:
+        return Refused(self.line, reason)
+
+
+def _rank(m: int) -> int:
+    """Order of execution of M codes: tool change, spindle, coolant, stops."""
+    return ["change", "spindle", "coolant", "stop"].index(M_GROUPS[m])
+
+
+def _with_feed(move: Move, feed: tuple[float, float]) -> Move:
+    """Give a cutting move its feed: the rotary one if only rotary axes move."""
+    from dataclasses import replace
+
+    linear = any(abs(move.end[a] - move.start.get(a, math.inf)) > 1e-7 for a in _known(move))
+    turning = any(move.end[a] != move.start.get(a) for a in move.end if a not in LINEAR)
+    rotary = turning and not linear and move.centre is None and move.feed_mode != "G93"
+    return replace(move, feed=feed[1] if rotary else feed[0])
+
+
+def _known(move: Move) -> Iterator[str]:
+    return (axis for axis in LINEAR if axis in move.end)
