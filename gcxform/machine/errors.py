@@ -214,7 +214,7 @@ def _is_uniform(position: FloatArray) -> bool:
     """Whether the nodes are equally spaced up to the rounding of decimals such as 0.1."""
     with np.errstate(over="ignore", invalid="ignore"):
         even = np.linspace(position[0], position[-1], len(position))
-        return bool(np.all(np.abs(even - position) <= 8e13 * np.spacing(np.abs(position).max())))
+        return bool(np.all(np.abs(even - position) <= 8.0 * np.spacing(np.abs(position).max())))
 
 
 @dataclass(frozen=True, eq=False)

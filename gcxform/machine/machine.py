@@ -106,9 +106,8 @@ class Axis(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="keba
     """An axis: travel (mm or degrees), top speed (mm/min or deg/min), and where a rotary one turns.
 
     `direction` is a unit vector along the axis and `point` (mm) lies on it, both in machine
-    coordinates with all axes at 0; `sign` is +1 where a positive command turns the tool
-    right-handed about `direction`, -1 where it turns the workpiece so; `wrap` is the modulo of the
-    display in degrees.
+    coordinates with all axes at 0; `sign` is +1 where a positive command turns right-handed about
+    `direction`, -1 where left-handed; `wrap` is the modulo of the display in degrees.
     """
 
     limits: tuple[Value, Value] | None = None
@@ -289,7 +288,7 @@ def _axis_findings(
     if axis.sign not in (None, -1, 1) or (rotary and axis.sign is None):
         stated = "is missing" if axis.sign is None else f"is {axis.sign}"
         message = f"the sign of axis {letter} {stated}, it has to be -1 or +1"
-        hint = "ISO 841: +1 where the axis turns the tool, -1 where it turns the workpiece"
+        hint = "ISO 841: +1 where the axis turns the head, -1 where it turns the table"
         yield Diagnostic("GX433", message, where("sign"), hint)
     for key, value in (("max-speed", axis.max_speed), ("wrap", axis.wrap)):
         if value is not None and not value > 0.0:

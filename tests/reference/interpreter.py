@@ -8,8 +8,6 @@ position is unknown unless `start` is given.
 """
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
 
 from reference.arcs import (
     FUZZ,
@@ -20,84 +18,20 @@ from reference.arcs import (
     radius_reaches,
     sweep,
 )
+from reference.model import (
+    DIALECTS,
+    GROUPS,
+    M_GROUPS,
+    PLANES,
+    Dialect,
+    Move,
+    Program,
+    rank,
+    with_feed,
+)
 from reference.words import Block, Refused, Word, blocks
 
 __all__ = ["Move", "Program", "Refused", "interpret"]
-
-LINEAR = "XYZ"
-PLANES = {170: ("XY", "XYZ", "IJK"), 180: ("ZX", "ZXY", "KIJ"), 190: ("YZ", "YZX", "JKI")}
-GROUPS = {  # code times ten: modal group
-    **dict.fromkeys((0, 10, 20, 30, 800), "motion"),
-    **dict.fromkeys((170, 180, 190), "plane"),
-    **dict.fromkeys((900, 910), "distance"),
-    **dict.fromkeys((901, 911), "arc"),
-    **dict.fromkeys((930, 940, 950), "feed"),
-    **dict.fromkeys((200, 210), "units"),
-    **dict.fromkeys((540, 550, 560, 570, 580, 590), "frame"),
-    40: "dwell",
-    400: "radius",
-    490: "length",
-}
-STOPS, SPINDLE, COOLANT = (0, 1, 2, 30, 60), (3, 4, 5), (7, 8, 9)
-M_GROUPS = {
-    **dict.fromkeys(STOPS, "stop"),
-    **dict.fromkeys(SPINDLE, "spindle"),
-    **dict.fromkeys(COOLANT, "coolant"),
-    6: "change",
-}
-
-
-@dataclass(frozen=True)
-class Dialect:
-    """What distinguishes the controls here."""
-
-    name: str
-    axes: str
-    missing: frozenset[int]  # G codes (times ten) of `GROUPS` that this control does not have
-    missing_m: frozenset[int] = frozenset()
-    motion: int = 800
-    frame: int | None = None
-    many_m: int = 4
-    late: frozenset[int] = frozenset(STOPS)  # M codes which act after the motion
-
-
-DIALECTS = {
-    "linuxcnc": Dialect("linuxcnc", "XYZABC", frozenset()),
-    "fanuc": Dialect(
-        "fanuc", "XYZABC", frozenset((901, 911)), many_m=3, late=frozenset((*STOPS, 5, 9))
-    ),
-    "grbl": Dialect(
-        "grbl", "XYZ", frozenset((901, 950)), frozenset((6, 7, 60)), motion=0, frame=540
-    ),
-}
-
-
-@dataclass(frozen=True)
-class Move:
-    """One motion. Lengths in mm, rotary positions in degrees, `sweep` in radians (positive).
-
-    `turns` counts the full turns beyond the first one: `sweep` is in (2 pi turns,
-    2 pi (turns + 1)]. `feed` is mm/min or mm/rev (degrees if only rotary axes move) or 1/min.
-    """
-
-    kind: str
-    start: dict[str, float]
-    end: dict[str, float]
-    line: int
-    feed: float | None = None
-    feed_mode: str = "G94"
-    plane: str = "XY"
-    centre: tuple[float, float, float] | None = None
-    turns: int = 0
-    sweep: float = 0.0
-
-
-@dataclass
-class Program:
-    """Moves, and events as (index of the move before which it happens, text)."""
-
-    moves: list[Move] = field(default_factory=list)
-    events: list[tuple[int, str]] = field(default_factory=list)
 
 
 def interpret(
@@ -163,18 +97,18 @@ class _Machine:
         codes, dwell, ms, values = self._sort(block)
         had_feed_mode, had_units = self.modal["feed"], self.modal["units"]
         self._set_modes(codes)
-        motion = self._motion_of_block(codes, values)
+        motion = self._motion_of_block(codes, dwell, values)
         self._check_words(codes, dwell, ms, values, motion)
         self._set_feed(codes, values, had_feed_mode, had_units)
         self._speeds_and_tools(values)
-        for m in sorted(ms, key=_rank):
+        for m in sorted(ms, key=rank):
             if m not in self.dialect.late:
                 self._event(f"M{m}")
         if dwell:
             self._event(f"DWELL {self._dwell(values):.10g}")
         if motion is not None:
             self._move(motion, values, explicit="motion" in codes)
-        for m in sorted(ms, key=_rank):
+        for m in sorted(ms, key=rank):
             if m in self.dialect.late:
                 self._event(f"M{m}")
         if {2, 30} & set(ms):
@@ -232,9 +166,12 @@ class _Machine:
             code = min(both)  # G80 beside another motion code: the other one counts
         codes[group] = code
 
-    def _motion_of_block(self, codes: dict[str, int], values: dict[str, Word]) -> int | None:
+    def _motion_of_block(
+        self, codes: dict[str, int], dwell: bool, values: dict[str, Word]
+    ) -> int | None:
         """Return the motion that this block performs, if any."""
-        axes = any(axis in values for axis in self.dialect.axes)
+        fanuc_dwell = dwell and self.dialect.name == "fanuc"  # X is a time there
+        axes = not fanuc_dwell and any(axis in values for axis in self.dialect.axes)
         motion = self.modal["motion"]
         if motion == 800:
             if axes:
@@ -343,7 +280,7 @@ class _Machine:
         else:
             move = Move("LINE" if motion else "RAPID", start, end, self.line, **self._common())
         if motion:
-            move = _with_feed(move, self.feed)
+            move = with_feed(move, self.feed)
         self.program.moves.append(move)
         self.position = end
 
@@ -383,7 +320,7 @@ class _Machine:
         self, clockwise: bool, values: dict[str, Word], start: dict[str, float], end: dict
     ) -> Move:
         """Return the arc; its centre has the normal coordinate of the start (nan if unknown)."""
-        plane, axes, letters = PLANES[self.modal["plane"] or 170]
+        _, axes, letters = PLANES[self.modal["plane"] or 170]
         if not {axes[0], axes[1]} <= set(start) or axes[2] in set(end) - set(start):
             raise self._refused("arc from an unknown position")
         first: Point = (start[axes[0]], start[axes[1]])
@@ -467,22 +404,3 @@ class _Machine:
 
     def _refused(self, reason: str) -> Refused:
         return Refused(self.line, reason)
-
-
-def _rank(m: int) -> int:
-    """Order of execution of M codes: tool change, spindle, coolant, stops."""
-    return ["change", "spindle", "coolant", "stop"].index(M_GROUPS[m])
-
-
-def _with_feed(move: Move, feed: tuple[float, float]) -> Move:
-    """Give a cutting move its feed: the rotary one if only rotary axes move."""
-    from dataclasses import replace
-
-    linear = any(abs(move.end[a] - move.start.get(a, math.inf)) > 1e-7 for a in _known(move))
-    turning = any(move.end[a] != move.start.get(a) for a in move.end if a not in LINEAR)
-    rotary = turning and not linear and move.centre is None and move.feed_mode != "G93"
-    return replace(move, feed=feed[1] if rotary else feed[0])
-
-
-def _known(move: Move) -> Iterator[str]:
-    return (axis for axis in LINEAR if axis in move.end)

@@ -11,7 +11,7 @@ LINUXCNC_LINE = 252  # characters, comments included
 GRBL_LINE = 79  # characters, without comments and blanks
 
 
-class Refused(Exception):  # noqa: N818 - the name is the interface
+class Refused(Exception):
     """The control refuses `line` (1-based), or it needs more than this language."""
 
     def __init__(self, line: int, reason: str) -> None:

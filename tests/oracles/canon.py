@@ -1,0 +1,156 @@
+"""LinuxCNC's canon calls as moves in mm and degrees."""
+
+import re
+from dataclasses import dataclass, field
+
+AXES = "XYZABC"
+PLANES = {"XY": ("XY", "XYZ"), "XZ": ("ZX", "ZXY"), "YZ": ("YZ", "YZX")}
+MODES = {"inverse time": "G93", "units per minute": "G94", "units per revolution": "G95"}
+EVENTS = {
+    "START_SPINDLE_CLOCKWISE": "M3",
+    "START_SPINDLE_COUNTERCLOCKWISE": "M4",
+    "STOP_SPINDLE_TURNING": "M5",
+    "MIST_ON": "M7",
+    "FLOOD_ON": "M8",
+    "FLOOD_OFF": "M9",
+    "OPTIONAL_PROGRAM_STOP": "M1",
+    "CHANGE_TOOL": "M6",
+    "PROGRAM_STOP": "M0",
+}
+
+
+@dataclass(frozen=True)
+class CanonMove:
+    """One canonical motion: mm and degrees, all six axes known, centre for arcs.
+
+    `feed` is the rate that was set: mm/min (G94 and G93, where LinuxCNC has multiplied by the
+    length of the path) or mm/rev; degrees instead of mm if no linear axis moves. `turns` counts
+    the turns beyond the first. `unit` is the size of the program's unit in mm: positions are
+    rounded to 1e-4 of it.
+    """
+
+    kind: str
+    start: dict[str, float]
+    end: dict[str, float]
+    line: int
+    unit: float
+    feed: float | None = None
+    feed_mode: str = "G94"
+    plane: str = "XY"
+    centre: tuple[float, float, float] | None = None
+    turns: int = 0
+
+
+@dataclass
+class CanonProgram:
+    """Moves, and events as (index of the move before which it happens, text)."""
+
+    moves: list[CanonMove] = field(default_factory=list)
+    events: list[tuple[int, str]] = field(default_factory=list)
+
+
+class Reader:
+    """Consumes canon calls; `program` grows."""
+
+    def __init__(self) -> None:
+        self.program = CanonProgram()
+        self.position = dict.fromkeys(AXES, 0.0)
+        self.unit = 1.0
+        self.plane = "XY"
+        self.mode = "G94"
+        self.feed = (0.0, 0.0)  # mm, degrees
+        self.changing = False  # inside a tool change, which stops the spindle
+        self.shuttled = False
+        self.ending = False  # inside M2 or M30, which stop spindle and coolant
+        self.ended = False
+
+    def call(self, line: int, name: str, text: str) -> None:
+        """Take one canon call which came from `line`."""
+        if self.ended:
+            return
+        if name.startswith(("STRAIGHT_TRAVERSE", "STRAIGHT_FEED")):
+            end = dict(zip(AXES, self._numbers(text), strict=True))
+            self._move(line, "LINE" if name.endswith("FEED") else "RAPID", self._scaled(end))
+        elif name == "ARC_FEED":
+            self._arc(line, self._numbers(text))
+        elif name == "USE_LENGTH_UNITS":
+            self.unit = 25.4 if "INCHES" in text else 1.0
+        elif name == "SELECT_PLANE":
+            self.plane = text[-2:]
+        elif name == "SET_FEED_RATE":
+            rate = float(text)
+            self.feed = (rate * self.unit, rate)
+        elif name == "COMMENT" and "feed mode set to" in text:
+            self.mode = MODES[re.sub(r'.*set to (.*)"', r"\1", text)]
+        else:
+            self._event(name, text)
+
+    def _move(self, line: int, kind: str, end: dict[str, float], **arc: object) -> None:
+        linear = any(abs(end[a] - self.position[a]) > 1e-7 for a in "XYZ") or kind[0] == "A"
+        turning = any(end[a] != self.position[a] for a in "ABC")
+        rotary = turning and not linear and self.mode != "G93"
+        self.program.moves.append(
+            CanonMove(
+                kind,
+                self.position,
+                end,
+                line,
+                self.unit,
+                None if kind == "RAPID" else self.feed[rotary],
+                self.mode,
+                PLANES[self.plane][0],
+                **arc,  # type: ignore[arg-type]
+            )
+        )
+        self.position = end
+
+    def _arc(self, line: int, numbers: list[float]) -> None:
+        axes = PLANES[self.plane][1]
+        first, second, centre1, centre2, rotation, normal, *rotary = numbers
+        end = dict(zip(axes, (first, second, normal), strict=True))
+        end = self._scaled(end | dict(zip("ABC", rotary, strict=True)))
+        plane_centre = (centre1 * self.unit, centre2 * self.unit, self.position[axes[2]])
+        at = dict(zip(axes, plane_centre, strict=True))
+        kind = "ARC_CW" if rotation < 0 else "ARC_CCW"
+        self._move(
+            line,
+            kind,
+            {axis: end[axis] for axis in AXES},
+            centre=(at["X"], at["Y"], at["Z"]),
+            turns=int(abs(rotation)) - 1,
+        )
+
+    def _event(self, name: str, text: str) -> None:
+        if name == "SET_SPINDLE_MODE":
+            self.ending = True
+            self.program.events.pop()
+        elif name == "START_CHANGE":
+            self.changing = True
+        elif name == "PALLET_SHUTTLE":
+            self.shuttled = True
+        elif name == "PROGRAM_END":
+            self._say("M30" if self.shuttled else "M2")
+            self.ended = True
+        elif name == "SELECT_TOOL":
+            self._say(f"T{int(text)}")
+        elif name == "SET_SPINDLE_SPEED":
+            self._say(f"S{float(text.split(',')[1]):.10g}")
+        elif name == "DWELL":
+            self._say(f"DWELL {float(text):.10g}")
+        elif (
+            name in EVENTS
+            and not self.ending
+            and not (name == "STOP_SPINDLE_TURNING" and self.changing)
+        ):
+            stop = name == "PROGRAM_STOP" and self.shuttled
+            self._say("M60" if stop else EVENTS[name])
+            self.changing = self.shuttled = False
+
+    def _say(self, text: str) -> None:
+        self.program.events.append((len(self.program.moves), text))
+
+    def _numbers(self, text: str) -> list[float]:
+        return [float(number) for number in text.split(",")]
+
+    def _scaled(self, position: dict[str, float]) -> dict[str, float]:
+        return {a: v if a in "ABC" else v * self.unit for a, v in position.items()}

@@ -1,0 +1,209 @@
+"""LinuxCNC's stand-alone interpreter as an oracle: programs in, canonical motions out.
+
+`rs274 -g -t TOOLS -v VARIABLES FILE OUT` writes one canon call a line, numbers with four decimals
+in the units in force, to OUT, and messages to stderr. It starts at 0 on all axes, in millimetres,
+G17 G90 G91.1 G94, with no motion mode, all work offsets zero and block delete off. It stops at
+the first refusal. A comment `(gcx k)` put behind line k comes back as a canon call, so each
+call is known to belong to a line.
+
+`run_many` puts many plain programs into one file with a full reset between them; where it stops,
+that program is the refused one and the rest goes into the next file.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from oracles.canon import CanonMove, CanonProgram, Reader
+
+__all__ = ["CanonMove", "CanonProgram", "Rejected", "available", "run", "run_many"]
+
+CALL = re.compile(r"\s*\d+\s+N\S*\s+([A-Z_0-9]+)\((.*)\)\s*$")
+MARK = re.compile(r'"gcx (\d+) (\d+)"')
+NOISE = ("executing", "link (updating")
+TIMEOUT = 10.0  # seconds
+BATCH = 250  # programs in one file
+RESET = b"G80 G21 G17 G90 G91.1 G94 G40 G49 G54 M5 M9\nS0 T0\nG0 X0 Y0 Z0 A0 B0 C0\nG80\n"
+PLAIN_G = {0, 1, 2, 3, 4, 17, 18, 19, 20, 21, 40, 49, 80, 90, 91, 90.1, 91.1, 93, 94, 95}
+PLAIN_G |= set(range(54, 60))
+PLAIN_M = {0, 1, 3, 4, 5, 6, 7, 8, 9, 60}
+BLOCK = re.compile(r"/?(N\d+)?(?:[ABCFGIJKMPRSTXYZ][+-]?[\d.]+)*")
+WORD = re.compile(r"([A-Z])([+-]?[\d.]+)")
+
+
+class Rejected(Exception):
+    """LinuxCNC refused the program; `line` is 1-based, `partial` is what it did before."""
+
+    def __init__(self, message: str, line: int, partial: CanonProgram) -> None:
+        super().__init__(f"line {line}: {message}")
+        self.message = message
+        self.line = line
+        self.partial = partial
+
+
+@dataclass
+class _Output:
+    """What one process said: canon calls by program and line, and the message if it stopped."""
+
+    calls: list[list[tuple[int, str, str]]] = field(default_factory=list)
+    line: int = 0
+    message: str = ""
+
+
+def available() -> bool:
+    """Tell whether `rs274` is installed."""
+    return shutil.which("rs274") is not None
+
+
+def run(program: bytes) -> CanonProgram:
+    """Interpret one program in a process of its own; raise `Rejected`."""
+    output = _execute(_marked(program, 0))
+    reader = Reader()
+    for line, name, arguments in output.calls[0] if output.calls else []:
+        reader.call(line, name, arguments)
+    if output.message:
+        raise Rejected(output.message, output.line, reader.program)
+    return reader.program
+
+
+def run_many(programs: Iterable[bytes]) -> list[CanonProgram | Rejected]:
+    """Interpret many programs, as if each by itself; results in order, refusals as values."""
+    sources = list(programs)
+    results: list[CanonProgram | Rejected | None] = [None] * len(sources)
+    plain = [i for i, source in enumerate(sources) if _is_plain(source)]
+    others = sorted(set(range(len(sources))) - set(plain))
+    jobs = [plain[i : i + BATCH] for i in range(0, len(plain), BATCH)] + [[i] for i in others]
+
+    def work(job: list[int]) -> None:
+        alone = len(job) == 1
+        answers = [_caught(sources[job[0]])] if alone else _batch([sources[i] for i in job])
+        for index, answer in zip(job, answers, strict=True):
+            results[index] = answer
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(work, jobs))
+    return [result for result in results if result is not None]
+
+
+def _caught(program: bytes) -> CanonProgram | Rejected:
+    try:
+        return run(program)
+    except Rejected as refusal:
+        return refusal
+
+
+def _batch(programs: list[bytes]) -> list[CanonProgram | Rejected]:
+    """Interpret plain programs in as few processes as their refusals allow."""
+    answers: list[CanonProgram | Rejected] = []
+    while len(answers) < len(programs):
+        rest = programs[len(answers) :]
+        output = _execute(b"".join(_reset(p, i) for i, p in enumerate(rest)) + b"M2\n")
+        if output.calls and (output.message or len(output.calls) == len(rest)):
+            answers += _answers(output, rest)
+        else:  # it hung, or stopped without a word
+            answers += map(_caught, rest)
+    return answers
+
+
+def _answers(output: _Output, programs: list[bytes]) -> Iterator[CanonProgram | Rejected]:
+    """Yield the answers of one process; the last one may be a refusal."""
+    for index, calls in enumerate(output.calls[: len(programs)]):
+        reader = Reader()
+        for line, name, arguments in calls:
+            reader.call(line, name, arguments)
+        if output.message and index == len(output.calls) - 1:
+            yield Rejected(output.message, output.line, reader.program)
+            return
+        end = _end_line(programs[index])
+        reader.call(end + 1, "PROGRAM_END", "")
+        yield reader.program
+
+
+def _execute(source: bytes) -> _Output:
+    """Run one file; calls are tagged with the line whose marker comes next."""
+    with tempfile.TemporaryDirectory() as folder:
+        at = Path(folder)
+        (at / "in.ngc").write_bytes(source)
+        (at / "tools").write_text("".join(f"T{n} P{n} Z0\n" for n in range(1, 100)))
+        command = ["rs274", "-g", "-t", "tools", "-v", "var", "in.ngc", "out"]
+        try:
+            done = subprocess.run(command, cwd=at, capture_output=True, timeout=TIMEOUT)
+        except subprocess.TimeoutExpired:
+            return _Output([], 0, "it did not end")
+        text = (at / "out").read_text("latin-1") if (at / "out").exists() else ""
+    said = [s for s in done.stderr.decode("latin-1").splitlines() if not s.startswith(NOISE)]
+    return _collect(text, (said[0] if said else "it failed") if done.returncode else "")
+
+
+def _collect(text: str, message: str) -> _Output:
+    """Sort canon calls by program and line. A marker with line 0 opens a program."""
+    output, pending, line = _Output(message=message), [], 0
+    for call in filter(None, map(CALL.match, text.splitlines())):
+        name, arguments = call.groups()
+        mark = MARK.fullmatch(arguments) if name == "COMMENT" else None
+        if mark is None:
+            pending.append((name, arguments))
+            continue
+        line = int(mark[2])
+        if line:
+            output.calls[-1] += [(line, *item) for item in pending]
+        else:
+            output.calls.append([])
+        pending.clear()
+    output.line = line + (not message.startswith("File ended"))
+    if output.calls:
+        output.calls[-1] += [(line + 1, *item) for item in pending]
+    return output
+
+
+def _marked(program: bytes, index: int) -> bytes:
+    """Put a marker behind every line; a percent sign must stay the first thing in the file."""
+    lines = program.split(b"\n")
+    if not lines[-1]:
+        lines.pop()
+    first = next((i for i, line in enumerate(lines) if line.strip()), 0)
+    opening = lines[: first + 1] if lines and lines[first].strip() == b"%" else []
+    marked = [b"(gcx %d 0)" % index]
+    for number, line in enumerate(lines[len(opening) :], start=len(opening) + 1):
+        marked += [line, b"(gcx %d %d)" % (index, number)]
+    return b"\n".join([*opening, *marked]) + b"\n"
+
+
+def _reset(program: bytes, index: int) -> bytes:
+    """Return a program without its end, behind a reset of everything it may have set."""
+    lines = program.split(b"\n")[: _end_line(program)]
+    return RESET + _marked(b"\n".join([*lines, b""]), index)
+
+
+def _end_line(program: bytes) -> int:
+    """Return the index of the line with M2, the last one that is not blank."""
+    lines = program.split(b"\n")
+    return max(i for i, line in enumerate(lines) if line.strip())
+
+
+def _is_plain(program: bytes) -> bool:
+    """Tell whether a program can leave nothing behind that the reset does not undo."""
+    text = re.sub(rb"\([^()\n]*\)", b"", program).decode("latin-1").upper()
+    lines = [re.sub(r"[ \t\r]|;.*", "", line) for line in text.split("\n")]
+    while lines and not lines[-1]:
+        lines.pop()
+    if not lines or not re.fullmatch(r"(N\d+)?M0*2", lines[-1]) or "GCX" in text:
+        return False
+    return all(_is_plain_block(line) for line in lines[:-1])
+
+
+def _is_plain_block(line: str) -> bool:
+    if not BLOCK.fullmatch(line):
+        return False
+    for letter, number in WORD.findall(line):
+        if letter in "GM":
+            code = float(number) if re.fullmatch(r"\+?(\d+\.?\d*|\.\d+)", number) else -1
+            if code not in (PLAIN_G if letter == "G" else PLAIN_M):
+                return False
+    return True
