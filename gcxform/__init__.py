@@ -1,7 +1,109 @@
-"""gcxform: read a G-code program, change what must change, write a program that is proved right."""
+"""gcxform: read a G-code program, change what must change, write a program that is proved right.
 
-from gcxform.dialect import ArcRule, Dialect, NumberFormat
-from gcxform.modal.codes import Code, MCode
-from gcxform.toolpath.path import Kind, Plane, Toolpath
+What is named here is the public API for users and plugin authors, and nothing else is public. The
+names are loaded when they are first used, so that `gcxform --help` need not wait for numpy.
+"""
 
-__all__ = ["ArcRule", "Code", "Dialect", "Kind", "MCode", "NumberFormat", "Plane", "Toolpath"]
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from gcxform.api import compare as compare
+    from gcxform.api import read as read
+    from gcxform.api import write as write
+    from gcxform.contract import Pass as Pass
+    from gcxform.contract import PassContext as PassContext
+    from gcxform.contract import TextPass as TextPass
+    from gcxform.diagnostics import Diagnostic as Diagnostic
+    from gcxform.diagnostics import FileError as FileError
+    from gcxform.diagnostics import GcxformError as GcxformError
+    from gcxform.diagnostics import InputError as InputError
+    from gcxform.diagnostics import Location as Location
+    from gcxform.diagnostics import UsageError as UsageError
+    from gcxform.diagnostics import VerificationError as VerificationError
+    from gcxform.dialect import ArcRule as ArcRule
+    from gcxform.dialect import Dialect as Dialect
+    from gcxform.dialect import NumberFormat as NumberFormat
+    from gcxform.hookspecs import hookimpl as hookimpl
+    from gcxform.machine.errors import AxisFunction as AxisFunction
+    from gcxform.machine.errors import AxisFunctions as AxisFunctions
+    from gcxform.machine.errors import ErrorModel as ErrorModel
+    from gcxform.machine.errors import Outside as Outside
+    from gcxform.machine.errors import check_contraction as check_contraction
+    from gcxform.machine.errors import compensate as compensate
+    from gcxform.machine.formats import ErrorFormat as ErrorFormat
+    from gcxform.modal.codes import Code as Code
+    from gcxform.modal.codes import MCode as MCode
+    from gcxform.modal.tables import frame_name as frame_name
+    from gcxform.options import Angle as Angle
+    from gcxform.options import Length as Length
+    from gcxform.options import ModelFile as ModelFile
+    from gcxform.options import Option as Option
+    from gcxform.options import Vector as Vector
+    from gcxform.pipeline import Pipeline as Pipeline
+    from gcxform.pipeline import Result as Result
+    from gcxform.registry import Registry as Registry
+    from gcxform.syntax.tree import Block as Block
+    from gcxform.syntax.tree import Comment as Comment
+    from gcxform.syntax.tree import Number as Number
+    from gcxform.syntax.tree import Word as Word
+    from gcxform.toolpath.circles import arc_cuts as arc_cuts
+    from gcxform.toolpath.circles import arc_extremes as arc_extremes
+    from gcxform.toolpath.circles import circle_through as circle_through
+    from gcxform.toolpath.circles import points_on_arcs as points_on_arcs
+    from gcxform.toolpath.circles import radius_and_angle as radius_and_angle
+    from gcxform.toolpath.crossings import line_crossings as line_crossings
+    from gcxform.toolpath.deviation import deviation as deviation
+    from gcxform.toolpath.facts import ABSOLUTE as ABSOLUTE
+    from gcxform.toolpath.facts import COMPENSATED as COMPENSATED
+    from gcxform.toolpath.facts import KNOWN_POSITIONS as KNOWN_POSITIONS
+    from gcxform.toolpath.facts import LINEAR_ONLY as LINEAR_ONLY
+    from gcxform.toolpath.facts import METRIC as METRIC
+    from gcxform.toolpath.facts import NOMINAL as NOMINAL
+    from gcxform.toolpath.facts import XY_ARCS as XY_ARCS
+    from gcxform.toolpath.facts import Fact as Fact
+    from gcxform.toolpath.path import Event as Event
+    from gcxform.toolpath.path import FeedMode as FeedMode
+    from gcxform.toolpath.path import Kind as Kind
+    from gcxform.toolpath.path import Plane as Plane
+    from gcxform.toolpath.path import Toolpath as Toolpath
+    from gcxform.toolpath.path import column_major as column_major
+
+_HOMES = {
+    "api": "compare read write",
+    "contract": "Pass PassContext TextPass",
+    "diagnostics": "Diagnostic FileError GcxformError InputError Location UsageError "
+    "VerificationError",
+    "dialect": "ArcRule Dialect NumberFormat",
+    "hookspecs": "hookimpl",
+    "machine.errors": "AxisFunction AxisFunctions ErrorModel Outside check_contraction compensate",
+    "machine.formats": "ErrorFormat",
+    "modal.codes": "Code MCode",
+    "modal.tables": "frame_name",
+    "options": "Angle Length ModelFile Option Vector",
+    "pipeline": "Pipeline Result",
+    "registry": "Registry",
+    "syntax.tree": "Block Comment Number Word",
+    "toolpath.circles": "arc_cuts arc_extremes circle_through points_on_arcs radius_and_angle",
+    "toolpath.crossings": "line_crossings",
+    "toolpath.deviation": "deviation",
+    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NOMINAL XY_ARCS Fact",
+    "toolpath.path": "Event FeedMode Kind Plane Toolpath column_major",
+}
+_HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
+
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'gcxform' has no attribute {name!r}")
+    value = getattr(import_module(f"gcxform.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__

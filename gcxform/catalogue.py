@@ -133,4 +133,120 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "The file has none of the tables of its axes, so it would compensate nothing. Add them, "
         "or leave the compensation out of the pipeline.",
     ),
+    "GX431": (
+        "The limits of an axis do not ascend",
+        "`limits` is the lower end of the travel and then the upper one, in mm or degrees. "
+        "Exchange them, or correct the one that is wrong.",
+    ),
+    "GX432": (
+        "The direction of an axis is missing or zero",
+        "A rotary axis turns about a line in space, and `direction` is a vector along that line "
+        "in machine coordinates, such as [1.0, 0.0, 0.0] for an A axis. Its length is free.",
+    ),
+    "GX433": (
+        "The sign of an axis is missing or not one",
+        "`sign` says whether a positive command turns right-handed about the direction (+1) or "
+        "left-handed (-1). By ISO 841 it is +1 for an axis in the head and -1 for one in the "
+        "table, but controls are set otherwise, and a guess would turn the part the wrong way. "
+        "Try it on the machine and write what you saw.",
+    ),
+    "GX434": (
+        "A number of a machine file is out of its range",
+        "Speeds and moduli are above 0, and radii are not negative. Correct the number; leave the "
+        "key out if it is not known.",
+    ),
+    "GX435": (
+        "A chain of rotary axes does not fit the axes",
+        "`table` and `head` list the rotary axes from the base to the workpiece and to the "
+        "spindle; each must have its table [axis.A], [axis.B] or [axis.C], and stand once.",
+    ),
+    "GX436": (
+        "Unknown work offset",
+        "Work offsets are called by their codes, G54 to G59, and further ones such as "
+        '"G59.1" or "G54.1 P1". A name with a point stands in quotes: [work-offset."G59.1"].',
+    ),
+    "GX437": (
+        "Not a tool number",
+        "The tables of tools are called by whole numbers, [tool.1] for T1, each once.",
+    ),
+    # --- 7xx: command line and pipeline -------------------------------------------------------
+    "GX701": (
+        "Unknown key in a pipeline",
+        "A pipeline file, or an option of a pass, has a key which means nothing there; a misspelt "
+        "key would otherwise be ignored without a word. Take the name that is proposed, or see "
+        "the options of each pass with `gcxform list passes`.",
+    ),
+    "GX702": (
+        "A value in a pipeline is of the wrong type",
+        "The key takes another type of value. In TOML numbers and true or false stand without "
+        'quotes, texts and lengths with a unit in quotes: chord-error = "2 um".',
+    ),
+    "GX703": (
+        "Unknown dialect",
+        "No installed plugin offers a dialect of this name. Take one of the names listed, or "
+        "install the plugin; `gcxform list dialects` shows what there is.",
+    ),
+    "GX704": (
+        "Unknown pass",
+        "No installed plugin offers a pass of this name. Take one of the names listed, or install "
+        "the plugin; `gcxform list passes` shows what there is.",
+    ),
+    "GX705": (
+        "A mandatory key is missing in a pipeline",
+        "The key has no default, because a wrong guess gives a wrong program. Add it.",
+    ),
+    "GX706": (
+        "An option is out of its range",
+        "The number is outside what the option can mean. The message gives the range, in mm for "
+        "lengths and in degrees for angles.",
+    ),
+    "GX707": (
+        "Not one of the choices of an option",
+        "The option takes one of a few words. Take one of those listed.",
+    ),
+    "GX708": (
+        "Not a length or an angle",
+        'Lengths are texts with a unit, "5 um", "0.2 mm" or "0.001 in", or plain numbers in mm; '
+        'angles are "10 deg", "80 urad", "1 mrad", "0.1 rad", or plain numbers in degrees. A text '
+        "without a unit is refused, because nobody can say what it means.",
+    ),
+    "GX709": (
+        "A file of a pipeline cannot be read",
+        "A pipeline file, or a file that it names, does not exist, is a directory or may not be "
+        "read. Relative paths are relative to the file that names them, on the command line to "
+        "the working directory.",
+    ),
+    "GX710": (
+        "A pipeline file is not TOML",
+        "The text breaks the syntax of TOML at the place shown, or is not encoded as UTF-8. "
+        "Strings stand in quotes, lists in brackets, decimals are set off by a point.",
+    ),
+    "GX711": (
+        "Unknown version of the pipeline file",
+        "The key `format` names a version which this release does not read. Use a newer release, "
+        "or write the file in the version named.",
+    ),
+    "GX712": (
+        "A chain of passes cannot be read",
+        "A chain is passes separated by |, each a name and its options as key=value: "
+        "`absolute | segment chord-error=5um`. A value with blanks stands in quotes: "
+        'tolerance="1 um".',
+    ),
+    "GX713": (
+        "Options which do not go together",
+        "Each option by itself is right, but the pass cannot do what they ask for together. "
+        "Change one of them.",
+    ),
+    # --- 8xx: plugins -------------------------------------------------------------------------
+    "GX801": (
+        "Two plugins offer the same name",
+        "Which one a pipeline means would depend on the order of installation. Uninstall one of "
+        "the two distributions, or rename what it offers.",
+    ),
+    "GX802": (
+        "A plugin is broken",
+        "A plugin cannot be imported, or one of its hooks fails or returns what it should not; "
+        "what it offers is missing and all else works. Update or uninstall the distribution "
+        "named, or tell its author.",
+    ),
 }

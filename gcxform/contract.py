@@ -4,7 +4,7 @@ A pass is a frozen dataclass whose fields are its options. It turns one toolpath
 pure function, and declares a tolerance and an `undo`: the model of what the machine does with its
 output. The law, in the tests and on every run, is
 
-    deviation(before, undo(after)) <= tolerance
+    deviation(before, undo(after)) <= promise
 
 along every move. `undo` uses the forward model and shares no code with what it checks.
 """
@@ -37,7 +37,7 @@ class PassContext:
 class Pass:
     """The base of the passes that change toolpaths.
 
-    `name` is what a pipeline calls it; its docstring is its documentation. Override `tolerance`
+    `name` is what a pipeline calls it; its docstring is its documentation. Override `promise`
     when the pass may deviate, and `undo` when the machine turns its output into something else.
     """
 
@@ -47,7 +47,7 @@ class Pass:
     clears: ClassVar[frozenset[Fact]] = frozenset()
 
     @property
-    def tolerance(self) -> float:
+    def promise(self) -> float:
         """How far the path may deviate (mm); inf where nothing is promised."""
         return 0.0
 

@@ -1,9 +1,8 @@
 """Options: what a dataclass field says about a value that a user writes.
 
-The fields of a pass are its options, and all else is derived from them: the kebab-case key, units,
-type, choices, range, default, help, JSON Schema, the way back to TOML.
+The fields of a pass are its options: the kebab-case key, units, type, choices, range, default,
+help and the way back to TOML are derived from them.
 
-    @dataclass(frozen=True)
     class Shift(gx.Pass):
         by: Vector
         limit: Annotated[Length, Option(help="the longest shift", above=0)] = 1.0
@@ -23,7 +22,7 @@ import os
 import re
 import types
 import typing
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, dataclass, field
 from functools import partial
 from pathlib import Path
@@ -32,21 +31,18 @@ from typing import Annotated, Any, NamedTuple, TypeVar
 import msgspec
 
 from gcxform.diagnostics import Diagnostic, Location, UsageError
+from gcxform.machine import modelfile
 from gcxform.machine.errors import AxisFunctions, ErrorModel
 from gcxform.machine.formats import ErrorFormat
 from gcxform.machine.machine import ANGLE, AXIS_LETTERS, LENGTH, Quantity, quantity_of
-from gcxform.machine.modelfile import SUFFIX, load_model
-from gcxform.machine.modelfile import to_toml as model_to_toml
 from gcxform.tomltext import did_you_mean
 
 Built = TypeVar("Built")
 Where = Callable[[str], Location]
 
 
-class Word(str):
+class Argument(str):
     """A value on the command line: text of which the option says what it is."""
-
-    __slots__ = ()
 
 
 @dataclass(frozen=True)
@@ -60,14 +56,14 @@ class Option:
 
     def admits(self, value: float) -> bool:
         """Return whether a value is in the range."""
-        low = self.above is None or value > self.above
-        low = low and (self.at_least is None or value >= self.at_least)
-        return low and (self.at_most is None or value <= self.at_most)
+        above = self.above is None or value > self.above
+        at_least = self.at_least is None or value >= self.at_least
+        return above and at_least and (self.at_most is None or value <= self.at_most)
 
     def range_text(self, unit: str) -> str:
         """Return the range in words, each bound with its unit."""
-        bounds = (("above", self.above), ("at least", self.at_least), ("at most", self.at_most))
-        return " and ".join(f"{word} {b:g}{unit}" for word, b in bounds if b is not None)
+        words = {"above": self.above, "at least": self.at_least, "at most": self.at_most}
+        return " and ".join(f"{word} {b:g}{unit}" for word, b in words.items() if b is not None)
 
 
 @dataclass(frozen=True)
@@ -84,16 +80,16 @@ class ModelFile:
     @classmethod
     def load(cls, path: Path, formats: Iterable[type[ErrorFormat]] = ()) -> ModelFile:
         """Return the model of a file; raises UsageError as `load_model` does."""
-        model = load_model(path, tuple(formats))
-        if path.suffix.lower() != SUFFIX and isinstance(model, AxisFunctions):
-            data = model_to_toml(model).encode()
-        else:
+        model = modelfile.load_model(path, tuple(formats))
+        if path.suffix.lower() == modelfile.SUFFIX or not isinstance(model, AxisFunctions):
             data = path.read_bytes()
+        else:
+            data = modelfile.to_toml(model).encode()
         return cls(path, model, hashlib.sha256(data).hexdigest())
 
 
 class OptionDoc(NamedTuple):
-    """The documentation of one option; `schema` is the JSON Schema of its value."""
+    """The documentation of one option, in words."""
 
     name: str
     type: str
@@ -102,7 +98,6 @@ class OptionDoc(NamedTuple):
     choices: tuple[str, ...]
     help: str
     range: str
-    schema: dict[str, Any]
 
 
 class _RefusedError(Exception):
@@ -122,11 +117,10 @@ class _Around(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Kind:
-    """A type of options: its words, how a raw value is read and written, its JSON type."""
+    """A type of options: its words, how a raw value is read and written, its unit."""
 
     words: str
     read: Callable[[object, _Around], Any]
-    json: str | list[str]
     raw: Callable[[Any], object] = lambda value: value
     unit: str = ""
 
@@ -135,9 +129,7 @@ def _written(raw: object) -> str:
     """Return a raw value for a message."""
     if isinstance(raw, list | dict):
         return "a list" if isinstance(raw, list) else "a table"
-    if isinstance(raw, bool):
-        return str(raw).lower()
-    return repr(str(raw)) if isinstance(raw, str) else str(raw)
+    return str(raw).lower() if isinstance(raw, bool) else repr(raw)
 
 
 def _expected(what: str, raw: object) -> _RefusedError:
@@ -146,9 +138,9 @@ def _expected(what: str, raw: object) -> _RefusedError:
 
 def _read_plain(kind: type, what: str, raw: object, around: _Around) -> Any:
     """Return a number, a string or a truth value; a word may be any of them."""
-    word = isinstance(raw, Word)
+    word = isinstance(raw, Argument)
     try:
-        value = msgspec.convert(str(raw) if word else raw, kind, strict=not word)
+        value: Any = msgspec.convert(str(raw) if word else raw, kind, strict=not word)
     except msgspec.ValidationError:
         raise _expected(what, raw) from None
     if isinstance(value, float) and not math.isfinite(value):
@@ -172,7 +164,7 @@ def _read_model(raw: object, around: _Around) -> ModelFile:
 def _read_quantity(quantity: Quantity, raw: object, around: _Around) -> float:
     if isinstance(raw, str):
         try:
-            return quantity.parse(raw, bare=isinstance(raw, Word))
+            return quantity.parse(raw, bare=isinstance(raw, Argument))
         except ValueError as error:
             raise _RefusedError("GX708", str(error)) from None
     what = f"{quantity.article}, such as {quantity.example}"
@@ -182,7 +174,7 @@ def _read_quantity(quantity: Quantity, raw: object, around: _Around) -> float:
 def _read_vector(raw: object, around: _Around) -> tuple[float, float, float]:
     parts: list[object]
     if isinstance(raw, str):
-        parts = [Word(part) for part in raw.split(",")]
+        parts = [Argument(part) for part in raw.split(",")]
     elif isinstance(raw, dict) and sorted(raw) == ["X", "Y", "Z"]:
         parts = [raw[letter] for letter in "XYZ"]
     else:
@@ -197,19 +189,10 @@ def _read_coordinates(raw: object, around: _Around) -> dict[str, float]:
     if not isinstance(raw, dict):
         raise _expected("a table of axis letters, such as {X = 0.0, A = 0.0}", raw)
     if wrong := [key for key in raw if key not in AXIS_LETTERS]:
-        known = f"known: {' '.join(AXIS_LETTERS)}"
-        raise _RefusedError("GX701", f"{wrong[0]!r} is not the letter of an axis", known)
+        raise _RefusedError(
+            "GX701", f"{wrong[0]!r} is not one of the axes {' '.join(AXIS_LETTERS)}"
+        )
     return {key: _read_quantity(quantity_of(key), value, around) for key, value in raw.items()}
-
-
-def _quantity_kind(quantity: Quantity) -> _Kind:
-    read = partial(_read_quantity, quantity)
-    return _Kind(quantity.name, read, ["number", "string"], unit=f" {quantity.base}")
-
-
-def _plain_kind(kind: type, words: str, json: str) -> _Kind:
-    what = words if kind is bool else f"a {words}"
-    return _Kind(words, partial(_read_plain, kind, what), json)
 
 
 def _choice_kind(choices: tuple[Any, ...]) -> _Kind:
@@ -218,30 +201,26 @@ def _choice_kind(choices: tuple[Any, ...]) -> _Kind:
 
     def read(raw: object, around: _Around) -> object:
         choice = texts.get(str(raw))
-        same = isinstance(raw, str) == isinstance(choice, str) or isinstance(raw, Word)
+        same = isinstance(raw, str) == isinstance(choice, str) or isinstance(raw, Argument)
         if choice is None or not same:
             message = f"{_written(raw)} is not one of {', '.join(texts)}"
             raise _RefusedError("GX707", message, did_you_mean(str(raw), texts))
         return choice
 
-    return _Kind("choice", read, ["string", "number"], _plain)
+    return _Kind("choice", read, lambda choice: str(choice) if isinstance(choice, str) else choice)
 
 
-def _plain(choice: Any) -> object:
-    return str(choice) if isinstance(choice, str) else choice
-
-
-_LENGTH = _quantity_kind(LENGTH)
-_ANGLE = _quantity_kind(ANGLE)
-_VECTOR = _Kind("three lengths", _read_vector, ["array", "string", "object"], list)
-_COORDINATES = _Kind("coordinates by axis letter", _read_coordinates, "object")
+_LENGTH = _Kind("length", partial(_read_quantity, LENGTH), unit=" mm")
+_ANGLE = _Kind("angle", partial(_read_quantity, ANGLE), unit=" deg")
+_VECTOR = _Kind("three lengths", _read_vector, list)
+_COORDINATES = _Kind("coordinates by axis letter", _read_coordinates)
 _PLAIN: dict[type, _Kind] = {
-    bool: _plain_kind(bool, "true or false", "boolean"),
-    int: _plain_kind(int, "whole number", "integer"),
-    float: _plain_kind(float, "number", "number"),
-    str: _plain_kind(str, "text", "string"),
-    Path: _Kind("file name", _read_path, "string", lambda path: str(path.absolute())),
-    ModelFile: _Kind("error model", _read_model, "string", lambda f: str(f.path.absolute())),
+    bool: _Kind("true or false", partial(_read_plain, bool, "true or false")),
+    int: _Kind("whole number", partial(_read_plain, int, "a whole number")),
+    float: _Kind("number", partial(_read_plain, float, "a number")),
+    str: _Kind("text", partial(_read_plain, str, "a text")),
+    Path: _Kind("file name", _read_path, lambda path: str(path.absolute())),
+    ModelFile: _Kind("error model", _read_model, lambda f: str(f.path.absolute())),
 }
 
 Length = Annotated[float, _LENGTH]
@@ -305,7 +284,12 @@ def build(
     owner = owner or f"the pass {getattr(pass_class, 'name', '')!r}"
     around = _Around(base, tuple(formats))
     specs = _specs(pass_class)
-    found = list(_unknown_keys(raw, [spec.key for spec in specs], owner, where))
+    known = [spec.key for spec in specs]
+    found = [
+        Diagnostic("GX701", f"unknown key {key!r} in {owner}", where(key), did_you_mean(key, known))
+        for key in raw
+        if key not in known
+    ]
     values: dict[str, object] = {}
     for spec in specs:
         try:
@@ -321,16 +305,6 @@ def build(
     if found:
         raise UsageError(tuple(found))
     return _instance(pass_class, values, owner, where)
-
-
-def _unknown_keys(
-    raw: Iterable[str], known: list[str], owner: str, where: Where
-) -> Iterator[Diagnostic]:
-    for key in raw:
-        if key not in known:
-            message = f"unknown key {key!r} in {owner}"
-            hint = did_you_mean(key, known) or f"{owner} has no options"
-            yield Diagnostic("GX701", message, where(key), hint)
 
 
 def _instance(target: type[Built], values: dict[str, object], owner: str, where: Where) -> Built:
@@ -355,7 +329,6 @@ def describe(target: type) -> list[OptionDoc]:
             choices=tuple(str(choice) for choice in spec.choices),
             help=spec.option.help,
             range=spec.option.range_text(spec.kind.unit),
-            schema=_schema(spec),
         )
         for spec in _specs(target)
     ]
@@ -363,29 +336,10 @@ def describe(target: type) -> list[OptionDoc]:
 
 def _default_text(spec: _Spec) -> str:
     """Return the default for a person: with its unit, empty if there is none."""
-    if spec.default is MISSING or spec.default is None:
-        return ""
-    raw = spec.to_raw(spec.default)
-    if isinstance(raw, bool):
-        return _written(raw)
+    raw = None if spec.default in (MISSING, None) else spec.to_raw(spec.default)
+    if isinstance(raw, bool | None):
+        return "" if raw is None else _written(raw)
     return f"{raw:g}{spec.kind.unit}" if isinstance(raw, int | float) else str(raw)
-
-
-def _schema(spec: _Spec) -> dict[str, Any]:
-    found: dict[str, Any] = {"type": spec.kind.json}
-    option = spec.option
-    bounds = (option.above, option.at_least, option.at_most)
-    words = ("exclusiveMinimum", "minimum", "maximum")
-    found |= {word: bound for word, bound in zip(words, bounds, strict=True) if bound is not None}
-    if spec.choices:
-        found = {"enum": [_plain(choice) for choice in spec.choices]}
-    if spec.by_letter:
-        found = {"anyOf": [found, {"type": "object", "additionalProperties": dict(found)}]}
-    if option.help:
-        found["description"] = option.help
-    if spec.default is not MISSING and spec.default is not None:
-        found["default"] = spec.to_raw(spec.default)
-    return found
 
 
 def to_toml(instance: object) -> dict[str, object]:
@@ -412,6 +366,7 @@ def _spec(of: dataclasses.Field[Any], annotation: Any) -> _Spec:
     marks = [mark for mark in metadata if isinstance(mark, _Kind)]
     choices = _choices(plain[0])
     kind = marks[0] if marks else _choice_kind(choices) if choices else _PLAIN.get(plain[0])
+    default = of.default if of.default_factory is MISSING else of.default_factory()
     if kind is None or len(plain) != 1:
         raise TypeError(f"the option {of.name!r} has the type {annotation}, which is none of ours")
     return _Spec(
@@ -421,7 +376,7 @@ def _spec(of: dataclasses.Field[Any], annotation: Any) -> _Spec:
         option=next((mark for mark in metadata if isinstance(mark, Option)), Option()),
         by_letter=len(plain) < len(types_),
         choices=choices,
-        default=of.default if of.default_factory is MISSING else of.default_factory(),
+        default=MISSING if isinstance(default, property) else default,  # one of the base class
     )
 
 

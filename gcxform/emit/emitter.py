@@ -258,18 +258,17 @@ class _Job:
             if present.any():
                 whole = self.positions.words_of(column, rows)
                 decimals = manner.decimals_of(field.address, inch)
-                prefix = field.gap + field.address.encode()
-                renderer.number(prefix, whole, decimals, present)
+                renderer.number(field.gap, field.address, whole, decimals, present)
         elif isinstance(field, Centre):
             whole = self.centre[rows, field.index]
             decimals = manner.decimals_of(field.address, inch)
-            prefix = field.gap + field.address.encode()
-            renderer.number(prefix, whole, decimals, np.ones(len(rows), np.bool_))
+            everywhere = np.ones(len(rows), np.bool_)
+            renderer.number(field.gap, field.address, whole, decimals, everywhere)
         else:
             decimals = manner.decimals_of("F", inch)
             whole = quantise(self.pieces.feed_value[members], decimals)
             everywhere = np.ones(len(rows), np.bool_)
-            renderer.number(field.gap + b"F", whole, decimals, everywhere, point=False)
+            renderer.number(field.gap, "F", whole, decimals, everywhere, point=False)
 
     # --- after -------------------------------------------------------------------------------------------
 

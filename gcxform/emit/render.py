@@ -24,18 +24,29 @@ class Renderer:
         self._parts: list[Bytes] = []
         self._done: list[tuple[Ints, Bytes]] = []
         self._rows = 0
+        self._begun: Flags = np.zeros(0, np.bool_)
 
     def begin(self, rows: int) -> None:
         """Begin a template of some rows."""
         self._parts = []
         self._rows = rows
+        self._begun = np.zeros(rows, np.bool_)
 
     def literal(self, text: bytes) -> None:
         """Add bytes that all rows have."""
         if b"\0" in text:
             raise InputError.one("GX505", "a block with a NUL byte has to be written anew")
+        if text.strip():
+            self._begun[:] = True
+        self._where(text, None)
+
+    def _where(self, text: bytes, rows: Flags | None) -> None:
+        """Add bytes that all rows have, or some."""
         cell = np.frombuffer(text, np.uint8)
-        self._parts.append(np.broadcast_to(cell, (self._rows, len(cell))))
+        if rows is None or rows.all():
+            self._parts.append(np.broadcast_to(cell, (self._rows, len(cell))))
+        elif len(cell):
+            self._parts.append(np.where(rows[:, None], cell, np.uint8(0)))
 
     def copied(self, lines: Ints, slot: int) -> None:
         """Add numbers as they stand in the source lines."""
@@ -52,18 +63,26 @@ class Renderer:
         self._parts.append(np.where(inside, cells, np.uint8(0)))
 
     def number(
-        self, prefix: bytes, whole: Floats, decimals: int, present: Flags, point: bool = True
+        self,
+        gap: bytes,
+        address: str,
+        whole: Floats,
+        decimals: int,
+        present: Flags,
+        point: bool = True,
     ) -> None:
-        """Add words: a prefix and whole / 10**decimals, in the rows where it is present."""
+        """Add words, in the rows where they are present: an address and whole / 10**decimals.
+
+        The gap goes before the word where the row has begun.
+        """
         if not present.any():
             return
         if (np.abs(whole[present]) >= LARGEST * 10.0**decimals).any():
-            raise InputError.one("GX503", f"{prefix.decode().strip()} has too many digits")
-        cell = np.frombuffer(prefix, np.uint8)
-        if present.all():
-            self._parts.append(np.broadcast_to(cell, (self._rows, len(cell))))
-        else:
-            self._parts.append(np.where(present[:, None], cell, np.uint8(0)))
+            raise InputError.one("GX503", f"{address} has more digits than a control takes")
+        if gap:
+            self._where(gap, present & self._begun)
+        self._where(address.encode(), present)
+        self._begun |= present
         zeros = self.task.manner.numbers.zeros
         self._parts.append(number_field(whole, decimals, zeros, present, point))
 

@@ -71,7 +71,7 @@ class Copied:
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """An axis word: left out where it need not be written."""
+    """An axis word: left out where it need not be written, its gap where nothing is before it."""
 
     gap: bytes
     address: str
@@ -329,13 +329,20 @@ class TemplateWriter:
             order = list(self.axes)
         else:
             order = named + [a for a in self.axes if a not in named]
-        for address in order:
-            gap = self._gap(lead)
+        if lead and not self.fields:
+            self.fields.append(Literal(lead))
+            lead = b""
+        for nth, address in enumerate(order):
+            gap = lead if lead else (self.gap if nth or self._ends_in_word() else b"")
             self.fields.append(Axis(gap, address))
             lead = b""
 
     def _gap(self, lead: bytes) -> bytes:
         return lead or (self.gap if self.fields else b"")
+
+    def _ends_in_word(self) -> bool:
+        """Whether something other than blanks has been written."""
+        return any(not isinstance(f, Literal) or f.text.strip() for f in self.fields)
 
     def _centre(self, lead: bytes) -> None:
         """Write the centre words of an arc and its turns."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import partial
@@ -24,6 +24,7 @@ from gcxform.tomltext import TomlText, convert, did_you_mean, read_toml
 LINEAR_AXES = tuple("XYZUVW")
 ROTARY_AXES = tuple("ABC")
 AXIS_LETTERS = LINEAR_AXES + ROTARY_AXES
+EXAMPLES = {"axis": "X", "work-offset": "G54", "tool": "1"}
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*")
 _DEGREES = Decimal("57.29577951308232087679815481410517033240547246656")  # of a radian
@@ -97,6 +98,7 @@ def quantity_of(axis: str) -> Quantity:
     return ANGLE if axis in ROTARY_AXES else LENGTH
 
 
+Keys = tuple[str | int, ...]
 _MARK = "a number, or a string with a unit"
 Value = Annotated[float, msgspec.Meta(description=_MARK)]
 Triple = tuple[Value, Value, Value]
@@ -125,6 +127,20 @@ class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="keba
     radius: Value = 0.0
 
 
+class Offset(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A work offset: the position of its origin by axis, mm and degrees."""
+
+    X: Value | None = None
+    Y: Value | None = None
+    Z: Value | None = None
+    U: Value | None = None
+    V: Value | None = None
+    W: Value | None = None
+    A: Value | None = None
+    B: Value | None = None
+    C: Value | None = None
+
+
 class MachineFile(
     msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="kebab", kw_only=True
 ):
@@ -137,7 +153,7 @@ class MachineFile(
     gauge_point: Triple = (0.0, 0.0, 0.0)
     errors: str | None = None
     axis: dict[str, Axis] = {}
-    work_offset: dict[str, dict[str, Value]] = {}
+    work_offset: dict[str, Offset] = {}
     tool: dict[str, Tool] = {}
 
 
@@ -166,8 +182,7 @@ def load_machine(path: Path) -> Machine:
     """
     document = read_toml(path, CODES)
     _check_version(document)
-    document = _without_units(document)
-    file = convert(document, MachineFile)
+    file = _converted(_without_units(document))
     if found := tuple(_findings(document, file)):
         raise UsageError(found)
     return Machine(
@@ -178,9 +193,14 @@ def load_machine(path: Path) -> Machine:
         gauge_point=file.gauge_point,
         errors=None if file.errors is None else path.parent / file.errors,
         axes={letter: _normalised(axis) for letter, axis in file.axis.items()},
-        work_offsets=file.work_offset,
+        work_offsets={code: _given(offset) for code, offset in file.work_offset.items()},
         tools={int(number): tool for number, tool in file.tool.items()},
     )
+
+
+def _given(offset: Offset) -> dict[str, float]:
+    """Return the coordinates of a work offset which are given."""
+    return {k: float(v) for k, v in msgspec.structs.asdict(offset).items() if v is not None}
 
 
 def schema() -> dict[str, Any]:
@@ -210,7 +230,41 @@ def _check_version(document: TomlText) -> None:
         raise UsageError.one("GX406", message, document.where("format"))
 
 
-Keys = tuple[str | int, ...]
+@dataclass(frozen=True)
+class _Part(TomlText):
+    """One table of a file, read by itself: msgspec does not tell the keys of a dict."""
+
+    whole: TomlText
+    prefix: tuple[str, ...]
+
+    def where(self, *keys: str | int) -> Location:
+        return self.whole.where(*self.prefix, *keys)
+
+    def unknown_key(self, keys: Keys, known: Iterable[str]) -> UsageError:
+        return self.whole.unknown_key((*self.prefix, *keys), known)
+
+
+def _converted(document: TomlText) -> MachineFile:
+    """Return the file with its types checked, each table that has a name of its own by itself."""
+    tables: dict[str, type[msgspec.Struct]] = {"axis": Axis, "work-offset": Offset, "tool": Tool}
+    values = {**document.values, **{key: {} for key in tables if key in document.values}}
+    read: dict[str, dict[str, Any]] = {}
+    found: list[Diagnostic] = []
+    for section, config in tables.items():
+        raw = document.values.get(section, {})
+        named = raw if isinstance(raw, dict) else {}
+        if named is not raw:
+            message = f"{section}: expected tables, such as [{section}.{EXAMPLES[section]}]"
+            found.append(Diagnostic(document.codes.wrong_value, message, document.where(section)))
+        for name, value in named.items():
+            part = _Part(document.file, "", value, document.codes, document, (section, name))
+            try:
+                read.setdefault(section.replace("-", "_"), {})[name] = convert(part, config)
+            except UsageError as error:
+                found += error.diagnostics
+    if found:
+        raise UsageError(tuple(found))
+    return msgspec.structs.replace(convert(replace(document, values=values), MachineFile), **read)
 
 
 def _quantity_at(keys: Keys) -> Quantity | None:
@@ -323,7 +377,7 @@ def _offset_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnost
                 'known: G54 to G59, "G59.1" to "G59.3", "G54.1 P1"; quote a name with a point',
             )
         known = [letter for letter in AXIS_LETTERS if letter in (file.axis or AXIS_LETTERS)]
-        for letter in offset:
+        for letter in _given(offset):
             if letter not in known:
                 keys = ("work-offset", code, letter)
                 yield from document.unknown_key(keys, known).diagnostics

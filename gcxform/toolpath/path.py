@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.diagnostics import Diagnostic, InputError, Location
+
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Small = NDArray[np.int8]
@@ -163,6 +165,13 @@ class Toolpath:
     def block(self) -> Ints:
         """(n,) index into `blocks` of each move."""
         return self.source - self.blocks.first
+
+    def refuse(self, code: str, rows: Ints, message: str, hint: str = "") -> InputError:
+        """Return the error that refuses rows; the pipeline adds the text of their lines."""
+        lines = np.unique(self.source[rows])[:20] + 1
+        return InputError(
+            tuple(Diagnostic(code, message, Location("", int(line)), hint) for line in lines)
+        )
 
     def replace(self, **changes: Any) -> Toolpath:
         """Return the path with some columns changed."""

@@ -1,0 +1,37 @@
+"""The first-party plugins: they come through the same door as anybody's."""
+
+from __future__ import annotations
+
+import gcxform as gx
+
+
+@gx.hookimpl
+def gcxform_dialects() -> list[type[gx.Dialect]]:
+    """Return one class for each controller family."""
+    from gcxform_plugins.dialects.fanuc import Fanuc
+    from gcxform_plugins.dialects.grbl import Grbl
+    from gcxform_plugins.dialects.linuxcnc import LinuxCNC
+
+    return [Fanuc, Grbl, LinuxCNC]
+
+
+@gx.hookimpl
+def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
+    """Return the passes on toolpaths, then those on text."""
+    from gcxform_plugins.passes.absolute import Absolute
+    from gcxform_plugins.passes.metric import Metric
+    from gcxform_plugins.passes.plane import PlanePass
+    from gcxform_plugins.passes.renumber import Renumber
+    from gcxform_plugins.passes.segment import Segment
+    from gcxform_plugins.passes.strip import Strip
+    from gcxform_plugins.passes.volumetric import Volumetric
+
+    return [Absolute, Metric, PlanePass, Segment, Volumetric, Renumber, Strip]
+
+
+@gx.hookimpl
+def gcxform_error_formats() -> list[type[gx.ErrorFormat]]:
+    """Return the foreign tables of machine errors."""
+    from gcxform_plugins.formats.lddm import Lddm
+
+    return [Lddm]

@@ -24,9 +24,9 @@ class CanonMove:
     """One canonical motion: mm and degrees, all six axes known, centre for arcs.
 
     `feed` is the rate that was set: mm/min (G94 and G93, where LinuxCNC has multiplied by the
-    length of the path) or mm/rev; degrees instead of mm if no linear axis moves. `turns` counts
-    the turns beyond the first. `unit` is the size of the program's unit in mm: positions are
-    rounded to 1e-4 of it.
+    length of the path) or mm/rev; its second number is the same in degrees, for moves of rotary
+    axes alone. `turns` counts the turns beyond the first. `unit` is the size of the program's
+    unit in mm: positions are rounded to 1e-4 of it.
     """
 
     kind: str
@@ -34,7 +34,7 @@ class CanonMove:
     end: dict[str, float]
     line: int
     unit: float
-    feed: float | None = None
+    feed: tuple[float, float] | None = None
     feed_mode: str = "G94"
     plane: str = "XY"
     centre: tuple[float, float, float] | None = None
@@ -63,6 +63,7 @@ class Reader:
         self.shuttled = False
         self.ending = False  # inside M2 or M30, which stop spindle and coolant
         self.ended = False
+        self.last = ""  # the previous call
 
     def call(self, line: int, name: str, text: str) -> None:
         """Take one canon call which came from `line`."""
@@ -76,7 +77,7 @@ class Reader:
         elif name == "USE_LENGTH_UNITS":
             self.unit = 25.4 if "INCHES" in text else 1.0
         elif name == "SELECT_PLANE":
-            self.plane = text[-2:]
+            self.plane = text[-2:] if text[-2:] in PLANES else self.plane  # not UV, WU, VW
         elif name == "SET_FEED_RATE":
             rate = float(text)
             self.feed = (rate * self.unit, rate)
@@ -84,11 +85,9 @@ class Reader:
             self.mode = MODES[re.sub(r'.*set to (.*)"', r"\1", text)]
         else:
             self._event(name, text)
+        self.last = name
 
     def _move(self, line: int, kind: str, end: dict[str, float], **arc: object) -> None:
-        linear = any(abs(end[a] - self.position[a]) > 1e-7 for a in "XYZ") or kind[0] == "A"
-        turning = any(end[a] != self.position[a] for a in "ABC")
-        rotary = turning and not linear and self.mode != "G93"
         self.program.moves.append(
             CanonMove(
                 kind,
@@ -96,7 +95,7 @@ class Reader:
                 end,
                 line,
                 self.unit,
-                None if kind == "RAPID" else self.feed[rotary],
+                None if kind == "RAPID" else self.feed,
                 self.mode,
                 PLANES[self.plane][0],
                 **arc,  # type: ignore[arg-type]
@@ -121,7 +120,7 @@ class Reader:
         )
 
     def _event(self, name: str, text: str) -> None:
-        if name == "SET_SPINDLE_MODE":
+        if name == "SET_SPINDLE_MODE" and self.last == "STOP_SPINDLE_TURNING":
             self.ending = True
             self.program.events.pop()
         elif name == "START_CHANGE":

@@ -6,6 +6,9 @@ G17 G90 G91.1 G94, with no motion mode, all work offsets zero and block delete o
 the first refusal. A comment `(gcx k)` put behind line k comes back as a canon call, so each
 call is known to belong to a line.
 
+It maps the file `.tool.mmap` of the home directory: two processes which share it crash each other
+(SIGBUS), so each one gets a home of its own.
+
 `run_many` puts many plain programs into one file with a full reset between them; where it stops,
 that program is the refused one and the rest goes into the next file.
 """
@@ -34,6 +37,7 @@ PLAIN_G = {0, 1, 2, 3, 4, 17, 18, 19, 20, 21, 40, 49, 80, 90, 91, 90.1, 91.1, 93
 PLAIN_G |= set(range(54, 60))
 PLAIN_M = {0, 1, 3, 4, 5, 6, 7, 8, 9, 60}
 BLOCK = re.compile(r"/?(N\d+)?(?:[ABCFGIJKMPRSTXYZ][+-]?[\d.]+)*")
+END = re.compile(rb"[ \t]*([nN]\d+)?[ \t]*[mM]0*2[ \t]*")  # not taken apart by a comment
 WORD = re.compile(r"([A-Z])([+-]?[\d.]+)")
 
 
@@ -133,12 +137,15 @@ def _execute(source: bytes) -> _Output:
         (at / "tools").write_text("".join(f"T{n} P{n} Z0\n" for n in range(1, 100)))
         command = ["rs274", "-g", "-t", "tools", "-v", "var", "in.ngc", "out"]
         try:
-            done = subprocess.run(command, cwd=at, capture_output=True, timeout=TIMEOUT)
+            home = os.environ | {"HOME": folder}
+            done = subprocess.run(command, cwd=at, env=home, capture_output=True, timeout=TIMEOUT)
         except subprocess.TimeoutExpired:
             return _Output([], 0, "it did not end")
         text = (at / "out").read_text("latin-1") if (at / "out").exists() else ""
     said = [s for s in done.stderr.decode("latin-1").splitlines() if not s.startswith(NOISE)]
-    return _collect(text, (said[0] if said else "it failed") if done.returncode else "")
+    if done.returncode and not said:
+        raise RuntimeError(f"rs274 ended with {done.returncode} and no message")
+    return _collect(text, said[0] if done.returncode else "")
 
 
 def _collect(text: str, message: str) -> _Output:
@@ -169,7 +176,7 @@ def _marked(program: bytes, index: int) -> bytes:
         lines.pop()
     first = next((i for i, line in enumerate(lines) if line.strip()), 0)
     opening = lines[: first + 1] if lines and lines[first].strip() == b"%" else []
-    marked = [b"(gcx %d 0)" % index]
+    marked = [b"(gcx %d %d)" % (index, i) for i in range(len(opening) + 1)]
     for number, line in enumerate(lines[len(opening) :], start=len(opening) + 1):
         marked += [line, b"(gcx %d %d)" % (index, number)]
     return b"\n".join([*opening, *marked]) + b"\n"
@@ -193,7 +200,7 @@ def _is_plain(program: bytes) -> bool:
     lines = [re.sub(r"[ \t\r]|;.*", "", line) for line in text.split("\n")]
     while lines and not lines[-1]:
         lines.pop()
-    if not lines or not re.fullmatch(r"(N\d+)?M0*2", lines[-1]) or "GCX" in text:
+    if not lines or not END.fullmatch(program.rstrip().rpartition(b"\n")[2]) or "GCX" in text:
         return False
     return all(_is_plain_block(line) for line in lines[:-1])
 

@@ -237,9 +237,13 @@ class _Machine:
         old_mode: int | None,
         old_units: int | None,
     ) -> None:
-        """Apply the F word; a feed survives a change of units in mm, not one of feed mode."""
+        """Apply the F word; a feed survives a change of units in mm, not one of feed mode.
+
+        LinuxCNC sets the feed before the units: `G20 F10` is still 10 mm/min after G21.
+        """
         changed, inverse = self.modal["feed"] != old_mode, self.modal["feed"] == 930
-        name, inch = self.dialect.name, self.modal["units"] == 200
+        name = self.dialect.name
+        inch = (old_units if name == "linuxcnc" else self.modal["units"]) == 200
         if changed or inverse or ("feed" in codes and name == "linuxcnc"):
             self.feed = (0.0, 0.0)
         if name == "fanuc" and self.modal["units"] != old_units:

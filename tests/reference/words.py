@@ -79,7 +79,7 @@ def _fanuc(lines: list[str]) -> Iterator[Block]:
         text = _strip_comments(text, number, semicolon=False)
         if re.search("[a-z;]", text):
             raise Refused(number, "lower case and semicolons are not in the alphabet")
-        if re.fullmatch(rf"{BREAK}*[O:]\d+{BREAK}*", text):
+        if re.fullmatch(rf"[O:]\d+{BREAK}*", text):
             if named:
                 raise Refused(number, "a second program")
             named = True
@@ -143,12 +143,11 @@ def _block(
     number: int, text: str, numeral: re.Pattern[str], *, delete_digit: bool = False
 ) -> Block:
     """Read an optional slash, an optional sequence number, then words."""
-    text = text.lstrip(BREAK)
     deletable = text.startswith("/")
     if deletable:
         text = re.sub(r"^/[1-9]?" if delete_digit else "^/", "", text)
-    text = re.sub(rf"^{BREAK}*n\d+(\.\d+)?(?=[a-z{BREAK}]|$)", "", text)
-    if re.fullmatch(rf"{BREAK}*o\d+{BREAK}*", text):
+    text = re.sub(rf"^n\d+(\.\d+)?(?=[a-z{BREAK}]|$)", "", text)
+    if re.fullmatch(rf"o\d+{BREAK}*", text):
         text = ""
     return Block(number, tuple(_words(text, number, numeral)), deletable)
 

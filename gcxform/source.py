@@ -1,0 +1,73 @@
+"""A program as bytes, cut into windows of whole lines, so that memory does not grow with the file."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from pathlib import Path
+from typing import BinaryIO
+
+from gcxform.diagnostics import FileError
+
+WINDOW = 1 << 19  # bytes; what is worked on at once should stay in the processor's cache
+CHUNK = 1 << 22
+
+
+class Source:
+    """A program and its name. The stream can be read from the start more than once."""
+
+    def __init__(self, stream: BinaryIO, name: str = "-") -> None:
+        self.stream = stream
+        self.name = name
+
+    @classmethod
+    def of_bytes(cls, text: bytes, name: str = "-") -> Source:
+        """Return a program held in memory."""
+        return cls(io.BytesIO(text), name)
+
+    @classmethod
+    def open(cls, path: Path) -> Source:
+        """Return a program in a file. Raises FileError."""
+        try:
+            if path.is_dir():
+                raise FileError.one("GX901", f"{path} is a directory, not a program")
+            return cls(path.open("rb"), str(path))
+        except OSError as error:
+            raise FileError.one("GX901", f"cannot read {path}: {error.strerror}") from None
+
+    @property
+    def size(self) -> int:
+        """How many bytes there are."""
+        return self.stream.seek(0, io.SEEK_END)
+
+    def letters(self) -> set[str]:
+        """Return the letters, in upper case, that stand anywhere in the program."""
+        self.stream.seek(0)
+        found: set[int] = set()
+        while chunk := self.stream.read(CHUNK):
+            if len(found) < 52:
+                candidates = [c for c in b"ABCDEFGHIJKLMNOPQRSTUVWXYZ" if c not in found]
+                found |= {c for c in candidates if c in chunk or c + 32 in chunk}
+        return {chr(c) for c in found}
+
+    def windows(self, size: int = WINDOW) -> Iterator[bytes]:
+        """Yield the text, a number of whole lines at a time."""
+        self.stream.seek(0)
+        rest = b""
+        while chunk := self.stream.read(size):
+            text = rest + chunk
+            cut = _last_line_end(text)
+            if cut:
+                yield text[:cut]
+            rest = text[cut:]
+        if rest:
+            yield rest
+
+
+def _last_line_end(text: bytes) -> int:
+    """Return how much of a text is whole lines; a CR at the very end may be half of a line end."""
+    line_feed = text.rfind(b"\n") + 1
+    carriage_return = text.rfind(b"\r", 0, len(text) - 1) + 1
+    if carriage_return > line_feed and text[carriage_return : carriage_return + 1] != b"\n":
+        return carriage_return
+    return line_feed

@@ -1,0 +1,80 @@
+"""Passes that change text and no meaning, run on what is written, and the check that they do not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from gcxform.contract import TextPass
+from gcxform.diagnostics import InputError, Location, VerificationError
+from gcxform.dialect import Dialect
+from gcxform.syntax.scan import scan
+from gcxform.syntax.shapes import ShapeTable, instantiate
+from gcxform.syntax.tree import BLANKS, Block, Statement, Word
+
+
+class TextRun:
+    """Edits the texts of one run in order."""
+
+    def __init__(self, passes: Sequence[TextPass], dialect: type[Dialect], file: str) -> None:
+        self.passes = passes
+        self.dialect = dialect
+        self.file = file
+        self.counts = [0] * len(passes)
+
+    def edit(self, text: bytes, lines: list[int]) -> tuple[bytes, list[int]]:
+        """Return the edited text of whole lines, and the source lines of those that stay."""
+        for index, step in enumerate(self.passes):
+            text, lines = self._one(index, step, text, lines)
+        return text, lines
+
+    def _one(
+        self, index: int, step: TextPass, text: bytes, lines: list[int]
+    ) -> tuple[bytes, list[int]]:
+        parts, kept = [], []
+        table = ShapeTable(self.dialect.load_grammar())
+        window = scan(text, 0, table)
+        for line in range(len(window)):
+            old = window.line(line).decode("latin-1")
+            shape = table.shapes[int(window.shape[line])]
+            first, start = int(window.first_number[line]), int(window.start[line])
+            spans = [
+                (int(window.number_start[n]) - start, int(window.number_end[n]) - start)
+                for n in range(first, first + len(shape.slots))
+            ]
+            block = instantiate(shape, old, spans)
+            new = self._edited(step, block, self.counts[index], lines[line])
+            if new is None:
+                continue
+            end = text[int(window.end[line]) : int(window.next[line])]
+            parts.append(new.encode("latin-1") + end)
+            kept.append(lines[line])
+            self.counts[index] += 1
+        return b"".join(parts), kept
+
+    def _edited(self, step: TextPass, block: Block, number: int, line: int) -> str | None:
+        """Return a block's new text after checking that its words are the same."""
+        where = Location(self.file, line + 1, 1, block.text, max(1, len(block.text)))
+        why = step.refuse(block)
+        if why:
+            raise InputError.one("GX212", f"{step.name}: {why}", where)
+        if block.error is not None:
+            return block.text
+        new = step.edit(block, number)
+        if new == block.text:
+            return new
+        after = [] if new is None else _meaning(self.dialect.load_grammar().parse(new))
+        if after != _meaning(block):
+            raise VerificationError.one("GX603", f"{step.name} changed the words of a block", where)
+        return new
+
+    def finish(self) -> None:
+        """End the run."""
+
+
+def _meaning(block: Block) -> list[str]:
+    """Return the words and statements of a block, but N words, without blanks."""
+    return [
+        block.text[item.start : item.end].translate(BLANKS).upper()
+        for item in block.items
+        if (isinstance(item, Word) and item.address != "N") or isinstance(item, Statement)
+    ]

@@ -1,0 +1,283 @@
+"""The proof: what was written is read again, undone through the models, and compared with the input.
+
+The reader of the output is a new one that knows nothing of how the text was made. Each of its moves
+is traced to a line of the input by the source map; the models of what the machine does with the
+passes' output are applied in reverse order; what comes out must follow the input's path within the
+budget, with the same kinds of moves, feeds and events.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.contract import Pass, PassContext
+from gcxform.diagnostics import Diagnostic, GcxformError, Location, VerificationError
+from gcxform.dialect import Dialect
+from gcxform.modal.interpreter import Interpreted, Interpreter, Reading
+from gcxform.modal.tables import MeaningTable
+from gcxform.syntax.scan import Window, scan
+from gcxform.syntax.shapes import ShapeTable
+from gcxform.toolpath.deviation import deviation
+from gcxform.toolpath.path import Event, FeedMode, Kind, Toolpath
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+
+SHAPES_AT_MOST = 20_000  # a table of shapes that grows beyond is begun anew
+
+
+class WindowReader:
+    """Turns texts of whole lines into windows, with the shapes and meanings they need."""
+
+    def __init__(self, dialect: type[Dialect]) -> None:
+        self.dialect = dialect
+        self.lines = 0
+        self._begin()
+
+    def _begin(self) -> None:
+        self.shapes = ShapeTable(self.dialect.load_grammar())
+        self.table = MeaningTable(self.shapes, self.dialect)
+
+    def read(self, text: bytes) -> Window:
+        """Return the next window."""
+        if len(self.shapes) > SHAPES_AT_MOST:
+            self._begin()
+        window = scan(text, self.lines, self.shapes)
+        self.lines += len(window)
+        return window
+
+
+@dataclass(slots=True)
+class Findings:
+    """What the verification has found so far: counts, and the worst places.
+
+    deviation   mm; `source_line` and `output_line` count from 1
+    angle       degrees, of rotary axes
+    """
+
+    moves: int = 0
+    events: int = 0
+    deviation: float = 0.0
+    angle: float = 0.0
+    source_line: int = 0
+    output_line: int = 0
+    rapids: int = 0
+    unknown_starts: int = 0
+    lines_after_end: int = 0
+    problems: list[str] = field(default_factory=list)
+
+
+class Verifier:
+    """Follows one run, window by window."""
+
+    def __init__(
+        self,
+        passes: Sequence[Pass],
+        context: PassContext,
+        reading: Reading,
+        axes: str,
+        budget: float,
+        feed_step: float,
+        angle_budget: float,
+        file: str = "-",
+    ) -> None:
+        self.passes = passes
+        self.context = context
+        self.reader = WindowReader(context.target)
+        self.interpreter = Interpreter(context.target, reading, axes, "output")
+        self.budget = budget
+        self.feed_step = feed_step
+        self.angle_budget = angle_budget
+        self.file = file
+        self.findings = Findings()
+
+    def check(self, read: Interpreted, window: Window, text: bytes, source: Ints) -> None:
+        """Check the text written for a window; `source` is the input line of each output line.
+
+        Raises VerificationError.
+        """
+        first = self.reader.lines
+        again = self.reader.read(text)
+        try:
+            back = self.interpreter.interpret(again, self.reader.table)
+        except GcxformError as error:
+            raise VerificationError(error.diagnostics) from None
+        path = back.path
+        for step in reversed(self.passes):
+            path = step.undo(path, self.context)
+        trace = _Trace(read.path, window, back.path, path, source, first)
+        self._count(read, window, trace)
+        self._compare(trace)
+        self._events(read.path.events, back.path.events, trace)
+
+    def _count(self, read: Interpreted, window: Window, trace: _Trace) -> None:
+        found = self.findings
+        found.moves += len(read.path)
+        found.rapids += int((read.path.kind == Kind.RAPID).sum())
+        found.lines_after_end += len(window) - read.live
+
+    def _compare(self, trace: _Trace) -> None:
+        """Compare moves; every row of the output must belong to a row of the input."""
+        before, after = trace.before, trace.after
+        if len(trace.owner) and int(trace.owner.min()) < 0:
+            row = int(np.argmin(trace.owner))
+            self._fail("a move that the source does not have", trace, row)
+        self._missing(trace)
+        if not len(trace.owner):
+            return
+        off = deviation(before, after, trace.owner)
+        self.findings.unknown_starts += int(off.unknown_start.sum())
+        self._start(trace)
+        worst = int(np.argmax(off.distance))
+        if not off.distance[worst] <= self.findings.deviation:
+            self._note_worst(float(off.distance[worst]), trace, worst)
+        self.findings.angle = max(self.findings.angle, float(off.angle.max()))
+        if not off.distance[worst] <= self.budget:
+            size = f"{off.distance[worst]:.5f} mm" if np.isfinite(off.distance[worst]) else "far"
+            self._fail(f"the path is {size} off, the budget is {self.budget:.5f} mm", trace, worst)
+        turned = int(np.argmax(off.angle))
+        if not off.angle[turned] <= self.angle_budget:
+            self._fail(f"a rotary axis is {off.angle[turned]:.5f} degrees off", trace, turned)
+        self._kinds(trace)
+        self._feeds(trace)
+
+    def _note_worst(self, distance: float, trace: _Trace, row: int) -> None:
+        self.findings.deviation = distance
+        self.findings.source_line = int(trace.before.source[trace.owner[row]]) + 1
+        self.findings.output_line = int(trace.after.source[row]) + 1
+
+    def _start(self, trace: _Trace) -> None:
+        """Compare where feed moves begin after a rapid: a rapid's own end may be left out."""
+        before, after = trace.before, trace.after
+        begins = np.append(True, trace.owner[1:] != trace.owner[:-1])
+        rows = np.flatnonzero(begins & (before.kind[trace.owner] != Kind.RAPID))[1:]
+        if not len(rows):
+            return
+        gap = (after.start[rows] - before.start[trace.owner[rows]])[:, :3]
+        size = np.sqrt((np.nan_to_num(gap) ** 2).sum(axis=1))
+        worst = int(np.argmax(size))
+        if size[worst] > self.findings.deviation:
+            self._note_worst(float(size[worst]), trace, int(rows[worst]))
+        if size[worst] > self.budget:
+            message = f"the move starts {size[worst]:.5f} mm off, the budget is {self.budget:.5f} mm"
+            self._fail(message, trace, int(rows[worst]))
+
+    def _missing(self, trace: _Trace) -> None:
+        """Rows without any move in the output must have been too short to write."""
+        has = np.zeros(len(trace.before), np.bool_)
+        has[trace.owner] = True
+        for row in np.flatnonzero(~has).tolist():
+            way = np.nan_to_num(trace.before.end[row] - trace.before.start[row])
+            length = float(np.sqrt((way**2).sum()))
+            if trace.before.is_arc[row] or not length <= self.budget:
+                line = int(trace.before.source[row])
+                self._raise("a move of the source is missing in the output", line, 0)
+
+    def _kinds(self, trace: _Trace) -> None:
+        rapid_before = trace.before.kind[trace.owner] == Kind.RAPID
+        wrong = rapid_before != (trace.after.kind == Kind.RAPID)
+        if wrong.any():
+            self._fail("a rapid became a feed move, or the reverse", trace, int(np.argmax(wrong)))
+
+    def _feeds(self, trace: _Trace) -> None:
+        """Feeds must be those of the source; in inverse time, the times of pieces must add up."""
+        before, after, owner = trace.before, trace.after, trace.owner
+        moving = before.kind[owner] != Kind.RAPID
+        mode = before.feed_mode[owner] != after.feed_mode
+        if (mode & moving).any():
+            self._fail("the feed mode has changed", trace, int(np.argmax(mode & moving)))
+        inverse = after.feed_mode == FeedMode.INVERSE_TIME
+        plain = moving & ~inverse
+        off = np.abs(after.feed - before.feed[owner]) > self.feed_step + 1e-9 * np.abs(after.feed)
+        if (off & plain).any():
+            self._fail("the feed has changed", trace, int(np.argmax(off & plain)))
+        if (moving & inverse).any():
+            self._times(trace, moving & inverse)
+
+    def _times(self, trace: _Trace, rows: NDArray[np.bool_]) -> None:
+        """Add up the times of the written moves, before the models cut them further."""
+        written, owner = trace.written, trace.written_owner
+        mine = written.feed_mode == FeedMode.INVERSE_TIME
+        mine &= written.kind != Kind.RAPID
+        time = np.bincount(owner[mine], 1 / written.feed[mine], len(trace.before))
+        wanted = 1 / trace.before.feed
+        slack = 1e-3 * wanted
+        used = np.unique(owner[mine])
+        wrong = used[np.abs(time[used] - wanted[used]) > slack[used]]
+        if len(wrong):
+            line = int(trace.before.source[wrong[0]])
+            self._raise("the time of a move in G93 has changed", line, 0)
+
+    def _events(self, old: tuple[Event, ...], new: tuple[Event, ...], trace: _Trace) -> None:
+        """Events must be the same, in the same order, at the same place between the moves."""
+        self.findings.events += len(old)
+        for before, after in zip(old, new, strict=False):
+            line = trace.line_of(after.line)
+            same = (before.what, before.values, before.line) == (after.what, after.values, line)
+            if not same or not trace.stands_before(after.row, before.row):
+                message = f"{before.what} of the source became {after.what}, or moved"
+                self._raise(message, before.line, after.line)
+        if len(old) != len(new):
+            rest = old[len(new) :] or new[len(old) :]
+            line = rest[0].line if len(old) > len(new) else trace.line_of(rest[0].line)
+            self._raise(f"{rest[0].what} is missing or too many", line, 0)
+
+    def _fail(self, message: str, trace: _Trace, row: int) -> None:
+        output = int(trace.after.source[row])
+        self._raise(message, trace.line_of(output), output)
+
+    def _raise(self, message: str, line: int, output_line: int) -> None:
+        """Raise VerificationError about a line of the source and a line of the output, from 0."""
+        where = Location(self.file, line + 1)
+        if output_line:
+            message += f" (output line {output_line + 1})"
+        hint = "nothing was written; if the pipeline is right this is a bug of gcxform or a plugin"
+        raise VerificationError((Diagnostic("GX601", message, where, hint),))
+
+
+class _Trace:
+    """Which move of the output belongs to which move of the input.
+
+    `written` are the moves as read from the output, `after` what the machine does with them.
+    """
+
+    def __init__(
+        self,
+        before: Toolpath,
+        window: Window,
+        written: Toolpath,
+        after: Toolpath,
+        source: Ints,
+        first: int,
+    ) -> None:
+        self.before = before
+        self.written = written
+        self.after = after
+        self.source = source
+        self.first = first
+        row_of_line = np.full(len(window), -1, np.int64)
+        row_of_line[before.source - window.first_line] = np.arange(len(before))
+        self._row_of_line = row_of_line
+        self._window_first = window.first_line
+        self.owner = self._owners(after)
+        self.written_owner = self.owner if after is written else self._owners(written)
+
+    def _owners(self, path: Toolpath) -> Ints:
+        lines = self.source[path.source - self.first] - self._window_first
+        return np.asarray(self._row_of_line[lines])
+
+    def line_of(self, output_line: int) -> int:
+        """Return the input line of an output line, both from 0."""
+        index = output_line - self.first
+        return int(self.source[index]) if 0 <= index < len(self.source) else 0
+
+    def stands_before(self, written_row: int, row: int) -> bool:
+        """Whether what stands before a written move stands before that row of the input."""
+        owner = self.written_owner
+        earlier = written_row == 0 or int(owner[written_row - 1]) < row
+        later = written_row >= len(owner) or int(owner[written_row]) >= row
+        return earlier and later

@@ -1,0 +1,3 @@
+"""The version of gcxform."""
+
+VERSION = "0.1.0"

@@ -1,0 +1,1 @@
+"""First-party passes, one file each."""

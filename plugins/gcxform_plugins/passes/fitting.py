@@ -1,0 +1,132 @@
+"""How `volumetric` keeps arcs: an arc through compensated points, halved until it is near enough."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+import gcxform as gx
+
+if TYPE_CHECKING:
+    from gcxform_plugins.passes.volumetric import Compensation
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+FEWEST, MOST = 8, 256  # points at which a piece is looked at
+AT_ONCE = 200_000  # points looked at together
+HALVINGS = 24
+
+
+class ArcFitter:
+    """Finds the pieces into which the arcs of a path are cut, and their centres."""
+
+    def __init__(self, work: Compensation) -> None:
+        self.work = work
+        self.path = work.path
+        self.step = work.step
+        self.limit = self.step.limit
+        self.reach = self.step.model.model.lipschitz
+
+    def cuts(self) -> tuple[Ints, Floats]:
+        """Return row and part of the cuts of the arcs."""
+        row = np.flatnonzero(self.path.is_arc)
+        low, high = np.zeros(len(row)), np.ones(len(row))
+        cut_rows, cut_parts = [], []
+        for _ in range(HALVINGS):
+            if not len(row):
+                break
+            far = self._residual(row, low, high) > self.limit
+            row, low, high = row[far], low[far], high[far]
+            middle = (low + high) / 2
+            cut_rows.append(row)
+            cut_parts.append(middle)
+            row = np.concatenate([row, row])
+            low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+        if not cut_rows:
+            return np.empty(0, np.int64), np.empty(0)
+        return np.concatenate(cut_rows), np.concatenate(cut_parts)
+
+    def centres(self, row: Ints, low: Floats, high: Floats) -> Floats:
+        """Return the centres (n, 3), in the program's coordinates, of pieces of arcs."""
+        centre = np.full((len(row), 3), np.nan)
+        if not len(row):
+            return centre
+        share = np.where((high - low) * self.path.sweep[row] > 1.9 * np.pi, 1 / 3, 1 / 2)
+        first = self._command(row, low)
+        second = self._command(row, low + (high - low) * share)
+        third = self._command(row, np.where(share < 0.5, low + (high - low) * 2 / 3, high))
+        for plane in gx.Plane:
+            here = np.flatnonzero(self.path.plane[row] == plane)
+            a, b, normal = plane.axes
+            centre[np.ix_(here, [a, b])] = gx.circle_through(
+                *(point[here][:, [a, b]] for point in (first, second, third))
+            )
+            centre[here, normal] = first[here, normal]
+        fallback = self.path.centre[row] - self.work.correction(row, low)
+        return np.where(np.isfinite(centre), centre, fallback)
+
+    def _command(self, row: Ints, part: Floats) -> Floats:
+        """Return commands (n, 3), in the program's coordinates, for points of arcs."""
+        offset = self.work.offset_of(row)
+        target = gx.points_on_arcs(self.path, row, part) + offset
+        return self.step.command(target) - offset
+
+    def _residual(self, row: Ints, low: Floats, high: Floats) -> Floats:
+        """Return how far (mm) the machine is from the arcs when it is sent along fitted ones.
+
+        Between two points that are looked at, a bend of the error adds at most the Lipschitz
+        constant times half their distance.
+        """
+        size, _, _ = gx.radius_and_angle(self.path, row)
+        length = size * self.path.sweep[row] * (high - low)
+        count = np.clip(self.reach * length / (0.2 * self.limit), FEWEST, MOST).astype(np.int64)
+        count = 2 ** np.ceil(np.log2(count)).astype(np.int64)
+        centre = self.centres(row, low, high)
+        worst = np.zeros(len(row))
+        for number in np.unique(count).tolist():
+            members = np.flatnonzero(count == number)
+            for piece in np.array_split(members, len(members) * number // AT_ONCE + 1):
+                worst[piece] = self._largest(
+                    row[piece], low[piece], high[piece], centre[piece], number
+                )
+        return worst + self.reach * length / count / 2
+
+    def _largest(
+        self, row: Ints, low: Floats, high: Floats, centre: Floats, number: int
+    ) -> Floats:
+        """Return the largest distance of the machine from the arcs, at a number of points each."""
+        pieces = self._fitted(row, low, high, centre)
+        every = np.repeat(np.arange(len(row)), number)
+        part = np.tile((np.arange(number) + 0.5) / number, len(row))
+        command = gx.points_on_arcs(pieces, 2 * every + 1, part)
+        actual = command + self.step.error(command + self.work.offset_of(row[every]))
+        along = low[every] + part * (high - low)[every]
+        wanted = gx.points_on_arcs(self.path, row[every], along)
+        off = self._beside(row[every], along, wanted, actual)
+        return np.asarray(off.reshape(len(row), number).max(axis=1))
+
+    def _beside(self, row: Ints, part: Floats, wanted: Floats, actual: Floats) -> Floats:
+        """Return the distance of points from arcs, their travel along the arc left out."""
+        off = np.zeros(len(row))
+        for plane in gx.Plane:
+            here = np.flatnonzero(self.path.plane[row] == plane)
+            a, b, normal = plane.axes
+            centre = self.path.centre[row[here]][:, [a, b]]
+            radial = np.hypot(*(actual[here][:, [a, b]] - centre).T) - np.hypot(
+                *(wanted[here][:, [a, b]] - centre).T
+            )
+            off[here] = np.hypot(radial, actual[here, normal] - wanted[here, normal])
+        return off
+
+    def _fitted(self, row: Ints, low: Floats, high: Floats, centre: Floats) -> gx.Toolpath:
+        """Return the fitted pieces as arcs: each row 2k + 1, after a row that leads to its start."""
+        path = self.path.take(np.repeat(row, 2))
+        end = np.array(path.end)
+        end[0::2, :3], end[1::2, :3] = self._command(row, low), self._command(row, high)
+        sweep = np.array(path.sweep)
+        sweep[1::2] *= high - low
+        return path.replace(end=end, sweep=sweep, centre=np.repeat(centre, 2, axis=0))

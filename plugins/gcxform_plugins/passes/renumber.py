@@ -1,0 +1,46 @@
+"""`renumber`: sequence numbers are given anew."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import gcxform as gx
+
+JUMPS = {("M", 97.0), ("M", 98.0), ("M", 99.0), ("M", 198.0), ("G", 65.0), ("G", 66.0)}
+
+
+@dataclass(frozen=True)
+class Renumber(gx.TextPass):
+    """Give every block that has words a new sequence number.
+
+    A program that may jump to a sequence number is refused.
+    """
+
+    name = "renumber"
+    start: Annotated[int, gx.Option("first number", at_least=1, at_most=99_999)] = 10
+    step: Annotated[int, gx.Option("distance of numbers", at_least=1, at_most=1_000)] = 10
+    last: Annotated[int, gx.Option("largest number; then it begins again", at_least=1)] = 99_999
+
+    def refuse(self, block: gx.Block) -> str:
+        """Return why the program's numbers cannot be changed."""
+        for item in block.items:
+            if not isinstance(item, gx.Word | gx.Comment) and hasattr(item, "tree"):
+                return "blocks may be jumped to by their numbers"
+            if isinstance(item, gx.Word) and isinstance(item.value, gx.Number):
+                if (item.address, item.value.value) in JUMPS:
+                    return f"{item.address}{item.value.value:g} may refer to sequence numbers"
+        return ""
+
+    def edit(self, block: gx.Block, number: int) -> str | None:
+        """Return the block with its new number."""
+        words = [item for item in block.items if isinstance(item, gx.Word)]
+        if not words or any(word.address == "O" for word in words):
+            return block.text
+        first = words[0]
+        count = (self.last - self.start) // self.step + 1
+        new = f"N{self.start + self.step * (number % count)}"
+        if first.address == "N":
+            return block.text[: first.start] + new + block.text[first.end :]
+        gap = " " if len(words) > 1 and words[1].start > words[0].end else ""
+        return block.text[: first.start] + new + gap + block.text[first.start :]

@@ -1,0 +1,97 @@
+"""Where `volumetric` cuts lines: at the nodes that their commands cross, as far as needed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+import gcxform as gx
+
+if TYPE_CHECKING:
+    from gcxform_plugins.passes.volumetric import Compensation
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+REFINEMENTS = 4  # each shrinks the error of a crossing by the Lipschitz constant of the error
+NEGLIGIBLE = 1e-5  # mm; a cut that mends less is not worth a block: a hundredth of the rounding
+
+
+def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
+    """Return row and part of each cut; `commands` (n, 3) are those for the ends of the rows."""
+    step, path = work.step, work.path
+    lines = np.flatnonzero(path.kind == gx.Kind.LINE)
+    first = np.vstack([work.entry_command[None, :], commands[:-1]])
+    row, part, axis, plane = gx.line_crossings(first[lines], commands[lines], step.nodes())
+    if not len(row):
+        return row, part
+    row = lines[row]
+    start, way = work.start[row], work.end[row] - work.start[row]
+    index = np.arange(len(row))
+    for _ in range(REFINEMENTS):
+        command = step.command(start + part[:, None] * way)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            shift = (plane - command[index, axis]) / way[index, axis]
+        part = part + np.where(np.isfinite(shift) & (np.abs(shift) < 0.5), shift, 0.0)
+    inside = (part > 0) & (part < 1)
+    row, part = row[inside], part[inside]
+    if not len(row):
+        return row, part
+    exact = step.tolerance is None or step.split == "nodes"
+    return _needed(work, row, part, first, commands, NEGLIGIBLE if exact else step.limit)
+
+
+def _needed(
+    work: Compensation,
+    row: Ints,
+    part: Floats,
+    first: Floats,
+    last: Floats,
+    residual: float,
+) -> tuple[Ints, Floats]:
+    """Return the cuts that a residual (mm) needs.
+
+    A straight command from one exact point to another is off at the nodes between them, and
+    nowhere more than there, by its distance from the exact command.
+    """
+    step = work.step
+    limit = residual * (1 - 1e-6) / (1 + step.model.model.lipschitz)
+    start, way = work.start[row], work.end[row] - work.start[row]
+    exact = step.command(start + part[:, None] * way)
+    straight = first[row] + part[:, None] * (last[row] - first[row])
+    off = np.sqrt(((exact - straight) ** 2).sum(axis=1))
+    begins = np.flatnonzero(np.append(True, row[1:] != row[:-1]))
+    ends = np.append(begins[1:], len(row))
+    worst = np.maximum.reduceat(off, begins)
+    kept: list[int] = []
+    for which in np.flatnonzero(worst > limit).tolist():
+        members = slice(int(begins[which]), int(ends[which]))
+        owner = int(row[members.start])
+        points = np.vstack([first[owner], exact[members], last[owner]])
+        parts = np.concatenate([[0.0], part[members], [1.0]])
+        kept += [members.start + k - 1 for k in _farthest_reaching(points, parts, limit)]
+    chosen = np.array(kept, np.int64)
+    return row[chosen], part[chosen]
+
+
+def _farthest_reaching(points: Floats, parts: Floats, limit: float) -> list[int]:
+    """Return the inner points to stop at, when each piece reaches as far as the limit allows."""
+    stops, at, last = [], 0, len(points) - 1
+    while at < last:
+        reach = next(to for to in range(last, at, -1) if _holds(points, parts, at, to, limit))
+        if reach < last:
+            stops.append(reach)
+        at = reach
+    return stops
+
+
+def _holds(points: Floats, parts: Floats, at: int, to: int, limit: float) -> bool:
+    """Whether the straight way between two points keeps all points between within the limit."""
+    if to == at + 1:
+        return True
+    between = slice(at + 1, to)
+    share = (parts[between] - parts[at]) / (parts[to] - parts[at])
+    straight = points[at] + share[:, None] * (points[to] - points[at])
+    return bool((((points[between] - straight) ** 2).sum(axis=1) <= limit**2).all())

@@ -1,0 +1,48 @@
+"""`strip`: comments and blanks are left out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import gcxform as gx
+
+ACTIVE = ("MSG", "DEBUG", "PRINT", "LOG", "PROBEOPEN", "PROBECLOSE", "LOGOPEN", "LOGCLOSE", "LOGAPPEND")
+
+
+@dataclass(frozen=True)
+class Strip(gx.TextPass):
+    """Leave out comments, blanks and empty blocks. Comments that a control executes stay."""
+
+    name = "strip"
+    comments: Annotated[bool, gx.Option("leave out comments")] = True
+    blanks: Annotated[bool, gx.Option("leave out blanks between and in words")] = True
+    empty: Annotated[bool, gx.Option("leave out blocks that hold nothing")] = True
+
+    def edit(self, block: gx.Block, number: int) -> str | None:
+        """Return the block without what is to be left out."""
+        parts, at = [], 0
+        for item in block.items:
+            gap, text = block.text[at : item.start], block.text[item.start : item.end]
+            at = item.end
+            comment = isinstance(item, gx.Comment)
+            if comment and self.comments and not _is_active(text):
+                continue
+            if self.blanks:
+                gap = "" if not gap.strip(" \t") else gap
+                text = text if comment else text.translate({32: None, 9: None})
+            parts += [gap, text]
+        rest = block.text[at:]
+        text = "".join(parts) + (rest if not self.blanks or rest.strip(" \t") else "")
+        if self.comments and not self.blanks and len(text) < len(block.text):
+            text = text.rstrip(" \t")
+        return None if self.empty and not text.strip(" \t") else text
+
+
+def _is_active(comment: str) -> bool:
+    """Whether a control does something when it reads this comment."""
+    inner = comment.lstrip("(; \t").upper()
+    return inner.startswith(tuple(f"{word}," for word in ACTIVE)) or inner in (
+        "PROBECLOSE)",
+        "LOGCLOSE)",
+    )

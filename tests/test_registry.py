@@ -1,0 +1,229 @@
+"""The registry, with distributions made up on disk."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import gcxform_plugins
+import pytest
+
+from gcxform.catalogue import CATALOGUE
+from gcxform.diagnostics import Location, Severity, UsageError
+from gcxform.registry import KINDS, Registry, default_registry
+
+PASSES = """
+from __future__ import annotations
+from dataclasses import dataclass
+import gcxform as gx
+
+@dataclass(frozen=True)
+class Shift(gx.Pass):
+    "Moves everything."
+    name = "{name}"
+    by: gx.Vector = (0.0, 0.0, 0.0)
+
+@gx.hookimpl
+def gcxform_passes():
+    return [Shift]
+"""
+HEAD = "import gcxform as gx\n@gx.hookimpl\n"
+
+Install = Callable[..., None]
+
+
+@pytest.fixture
+def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Install:
+    """Return a function which installs a distribution with one module."""
+    monkeypatch.syspath_prepend(str(tmp_path))
+
+    def add(name: str, source: str, version: str = "1.0", module: str = "") -> None:
+        module = module or name.replace("-", "_")
+        folder = tmp_path / f"{name}-{version}.dist-info"
+        folder.mkdir()
+        metadata = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
+        (folder / "METADATA").write_text(metadata)
+        (folder / "entry_points.txt").write_text(f"[gcxform.plugins]\n{name} = {module}\n")
+        (tmp_path / f"{module}.py").write_text(source)
+        monkeypatch.delitem(sys.modules, module, raising=False)
+
+    return add
+
+
+def warnings(registry: Registry) -> list[str]:
+    """Return the messages about the plugins that the tests have installed."""
+    found = [d for d in registry.diagnostics if "'builtin'" not in d.message]
+    assert all(d.code == "GX802" and d.code in CATALOGUE for d in found)
+    assert all(d.severity is Severity.WARNING for d in found)
+    return [d.message for d in found]
+
+
+def test_the_builtin_dialects_come_through_the_entry_point() -> None:
+    registry = Registry.load()
+    assert {"fanuc", "grbl", "linuxcnc"} <= set(registry.dialects)
+    assert set(registry.formats) == {"lddm"}
+    assert registry.origin("dialect", "fanuc").startswith("gcxform ")
+    assert registry.facts["ABSOLUTE"].name == "ABSOLUTE"
+    assert registry.origin("fact", "ABSOLUTE").startswith("gcxform ")
+
+
+def test_the_builtin_plugin_has_no_fault() -> None:
+    registry = Registry.load()
+    assert registry.diagnostics == []
+    names = {"absolute", "metric", "plane", "segment", "volumetric", "renumber", "strip"}
+    assert set(registry.passes) == names
+
+
+def test_every_builtin_dialect_and_format_is_listed() -> None:
+    """The lists in the plugin and the files of its folders agree."""
+    folder = Path(gcxform_plugins.__file__).parent
+    listed = gcxform_plugins.gcxform_dialects() + gcxform_plugins.gcxform_error_formats()
+    modules = {cls.__module__.rpartition(".")[2] for cls in listed}
+    files = [*folder.glob("dialects/*.py"), *folder.glob("formats/*.py")]
+    assert modules == {file.stem for file in files} - {"__init__"}
+
+
+def test_a_plugin_is_found(install: Install) -> None:
+    install("acme-gx", PASSES.format(name="shift"), "2.5")
+    registry = Registry.load()
+    assert warnings(registry) == []
+    assert registry.pass_("shift").__doc__ == "Moves everything."
+    assert registry.origin("pass", "shift") == "acme-gx 2.5"
+
+
+def test_the_default_registry_is_loaded_once() -> None:
+    assert default_registry() is default_registry()
+
+
+def test_a_clash_names_both_distributions(install: Install) -> None:
+    install("acme", PASSES.format(name="shift"), "1.0")
+    install("bolt", PASSES.format(name="shift"), "2.0")
+    with pytest.raises(UsageError) as caught:
+        Registry.load()
+    (found,) = caught.value.diagnostics
+    assert found.code == "GX801"
+    assert found.code in CATALOGUE
+    assert "acme 1.0" in found.message
+    assert "bolt 2.0" in found.message
+    assert "the pass 'shift'" in found.message
+
+
+def test_a_clash_with_the_core(install: Install) -> None:
+    hook = "def gcxform_facts():\n    return [gx.Fact('METRIC', 'mine', lambda path: True)]\n"
+    install("acme", HEAD + hook)
+    with pytest.raises(UsageError, match=r"the fact 'METRIC': gcxform .* and acme 1.0"):
+        Registry.load()
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("import no_such_module", "cannot be loaded: ModuleNotFoundError: No module named"),
+        ("def (", "cannot be loaded: SyntaxError"),
+        ("raise SystemExit(3)", "cannot be loaded: SystemExit: 3"),
+        (HEAD + "def gcxform_passes(config): return []", "cannot be loaded: PluginValidation"),
+        (HEAD + "def gcxform_passes(): return 1/0", "fails in gcxform_passes: ZeroDivisionError"),
+        (HEAD + "def gcxform_passes(): return None", "fails in gcxform_passes: TypeError: None"),
+        (HEAD + "def gcxform_passes(): return [5]", "not a pass: TypeError: 5 is not a subclass"),
+        (HEAD + "def gcxform_passes(): return [gx.Pass]", "is not a subclass of Pass"),
+        (
+            HEAD + "def gcxform_passes(): return [type('P', (gx.Pass,), {'name': 'p'})]",
+            "P is not a frozen dataclass",
+        ),
+        (
+            HEAD + "def gcxform_dialects(): return [type('D', (gx.Dialect,), {})]",
+            "not a dialect: TypeError: D has the name ''",
+        ),
+        (
+            HEAD + "def gcxform_dialects(): return [type('D', (gx.Dialect,), {'name': 'a b'})]",
+            "D has the name 'a b'",
+        ),
+        (HEAD + "def gcxform_facts(): return ['FACT']", "'FACT' is not a Fact"),
+        (HEAD + "def gcxform_error_formats(): return [int]", "is not a subclass of ErrorFormat"),
+        (HEAD + "def gcxform_kinematics(): return [3]", "not a kinematics: TypeError: 3 is not"),
+        (
+            PASSES.format(name="shift").replace("gx.Vector", "complex"),
+            "not a pass: TypeError: the option 'by' has the type <class 'complex'>",
+        ),
+        (
+            PASSES.format(name="shift").replace("gx.Vector", "Nothing"),
+            "not a pass: NameError: name 'Nothing' is not defined",
+        ),
+        (HEAD + "def gcxform_pases(): return []", "has the hook 'gcxform_pases', which does not"),
+    ],
+)
+def test_a_broken_plugin_costs_only_itself(install: Install, source: str, message: str) -> None:
+    install("broken", source)
+    install("works", PASSES.format(name="move"))
+    registry = Registry.load()
+    (found,) = warnings(registry)
+    assert found.startswith("the plugin 'broken' of broken 1.0 ")
+    assert message in found
+    assert "move" in registry.passes
+    assert "fanuc" in registry.dialects
+
+
+def test_a_misspelt_hook_is_proposed(install: Install) -> None:
+    install("acme", HEAD + "def gcxform_pases(): return []")
+    hints = [d.hint for d in Registry.load().diagnostics if "pases" in d.message]
+    assert hints == ["did you mean 'gcxform_passes'?"]
+
+
+def test_the_good_offers_of_a_bad_list_are_kept(install: Install) -> None:
+    install("acme", PASSES.format(name="shift").replace("[Shift]", "[5, Shift]"))
+    registry = Registry.load()
+    assert len(warnings(registry)) == 1
+    assert "shift" in registry.passes
+
+
+def test_unknown_names() -> None:
+    registry = Registry.load()
+    place = Location("p.toml", 3, 11)
+    with pytest.raises(UsageError) as caught:
+        registry.dialect("fanucc", place)
+    (found,) = caught.value.diagnostics
+    assert (found.code, found.where) == ("GX703", place)
+    assert found.hint.startswith("did you mean 'fanuc'?; known: fanuc, grbl, linuxcnc")
+    with pytest.raises(UsageError) as caught:
+        registry.pass_("nothing", place)
+    (found,) = caught.value.diagnostics
+    assert (found.code, found.where) == ("GX704", place)
+    assert found.message == "there is no pass 'nothing'"
+    assert {"GX703", "GX704"} <= set(CATALOGUE)
+
+
+def test_a_plugin_that_fails_is_named_where_a_name_is_unknown(install: Install) -> None:
+    install("acme", "import no_such_module")
+    with pytest.raises(
+        UsageError, match=r"known: .*the plugin 'acme' of acme 1.0 cannot be loaded"
+    ):
+        Registry.load().pass_("shift")
+
+
+def test_loading_is_fast() -> None:
+    """A second load of what is imported already takes a few milliseconds."""
+    Registry.load()
+    times = []
+    for _ in range(5):
+        start = time.perf_counter()
+        Registry.load()
+        times.append(time.perf_counter() - start)
+    assert min(times) < 0.03
+
+
+def test_importing_the_registry_imports_no_plugin() -> None:
+    code = "import gcxform.registry, sys; print('gcxform_plugins' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
+
+
+def test_every_kind_has_an_origin(install: Install) -> None:
+    source = HEAD + "def gcxform_kinematics(): return [type('Hexapod', (), {'name': 'hexapod'})]"
+    install("acme", source)
+    registry = Registry.load()
+    assert registry.origin("kinematics", "hexapod") == "acme 1.0"
+    assert registry.origin("format", "lddm") == registry.origin("dialect", "grbl")
+    assert set(KINDS) == {"dialect", "pass", "kinematics", "fact", "format"}
