@@ -172,13 +172,11 @@ def _read_quantity(quantity: Quantity, raw: object, around: _Around) -> float:
 
 
 def _read_vector(raw: object, around: _Around) -> tuple[float, float, float]:
-    parts: list[object]
+    parts: list[object] = raw if isinstance(raw, list) else []
     if isinstance(raw, str):
         parts = [Argument(part) for part in raw.split(",")]
     elif isinstance(raw, dict) and sorted(raw) == ["X", "Y", "Z"]:
         parts = [raw[letter] for letter in "XYZ"]
-    else:
-        parts = raw if isinstance(raw, list) else []
     if len(parts) != 3:
         raise _expected("three lengths, such as [0.0, 0.0, 0.0] or {X = 0, Y = 0, Z = 0}", raw)
     x, y, z = (_read_quantity(LENGTH, part, around) for part in parts)
@@ -203,8 +201,9 @@ def _choice_kind(choices: tuple[Any, ...]) -> _Kind:
         choice = texts.get(str(raw))
         same = isinstance(raw, str) == isinstance(choice, str) or isinstance(raw, Argument)
         if choice is None or not same:
-            message = f"{_written(raw)} is not one of {', '.join(texts)}"
-            raise _RefusedError("GX707", message, did_you_mean(str(raw), texts))
+            known = [text for text in texts if text]
+            message = f"{_written(raw)} is not one of {', '.join(known)}"
+            raise _RefusedError("GX707", message, did_you_mean(str(raw), known))
         return choice
 
     return _Kind("choice", read, lambda choice: str(choice) if isinstance(choice, str) else choice)

@@ -300,7 +300,11 @@ class _Work:
         window = self.reader.read(text)
         emitted = self._transform(window)
         run.lines_in += len(window)
-        self._put(emitted.text, emitted.source.tolist(), run)
+        if run.source_map is None and not self.text.passes:
+            run.lines_out += len(emitted.source)
+            run.put(emitted.text)
+        else:
+            self._put(emitted.text, emitted.source.tolist(), run)
 
     def _copy(self, text: bytes, run: _Run) -> None:
         """Hand a window on as it is, but for passes that change text."""

@@ -133,7 +133,9 @@ def load(path: Path, registry: Registry) -> PipelineSpec:
 def _check_version(document: TomlText) -> None:
     version = document.values.get("format")
     if version is None:
-        raise document.missing_key(("format",))
+        message = "the key 'format' is missing"
+        hint = f"begin the file with: format = {FORMAT}"
+        raise UsageError.one(CODES.missing_key, message, document.where(), hint)
     if version != FORMAT or isinstance(version, bool):
         message = f"format {version!r} of pipelines is not known, only format = {FORMAT} is"
         raise UsageError.one("GX711", message, document.where("format"))

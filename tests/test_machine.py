@@ -83,7 +83,7 @@ def test_the_machine_of_the_design(folder: Path) -> None:
     )
     assert machine.axes["C"].wrap == 360.0
     assert machine.work_offsets == {
-        "G54": {"X": 5.0, "Y": -20.0, "Z": -60.0, "A": math.degrees(0.1)},
+        "G54": {"X": 5.0, "Y": -20.0, "Z": -60.0, "A": pytest.approx(math.degrees(0.1))},
         "G59.1": {"X": 1.0},
     }
     assert machine.tools == {1: Tool(length=120.0, radius=5.0), 12: Tool()}
@@ -103,24 +103,40 @@ def test_a_machine_needs_only_its_format(folder: Path) -> None:
         ("format = 1\n", "", "GX404", 0, 1, "'format' is missing", ""),
         ("format = 1", "format = 2", "GX406", 1, 1, "format 2 of machines is not known", ""),
         ("format = 1", "format = true", "GX406", 1, 1, "format True", ""),
-        ("head = []", "head = [", "GX402", 6, 1, "not TOML", ""),
+        ("head = []", "head = [", "GX402", 5, 1, "not TOML", ""),
         ("errors =", "error =", "GX403", 6, 1, "unknown key 'error'", "did you mean 'errors'?"),
         ("max-speed", "max-sped", "GX403", 9, 1, "'max-sped' in axis.X", "did you mean 'max-s"),
-        ("[axis.Y]", "[axis.Q]", "GX403", 10, 1, "unknown key 'Q' in axis", "known: X, Y, Z"),
-        ("[axis.Y]", "[axis.XY]", "GX403", 10, 1, "unknown key 'XY' in axis", "did you"),
+        (
+            "[axis.Y]",
+            "[axis.Y]\n[axis.Q]",
+            "GX403",
+            11,
+            1,
+            "unknown key 'Q' in axis",
+            "known: X, Y, Z",
+        ),
+        ("[axis.Y]", "[axis.Y]\n[axis.XY]", "GX403", 11, 1, "unknown key 'XY' in axis", "did you"),
         ("\nX = 1\n", "\nB = 1\n", "GX403", 28, 1, "'B' in work-offset.G59.1", "known: X"),
-        ('"300 mm"', '"300 deg"', "GX405", 8, 18, "limits: 'deg' is not a unit of a len", ""),
+        ('"300 mm"', '"300 deg"', "GX405", 8, 19, "limits: 'deg' is not a unit of a len", ""),
         ('"110 deg"', '"110 mm"', "GX405", 16, 18, "limits: 'mm' is not a unit of an angle", ""),
         ('"1 in"', '"1"', "GX405", 5, 26, "gauge-point: '1' has no unit: write \"1 mm\"", ""),
         ('"120 mm"', '"long"', "GX405", 30, 1, "length: 'long' is not a length", ""),
-        ("30000.0", '"fast"', "GX405", 9, 1, "axis.X.max-speed: expected a number", ""),
+        ("30000.0", '"fast"', "GX405", 9, 1, "max-speed: expected a number", ""),
         ("30000.0", "inf", "GX405", 9, 1, "max-speed: inf is not a finite number", ""),
         ("[-300.0,", "[nan,", "GX405", 8, 11, "limits: nan is not a finite number", ""),
-        ("[-300.0,", "[", "GX405", 8, 1, "axis.X.limits: expected a list of length 2", ""),
+        ("[-300.0,", "[", "GX405", 8, 1, "limits: expected a list of length 2", ""),
         ("[-300.0,", "[301.0,", "GX431", 8, 1, "X do not ascend: 301, 300", "lower limit"),
         ("[-300.0,", "[300.0,", "GX431", 8, 1, "X do not ascend: 300, 300", "lower limit"),
         ("[2.0, 0.0, 0.0]", "[0, 0, 0.0]", "GX432", 13, 1, "direction of axis A is zero", "vec"),
-        ("direction = [2.0, 0.0, 0.0]\n", "", "GX432", 12, 1, "A needs a direction", "vector"),
+        (
+            "direction = [2.0, 0.0, 0.0]\n",
+            "",
+            "GX432",
+            12,
+            1,
+            "direction of axis A is missing",
+            "vector",
+        ),
         ("sign = -1\nlim", "lim", "GX433", 12, 1, "A is missing, it has to be -1 or +1", "841"),
         ("sign = -1\nlim", "sign = 2\nlim", "GX433", 15, 1, "sign of axis A is 2", "ISO 841"),
         ("30000.0", "0.0", "GX434", 9, 1, "max-speed of axis X is 0, it has to be above 0", ""),
@@ -130,7 +146,8 @@ def test_a_machine_needs_only_its_format(folder: Path) -> None:
         ('["A", "C"]', '["A", "X"]', "GX435", 3, 15, "names 'X'", "known: A, C"),
         ("head = []", 'head = ["C"]', "GX435", 4, 9, "the axis C stands twice", ""),
         ("offset.G54]", "offset.G53]", "GX436", 22, 1, "'G53' is not a work offset", "G54 to G59"),
-        ('"G59.1"', "G59.1", "GX405", 27, 1, "", ""),
+        ('"G59.1"', "G59.1", "GX403", 27, 1, "key '1' in work-offset.G59", "known: X"),
+        ("[tool.12]", "[tool]\n2 = 5", "GX405", 33, 1, "expected a table", ""),
         ("[tool.12]", "[tool.T12]", "GX437", 32, 1, "'T12' is not a tool number", ""),
         ("[tool.12]", "[tool.01]", "GX437", 32, 1, "the tool 1 stands twice", ""),
     ],
@@ -143,6 +160,13 @@ def test_what_is_refused(
     assert found[:3] == (code, line, column)
     assert message in found[3]
     assert hint in found[4]
+
+
+@pytest.mark.parametrize("section", ["axis", "work-offset", "tool"])
+def test_a_section_that_is_no_table(folder: Path, section: str) -> None:
+    (found,) = refused(folder, f"format = 1\n{section} = 5\n")
+    assert found[:3] == ("GX405", 2, 1)
+    assert f"{section}: expected tables, such as [{section}." in found[3]
 
 
 def test_all_that_is_wrong_is_told_at_once(folder: Path) -> None:

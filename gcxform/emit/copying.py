@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -73,22 +75,26 @@ class Copying:
 
     def _same_ends(self, rows: Ints, others: Ints) -> Flags:
         """Return which rows end where their source ends and need no word it does not have."""
-        end, old = self.path.end[rows], self.original.end[others]
-        on_grid = np.abs(self.positions.held[rows] - old) <= EXACT
-        programmed = self.positions.programmed[rows]
-        same = (end == old) | on_grid | ~programmed
-        extra = self.positions.write[rows] & ~programmed
-        return np.asarray(same.all(axis=1) & ~extra.any(axis=1))
+        good = np.ones(len(rows), np.bool_)
+        for k in range(len(self.path.axes)):
+            end, old = _take(self.path.end[:, k], rows), _take(self.original.end[:, k], others)
+            held = _take(self.positions.held[:, k], rows)
+            programmed = _take(self.positions.programmed[:, k], rows)
+            same = (np.abs(held - old) <= EXACT) | (end == old)
+            good &= np.where(programmed, same, ~_take(self.positions.write[:, k], rows))
+            if not good.any():
+                break
+        return good
 
     def _track_exactness(self, rows: Ints, others: Ints, good: Flags) -> Flags:
         """Follow how far everything is exactly as in the source; return where rows start so."""
-        end, old = self.path.end[rows], self.original.end[others]
-        alike = ((end == old) | (np.isnan(end) & np.isnan(old))).all(axis=1) & good
         whole = len(rows) == len(self.path) == len(self.original)
-        if whole:
-            self.exact = np.logical_and.accumulate(alike) & self.believed_exact
-            return np.append(self.believed_exact, self.exact[:-1])
-        return np.zeros(len(rows), np.bool_)
+        if not whole or not good[0] or not self.believed_exact:
+            return np.zeros(len(rows), np.bool_)
+        end, old = self.path.end, self.original.end
+        alike = ((end == old) | (np.isnan(end) & np.isnan(old))).all(axis=1) & good
+        self.exact = np.logical_and.accumulate(alike)
+        return np.append(True, self.exact[:-1])
 
     def _same_arcs(self, rows: Ints, others: Ints, starts_exact: Flags) -> Flags:
         """Return which arcs have centre and sweep of their source, seen from where they start."""
@@ -98,3 +104,8 @@ class Copying:
         same_centre = ((centre == old) | np.isnan(old)).all(axis=1)
         same_sweep = self.path.sweep[rows] == self.original.sweep[others]
         return np.asarray((starts_exact | on_grid.all(axis=1)) & same_centre & same_sweep)
+
+
+def _take(column: NDArray[Any], rows: Ints) -> NDArray[Any]:
+    """Return a column at rows; all of it if the rows are all."""
+    return column if len(rows) == len(column) else column[rows]

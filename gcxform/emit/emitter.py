@@ -45,6 +45,9 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 
+PEELED_AT_MOST = 16
+
+
 @dataclass(frozen=True, slots=True)
 class Emitted:
     """Text of a window, and for each of its lines the line of the program it came from."""
@@ -200,11 +203,7 @@ class _Job:
 
     def _render(self, chosen: Ints, renderer: Renderer) -> None:
         """Render the pieces, one template after another."""
-        ways, which = np.unique(self._ways(chosen), return_inverse=True)
-        order = np.argsort(which, kind="stable")
-        bounds = np.searchsorted(which[order], np.arange(len(ways) + 1))
-        for index in range(len(ways)):
-            places = order[bounds[index] : bounds[index + 1]]
+        for places in _groups(self._ways(chosen)):
             members = chosen[places]
             renderer.begin(len(members))
             for field in self._template(int(members[0])):
@@ -300,3 +299,17 @@ class _Job:
                 last = np.flatnonzero(stated >= 0)
                 if len(last):
                     setattr(believed, name, int(stated[last[-1]]))
+
+
+def _groups(ways: Ints) -> list[Ints]:
+    """Return the places of each value: by peeling off one value after another while few are left."""
+    groups: list[Ints] = []
+    left = np.arange(len(ways))
+    while len(left) and len(groups) < PEELED_AT_MOST:
+        same = ways[left] == ways[left[0]]
+        groups.append(left[same])
+        left = left[~same]
+    if len(left):
+        order = left[np.argsort(ways[left], kind="stable")]
+        groups += np.split(order, np.flatnonzero(np.diff(ways[order])) + 1)
+    return groups

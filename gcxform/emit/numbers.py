@@ -19,7 +19,6 @@ Flags = NDArray[np.bool_]
 TIE = 1e-6  # of the last decimal: what is so close to a half is a half
 MOST_DECIMALS = 6
 LARGEST = 10**8  # a number has at most eight digits before the point
-WIDTH = 17  # sign, eight digits, point and up to six decimals, rounded up to whole words
 
 
 def quantise(value: Floats, decimals: int) -> Floats:
@@ -42,10 +41,10 @@ def _whole_digits() -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
 
 
 @cache
-def _fractions(decimals: int, zeros: bool, point: bool) -> NDArray[np.uint64]:
-    """Return the texts `.000` ... `.999`, trailing zeros cut unless `zeros`, eight bytes each."""
+def _fractions(decimals: int, zeros: bool, point: bool) -> NDArray[np.uint32] | NDArray[np.uint64]:
+    """Return the texts `.000` ... `.999`, trailing zeros cut unless `zeros`, as 4 or 8 bytes."""
     number = np.arange(10**decimals)
-    text = np.zeros((len(number), 8), np.uint8)
+    text = np.zeros((len(number), 4 if decimals < 4 else 8), np.uint8)
     text[:, 0] = 46
     keep = np.full(len(number), zeros)
     for place in range(decimals, 0, -1):
@@ -54,41 +53,44 @@ def _fractions(decimals: int, zeros: bool, point: bool) -> NDArray[np.uint64]:
         text[:, place] = np.where(keep, digit + 48, 0)
     if not point:
         text[~keep, 0] = 0
-    return text.view(np.uint64)[:, 0]
+    return text.view(np.uint32 if decimals < 4 else np.uint64)[:, 0]
 
 
 def number_field(
     whole: Floats, decimals: int, zeros: bool, present: Flags, point: bool = True
 ) -> Bytes:
-    """Return the texts (n, WIDTH) of whole / 10**decimals, padded with NUL; empty if not present.
+    """Return the texts (n, width) of whole / 10**decimals, padded with NUL; empty if not present.
 
     `point`: the point stays when no decimal follows it. |whole| is below LARGEST * 10**decimals.
     """
-    magnitude = np.where(present, np.abs(whole), 0.0).astype(np.int64)
-    integer = magnitude // 10**decimals
-    fraction = magnitude - integer * 10**decimals
+    everywhere = bool(present.all())
+    magnitude = np.abs(whole) if everywhere else np.where(present, np.abs(whole), 0.0)
+    number = magnitude.astype(np.int64)
+    integer = number // 10**decimals
+    fraction = _fractions(decimals, zeros, point)
     bare, padded = _whole_digits()
-    field = np.zeros((len(whole), WIDTH), np.uint8)
-    field[:, 0] = np.where(present & (whole < 0), 45, 0)
-    low = integer
+    words = [fraction[number - integer * 10**decimals]]
     if (integer > 9999).any():
         high = integer // 10_000
         low = integer - high * 10_000
-        _put(field, 1, np.where(high > 0, bare[high], np.uint32(0)))
-        _put(field, 5, np.where(present, np.where(high > 0, padded[low], bare[low]), np.uint32(0)))
+        words = [np.where(high > 0, padded[low], bare[low]), *words]
+        words = [np.where(high > 0, bare[high], np.uint32(0)), *words]
     else:
-        _put(field, 5, np.where(present, bare[low], np.uint32(0)))
-    _put(field, 9, np.where(present, _fractions(decimals, zeros, point)[fraction], np.uint64(0)))
+        words = [bare[integer], *words]
+    if not everywhere:
+        words = [np.where(present, word, word.dtype.type(0)) for word in words]
+    field = np.empty((len(whole), 1 + sum(word.dtype.itemsize for word in words)), np.uint8)
+    field[:, 0] = np.where(present & (whole < 0), 45, 0)
+    column = 1
+    for word in words:
+        size = word.dtype.itemsize
+        field[:, column : column + size] = word.view(np.uint8).reshape(-1, size)
+        column += size
     return field
-
-
-def _put(field: Bytes, column: int, words: NDArray[np.uint32] | NDArray[np.uint64]) -> None:
-    """Write words of bytes into columns of a field."""
-    size = words.dtype.itemsize
-    field[:, column : column + size] = words.view(np.uint8).reshape(-1, size)
 
 
 def text_of(value: float, decimals: int, zeros: bool = False, point: bool = True) -> str:
     """Return the text of one number."""
     whole = quantise(np.array([value]), decimals)
-    return bytes(number_field(whole, decimals, zeros, np.array([True]), point)).replace(b"\0", b"").decode()
+    field = number_field(whole, decimals, zeros, np.array([True]), point)
+    return field.tobytes().replace(b"\0", b"").decode()

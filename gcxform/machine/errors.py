@@ -343,7 +343,8 @@ def compensate(
 
     Fixed point c_0 = p, c_(k+1) = p - E(c_k); with L < 1 the Lipschitz constant, step k is within
     L^k |E| / (1 - L) of the solution (Banach). `iterations` steps are done; 0 stands for as many
-    as needed until no coordinate moves by `CONVERGED`. Unknown targets (nan) stay unknown.
+    as needed until the command is within `CONVERGED` of the solution: by Banach's bound it is no
+    farther than L / (1 - L) times the last step. Unknown targets (nan) stay unknown.
     """
     command = np.empty((3, len(target))).T
     steps = 0
@@ -359,10 +360,12 @@ def _solve(
 ) -> tuple[FloatArray, int]:
     """Return the command (n, 3) of one block of targets, and its number of steps."""
     command = target
+    known = outside is not Outside.ZERO and model.lipschitz < 0.5
+    shrinks = math.sqrt(3.0) * model.lipschitz / (1.0 - model.lipschitz) if known else 1.0
     for step in range(1, (iterations or STEPS_AT_MOST) + 1):
         previous, command = command, model.error(command, outside)
         np.subtract(target, command, out=command)
-        if not iterations and _farthest(command, previous) < CONVERGED:
+        if not iterations and _farthest(command, previous) * shrinks < CONVERGED:
             return command, step
     if iterations:
         return command, iterations

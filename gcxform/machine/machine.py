@@ -67,28 +67,17 @@ class Quantity:
         return f"a{'n' * (self.name[0] in 'aeio')} {self.name}"
 
 
+_MICRO = dict.fromkeys(("um", "\N{MICRO SIGN}m", "\N{GREEK SMALL LETTER MU}m"), Decimal("0.001"))
 LENGTH = Quantity(
     "length",
     "mm",
-    {
-        "mm": Decimal(1),
-        "um": Decimal("0.001"),
-        "µm": Decimal("0.001"),
-        "μm": Decimal("0.001"),
-        "m": Decimal(1000),
-        "in": Decimal("25.4"),
-    },
+    {"mm": Decimal(1), **_MICRO, "m": Decimal(1000), "in": Decimal("25.4")},
     '"5 um", "0.2 mm" or 0.2',
 )
 ANGLE = Quantity(
     "angle",
     "deg",
-    {
-        "deg": Decimal(1),
-        "rad": _DEGREES,
-        "mrad": _DEGREES / 1000,
-        "urad": _DEGREES / 1_000_000,
-    },
+    {"deg": Decimal(1), "rad": _DEGREES, "mrad": _DEGREES / 1000, "urad": _DEGREES / 1_000_000},
     '"10 deg", "80 urad" or 10',
 )
 
@@ -141,9 +130,7 @@ class Offset(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     C: Value | None = None
 
 
-class MachineFile(
-    msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="kebab", kw_only=True
-):
+class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="kebab"):
     """A machine file as it is written."""
 
     format: int
@@ -333,11 +320,9 @@ def _axis_findings(
         low, high = axis.limits
         message = f"the limits of axis {letter} do not ascend: {low:g}, {high:g}"
         yield Diagnostic("GX431", message, where("limits"), "the lower limit comes first")
-    if axis.direction is not None and not any(axis.direction):
-        message = f"the direction of axis {letter} is zero"
-        yield Diagnostic("GX432", message, where("direction"), "give a vector along the axis")
-    elif rotary and axis.direction is None:
-        message = f"the rotary axis {letter} needs a direction"
+    if rotary if axis.direction is None else not any(axis.direction):
+        stated = "is missing" if axis.direction is None else "is zero"
+        message = f"the direction of axis {letter} {stated}"
         yield Diagnostic("GX432", message, where("direction"), "give a vector along the axis")
     if axis.sign not in (None, -1, 1) or (rotary and axis.sign is None):
         stated = "is missing" if axis.sign is None else f"is {axis.sign}"
@@ -400,8 +385,7 @@ def _tool_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic
 
 def _normalised(axis: Axis) -> Axis:
     """Return the axis with a direction of length 1."""
-    if axis.direction is None:
-        return axis
-    x, y, z = axis.direction
+    x, y, z = axis.direction or (0.0, 0.0, 1.0)
     length = math.hypot(x, y, z)
-    return msgspec.structs.replace(axis, direction=(x / length, y / length, z / length))
+    unit = (x / length, y / length, z / length)
+    return msgspec.structs.replace(axis, direction=unit) if axis.direction else axis

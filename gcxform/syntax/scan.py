@@ -143,8 +143,9 @@ def _runs(text: bytes, raw: Bytes, kind: Bytes) -> _Runs:
     whole = split - first
     plain &= (whole <= LONGEST) & (fraction <= LONGEST) & (whole + fraction > 0)
     plain &= (before == LETTER) | (before == CODE)
-    mantissa = _eight_digits(text, split, whole) * TEN_TO_INT[np.minimum(fraction, LONGEST)]
-    mantissa += _eight_digits(text, end, fraction)
+    digits = _Digits(text)
+    mantissa = digits.before(split, whole) * TEN_TO_INT[np.minimum(fraction, LONGEST)]
+    mantissa += digits.before(end, fraction)
     plain &= mantissa < EXACT
     return _Runs(start, end, mantissa, decimals, raw[start] == 45, before == CODE, plain)
 
@@ -163,20 +164,38 @@ def _points(
     return point, good
 
 
-def _eight_digits(text: bytes, end: Ints, count: Ints) -> Ints:
-    """Return the values of the `count` (at most 8) digits that stand before the offsets `end`.
+class _Digits:
+    """Reads the digits that stand before given offsets, a whole column at once.
 
-    Eight bytes are loaded as one integer and their digits summed in pairs, fours and eights.
+    Four or eight bytes are loaded as one integer and their digits summed in pairs, then in fours.
     """
-    padded = b"0" * 8 + text
-    octets = np.ndarray((len(padded) - 7,), "<u8", padded, strides=(1,))
-    word = octets[end] ^ np.uint64(0x3030303030303030)
-    shift = (8 * (8 - np.clip(count, 0, 8))).astype(np.uint64)
-    word = np.where(shift < 64, (word >> (shift & 63)) << (shift & 63), 0)
-    word = (word & 0x0F0F0F0F0F0F0F0F) * 2561 >> 8
-    word = (word & 0x00FF00FF00FF00FF) * 6553601 >> 16
-    word = (word & 0x0000FFFF0000FFFF) * 42949672960001 >> 32
-    return word.astype(np.int64)
+
+    def __init__(self, text: bytes) -> None:
+        self.padded = b"0" * LONGEST + text
+
+    def before(self, end: Ints, count: Ints) -> Ints:
+        """Return the values of the `count` (at most 8) digits before the offsets `end`."""
+        if int(count.max(initial=0)) <= 4:
+            return self._four(end, count)
+        octets = np.ndarray((len(self.padded) - 7,), "<u8", self.padded, strides=(1,))
+        word = octets[end] ^ np.uint64(0x3030303030303030)
+        shift = ((8 - np.clip(count, 0, 8)) * 8).astype(np.uint64)
+        word = np.where(shift < 64, (word >> (shift & 63)) << (shift & 63), np.uint64(0))
+        word = (word & np.uint64(0x0F0F0F0F0F0F0F0F)) * np.uint64(2561) >> np.uint64(8)
+        word = (word & np.uint64(0x00FF00FF00FF00FF)) * np.uint64(6553601) >> np.uint64(16)
+        word = (word & np.uint64(0x0000FFFF0000FFFF)) * np.uint64(42949672960001)
+        return (word >> np.uint64(32)).astype(np.int64)
+
+    def _four(self, end: Ints, count: Ints) -> Ints:
+        quads = np.ndarray((len(self.padded) - 3,), "<u4", self.padded, strides=(1,))
+        word = quads[end + 4] & KEEP_LAST[count]
+        word = (word & np.uint32(0x0F0F0F0F)) * np.uint32(2561) >> np.uint32(8)
+        word = (word & np.uint32(0x00FF00FF)) * np.uint32(6553601) >> np.uint32(16)
+        return word.astype(np.int64)
+
+
+KEEP_LAST = np.array([0, 0xFF000000, 0xFFFF0000, 0xFFFFFF00, 0xFFFFFFFF], np.uint32)
+"""Masks for the last 0 ... 4 of four bytes."""
 
 
 def _lines_by_themselves(kind: Bytes, runs: _Runs, following: Ints) -> Ints:
@@ -203,11 +222,21 @@ def _shapes(
         keys[line] = OWN + text[int(start[line]) : int(end[line])]
     shape = table.look_up(keys, text, start, end)
     slots = ~runs.is_code
-    first = np.searchsorted(runs.start[slots], start)
+    first = _first_numbers(table, shape, own, runs.start[slots], start)
     value = runs.mantissa[slots] / TEN_TO[np.clip(runs.decimals[slots], 0, LONGEST)]
     np.negative(value, out=value, where=runs.negative[slots])
     columns = (first, value, runs.decimals[slots], runs.start[slots], runs.end[slots])
     return shape, table.append_own(shape, own, columns, start)
+
+
+def _first_numbers(
+    table: ShapeTable, shape: Ints, own: Ints, number_start: Ints, start: Ints
+) -> Ints:
+    """Return the index of the first number on or after the start of each line."""
+    if len(own):
+        return np.searchsorted(number_start, start)
+    counts = table.slot_counts()[shape]
+    return np.cumsum(counts) - counts
 
 
 def _reduced(raw: Bytes, kind: Bytes, runs: _Runs, end: Ints) -> bytes:

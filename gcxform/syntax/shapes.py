@@ -48,6 +48,7 @@ class ShapeTable:
         self.grammar = grammar
         self.shapes: list[Shape] = []
         self._index: dict[bytes, int] = {}
+        self._slot_counts: Ints = np.empty(0, np.int64)
         self._add(b"", b"")
 
     def __len__(self) -> int:
@@ -56,10 +57,19 @@ class ShapeTable:
     def look_up(self, keys: list[bytes], text: bytes, start: Ints, end: Ints) -> Ints:
         """Return the shape of each line; `keys` are the reduced lines, new ones are parsed."""
         known = self._index
-        for key in set(keys) - known.keys():
-            line = keys.index(key)
-            self._add(key, text[int(start[line]) : int(end[line])])
+        try:
+            return np.fromiter(map(known.__getitem__, keys), np.int64, len(keys))
+        except KeyError:
+            for line, key in enumerate(keys):
+                if key not in known:
+                    self._add(key, text[int(start[line]) : int(end[line])])
         return np.fromiter(map(known.__getitem__, keys), np.int64, len(keys))
+
+    def slot_counts(self) -> Ints:
+        """Return how many slots each shape has."""
+        if len(self._slot_counts) < len(self.shapes):
+            self._slot_counts = np.array([len(s.slots) for s in self.shapes], np.int64)
+        return self._slot_counts
 
     def _add(self, key: bytes, text: bytes) -> int:
         block = self.grammar.parse(text.decode("latin-1"))

@@ -11,6 +11,7 @@ from gcxform.modal.arcs import TURN
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 Crossings = tuple[Ints, Floats, Ints, Floats]
 """Row, part of the move (0 to 1), axis and plane of each crossing, by row and part."""
@@ -18,25 +19,33 @@ Crossings = tuple[Ints, Floats, Ints, Floats]
 APART = 1e-12  # parts of a move closer than this are one
 
 
-def line_crossings(start: Floats, end: Floats, nodes: Sequence[Floats]) -> Crossings:
-    """Return where lines (n, 3) cross the planes x, y, z = node, ends left out."""
+def line_crossings(points: Floats, lines: Flags, nodes: Sequence[Floats]) -> Crossings:
+    """Return where moves that go straight from point to point cross the planes x, y, z = node.
+
+    points (n + 1, 3) mm: where the first move starts, and where each ends; lines (n,): the moves
+    that are looked at. Ends of moves are no crossings.
+    """
     found = []
     for axis, planes in enumerate(nodes):
-        if len(planes):
-            found.append(_on_axis(start[:, axis], end[:, axis], axis, planes))
+        if not len(planes):
+            continue
+        cell = np.searchsorted(planes, points[:, axis], side="right")
+        rows = np.flatnonzero((cell[1:] != cell[:-1]) & lines)
+        if len(rows):
+            found.append(_on_axis(rows, points[rows, axis], points[rows + 1, axis], axis, planes))
     return _sorted(found)
 
 
-def _on_axis(a: Floats, b: Floats, axis: int, planes: Floats) -> Crossings:
-    """Return the crossings with the planes of one axis."""
+def _on_axis(rows: Ints, a: Floats, b: Floats, axis: int, planes: Floats) -> Crossings:
+    """Return the crossings of some moves with the planes of one axis."""
     low = np.searchsorted(planes, np.minimum(a, b), side="right")
     high = np.searchsorted(planes, np.maximum(a, b), side="left")
     count = np.where(np.isnan(a) | np.isnan(b), 0, np.maximum(high - low, 0))
-    rows = np.flatnonzero(count)
-    row = np.repeat(rows, count[rows])
-    nth = np.arange(len(row)) - np.repeat(np.cumsum(count[rows]) - count[rows], count[rows])
-    plane = planes[low[row] + nth]
-    return row, (plane - a[row]) / (b[row] - a[row]), np.full(len(row), axis), plane
+    which = np.repeat(np.arange(len(rows)), count)
+    nth = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
+    plane = planes[low[which] + nth]
+    part = (plane - a[which]) / (b[which] - a[which])
+    return rows[which], part, np.full(len(which), axis), plane
 
 
 def arc_crossings(

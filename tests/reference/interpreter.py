@@ -20,8 +20,6 @@ from reference.arcs import (
 )
 from reference.model import (
     DIALECTS,
-    GROUPS,
-    M_GROUPS,
     PLANES,
     Dialect,
     Move,
@@ -29,6 +27,7 @@ from reference.model import (
     rank,
     with_feed,
 )
+from reference.sorting import Sorted, sort
 from reference.words import Block, Refused, Word, blocks
 
 __all__ = ["Move", "Program", "Refused", "interpret"]
@@ -51,8 +50,8 @@ def interpret(
     """
     machine = _Machine(DIALECTS[dialect], dict(start or {}), increment, same_frames)
     try:
-        for block in blocks(program, dialect):
-            if block.words and not (block.deletable and block_delete):
+        for block in blocks(program, dialect, skip=block_delete):
+            if block.words:
                 machine.execute(block)
             if machine.ended:
                 break
@@ -94,83 +93,33 @@ class _Machine:
     def execute(self, block: Block) -> None:
         """Check one block, then do what it says in the order of the control."""
         self.line = block.line
-        codes, dwell, ms, values = self._sort(block)
-        had_feed_mode, had_units = self.modal["feed"], self.modal["units"]
-        self._set_modes(codes)
-        motion = self._motion_of_block(codes, dwell, values)
-        self._check_words(codes, dwell, ms, values, motion)
-        self._set_feed(codes, values, had_feed_mode, had_units)
-        self._speeds_and_tools(values)
-        for m in sorted(ms, key=rank):
-            if m not in self.dialect.late:
-                self._event(f"M{m}")
-        if dwell:
-            self._event(f"DWELL {self._dwell(values):.10g}")
+        said = sort(block, self.dialect)
+        had = dict(self.modal)
+        self._set_modes(said.codes)
+        motion = self._motion_of_block(said)
+        self._check_words(said, motion)
+        self._set_feed(said, had)
+        self._speeds_and_tools(said.values)
+        self._m_codes(said, late=False)
+        if said.dwell:
+            self._event(f"DWELL {self._dwell(said.values):.10g}")
         if motion is not None:
-            self._move(motion, values, explicit="motion" in codes)
-        for m in sorted(ms, key=rank):
-            if m in self.dialect.late:
-                self._event(f"M{m}")
-        if {2, 30} & set(ms):
+            self._move(motion, said.values)
+        self._m_codes(said, late=True)
+        if {2, 30} & set(said.ms):
             self._end()
 
-    # --- reading the block
+    def _m_codes(self, said: Sorted, *, late: bool) -> None:
+        for m in sorted(said.ms, key=rank):
+            if (m in self.dialect.late) == late:
+                self._event(f"M{m}")
 
-    def _sort(self, block: Block) -> tuple[dict[str, int], bool, list[int], dict[str, Word]]:
-        """Split words into modal codes by group, dwell, M codes and values."""
-        codes: dict[str, int] = {}
-        ms: list[int] = []
-        values: dict[str, Word] = {}
-        for word in block.words:
-            if word.letter == "G":
-                self._add_code(codes, self._g_code(word))
-            elif word.letter == "M":
-                ms.append(self._m_code(word))
-            elif word.letter in values:
-                raise self._refused(f"repeated {word.letter} word")
-            else:
-                values[word.letter] = word
-        groups = [M_GROUPS[m] for m in ms]
-        if len(ms) > self.dialect.many_m or len(set(groups)) < len(groups):
-            raise self._refused("M codes clash")
-        return codes, codes.pop("dwell", None) is not None, ms, values
+    # --- checking the block
 
-    def _g_code(self, word: Word) -> int:
-        """Return the code times ten."""
-        code = round(word.value * 10)
-        if abs(word.value * 10 - code) > 0.01 or code in self.dialect.missing:
-            raise self._refused(f"G{word.value:g}")
-        if code not in GROUPS:
-            raise self._refused(f"G{word.value:g} is not in this language")
-        return code
-
-    def _m_code(self, word: Word) -> int:
-        code = round(word.value)
-        if abs(word.value - code) > 1e-4 or code in self.dialect.missing_m:
-            raise self._refused(f"M{word.value:g}")
-        if code not in M_GROUPS:
-            raise self._refused(f"M{word.value:g} is not in this language")
-        return code
-
-    def _add_code(self, codes: dict[str, int], code: int) -> None:
-        """Enter a code; a second one of its group wins (Fanuc), or is refused."""
-        group = GROUPS[code]
-        if self.dialect.name == "fanuc":
-            if code != 800:  # cycles are a group of their own there: G80 leaves motion alone
-                codes[group] = code
-            return
-        if group in codes:
-            both = {codes[group], code}
-            if self.dialect.name != "linuxcnc" or 800 not in both or both == {800}:
-                raise self._refused("two codes of one modal group")
-            code = min(both)  # G80 beside another motion code: the other one counts
-        codes[group] = code
-
-    def _motion_of_block(
-        self, codes: dict[str, int], dwell: bool, values: dict[str, Word]
-    ) -> int | None:
+    def _motion_of_block(self, said: Sorted) -> int | None:
         """Return the motion that this block performs, if any."""
-        fanuc_dwell = dwell and self.dialect.name == "fanuc"  # X is a time there
+        values = said.values
+        fanuc_dwell = said.dwell and self.dialect.name == "fanuc"  # X is a time there
         axes = not fanuc_dwell and any(axis in values for axis in self.dialect.axes)
         motion = self.modal["motion"]
         if motion == 800:
@@ -178,22 +127,15 @@ class _Machine:
                 raise self._refused("axis words without a motion mode")
             return None
         arc_words = motion in (20, 30) and any(letter in values for letter in "IJKR")
-        if axes or "motion" in codes or (arc_words and self.dialect.name != "grbl"):
+        if axes or "motion" in said.codes or (arc_words and self.dialect.name != "grbl"):
             return motion
         return None
 
-    def _check_words(
-        self,
-        codes: dict[str, int],
-        dwell: bool,
-        ms: list[int],
-        values: dict[str, Word],
-        motion: int | None,
-    ) -> None:
+    def _check_words(self, said: Sorted, motion: int | None) -> None:
         """Refuse letters which nothing in the block uses, and values out of their range."""
-        name = self.dialect.name
+        name, values = self.dialect.name, said.values
         allowed = set("FST" + self.dialect.axes) | ({"N"} if name == "grbl" else set())
-        if dwell:
+        if said.dwell:
             allowed |= set("PXU") if name == "fanuc" else {"P"}
         if motion in (20, 30):
             allowed |= set("IJKR") | ({"P"} if name == "linuxcnc" else set())
@@ -203,14 +145,19 @@ class _Machine:
             raise self._refused("negative value")
         if "T" in values and abs(values["T"].value - round(values["T"].value)) > 1e-4:
             raise self._refused("T is an integer")
-        if dwell and motion in (20, 30) and "motion" in codes and name == "linuxcnc":
-            raise self._refused("G4 with G2 or G3")
-        if dwell and name == "fanuc" and ("motion" in codes or len(values) != 1):
-            raise self._refused("G4 stands alone")
-        if "length" in codes and name == "grbl" and ("motion" in codes or motion is not None):
-            raise self._refused("G49 with axis words")
+        self._check_company(said, motion)
         if name == "fanuc":
             self._check_points(values)
+
+    def _check_company(self, said: Sorted, motion: int | None) -> None:
+        """Refuse codes which do not go together."""
+        name, explicit = self.dialect.name, "motion" in said.codes
+        if said.dwell and motion in (20, 30) and explicit and name == "linuxcnc":
+            raise self._refused("G4 with G2 or G3")
+        if said.dwell and name == "fanuc" and (explicit or len(said.values) != 1):
+            raise self._refused("G4 stands alone")
+        if "length" in said.codes and name == "grbl" and (explicit or motion is not None):
+            raise self._refused("G49 with axis words")
 
     def _check_points(self, values: dict[str, Word]) -> None:
         """Refuse Fanuc numbers whose unit depends on whether they have a point."""
@@ -230,28 +177,22 @@ class _Machine:
             self.position = {}
         self.modal.update(codes)
 
-    def _set_feed(
-        self,
-        codes: dict[str, int],
-        values: dict[str, Word],
-        old_mode: int | None,
-        old_units: int | None,
-    ) -> None:
+    def _set_feed(self, said: Sorted, had: dict[str, int | None]) -> None:
         """Apply the F word; a feed survives a change of units in mm, not one of feed mode.
 
         LinuxCNC sets the feed before the units: `G20 F10` is still 10 mm/min after G21.
         """
-        changed, inverse = self.modal["feed"] != old_mode, self.modal["feed"] == 930
+        changed, inverse = self.modal["feed"] != had["feed"], self.modal["feed"] == 930
         name = self.dialect.name
-        inch = (old_units if name == "linuxcnc" else self.modal["units"]) == 200
-        if changed or inverse or ("feed" in codes and name == "linuxcnc"):
+        inch = (had["units"] if name == "linuxcnc" else self.modal["units"]) == 200
+        if changed or inverse or ("feed" in said.codes and name == "linuxcnc"):
             self.feed = (0.0, 0.0)
-        if name == "fanuc" and self.modal["units"] != old_units:
+        if name == "fanuc" and self.modal["units"] != had["units"]:
             self.feed = (0.0, 0.0)
-        if "F" in values:
+        if "F" in said.values:
             if name == "grbl" and changed and not inverse and inch:
                 raise self._refused("GRBL forgets to convert this F to inches")
-            value = values["F"].value
+            value = said.values["F"].value
             self.feed = (value * INCH if inch and not inverse else value, value)
 
     def _speeds_and_tools(self, values: dict[str, Word]) -> None:
@@ -272,7 +213,7 @@ class _Machine:
             raise self._refused("dwell without a point")
         return word.value / 1000 if word.letter == "P" else word.value
 
-    def _move(self, motion: int, values: dict[str, Word], *, explicit: bool) -> None:
+    def _move(self, motion: int, values: dict[str, Word]) -> None:
         """Perform a rapid, line or arc."""
         if motion != 0:
             self._check_feed(values)

@@ -31,26 +31,28 @@ class Word:
 
 @dataclass(frozen=True)
 class Block:
-    """The words of one source line (1-based), and whether it began with a slash."""
+    """The words of one source line (1-based)."""
 
     line: int
     words: tuple[Word, ...]
-    deletable: bool
 
 
-def blocks(program: bytes, dialect: str) -> Iterator[Block]:
-    """Yield the blocks with words, in order, up to the end of the frame if there is one."""
+def blocks(program: bytes, dialect: str, *, skip: bool = False) -> Iterator[Block]:
+    """Yield the blocks in order, up to the end of the frame if there is one.
+
+    `skip` leaves out the lines which begin with a slash; GRBL has no such switch.
+    """
     reader = {"linuxcnc": _linuxcnc, "fanuc": _fanuc, "grbl": _grbl}[dialect]
     lines = program.decode("latin-1").split("\n")
     if lines and not lines[-1]:
         lines.pop()
-    yield from reader(lines)
+    yield from reader(lines, skip)
 
 
 # --- LinuxCNC ------------------------------------------------------------------------------
 
 
-def _linuxcnc(lines: list[str]) -> Iterator[Block]:
+def _linuxcnc(lines: list[str], skip: bool) -> Iterator[Block]:
     """Blocks of a LinuxCNC file: a frame of percent signs, or an end by M2 or M30."""
     filled = [i for i, text in enumerate(lines) if text.strip()]
     framed = bool(filled) and lines[filled[0]].strip() == "%"
@@ -60,14 +62,15 @@ def _linuxcnc(lines: list[str]) -> Iterator[Block]:
             return
         if len(text) > LINUXCNC_LINE:
             raise Refused(number, "the block is too long")
-        yield _block(number, _strip_comments(text, number, semicolon=True).lower(), NUMBER)
+        if not (skip and text.lstrip(" \t").startswith("/")):
+            yield _block(number, _strip_comments(text, number, semicolon=True).lower(), NUMBER)
     raise Refused(len(lines), "the file ends without a percent sign or program end")
 
 
 # --- Fanuc ---------------------------------------------------------------------------------
 
 
-def _fanuc(lines: list[str]) -> Iterator[Block]:
+def _fanuc(lines: list[str], skip: bool) -> Iterator[Block]:
     """Blocks of a Fanuc tape: nothing before the first percent sign, nothing after the second."""
     filled = [i for i, text in enumerate(lines) if text.strip()]
     framed = bool(filled) and lines[filled[0]].strip() == "%"
@@ -76,6 +79,8 @@ def _fanuc(lines: list[str]) -> Iterator[Block]:
         number, text = index + 1, lines[index]
         if framed and text.strip() == "%":
             return
+        if skip and text.lstrip(" ").startswith("/"):
+            continue
         text = _strip_comments(text, number, semicolon=False)
         if re.search("[a-z;]", text):
             raise Refused(number, "lower case and semicolons are not in the alphabet")
@@ -90,7 +95,7 @@ def _fanuc(lines: list[str]) -> Iterator[Block]:
 # --- GRBL ----------------------------------------------------------------------------------
 
 
-def _grbl(lines: list[str]) -> Iterator[Block]:
+def _grbl(lines: list[str], _skip: bool) -> Iterator[Block]:
     """Blocks of a GRBL stream: comments, blanks and slashes vanish before the words are read."""
     for number, line in enumerate(lines, start=1):
         for part in line.split("\r"):
@@ -98,7 +103,7 @@ def _grbl(lines: list[str]) -> Iterator[Block]:
             if len(text) > GRBL_LINE:
                 raise Refused(number, "the block overflows the line buffer")
             if text:
-                yield Block(number, tuple(_words(text.lower(), number, ONE_SIGN)), False)
+                yield Block(number, tuple(_words(text.lower(), number, ONE_SIGN)))
 
 
 def _grbl_filter(text: str) -> str:
@@ -143,13 +148,11 @@ def _block(
     number: int, text: str, numeral: re.Pattern[str], *, delete_digit: bool = False
 ) -> Block:
     """Read an optional slash, an optional sequence number, then words."""
-    deletable = text.startswith("/")
-    if deletable:
-        text = re.sub(r"^/[1-9]?" if delete_digit else "^/", "", text)
+    text = re.sub(r"^/[1-9]?" if delete_digit else "^/", "", text)
     text = re.sub(rf"^n\d+(\.\d+)?(?=[a-z{BREAK}]|$)", "", text)
     if re.fullmatch(rf"o\d+{BREAK}*", text):
         text = ""
-    return Block(number, tuple(_words(text, number, numeral)), deletable)
+    return Block(number, tuple(_words(text, number, numeral)))
 
 
 def _words(text: str, number: int, numeral: re.Pattern[str]) -> Iterator[Word]:

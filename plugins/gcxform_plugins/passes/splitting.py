@@ -22,12 +22,11 @@ NEGLIGIBLE = 1e-5  # mm; a cut that mends less is not worth a block: a hundredth
 def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
     """Return row and part of each cut; `commands` (n, 3) are those for the ends of the rows."""
     step, path = work.step, work.path
-    lines = np.flatnonzero(path.kind == gx.Kind.LINE)
-    first = np.vstack([work.entry_command[None, :], commands[:-1]])
-    row, part, axis, plane = gx.line_crossings(first[lines], commands[lines], step.nodes())
+    points = np.empty((3, len(path) + 1)).T
+    points[0], points[1:] = work.entry_command, commands
+    row, part, axis, plane = gx.line_crossings(points, path.kind == gx.Kind.LINE, step.nodes())
     if not len(row):
         return row, part
-    row = lines[row]
     start, way = work.start[row], work.end[row] - work.start[row]
     index = np.arange(len(row))
     for _ in range(REFINEMENTS):
@@ -40,15 +39,14 @@ def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
     if not len(row):
         return row, part
     exact = step.tolerance is None or step.split == "nodes"
-    return _needed(work, row, part, first, commands, NEGLIGIBLE if exact else step.limit)
+    return _needed(work, row, part, points, NEGLIGIBLE if exact else step.limit)
 
 
 def _needed(
     work: Compensation,
     row: Ints,
     part: Floats,
-    first: Floats,
-    last: Floats,
+    points: Floats,
     residual: float,
 ) -> tuple[Ints, Floats]:
     """Return the cuts that a residual (mm) needs.
@@ -60,18 +58,19 @@ def _needed(
     limit = residual * (1 - 1e-6) / (1 + step.model.model.lipschitz)
     start, way = work.start[row], work.end[row] - work.start[row]
     exact = step.command(start + part[:, None] * way)
-    straight = first[row] + part[:, None] * (last[row] - first[row])
+    straight = points[row] + part[:, None] * (points[row + 1] - points[row])
     off = np.sqrt(((exact - straight) ** 2).sum(axis=1))
     begins = np.flatnonzero(np.append(True, row[1:] != row[:-1]))
-    ends = np.append(begins[1:], len(row))
+    stops = np.append(begins[1:], len(row))
     worst = np.maximum.reduceat(off, begins)
     kept: list[int] = []
     for which in np.flatnonzero(worst > limit).tolist():
-        members = slice(int(begins[which]), int(ends[which]))
-        owner = int(row[members.start])
-        points = np.vstack([first[owner], exact[members], last[owner]])
+        members = slice(int(begins[which]), int(stops[which]))
+        owner = int(row[begins[which]])
+        ends = points[[owner]], points[[owner + 1]]
+        way = np.vstack([ends[0], exact[members], ends[1]])
         parts = np.concatenate([[0.0], part[members], [1.0]])
-        kept += [members.start + k - 1 for k in _farthest_reaching(points, parts, limit)]
+        kept += [int(begins[which]) + k - 1 for k in _farthest_reaching(way, parts, limit)]
     chosen = np.array(kept, np.int64)
     return row[chosen], part[chosen]
 

@@ -379,11 +379,10 @@ class _Machine:
     def _crossings(self) -> tuple[Ints, Floats, Ints, Floats]:
         """Return where lines and arcs are cut: at nodes, and arcs also where they turn far."""
         path = self.path
-        lines = np.flatnonzero(path.kind == gx.Kind.LINE)
-        row, part, axis, plane = gx.line_crossings(
-            self.start[lines], self.end[lines], self.step.nodes()
-        )
-        row = lines[row]
+        points = np.empty((3, len(path) + 1)).T
+        points[0], points[1:] = self.start[0], self.end
+        lines = path.kind == gx.Kind.LINE
+        row, part, axis, plane = gx.line_crossings(points, lines, self.step.nodes())
         if path.has_arcs:
             reach = self.step.model.model.lipschitz
             arc_row, arc_part = gx.arc_cuts(path, self.offset, self.step.nodes(), reach, UNDO_SLACK)
