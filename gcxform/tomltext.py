@@ -82,6 +82,7 @@ class _Scan:
         names = [name for name, _ in self._dotted()]
         for name in names[:-1]:
             table = self._last((*table, name))
+            self.places.setdefault(table, start)
         table += (names[-1],)
         if brackets == 2:
             count = self._tables_in[table] = self._tables_in.get(table, 0) + 1

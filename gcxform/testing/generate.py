@@ -105,7 +105,7 @@ class Builder:
         kinds: list[Callable[[], None]] = [self._line, self._line, self._line, self._rapid]
         if self.options.arcs:
             kinds += [self._arc] * 4
-        kinds += [self._auxiliary, self._modes]
+        kinds += [self._auxiliary, self._modes, self._modes]
         self.one(kinds)()
 
     def _emit(self, words: Words, *, plain: bool = False) -> None:
