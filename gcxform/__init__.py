@@ -89,7 +89,8 @@ _HOMES = {
     "toolpath.circles": "arc_cuts arc_extremes circle_through points_on_arcs radius_and_angle",
     "toolpath.crossings": "line_crossings",
     "toolpath.deviation": "deviation",
-    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NOMINAL XY_ARCS Fact",
+    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NOMINAL XY_ARCS "
+    "Fact",
     "toolpath.path": "Event FeedMode Kind Plane Toolpath column_major",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from gcxform.dialect import Dialect, NumberFormat
-from gcxform.toolpath.facts import Fact
 from gcxform.syntax.tree import Block
+from gcxform.toolpath.facts import Fact
 from gcxform.toolpath.path import Toolpath
 
 if TYPE_CHECKING:

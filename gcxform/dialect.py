@@ -82,6 +82,14 @@ class Dialect:
     turns_address: ClassVar[str] = ""
     """The word that counts the turns of an arc (n - 1 full turns beyond the arc itself)."""
     feed_mode_clears_feed: ClassVar[bool] = False
+    feed_before_units: ClassVar[bool] = False
+    """F is read in the unit that was in force before a G20 or G21 of its own block."""
+    change_clears_feed: ClassVar[bool] = False
+    """After another unit or feed mode the feed is not known until it is programmed."""
+    lone_cr_is_blank: ClassVar[bool] = False
+    """A CR without LF is a blank inside a block, and no line end."""
+    resets_at_end: ClassVar[Mapping[str, str]] = {}
+    """Where M2 and M30 do not stop the control: the modes they leave behind."""
     dwell: ClassVar[Mapping[str, float]] = {"P": 1.0}
     """Seconds for one unit of each word that G4 takes; a value with a point is in seconds."""
     block_delete: ClassVar[str] = ""

@@ -58,8 +58,8 @@ class _Run:
 
     sink: Sink
     source_map: list[int] | None
-    read: "hashlib._Hash" = field(default_factory=hashlib.sha256)
-    written: "hashlib._Hash" = field(default_factory=hashlib.sha256)
+    read: hashlib._Hash = field(default_factory=hashlib.sha256)
+    written: hashlib._Hash = field(default_factory=hashlib.sha256)
     lines_in: int = 0
     lines_out: int = 0
 
@@ -92,7 +92,7 @@ class Pipeline:
             step.begin(self.context)
         self._check_budget()
 
-    # --- ways to build one ---------------------------------------------------------------------------
+    # --- ways to build one ---
 
     @classmethod
     def load(cls, path: str | Path, registry: Registry | None = None) -> Pipeline:
@@ -147,7 +147,7 @@ class Pipeline:
             decimals,
         )
 
-    # --- what is known before a run ----------------------------------------------------------------------
+    # --- what is known before a run ---
 
     @property
     def path_passes(self) -> tuple[Pass, ...]:
@@ -222,7 +222,7 @@ class Pipeline:
     def _least_rounding(self) -> float:
         return self.manner.rounding(False)
 
-    # --- runs ----------------------------------------------------------------------------------------------
+    # --- runs ---
 
     def run(self, program: bytes | str | Path, verify: str = "on") -> Result:
         """Run on a program: its bytes, or a path. Raises GcxformError; writes no file."""
@@ -348,7 +348,7 @@ class _Work:
                     )
         return after
 
-    # --- the certificate -------------------------------------------------------------------------------
+    # --- the certificate ---
 
     def certificate(self, run: _Run) -> Certificate:
         """Return the proof of the run."""
@@ -389,7 +389,10 @@ class _Work:
         assert self.interpreter is not None
         found = self.verifier.findings
         for count, what in (
-            (found.rapids, "rapids: only their ends, because controls do not move straight in them"),
+            (
+                found.rapids,
+                "rapids: only their ends, because controls do not move straight in them",
+            ),
             (found.unknown_starts, "moves from an unknown position: only their ends"),
             (found.lines_after_end, "lines after the end of the program: copied, not read"),
         ):
@@ -404,7 +407,7 @@ class _Work:
             certificate.assumed.append(f"{axis} stands at {value:g} before the first block")
 
 
-# --- checks of chains --------------------------------------------------------------------------------
+# --- checks of chains ---
 
 
 def facts_after(passes: Sequence[Pass]) -> frozenset[Fact]:
@@ -437,14 +440,16 @@ def _mend(fact: Fact, culprit: str | None, name: str) -> str:
     if culprit:
         return f"put {name} before it, or leave one of the two out"
     makers = [
-        p.name for p in default_registry().passes.values() if issubclass(p, Pass) and fact in p.ensures
+        p.name
+        for p in default_registry().passes.values()
+        if issubclass(p, Pass) and fact in p.ensures
     ]
     if makers:
         return f"put {' or '.join(sorted(makers))} before {name}"
     return f"no pass that is installed ensures {fact.name}"
 
 
-# --- small parts ----------------------------------------------------------------------------------------
+# --- small parts ---
 
 
 def _numbers(target: type[Dialect], spec: PipelineSpec) -> tuple[NumberFormat, dict[str, int]]:
@@ -464,9 +469,7 @@ def _numbers(target: type[Dialect], spec: PipelineSpec) -> tuple[NumberFormat, d
 
 def _reading(source: type[Dialect], spec: PipelineSpec) -> Reading:
     given = spec.input
-    return Reading(
-        dict(given.start), given.increment, given.feed, given.block_delete, given.units
-    )
+    return Reading(dict(given.start), given.increment, given.feed, given.block_delete, given.units)
 
 
 def _with_assumed_start(pipeline: Pipeline, axes: str) -> Reading:

@@ -214,7 +214,7 @@ def _built(
     return build(chosen, options, base, registry.formats.values(), where)
 
 
-# --- chains on the command line ----------------------------------------------------------------
+# --- chains on the command line ---
 
 _TOKEN = re.compile(r"""(?P<bar>\|)|(?P<word>(?:[^\s|"']|"[^"]*"|'[^']*')+)|(?P<quote>["'])""")
 _QUOTED = re.compile(r""""([^"]*)"|'([^']*)'""")

@@ -1,4 +1,4 @@
-"""A program as bytes, cut into windows of whole lines, so that memory does not grow with the file."""
+"""A program as bytes, cut into windows of whole lines: memory does not grow with the file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Passes that change text and no meaning, run on what is written, and the check that they do not."""
+"""Passes that change text and no meaning, and the check that they do not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The proof: what was written is read again, undone through the models, and compared with the input.
+"""The proof: what was written is read again, undone through the models, compared with the input.
 
 The reader of the output is a new one that knows nothing of how the text was made. Each of its moves
 is traced to a line of the input by the source map; the models of what the machine does with the
@@ -163,11 +163,13 @@ class Verifier:
         if size[worst] > self.findings.deviation:
             self._note_worst(float(size[worst]), trace, int(rows[worst]))
         if size[worst] > self.budget:
-            message = f"the move starts {size[worst]:.5f} mm off, the budget is {self.budget:.5f} mm"
+            message = (
+                f"the move starts {size[worst]:.5f} mm off, the budget is {self.budget:.5f} mm"
+            )
             self._fail(message, trace, int(rows[worst]))
 
     def _missing(self, trace: _Trace) -> None:
-        """Rows without any move in the output must have been too short to write."""
+        """Check that rows without any move in the output were too short to write."""
         has = np.zeros(len(trace.before), np.bool_)
         has[trace.owner] = True
         for row in np.flatnonzero(~has).tolist():
@@ -184,7 +186,7 @@ class Verifier:
             self._fail("a rapid became a feed move, or the reverse", trace, int(np.argmax(wrong)))
 
     def _feeds(self, trace: _Trace) -> None:
-        """Feeds must be those of the source; in inverse time, the times of pieces must add up."""
+        """Check that feeds are those of the source; in inverse time, the times must add up."""
         before, after, owner = trace.before, trace.after, trace.owner
         moving = before.kind[owner] != Kind.RAPID
         mode = before.feed_mode[owner] != after.feed_mode
@@ -213,7 +215,7 @@ class Verifier:
             self._raise("the time of a move in G93 has changed", line, 0)
 
     def _events(self, old: tuple[Event, ...], new: tuple[Event, ...], trace: _Trace) -> None:
-        """Events must be the same, in the same order, at the same place between the moves."""
+        """Check that events are the same, in order, at the same place between the moves."""
         self.findings.events += len(old)
         for before, after in zip(old, new, strict=False):
             line = trace.line_of(after.line)

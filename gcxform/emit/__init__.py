@@ -1,0 +1,1 @@
+"""Toolpath to text of a dialect."""

@@ -1,4 +1,4 @@
-"""Centres of arcs on the formatted grid, tested with the control's own rule before they are written.
+"""Centres of arcs on the formatted grid, tested with the control's own rule before writing.
 
 Both ends of an arc are already rounded; a centre that is rounded on its own leaves them on two
 different circles, and the control stops in the cut. So the centre is first moved onto the bisector
@@ -93,4 +93,5 @@ def _good(arcs: ArcEnds, words: Floats, rule: ArcRule) -> Flags:
     slip = np.abs(sweep - (np.mod(arcs.sweep - 1e-12, TURN) + 1e-12))
     delta = np.abs(first - last)
     tight = delta <= np.maximum(STRICT, arcs.step)
-    return accepts(rule, first, last) & tight & (slip < SWEEP_SLIP)
+    good: Flags = accepts(rule, first, last) & tight & (slip < SWEEP_SLIP)
+    return good

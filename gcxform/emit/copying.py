@@ -46,7 +46,7 @@ class Copying:
         """Return the lines without any item: the same in every dialect."""
         shapes = self.task.table.shapes.shapes
         empty = np.array([not shape.block.items for shape in shapes], np.bool_)
-        return empty[self.task.shape]
+        return np.asarray(empty[self.task.shape])
 
     def _same_modes(self) -> Flags:
         now, old = self.path.blocks, self.original.blocks

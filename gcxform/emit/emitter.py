@@ -24,7 +24,7 @@ from gcxform.emit.positions import Positions, motion_kinds
 from gcxform.emit.render import Renderer, interleave
 from gcxform.emit.templates import (
     Axis,
-    CannotSay,
+    CannotSayError,
     Centre,
     Copied,
     Feed,
@@ -113,12 +113,12 @@ class _Job:
 
     def _without_words(self) -> Flags:
         """Return the inner pieces of split blocks that would have no word: nothing moves."""
-        still = ~self.positions.write.any(axis=1) & (self.kind < Kind.ARC_CW)
-        inner = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row
+        still: Flags = ~self.positions.write.any(axis=1) & (self.kind < Kind.ARC_CW)
+        inner: Flags = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row
         inner[self.pieces.has_row] &= still
         return inner
 
-    # --- arcs ------------------------------------------------------------------------------------------
+    # --- arcs ---
 
     def _arcs(self) -> None:
         """Compute the centre words of the arcs that are written anew."""
@@ -132,7 +132,7 @@ class _Job:
                 self._arcs_in_plane(plane, rows, start)
 
     def _exact_starts(self) -> Floats:
-        """Return where rows start in the control: off the grid after blocks copied to the letter."""
+        """Return where rows start in the control: off the grid after blocks that were copied."""
         exact = np.append(self.copying.believed_exact, self.copying.exact[:-1])
         return np.where(exact[:, None], self.path.start, self.positions.before)
 
@@ -141,12 +141,12 @@ class _Job:
         if plane.name not in manner.target.arc_planes:
             message = f"{manner.target.name} has no arcs in {plane.name}"
             self._refuse(rows, "GX501", message, 'put the pass "plane" before')
-        axes = list(plane.axes[:2])
+        axes = np.array(plane.axes[:2])
         refit = self.path.refit_centres
         begin = start[np.ix_(rows, axes)]
         absolute = self.path.blocks.absolute_centre[self.path.block[rows]]
         inch = self.positions.inch[rows]
-        letter = "IJK"[axes[0]]
+        letter = "IJK"[plane.axes[0]]
         arcs = ArcEnds(
             begin,
             (self.positions.held if refit else self.path.end)[np.ix_(rows, axes)],
@@ -158,7 +158,7 @@ class _Job:
         )
         self.centre[rows], good = centre_words(arcs, manner.target.arc_rule, refit)
         full = np.mod(self.path.sweep[rows] + 1e-9, TURN) < 2e-9
-        for axis in axes:
+        for axis in plane.axes[:2]:
             self.positions.write[rows[full], axis] = True
         if refit and not good.all():
             message = f"rounded, this arc is another one, or one that {manner.target.name} refuses"
@@ -171,7 +171,7 @@ class _Job:
             tuple(Diagnostic(code, message, self.task.location(line), hint) for line in lines)
         )
 
-    # --- rendering ---------------------------------------------------------------------------------------
+    # --- rendering ---
 
     def _turns(self) -> Ints:
         """Return the full turns of each row beyond its arc."""
@@ -239,7 +239,7 @@ class _Job:
         )
         try:
             return writer.write(key)
-        except CannotSay as error:
+        except CannotSayError as error:
             where = self.task.location(line, error.column, error.width)
             raise InputError.one("GX501", error.message, where) from None
 
@@ -269,7 +269,7 @@ class _Job:
             everywhere = np.ones(len(rows), np.bool_)
             renderer.number(field.gap, "F", whole, decimals, everywhere, point=False)
 
-    # --- after -------------------------------------------------------------------------------------------
+    # --- after ---
 
     def _check_lengths(self, lengths: Ints, chosen: Ints) -> None:
         limit = self.task.manner.target.line_length
@@ -294,6 +294,7 @@ class _Job:
         if len(pieces.line):
             believed.motion = int(pieces.motion_after[-1])
             believed.feed = float(pieces.feed_after[-1])
+            believed.feed_unit = float(pieces.unit_after[-1])
             for name in ("inch", "incremental", "absolute_centre"):
                 stated = getattr(pieces, name)
                 last = np.flatnonzero(stated >= 0)
@@ -302,7 +303,7 @@ class _Job:
 
 
 def _groups(ways: Ints) -> list[Ints]:
-    """Return the places of each value: by peeling off one value after another while few are left."""
+    """Return the places of each value, by peeling off one value after another."""
     groups: list[Ints] = []
     left = np.arange(len(ways))
     while len(left) and len(groups) < PEELED_AT_MOST:

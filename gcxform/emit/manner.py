@@ -72,6 +72,7 @@ class Believed:
     incremental: int
     absolute_centre: int
     feed: float = np.nan
+    feed_unit: float = 1.0
     exact: bool = True
 
     @classmethod

@@ -53,7 +53,7 @@ def _fractions(decimals: int, zeros: bool, point: bool) -> NDArray[np.uint32] | 
         text[:, place] = np.where(keep, digit + 48, 0)
     if not point:
         text[~keep, 0] = 0
-    return text.view(np.uint32 if decimals < 4 else np.uint64)[:, 0]
+    return text.view(np.uint32)[:, 0] if decimals < 4 else text.view(np.uint64)[:, 0]
 
 
 def number_field(

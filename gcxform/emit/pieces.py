@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gcxform.dialect import INCH
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.templates import Feed, Role
-from gcxform.modal.interpreter import fill
+from gcxform.modal.interpreter import fill, turns_only
 from gcxform.modal.tables import GROUPS
 from gcxform.toolpath.path import FeedMode, Kind
 
@@ -81,7 +81,7 @@ class Pieces:
     def _stated_in(self, group: str) -> Flags:
         """Return, per piece, whether its line has a code of a group and it is the piece for it."""
         explicit = self.task.table.groups[self.task.shape, GROUPS.index(group)] >= 0
-        return explicit[self.line]
+        return np.asarray(explicit[self.line])
 
     def _mode(self, group: str, wanted: Flags, before: int, needs: Flags) -> Small:
         """Return the values of a mode that have to be stated."""
@@ -95,7 +95,7 @@ class Pieces:
         return np.where(explicit | missing, here, NOTHING)
 
     def _motions(self) -> None:
-        """A motion code is stated where the source stated one, and where the motion changes."""
+        """State a motion code where the source stated one, and where the motion changes."""
         group = self.task.table.groups[self.task.shape, GROUPS.index("motion")]
         sets = np.where(self.leads, group[self.line], NOTHING)
         sets[self.has_row] = self.kind
@@ -107,25 +107,36 @@ class Pieces:
         self.motion = np.where(self.has_row & (explicit | changes), self.motion_after, NOTHING)
 
     def _feeds(self) -> None:
-        """A feed is stated where the source stated one, where it changes, and always in G93."""
+        """State a feed where the source stated one, where it changes, and always in G93.
+
+        What counts is the number that a piece needs after F: a length per minute in the unit of its
+        block, or degrees per minute or 1/min, which have no unit.
+        """
         modes, path = self.task.read.modes, self.task.path
         slot = self.task.table.slots[self.task.shape, ord("F") - 65]
         word = (slot >= 0)[self.line] & self.leads
         feeding = self._of_rows(self.kind != Kind.RAPID, False)
-        feed = np.where(word, modes.feed[self.line], np.nan)
-        feed = np.where(feeding, self._of_rows(path.feed, np.nan), feed)
-        self.feed_after = fill(feed, ~np.isnan(feed), self.believed.feed)
-        before = np.append(self.believed.feed, self.feed_after[:-1])
         inverse = modes.feed_mode == FeedMode.INVERSE_TIME
-        changes = feeding & (~_close(before, feed) | inverse[self.line])
-        unit = np.where(path.blocks.inch & ~inverse, INCH, 1.0)
-        same_unit = inverse | (path.blocks.inch == modes.inch)
-        kept = word & same_unit[self.line] & _close(feed, modes.feed[self.line])
+        unit_of_line = np.where(path.blocks.inch, INCH, 1.0)
+        plain = turns_only(path.axes, path.entry, path.end) & (self.kind < Kind.ARC_CW)
+        has_unit = self._of_rows(~plain, True) & ~inverse[self.line]
+        unit = np.where(has_unit, unit_of_line[self.line], 1.0)
+        given = modes.feed * np.where(inverse, 1.0, modes.feed_unit / unit_of_line)
+        need = np.where(word, given[self.line], np.nan)
+        need = np.where(feeding, self._of_rows(path.feed, np.nan) / unit, need)
+        sets = ~np.isnan(need)
+        self.feed_after = fill(need, sets, self.believed.feed)
+        self.unit_after = fill(unit_of_line[self.line], sets, self.believed.feed_unit)
+        number = np.append(self.believed.feed, self.feed_after[:-1])[: len(need)]
+        size = np.append(self.believed.feed_unit, self.unit_after[:-1])[: len(need)]
+        held = np.where(has_unit, number * size / unit_of_line[self.line], number)
+        changes = feeding & (~_close(held, need) | inverse[self.line])
+        kept = word & _close(need, modes.feed[self.line])
         self.feed = np.where(
             kept, Feed.KEEP, np.where(word | changes, Feed.WRITE, Feed.NONE)
         ).astype(np.int8)
-        self.repaired |= (self.feed == Feed.WRITE)
-        self.feed_value = feed / unit[self.line]
+        self.repaired |= self.feed == Feed.WRITE
+        self.feed_value = need
 
 
 def _close(a: Floats, b: Floats) -> Flags:

@@ -1,4 +1,4 @@
-"""Formatted positions: what the control believes after each row, and which axis words that takes."""
+"""Formatted positions: what the control believes after each row, and the words that takes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Flags = NDArray[np.bool_]
 
 
 class Positions:
-    """Per row and axis, column-major (rows, axes):
+    """What is formatted, per row and axis, in column-major arrays (rows, axes).
 
     held        what the control believes after the row, mm or degrees
     before      what it believes before it
@@ -88,7 +88,7 @@ class Positions:
         incremental = self.task.path.blocks.incremental[self.task.path.block[rows]]
         if incremental.any():
             value = np.where(incremental, value - self.before[rows, column], value)
-        return np.rint(value / step)
+        return np.asarray(np.rint(value / step))
 
 
 def motion_kinds(task: Task, positions: Positions) -> Small:

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
-from gcxform.emit.numbers import LARGEST, number_field
 from gcxform.emit.manner import Task
+from gcxform.emit.numbers import LARGEST, number_field
 
 Bytes = NDArray[np.uint8]
 Floats = NDArray[np.float64]

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from itertools import pairwise
 
 from gcxform.emit.manner import Manner
 from gcxform.modal.codes import Code
@@ -41,7 +42,7 @@ class Key:
     """All that decides how a piece of a block is written, but for its numbers.
 
     `motion`, `inch`, `incremental`, `absolute_centre`: what has to be stated; -1: nothing.
-    `turns`: full turns beyond the arc. `arc`: whether centre words are written; `plane` their plane.
+    `arc`: whether centre words are written, in `plane`; `turns`: full turns beyond the arc.
     """
 
     role: Role
@@ -98,7 +99,7 @@ PLANE_AXES = ("XY", "ZX", "YZ")
 OFFSETS = {"X": "I", "Y": "J", "Z": "K"}
 
 
-class CannotSay(Exception):
+class CannotSayError(Exception):
     """The target dialect has no words for something: column from 0, width, message."""
 
     def __init__(self, column: int, width: int, message: str) -> None:
@@ -132,10 +133,10 @@ class TemplateWriter:
         words = list(self.shape.block.words)
         if len(words) < 2:
             return usual
-        return b" " if any(b.start > a.end for a, b in zip(words, words[1:], strict=False)) else b""
+        return b" " if any(b.start > a.end for a, b in pairwise(words)) else b""
 
     def write(self, key: Key) -> tuple[Field, ...]:
-        """Return the fields of a piece of the block. Raises CannotSay."""
+        """Return the fields of a piece of the block. Raises CannotSayError."""
         self.fields: list[Field] = []
         self.key = key
         self.axes_written = key.role is Role.NONE
@@ -158,7 +159,7 @@ class TemplateWriter:
             self.fields.append(Literal(self.text[at:].encode("latin-1")))
         return tuple(self.fields)
 
-    # --- one item ------------------------------------------------------------------------------
+    # --- one item ---
 
     def _item(self, item: Item, lead: bytes, slot: int) -> None:
         if isinstance(item, Word):
@@ -178,7 +179,7 @@ class TemplateWriter:
 
     def _check_same(self, item: Item, name: str) -> None:
         if self.source is not self.target:
-            raise CannotSay(
+            raise CannotSayError(
                 item.start, item.end - item.start, f"{self.target.name} cannot say {name}"
             )
 
@@ -192,21 +193,20 @@ class TemplateWriter:
         return ";" + inner
 
     def _mark(self, item: Mark, lead: bytes) -> None:
-        text = self.text[item.start : item.end]
         if item.kind == "block_delete":
             if self.source.block_delete != self.target.block_delete:
                 self._check_same(item, "a block with a slash in the same way")
-            self._literal(lead, text)
-        elif self.key.role in (Role.MIDDLE, Role.LAST):
+        elif self.key.role in (Role.MIDDLE, Role.LAST) or self._is_foreign(item):
             return
-        elif item.kind == "percent" and not self.target.has_percent:
-            return
-        elif item.kind in ("program_id", "program_name") and not self.target.has_program_number:
-            return
-        else:
-            self._literal(lead, text)
+        self._literal(lead, self.text[item.start : item.end])
 
-    # --- words -----------------------------------------------------------------------------------
+    def _is_foreign(self, item: Mark) -> bool:
+        """Whether the target has no such part of the program frame."""
+        if item.kind == "percent":
+            return not self.target.has_percent
+        return item.kind.startswith("program") and not self.target.has_program_number
+
+    # --- words ---
 
     def _word(self, word: Word, lead: bytes, slot: int) -> None:
         address = word.address
@@ -232,7 +232,7 @@ class TemplateWriter:
     def _copy(self, word: Word, lead: bytes, slot: int) -> None:
         """Write a word as it stands in the source."""
         if word.address not in self.target.words + self.target.axes + "GMO":
-            raise CannotSay(
+            raise CannotSayError(
                 word.start, word.end - word.start, f"{self.target.name} has no word {word.address}"
             )
         if word.address in CODES or not isinstance(word.value, Number):
@@ -263,18 +263,24 @@ class TemplateWriter:
         self._literal(lead, text)
 
     def _check_code(self, word: Word, name: str, code: Code | None) -> None:
-        """Raise CannotSay unless a G code means the same in the target."""
+        """Raise CannotSayError unless a G code means the same in the target."""
         if self.source is self.target or code is None:
             return
         other = self.target.codes.get(name)
         same = other is not None and (other.group, other.effect) == (code.group, code.effect)
         if not same or (code.takes != other.takes if other else True):
             self._refuse(word, name)
-        if self.meaning.dwell and code.group == "non-modal" and self.source.dwell != self.target.dwell:
+        if (
+            self.meaning.dwell
+            and code.group == "non-modal"
+            and self.source.dwell != self.target.dwell
+        ):
             self._refuse(word, "this dwell")
 
     def _refuse(self, word: Word, what: str) -> None:
-        raise CannotSay(word.start, word.end - word.start, f"{self.target.name} cannot say {what}")
+        raise CannotSayError(
+            word.start, word.end - word.start, f"{self.target.name} cannot say {what}"
+        )
 
     def _m_word(self, word: Word, lead: bytes) -> None:
         assert isinstance(word.value, Number)
@@ -285,12 +291,11 @@ class TemplateWriter:
             if other is None or code is None or other.after != code.after:
                 self._refuse(word, f"M{number}")
         after = code is not None and code.after
-        if self.key.role in (Role.NONE, Role.ONLY) or (self.key.role is Role.LAST) == after:
-            if self.key.role is not Role.MIDDLE:
-                lead = lead or (self.gap if self.fields else b"")
-                self._literal(lead, self.text[word.start : word.end])
+        whole = self.key.role in (Role.NONE, Role.ONLY)
+        if whole or self.key.role is (Role.LAST if after else Role.FIRST):
+            self._literal(self._gap(lead), self.text[word.start : word.end])
 
-    # --- what has to be stated -------------------------------------------------------------------
+    # --- what has to be stated ---
 
     def _wanted(self, group: str) -> str | None:
         """Return the code that has to be stated for a group, if any."""
@@ -298,7 +303,7 @@ class TemplateWriter:
         return None if value < 0 else STATED[group][1][value]
 
     def _repair_before(self, word: Word, lead: bytes) -> bytes:
-        """State what the source block leaves to modes that no longer hold, before its first word."""
+        """State before the first word what the block leaves to modes that no longer hold."""
         self._repairs_wait = False
         explicit = {code for code in self.meaning.groups if code in STATED}
         texts = []
@@ -355,7 +360,7 @@ class TemplateWriter:
             lead = b""
         if self.key.turns:
             if not self.target.turns_address:
-                raise CannotSay(
+                raise CannotSayError(
                     0,
                     len(self.text),
                     f"{self.target.name} has no arcs of more than a turn",

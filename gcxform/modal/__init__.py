@@ -1,0 +1,1 @@
+"""What was written, turned into what it means to a control."""

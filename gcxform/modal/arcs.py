@@ -21,12 +21,15 @@ Flags = NDArray[np.bool_]
 
 TURN = 2 * np.pi
 SAME_POINT = 1e-9  # mm; closer points of an arc's plane are one point
+SAME_ANGLE = 1e-6  # rad; LinuxCNC takes an arc that turns by less for a full circle
 
 
 @dataclass(frozen=True, slots=True)
 class ArcWords:
-    """Per arc: its line in the window, I J K (n, 3), R, turns, which of X Y Z stand there (n, 3),
-    and whether the centre is absolute. mm; nan where a word is missing.
+    """The words of arcs, in mm; nan where a word is missing.
+
+    line (n,) in the window; offset (n, 3) is I, J, K; named (n, 3): which of X, Y, Z stand there;
+    absolute (n,): the centre itself is given.
     """
 
     line: Ints
@@ -66,8 +69,8 @@ def swept(start: Floats, end: Floats, sense: Floats) -> Floats:
     cross = start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]
     dot = start[:, 0] * end[:, 0] + start[:, 1] * end[:, 1]
     angle = np.mod(np.arctan2(cross * sense, dot), TURN)
-    same = np.hypot(*(end - start).T) < SAME_POINT
-    return np.where(same | (angle == 0), TURN, angle)
+    same = (np.hypot(*(end - start).T) < SAME_POINT) | (angle < SAME_ANGLE)
+    return np.where(same, TURN, angle)
 
 
 class _Part:
@@ -118,12 +121,12 @@ class _Part:
         has = ~np.isnan(self.words.offset)
         has_radius = ~np.isnan(self.words.radius)
         in_plane = has[:, self.first] | has[:, self.second]
-        unknown = np.isnan(self.a).any(axis=1) | np.isnan(self.b).any(axis=1)
+        unknown = np.isnan(np.hstack([self.a, self.b])).any(axis=1)
         self._refuse(
             unknown,
             "GX208",
             "an arc, but where it starts is not known",
-            hint="begin with a line to a known point, or say start = { X = ..., Y = ... } in [input]",
+            hint="begin with a line to a known point, or say start = { X = ... } in [input]",
         )
         self._refuse(
             has[:, self.normal],
@@ -183,7 +186,7 @@ class _Part:
         side = np.where(radius > 0, sense, -sense) * height
         with np.errstate(invalid="ignore", divide="ignore"):
             normal = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / (2 * half)[:, None]
-        return (self.a + self.b) / 2 + side[:, None] * normal
+        return np.asarray((self.a + self.b) / 2 + side[:, None] * normal)
 
     def _check_radii(self, middle: Floats, by_radius: Flags) -> None:
         """Refuse arcs whose start and end are not on one circle, by the control's own rule."""
@@ -195,7 +198,7 @@ class _Part:
             self.findings.add(
                 int(self.words.line[index]),
                 "GX301",
-                f"the end is {delta:.4f} mm off the circle: radius {first[index]:.4f} at the start, "
+                f"the end is {delta:.4f} mm off the circle: radius {first[index]:.4f} at start, "
                 f"{last[index]:.4f} at the end",
                 hint="the centre may be written absolute where incremental is read, or the reverse",
             )

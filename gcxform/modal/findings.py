@@ -19,7 +19,13 @@ class Findings:
         self.found: list[tuple[int, Diagnostic]] = []
 
     def add(
-        self, line: int, code: str, message: str, address: str = "", hint: str = "", context: str = ""
+        self,
+        line: int,
+        code: str,
+        message: str,
+        address: str = "",
+        hint: str = "",
+        context: str = "",
     ) -> None:
         """Add a finding about a line, pointing at the word with an address if one is given."""
         column, width = self._word_at(line, address)
@@ -49,7 +55,9 @@ class Findings:
         start = int(self.window.start[line])
         begin = int(self.window.number_start[number]) - start
         end = int(self.window.number_end[number]) - start
-        letter = max(text.rfind(address.encode(), 0, begin), text.rfind(address.lower().encode(), 0, begin))
+        letter = max(
+            text.rfind(address.encode(), 0, begin), text.rfind(address.lower().encode(), 0, begin)
+        )
         return letter + 1, end - letter
 
     def raise_if_any(self) -> None:

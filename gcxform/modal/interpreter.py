@@ -9,12 +9,12 @@ needs a fact that is not known is refused, with the line.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.diagnostics import InputError
 from gcxform.dialect import INCH, LINEAR, Dialect
 from gcxform.modal.arcs import ArcWords, resolve_arcs
 from gcxform.modal.findings import Findings
@@ -58,6 +58,8 @@ class State:
     groups: dict[str, int]
     position: Floats
     feed: float
+    feed_unit: float
+    frame_known: bool
     ended: bool = False
     percents: int = 0
     stated: set[str] = field(default_factory=set)
@@ -65,7 +67,10 @@ class State:
 
 @dataclass(frozen=True, slots=True)
 class Modes:
-    """Per line of a window, after its words: the number of the code in force of each group."""
+    """Per line of a window, after its words: the number of the code in force of each group.
+
+    `feed` is the number last programmed and `feed_unit` what 1 of it is worth in mm.
+    """
 
     motion: Small
     plane: Small
@@ -75,6 +80,7 @@ class Modes:
     inch: Flags
     frame: Small
     feed: Floats
+    feed_unit: Floats
 
 
 @dataclass(frozen=True)
@@ -110,20 +116,20 @@ class Interpreter:
         start = self.reading.start
         position = np.array([start.get(axis, np.nan) for axis in self.axes])
         feed = np.nan if self.reading.feed is None else self.reading.feed
-        return State(groups, position, feed * (INCH if groups["units"] else 1.0))
+        unit = INCH if groups["units"] else 1.0
+        known = bool(start) or self.dialect.block_delete == "execute"
+        return State(groups, position, feed, unit, known)
 
     def interpret(self, window: Window, table: MeaningTable) -> Interpreted:
         """Return the moves of a window. Raises InputError with all that speaks against it."""
         table.update()
         work = _Work(self, window, table)
-        before = State(
-            dict(self.state.groups), self.state.position.copy(), self.state.feed, self.state.ended
-        )
+        before = replace(self.state, position=self.state.position.copy())
         path, modes = work.run()
         return Interpreted(path, modes, work.live, before)
 
 
-def fill(values: NDArray, present: Flags, initial: float) -> NDArray:
+def fill(values: NDArray[Any], present: Flags, initial: float) -> NDArray[Any]:
     """Return a column in which every line has the value last set before or on it."""
     if not present.any():
         return np.full(len(values), initial, values.dtype)
@@ -179,10 +185,11 @@ class _Work:
         self._carry(modes, path)
         return path, modes
 
-    # --- what can be seen without numbers ----------------------------------------------------
+    # --- what can be seen without numbers ---
 
     def _refuse_statically(self) -> None:
         self._deleted_blocks()
+        self._lone_line_ends()
         for line in np.flatnonzero(self.table.flag("wrong", self.shape)).tolist():
             self.findings.add_refusal(line)
         self.findings.raise_if_any()
@@ -205,7 +212,23 @@ class _Work:
                 hint='say which: block-delete = "execute" or "skip" in [input]',
             )
 
-    # --- columns over the lines ----------------------------------------------------------------
+    def _lone_line_ends(self) -> None:
+        """Refuse lines that the control would take together."""
+        window = self.window
+        if not self.dialect.lone_cr_is_blank or b"\r" not in window.text:
+            return
+        text = np.frombuffer(window.text + b"\n", np.uint8)
+        stop = window.end[: self.live]
+        lone = (text[stop] == 13) & (window.next[: self.live] - stop == 1)
+        for line in np.flatnonzero(lone)[: Findings.enough].tolist():
+            self.findings.add(
+                line,
+                "GX102",
+                f"the line ends with CR alone, which {self.dialect.name} reads as a blank",
+                hint="convert the line ends of the file to LF or CRLF",
+            )
+
+    # --- columns over the lines ---
 
     def _word(self, address: str) -> tuple[Floats, Flags] | None:
         """Return value and presence of a word on each line; None if no line has it."""
@@ -222,9 +245,7 @@ class _Work:
             value = self._with_increment(address, value, present, number)
         return value, present
 
-    def _with_increment(
-        self, address: str, value: Floats, present: Flags, number: Ints
-    ) -> Floats:
+    def _with_increment(self, address: str, value: Floats, present: Flags, number: Ints) -> Floats:
         """Return distances with those that have no point scaled by the increment."""
         pointless = present & (self.window.decimals[number] < 0) & (value != 0)
         if not pointless.any():
@@ -246,11 +267,18 @@ class _Work:
         present = values >= 0
         if present.any():
             self.state.stated.add(name)
+        if name in self.dialect.resets_at_end:
+            after = np.flatnonzero(self.table.flag("ends", self.shape)) + 1
+            after = after[after < self.live]
+            after = after[~present[after]]
+            values[after] = NUMBER[self.dialect.resets_at_end[name]]
+            present[after] = True
         return fill(values, present, self.state.groups[name])
 
     def _modes(self) -> Modes:
         groups = {name: self._group(name) for name in GROUPS}
         inch = groups["units"] == 1
+        feed, feed_unit = self._feed(groups["feed-mode"], inch)
         return Modes(
             groups["motion"],
             groups["plane"],
@@ -259,24 +287,51 @@ class _Work:
             groups["feed-mode"],
             inch,
             groups["frame"],
-            self._feed(groups["feed-mode"], inch),
+            feed,
+            feed_unit,
         )
 
-    def _feed(self, feed_mode: Small, inch: Flags) -> Floats:
-        """Return the feed in force after each line's words, in mm/min, 1/min or mm/turn."""
+    def _feed(self, feed_mode: Small, inch: Flags) -> tuple[Floats, Floats]:
+        """Return the feed number in force after each line's words, and its unit in mm."""
         word = self._word("F")
         value = np.full(self.live, np.nan)
         present = np.zeros(self.live, np.bool_)
         if word is not None:
-            scale = np.where(inch & (feed_mode != NUMBER["G93"]), INCH, 1.0)
-            value, present = word[0] * scale, word[1]
-        if self.dialect.feed_mode_clears_feed:
-            clears = self.table.groups[self.shape, GROUPS.index("feed-mode")] >= 0
-            value = np.where(clears & ~present, np.nan, value)
-            present = present | clears
-        return fill(value, present, self.state.feed)
+            value, present = np.where(word[1], word[0], np.nan), word[1]
+            self._refuse_pointless_feed(present, feed_mode, inch)
+        present = present | self._cleared(feed_mode, inch)
+        if self.dialect.feed_before_units:
+            inch = np.append(self.state.groups["units"] == 1, inch[:-1])[: self.live]
+        unit = np.where(inch, INCH, 1.0)
+        return (
+            fill(value, present, self.state.feed),
+            fill(unit, present, self.state.feed_unit),
+        )
 
-    # --- moves -----------------------------------------------------------------------------------
+    def _cleared(self, feed_mode: Small, inch: Flags) -> Flags:
+        """Return the lines that leave no feed in force unless they program one."""
+        cleared = np.zeros(self.live, np.bool_)
+        if self.dialect.feed_mode_clears_feed:
+            cleared |= self.table.groups[self.shape, GROUPS.index("feed-mode")] >= 0
+        if self.dialect.change_clears_feed and self.live:
+            mode = np.append(np.int8(self.state.groups["feed-mode"]), feed_mode)
+            unit = np.append(self.state.groups["units"] == 1, inch)
+            cleared |= (mode[1:] != mode[:-1]) | (unit[1:] != unit[:-1])
+        return cleared
+
+    def _refuse_pointless_feed(self, present: Flags, feed_mode: Small, inch: Flags) -> None:
+        """Refuse feeds without a point where their unit depends on the control."""
+        if not self.dialect.point_required:
+            return
+        slot = self.table.slots[self.shape, ord("F") - 65]
+        number = np.where(present, self.first + slot, 0)
+        odd = present & (self.window.decimals[number] < 0)
+        odd &= inch | (feed_mode == NUMBER["G95"])
+        for line in np.flatnonzero(odd)[: Findings.enough].tolist():
+            message = "F has no decimal point: its unit depends on the control"
+            self.findings.add(line, "GX205", message, "F", "write the feed with a point")
+
+    # --- moves ---
 
     def _rows(self, modes: Modes) -> Ints:
         """Return the lines that move, after looking at what they may not be."""
@@ -292,9 +347,19 @@ class _Work:
             )
         for line in np.flatnonzero(centre & ~arc).tolist():
             self.findings.add(line, "GX203", "I, J, K and R belong to arcs, and this is none")
+        for line in np.flatnonzero(centre & arc & self._dwells()).tolist():
+            message = "a dwell and an arc: the control takes some words for both"
+            self.findings.add(line, "GX203", message, hint="write the dwell in a block of its own")
         rows = np.flatnonzero(moves | (centre & arc))
         self._check_feed(modes, rows)
         return rows
+
+    def _dwells(self) -> Flags:
+        """Return the lines with a dwell that takes a word which arcs take as well."""
+        if self.dialect.turns_address not in self.dialect.dwell:
+            return np.zeros(self.live, np.bool_)
+        dwell = np.array([meaning.dwell for meaning in self.table.meanings], np.bool_)
+        return np.asarray(dwell[self.shape])
 
     def _check_feed(self, modes: Modes, rows: Ints) -> None:
         """Refuse feed moves without a feed, and blocks in inverse time without a feed word."""
@@ -317,8 +382,7 @@ class _Work:
     def _positions(self, modes: Modes, rows: Ints) -> Floats:
         """Return the ends of the moves; the state's position becomes that after the window."""
         lost = self.table.flag("loses_position", self.shape)
-        frame = np.append(self.state.groups["frame"], modes.frame)
-        lost = lost | (frame[1:] != frame[:-1])
+        lost = lost | self._other_frame(modes)
         any_lost = bool(lost.any())
         ends = column_major(len(rows), len(self.reader.axes))
         for column, axis in enumerate(self.reader.axes):
@@ -329,9 +393,17 @@ class _Work:
                 self.state.position[column] = last
         return ends
 
-    def _axis(
-        self, axis: str, column: int, modes: Modes, lost: Flags | None
-    ) -> Floats | float:
+    def _other_frame(self, modes: Modes) -> Flags:
+        """Return the lines from which on positions count from another, unknown origin."""
+        frame = np.append(self.state.groups["frame"], modes.frame)
+        other = frame[1:] != frame[:-1]
+        stated = self.table.groups[self.shape, GROUPS.index("frame")] >= 0
+        if not self.state.frame_known and stated.any():
+            other[int(np.argmax(stated))] = True
+            self.state.frame_known = True
+        return np.asarray(other)
+
+    def _axis(self, axis: str, column: int, modes: Modes, lost: Flags | None) -> Floats | float:
         """Return the position of an axis after each line; one number if it never changes."""
         word = self._word(axis)
         before = float(self.state.position[column])
@@ -370,20 +442,27 @@ class _Work:
             np.broadcast_to(np.nan, (count, 3)),
             constant(0.0, count),
             modes.plane[rows],
-            modes.feed[rows],
+            self._feed_of_rows(modes, rows, ends),
             modes.feed_mode[rows],
             modes.frame[rows],
             rows + self.window.first_line,
             self._entry,
-            Blocks(
-                self.window.first_line, modes.inch, modes.incremental, modes.absolute_centre
-            ),
+            Blocks(self.window.first_line, modes.inch, modes.incremental, modes.absolute_centre),
             self._events(rows),
         )
         if not path.has_arcs:
             return path
         arcs = np.flatnonzero(path.is_arc)
         return resolve_arcs(path, self._arc_words(modes, rows[arcs]), self.dialect, self.findings)
+
+    def _feed_of_rows(self, modes: Modes, rows: Ints, ends: Floats) -> Floats:
+        """Return feeds in mm/min, 1/min, mm/turn, or deg/min where only rotary axes turn."""
+        feed, unit = modes.feed[rows], modes.feed_unit[rows]
+        if (unit == 1.0).all():
+            return feed
+        plain = modes.feed_mode[rows] == NUMBER["G93"]
+        plain |= turns_only(self.reader.axes, self._entry, ends) & (modes.motion[rows] < 2)
+        return np.where(plain, feed, feed * unit)
 
     def _arc_words(self, modes: Modes, lines: Ints) -> ArcWords:
         """Return centre, radius and turns words of arcs, nan where there is none, in mm."""
@@ -444,12 +523,25 @@ class _Work:
         }
         self.state.groups = {name: int(column[-1]) for name, column in last.items()}
         self.state.feed = float(modes.feed[-1])
+        self.state.feed_unit = float(modes.feed_unit[-1])
         if self.table.flag("ends", self.shape[-1:])[0]:
-            self.state.groups["motion"] = 1
+            for name, code in self.dialect.resets_at_end.items():
+                self.state.groups[name] = NUMBER[code]
+
+
+def turns_only(axes: str, entry: Floats, ends: Floats) -> Flags:
+    """Return the moves (n,) in which no linear axis moves and a rotary one does."""
+    linear = [k for k, axis in enumerate(axes) if axis in LINEAR]
+    rotary = [k for k, axis in enumerate(axes) if axis not in LINEAR]
+    if not rotary or not len(ends):
+        return np.zeros(len(ends), np.bool_)
+    start = np.vstack([entry, ends[:-1]])
+    still = (start == ends) | (np.isnan(start) & np.isnan(ends))
+    return np.asarray(still[:, linear].all(axis=1) & ~still[:, rotary].all(axis=1))
 
 
 def _with_increments(value: Floats, placed: Flags, incremental: Flags, before: float) -> Floats:
     """Return positions where some lines place the axis and others add to where it stands."""
     steps = np.cumsum(np.where(incremental, value, 0.0))
     base = fill(np.where(placed, value - steps, 0.0), placed, before)
-    return base + steps
+    return np.asarray(base + steps)

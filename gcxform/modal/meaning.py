@@ -134,6 +134,10 @@ def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         if code is None:
             yield Refusal("GX201", word.start, width, f"{dialect.name} has no code {name}")
             continue
+        if "G80" in (name, meaning.groups.get(code.group)) and name != "G80":
+            owners.pop(code.group, None)  # beside another motion code G80 says nothing
+        elif name == "G80" and code.group in owners and meaning.groups[code.group] != "G80":
+            continue
         if code.group in owners and not dialect.last_code_wins:
             yield Refusal(
                 "GX202",
@@ -166,7 +170,9 @@ def _g_effects(
             meaning.events.append(EventShape(60, name, taken))
 
 
-def _take(code: Code | MCode, dialect: type[Dialect], meaning: Meaning) -> tuple[tuple[str, int], ...]:
+def _take(
+    code: Code | MCode, dialect: type[Dialect], meaning: Meaning
+) -> tuple[tuple[str, int], ...]:
     """Take the words that are parameters to a code away from the block."""
     letters = code.takes
     if isinstance(code, Code) and code.effect is Effect.DWELL:
@@ -209,6 +215,8 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
             meaning.events.append(event)
     meaning.axes = "".join(a for a in dialect.axes if a in slots)
     meaning.centres = "".join(a for a in CENTRE if a in slots)
+    if meaning.dwell and meaning.axes and set(dialect.dwell) & set(dialect.axes):
+        yield Refusal("GX203", 0, len(shape.block.text), "a dwell and axis words in one block")
     motion = set(meaning.axes) | set(meaning.centres) | {"F", "N", "R", dialect.turns_address}
     if "D" in slots and "D" in dialect.words and dialect.last_code_wins:
         meaning.events.append(EventShape(45, "D", (("D", slots.pop("D")),)))

@@ -1,4 +1,4 @@
-"""The meanings of all shapes as arrays, so that the interpreter can look a million lines up at once."""
+"""The meanings of all shapes as arrays: the interpreter looks all lines up at once."""
 
 from __future__ import annotations
 
@@ -24,7 +24,6 @@ NUMBER = {
     **{f"G59.{n}": 5 + n for n in (1, 2, 3)},
 }
 """The number that stands for a code within its group."""
-
 
 
 def frame_name(frame: int) -> str:
@@ -91,4 +90,4 @@ class MeaningTable:
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Return a flag of each line, given the lines' shapes."""
-        return self.flags[shape, FLAGS.index(name)]
+        return np.asarray(self.flags[shape, FLAGS.index(name)])

@@ -1,0 +1,1 @@
+"""What was written: grammars, trees, shapes and columns."""

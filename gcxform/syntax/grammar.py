@@ -1,4 +1,4 @@
-"""From a block's text to its tree, by the dialect's lark grammar: the only definition of a language.
+"""From a block's text to its tree, by the dialect's grammar: the only definition of a language.
 
 Grammars are read from packages; a grammar anywhere may build on ours with an absolute `%import
 iso (...)`.

@@ -54,10 +54,11 @@ CLASS = _classes()
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """Some whole lines of a program. Per line: `start`, `end` (without the line end) and `next`
-    are offsets into `text`; `shape` is an index into the shape table; `first_number` is the index
-    of its first number. Per number: `value`, `decimals` (-1: no point), `number_start`,
-    `number_end` (offsets into `text`). `first_line` counts lines of the program from 0.
+    """Some whole lines of a program; `first_line` counts lines of the program from 0.
+
+    Per line: `start`, `end` (without the line end) and `next` are offsets into `text`; `shape` is
+    an index into the shape table; `first_number` is the index of the line's first number. Per
+    number: `value`, `decimals` (-1: no point), `number_start` and `number_end` (offsets).
     """
 
     text: bytes
@@ -150,9 +151,7 @@ def _runs(text: bytes, raw: Bytes, kind: Bytes) -> _Runs:
     return _Runs(start, end, mantissa, decimals, raw[start] == 45, before == CODE, plain)
 
 
-def _points(
-    kind: Bytes, numeric: Flags, first: Ints, start: Ints, end: Ints
-) -> tuple[Ints, Flags]:
+def _points(kind: Bytes, numeric: Flags, first: Ints, start: Ints, end: Ints) -> tuple[Ints, Flags]:
     """Return the offset of each run's point (-1: none), and whether points and signs are right."""
     points = np.append(np.flatnonzero(kind == POINT), [len(kind), len(kind)])
     index = np.searchsorted(points, first)

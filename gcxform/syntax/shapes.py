@@ -78,7 +78,9 @@ class ShapeTable:
         self._index[key] = len(self.shapes) - 1
         return len(self.shapes) - 1
 
-    def append_own(self, shape: Ints, own: Ints, columns: NumberColumns, start: Ints) -> NumberColumns:
+    def append_own(
+        self, shape: Ints, own: Ints, columns: NumberColumns, start: Ints
+    ) -> NumberColumns:
         """Return the number columns with those of the lines read by themselves at the end."""
         first, value, decimals, number_start, number_end = columns
         more: list[tuple[float, int, int, int]] = []

@@ -1,0 +1,1 @@
+"""The kit for plugin authors: strategies, checks and case files."""

@@ -1,0 +1,1 @@
+"""What the tool does: moves as columns, their geometry and their facts."""

@@ -108,7 +108,7 @@ class _Comparison:
         previous[self.first[rows]] = 0.0
         return np.maximum(previous - part, 0.0) * length / 2
 
-    # --- arcs -------------------------------------------------------------------------------------
+    # --- arcs ---
 
     def _arcs(self, rows: Ints, starts: Floats) -> None:
         for plane in Plane:
@@ -239,7 +239,9 @@ def _nearest(u: Floats, v: Floats) -> Floats:
     """Return the distances of the chords from u to v (n, 2) from the origin."""
     way = v - u
     square = (way**2).sum(axis=1)
-    part = np.clip(np.divide(-(u * way).sum(axis=1), square, out=np.zeros(len(u)), where=square > 0), 0, 1)
+    part = np.clip(
+        np.divide(-(u * way).sum(axis=1), square, out=np.zeros(len(u)), where=square > 0), 0, 1
+    )
     return np.asarray(np.hypot(*(u + part[:, None] * way).T))
 
 

@@ -49,7 +49,9 @@ KNOWN_POSITIONS = Fact(
 NOMINAL = Fact(
     "NOMINAL", "positions are where the tool shall be, not yet compensated commands", _always
 )
-COMPENSATED = Fact("COMPENSATED", "positions are commands compensated for a machine's errors", _always)
+COMPENSATED = Fact(
+    "COMPENSATED", "positions are commands compensated for a machine's errors", _always
+)
 
 AT_READING = frozenset({NOMINAL})
 FACTS = (ABSOLUTE, METRIC, LINEAR_ONLY, XY_ARCS, KNOWN_POSITIONS, NOMINAL, COMPENSATED)

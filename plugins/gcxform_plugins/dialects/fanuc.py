@@ -9,8 +9,10 @@
 | arc centre | incremental only; no centre at all: refused (parameter 3403 decides what is cut) |
 | R together with I J K | refused |
 | start and end radius | parameter 3410: taken as 0.01 mm |
+| F without a point | mm/min; in inch or G95 refused |
+| another unit or feed mode | the feed is not known until it is programmed |
 | M0 M1 M2 M30 M98 M99 | act after the motion of their block |
-| M5, M9 with a motion | the machine's PLC decides: kept in their block |
+| M5, M9 with a motion | the machine's PLC decides, commonly after it: taken as after |
 | an M code not listed | may move axes: positions are unknown after it |
 | tool change | moves axes: positions are unknown after it |
 """
@@ -85,6 +87,8 @@ class Fanuc(gx.Dialect):
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
         **v.ISO_M,
+        5: gx.MCode("spindle", after=True),
+        9: gx.MCode("coolant", after=True),
         6: gx.MCode("tool", loses_position=True),
         **{code: gx.MCode("override") for code in (48, 49)},
         19: gx.MCode("spindle"),
@@ -95,5 +99,6 @@ class Fanuc(gx.Dialect):
     unknown_m = gx.MCode("user", loses_position=True)
     last_code_wins = True
     point_required = True
+    change_clears_feed = True
     dwell: ClassVar[Mapping[str, float]] = {"X": 1.0, "U": 1.0, "P": 0.001}
     arc_rule = gx.ArcRule(absolute=0.01)

@@ -9,6 +9,7 @@
 | full circle | at least one plane word must be there |
 | start and end radius | refused beyond 0.5 mm, or beyond 0.005 mm and 0.1 % |
 | `%`, O numbers | refused |
+| after M2, M30 | modes are G1 G17 G90 G94 G54 and execution goes on |
 | block | at most 79 characters after comments and blanks |
 """
 
@@ -31,19 +32,12 @@ class Grbl(gx.Dialect):
         **v.ISO,
         "G61": v.inert("path"),
         "G91.1": gx.Code("arc-distance"),
+        **{code: v.barrier("non-modal", v.SHIFT, "LP") for code in ("G10", "G92", "G92.1")},
         **{
-            code: v.barrier("non-modal", v.SHIFT, "LP")
-            for code in ("G10", "G92", "G92.1")
-        },
-        **{
-            code: v.barrier("non-modal", v.HOME)
-            for code in ("G28", "G28.1", "G30", "G30.1", "G53")
+            code: v.barrier("non-modal", v.HOME) for code in ("G28", "G28.1", "G30", "G30.1", "G53")
         },
         "G43.1": v.barrier("tool-length", v.LENGTH),
-        **{
-            code: v.barrier("motion", v.PROBE)
-            for code in ("G38.2", "G38.3", "G38.4", "G38.5")
-        },
+        **{code: v.barrier("motion", v.PROBE) for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
         code: code_of
@@ -54,6 +48,13 @@ class Grbl(gx.Dialect):
     circle_needs_axis_word = True
     block_delete = "execute"
     stops_at_end = False
+    resets_at_end: ClassVar[Mapping[str, str]] = {
+        "motion": "G1",
+        "plane": "G17",
+        "distance": "G90",
+        "feed-mode": "G94",
+        "frame": "G54",
+    }
     line_length = 79
     comments = "(;"
     has_percent = False

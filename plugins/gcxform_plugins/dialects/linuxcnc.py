@@ -9,6 +9,8 @@
 | turns of an arc | P n: n - 1 full turns more |
 | start and end radius | refused if they differ by more than 0.0282843 mm and 0.1 % |
 | G93, G94, G95 | set the feed to zero, also when re-stated |
+| `G20 F10` | F is in the unit before; after G20, G21 the feed in mm/min stays |
+| CR without LF | is a blank |
 | M5, M9 | act before the motion of their block |
 | after M2, M30 | nothing is executed |
 | tool change | the axes stay, as far as the interpreter knows |
@@ -47,8 +49,7 @@ class LinuxCNC(gx.Dialect):
             for code in ("G10", "G52", "G92", "G92.1", "G92.2", "G92.3")
         },
         **{
-            code: v.barrier("non-modal", v.HOME)
-            for code in ("G28", "G28.1", "G30", "G30.1", "G53")
+            code: v.barrier("non-modal", v.HOME) for code in ("G28", "G28.1", "G30", "G30.1", "G53")
         },
         **{code: v.barrier("cutter-comp", v.COMP, "DL") for code in ("G41", "G42")},
         **{code: v.barrier("cutter-comp", v.COMP, "DL") for code in ("G41.1", "G42.1")},
@@ -60,10 +61,7 @@ class LinuxCNC(gx.Dialect):
             for code in ("G5", "G5.1", "G5.2", "G5.3")
         },
         **{code: v.barrier("motion", v.SYNCHRONISED, "K") for code in ("G33", "G33.1")},
-        **{
-            code: v.barrier("motion", v.PROBE)
-            for code in ("G38.2", "G38.3", "G38.4", "G38.5")
-        },
+        **{code: v.barrier("motion", v.PROBE) for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
         **{
             code: v.barrier("motion", v.CYCLE, "DEIJKLPQR")
             for code in ("G70", "G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2")
@@ -90,6 +88,8 @@ class LinuxCNC(gx.Dialect):
         **{code: gx.MCode("user", takes="PQ") for code in range(100, 200)},
     }
     feed_mode_clears_feed = True
+    feed_before_units = True
+    lone_cr_is_blank = True
     turns_address = "P"
     line_length = 252
     comments = "(;"

@@ -1,4 +1,4 @@
-"""How `volumetric` keeps arcs: an arc through compensated points, halved until it is near enough."""
+"""How `volumetric` keeps arcs: one through compensated points, halved until it is near enough."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class ArcFitter:
         for plane in gx.Plane:
             here = np.flatnonzero(self.path.plane[row] == plane)
             a, b, normal = plane.axes
-            centre[np.ix_(here, [a, b])] = gx.circle_through(
+            centre[np.ix_(here, np.array([a, b]))] = gx.circle_through(
                 *(point[here][:, [a, b]] for point in (first, second, third))
             )
             centre[here, normal] = first[here, normal]
@@ -95,9 +95,7 @@ class ArcFitter:
                 )
         return worst + self.reach * length / count / 2
 
-    def _largest(
-        self, row: Ints, low: Floats, high: Floats, centre: Floats, number: int
-    ) -> Floats:
+    def _largest(self, row: Ints, low: Floats, high: Floats, centre: Floats, number: int) -> Floats:
         """Return the largest distance of the machine from the arcs, at a number of points each."""
         pieces = self._fitted(row, low, high, centre)
         every = np.repeat(np.arange(len(row)), number)
@@ -123,7 +121,7 @@ class ArcFitter:
         return off
 
     def _fitted(self, row: Ints, low: Floats, high: Floats, centre: Floats) -> gx.Toolpath:
-        """Return the fitted pieces as arcs: each row 2k + 1, after a row that leads to its start."""
+        """Return the fitted pieces as arcs: row 2k + 1, after a row that leads to its start."""
         path = self.path.take(np.repeat(row, 2))
         end = np.array(path.end)
         end[0::2, :3], end[1::2, :3] = self._command(row, low), self._command(row, high)

@@ -27,9 +27,8 @@ class Renumber(gx.TextPass):
         for item in block.items:
             if not isinstance(item, gx.Word | gx.Comment) and hasattr(item, "tree"):
                 return "blocks may be jumped to by their numbers"
-            if isinstance(item, gx.Word) and isinstance(item.value, gx.Number):
-                if (item.address, item.value.value) in JUMPS:
-                    return f"{item.address}{item.value.value:g} may refer to sequence numbers"
+            if isinstance(item, gx.Word) and _may_jump(item):
+                return f"{block.text[item.start : item.end]} may refer to sequence numbers"
         return ""
 
     def edit(self, block: gx.Block, number: int) -> str | None:
@@ -44,3 +43,7 @@ class Renumber(gx.TextPass):
             return block.text[: first.start] + new + block.text[first.end :]
         gap = " " if len(words) > 1 and words[1].start > words[0].end else ""
         return block.text[: first.start] + new + gap + block.text[first.start :]
+
+
+def _may_jump(word: gx.Word) -> bool:
+    return isinstance(word.value, gx.Number) and (word.address, word.value.value) in JUMPS

@@ -7,7 +7,17 @@ from typing import Annotated
 
 import gcxform as gx
 
-ACTIVE = ("MSG", "DEBUG", "PRINT", "LOG", "PROBEOPEN", "PROBECLOSE", "LOGOPEN", "LOGCLOSE", "LOGAPPEND")
+ACTIVE = (
+    "MSG",
+    "DEBUG",
+    "PRINT",
+    "LOG",
+    "PROBEOPEN",
+    "PROBECLOSE",
+    "LOGOPEN",
+    "LOGCLOSE",
+    "LOGAPPEND",
+)
 
 
 @dataclass(frozen=True)

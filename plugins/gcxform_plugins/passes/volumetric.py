@@ -46,14 +46,16 @@ class Volumetric(gx.Pass):
     )
     tolerance: Annotated[
         gx.Length | None,
-        gx.Option("residual allowed between cuts; absent: lines are exact, arcs within 1 um", above=0.0),
+        gx.Option(
+            "residual allowed between cuts; absent: lines are exact, arcs within 1 um", above=0.0
+        ),
     ] = None
-    max_correction: Annotated[gx.Length, gx.Option("a larger correction is an error", above=0.0)] = (
-        0.2
+    max_correction: Annotated[
+        gx.Length, gx.Option("a larger correction is an error", above=0.0)
+    ] = 0.2
+    split: Annotated[Literal["adaptive", "nodes", "none"], gx.Option("where moves are cut")] = (
+        "adaptive"
     )
-    split: Annotated[
-        Literal["adaptive", "nodes", "none"], gx.Option("where moves are cut")
-    ] = "adaptive"
     rapids: Annotated[
         Literal["ends", "skip"], gx.Option("rapids: compensate their ends, or leave them")
     ] = "ends"
@@ -92,7 +94,7 @@ class Volumetric(gx.Pass):
                 hint="give part-origin = [x, y, z], or a machine file with work offsets",
             )
 
-    # --- forward and back ----------------------------------------------------------------------------
+    # --- forward and back ---
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the commands for a path."""
@@ -197,7 +199,7 @@ class Compensation:
             row, part = np.append(row, arc_row), np.append(part, arc_part)
         return row, part
 
-    # --- refusals ------------------------------------------------------------------------------------
+    # --- refusals ---
 
     def _check_known(self) -> None:
         unknown = np.isnan(self.end)
@@ -266,7 +268,7 @@ class Compensation:
                 "values in the table are in mm; if they are, raise max-correction",
             )
 
-    # --- rows ------------------------------------------------------------------------------------------
+    # --- rows ---
 
     def _with_others(self, command: Floats) -> Floats:
         """Return the ends of all rows: commands for X, Y, Z, the other axes as they are."""
@@ -412,7 +414,9 @@ class _Machine:
             entry[:3] += self.step.error(entry[None, :3] + self.offset[:1])[0]
         columns: dict[str, Floats] = {"end": end}
         if path.has_arcs:
-            before = np.where(np.append(True, rows[1:] != rows[:-1]), 0.0, np.append(0.0, part[:-1]))
+            before = np.where(
+                np.append(True, rows[1:] != rows[:-1]), 0.0, np.append(0.0, part[:-1])
+            )
             columns["sweep"] = path.sweep[rows] * (part - before)
             middle = self._points_between(rows, (part + before) / 2)
             columns["centre"] = path.centre[rows] + middle

@@ -1,0 +1,98 @@
+"""The command line: `gcxform VERB ...`, one file per verb.
+
+A verb's file is imported when the verb is called, so that `gcxform --help` waits for click alone.
+stdout carries data only; what is said to a person goes to stderr. Exit codes: 0 done; 1 findings;
+2 usage, pipeline or machine file; 3 program refused; 4 verification failed; 5 input or output
+failed; 70 a bug; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any, Final, NoReturn
+
+import click
+
+from gcxform.version import VERSION
+
+VERBS: Final = {
+    "run": "Transform a program, prove the result, and write it.",
+    "post": "Transform a file in place: for CAM systems and slicers.",
+    "check": "Show the chain of a pipeline, and what is wrong with a program.",
+    "compare": "Say how far the paths of two programs are apart, and where.",
+    "info": "Say what is in a program.",
+    "list": "List what is installed, or the options of one thing.",
+    "explain": "Explain a diagnostic code, or what a block does.",
+    "schema": "Print the JSON Schema of a kind of files.",
+}
+DEBUG: Final = "show_traceback"
+
+
+class Verbs(click.Group):
+    """The verbs by name; every failure becomes a message and an exit code."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the verbs in the order in which they are shown."""
+        return list(VERBS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import a verb."""
+        if cmd_name not in VERBS:
+            return None
+        command: click.Command = import_module(f"gcxform.cli.{cmd_name}").command
+        if not command.params or command.params[-1].name != DEBUG:
+            command.params.append(_debug_option())
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list of verbs without importing any."""
+        with formatter.section("Verbs"):
+            formatter.write_dl(list(VERBS.items()))
+
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        windows_expand_args: bool = True,
+        **extra: Any,
+    ) -> NoReturn:
+        """Run a command line and exit."""
+        if any(name.startswith("_GCXFORM_") for name in os.environ):
+            super().main(args, prog_name, complete_var, **extra)
+        from gcxform.cli.failures import guarded
+
+        words = list(sys.argv[1:] if args is None else args)
+        sys.exit(guarded(self, prog_name or "gcxform", words, extra))
+
+
+def _debug_option() -> click.Option:
+    """Return the option that shows tracebacks; every verb takes it."""
+    return click.Option(
+        ["--debug", DEBUG],
+        is_flag=True,
+        expose_value=False,
+        is_eager=True,
+        help="Show the traceback of a bug.",
+        callback=lambda ctx, _, value: ctx.meta.update({DEBUG: True}) if value else None,
+    )
+
+
+@click.group(
+    "gcxform",
+    cls=Verbs,
+    params=[_debug_option()],
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
+@click.version_option(VERSION, package_name="gcxform", message="%(prog)s %(version)s")
+def verbs() -> None:
+    """Read a G-code program, change what must change, write a program that is proved right."""
+
+
+def main() -> NoReturn:
+    """Run the command line of the process."""
+    verbs.main(prog_name="gcxform")

@@ -1,0 +1,5 @@
+"""`python -m gcxform.cli`."""
+
+from gcxform.cli import main
+
+main()

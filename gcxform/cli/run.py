@@ -1,0 +1,84 @@
+"""`gcxform run`: the main job."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from gcxform.certificate import Certificate
+from gcxform.cli import VERBS, options
+from gcxform.cli.failures import say, warn
+from gcxform.cli.options import Asked, excluding
+from gcxform.cli.outputs import STDOUT, check_places, same
+from gcxform.cli.transform import Done, Job, transform
+from gcxform.pipeline import Pipeline
+from gcxform.registry import default_registry
+
+
+@click.command("run", help=VERBS["run"], short_help=VERBS["run"])
+@options.pipeline_options
+@click.option("-o", "--output", metavar="FILE", help="Where to write.  [default: stdout]")
+@click.option("--in-place", is_flag=True, help="Replace FILE by the result.")
+@options.CERTIFICATE
+@options.MAP
+@options.VERIFY
+@options.QUIET
+@options.FILE
+def command(
+    file: str,
+    output: str | None,
+    in_place: bool,
+    certificate: str | None,
+    source_map: str | None,
+    verify: str,
+    quiet: bool,
+    **asked: Any,
+) -> None:
+    """Transform one program."""
+    what = Asked(**asked)
+    out = _place(file, output, in_place)
+    written = {"--certificate": certificate, "--map": source_map}
+    read = (file, what.file, what.machine)
+    check_places({"-o": None if in_place else out, **written}, read)
+    pipeline = what.build()
+    if not quiet:
+        warn(default_registry().diagnostics)
+    done = transform(pipeline, Job(file, out, certificate, source_map, verify, quiet))
+    if not quiet:
+        say(summary(pipeline, done))
+
+
+def _place(file: str, output: str | None, in_place: bool) -> str:
+    """Return where the result goes. Raises UsageError."""
+    if not in_place:
+        return output or STDOUT
+    if output is not None and not same(file, output):
+        raise excluding("--in-place and -o")
+    if file == STDOUT:
+        raise excluding("--in-place and stdin")
+    return file
+
+
+def summary(pipeline: Pipeline, done: Done) -> str:
+    """Return what a run has done in one or two lines."""
+    found = done.certificate
+    counts = f"{found.source['lines']} -> {found.output['lines']} blocks"
+    if pipeline.copies and not pipeline.text_passes:
+        counts = "copied byte for byte"
+    steps = " | ".join(step.name for step in pipeline.passes) or "no passes"
+    head = f"{found.source['name']}: {pipeline.source.name} -> {pipeline.target.name}"
+    return f"{head}   {counts}   {steps}   {done.seconds:.2f} s\n  {_proof(found)}"
+
+
+def _proof(found: Certificate) -> str:
+    """Return the outcome of the verification."""
+    if not found.verified:
+        return "NOT VERIFIED"
+    if not found.largest:
+        return "PASS"
+    largest = found.largest
+    text = f"largest deviation {largest['deviation']:.5f} mm of {found.budget['deviation']:.5f} mm"
+    if largest["source_line"]:
+        text += f", source line {largest['source_line']}, output line {largest['output_line']}"
+    return f"{text}   PASS"
