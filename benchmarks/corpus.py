@@ -17,12 +17,12 @@ from collections import Counter
 from pathlib import Path
 
 import gcxform as gx
-from gcxform.modal.interpreter import Reading
+from gcxform.modal.reader import WindowReader
+from gcxform.modal.state import Reading
 from gcxform.pipeline import Pipeline
 from gcxform.registry import default_registry
 from gcxform.source import Source
 from gcxform.syntax.tree import print_block
-from gcxform.verify import WindowReader
 
 HERE = Path(__file__).resolve().parent
 BESIDE = HERE.parents[1] / "shared" / "corpus"

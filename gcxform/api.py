@@ -1,11 +1,36 @@
-"""The functions of `import gcxform as gx` that are not classes."""
+"""The functions of `import gcxform as gx` that are not classes, and what they return."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import zip_longest
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.contract import Pass, PassContext
+from gcxform.dialect import LINEAR, Dialect
 from gcxform.files import write_atomically
+from gcxform.machine.machine import Machine
+from gcxform.modal.codes import Effect
+from gcxform.modal.interpreter import Interpreter
+from gcxform.modal.reader import windows_of
+from gcxform.modal.state import Reading
+from gcxform.modal.tables import frame_name
 from gcxform.pipeline import Result
+from gcxform.registry import default_registry
+from gcxform.source import Source
+from gcxform.toolpath.matching import Matching, Pieces, match, measure
+from gcxform.toolpath.path import COLUMNS, Blocks, Event, FeedMode, Kind, Toolpath
+
+TOLERANCE = 0.001  # mm: twice what rounding an axis to three decimals can do
+REACH = 1.0  # mm; what is farther apart is not taken for the same place
+FEED_SLIP = 1e-3  # of a feed, or of the time of a move in G93
+TIME_SLIP = 1e-3  # s, of a dwell
 
 
 def write(result: Result | bytes, path: str | Path) -> None:
@@ -13,3 +38,270 @@ def write(result: Result | bytes, path: str | Path) -> None:
     text = result.text if isinstance(result, Result) else result
     with write_atomically(Path(path)) as put:
         put(text)
+
+
+# --- programs in memory --------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Program:
+    """A program in memory, and what its dialect says it does.
+
+    `path` is its whole toolpath; asking for it raises InputError where the program is refused.
+    """
+
+    text: bytes
+    dialect: type[Dialect]
+    reading: Reading = field(default_factory=Reading)
+    name: str = "-"
+
+    @cached_property
+    def path(self) -> Toolpath:
+        """The moves of the whole program: mm and degrees."""
+        source = Source.of_bytes(self.text, self.name)
+        letters = source.letters()
+        axes = "".join(a for a in self.dialect.axes if a in letters or a in "XYZ")
+        interpreter = Interpreter(self.dialect, self.reading, axes, self.name)
+        windows = windows_of(source, self.dialect)
+        parts = [interpreter.interpret(window, reader.table).path for window, reader in windows]
+        return joined(parts) if parts else _empty(axes, interpreter.state.position)
+
+
+def read(program: bytes | str | Path, dialect: str | type[Dialect], **reading: Any) -> Program:
+    """Return a program: its bytes, or the file of that name.
+
+    `reading` is what the program does not say of itself: `start`, `increment`, `feed`,
+    `block_delete`, `units`, as in `Reading`. Raises FileError, and UsageError for the dialect.
+    """
+    kind = default_registry().dialect(dialect) if isinstance(dialect, str) else dialect
+    if isinstance(program, bytes):
+        return Program(program, kind, Reading(**reading))
+    source = Source.open(Path(program))
+    with source.stream as stream:
+        return Program(stream.read(), kind, Reading(**reading), source.name)
+
+
+def joined(parts: Sequence[Toolpath]) -> Toolpath:
+    """Return toolpaths of the windows of one program as one toolpath."""
+    counts = np.cumsum([0, *(len(part) for part in parts)])
+    columns = {name: np.concatenate([getattr(p, name) for p in parts]) for name in COLUMNS}
+    events = tuple(
+        replace(event, row=event.row + int(first))
+        for part, first in zip(parts, counts[:-1], strict=True)
+        for event in part.events
+    )
+    names = ("inch", "incremental", "absolute_centre")
+    flags = [np.concatenate([getattr(p.blocks, name) for p in parts]) for name in names]
+    blocks = Blocks(parts[0].blocks.first, *flags)
+    return parts[0].replace(**columns, events=events, blocks=blocks)
+
+
+def _empty(axes: str, position: NDArray[np.float64]) -> Toolpath:
+    """Return the toolpath of a program without lines."""
+    none, flags = np.empty(0), np.empty(0, np.bool_)
+    small, whole = np.empty(0, np.int8), np.empty(0, np.int64)
+    ends, centres = np.empty((0, len(axes))), np.empty((0, 3))
+    columns = (small, ends, centres, none, small, none, small, small, whole)
+    return Toolpath(axes, *columns, position, Blocks(0, flags, flags, flags))
+
+
+# --- comparison ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Something other than the path that differs: lines of A and B from 1, 0 where there is none."""
+
+    what: str
+    line_a: int
+    line_b: int
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How two programs differ.
+
+    deviation       largest distance of the two paths, mm; inf if they part
+    line_a, line_b  where that is, from 1; 0 if there are no moves
+    angle           largest difference of a rotary axis, degrees
+    tolerance       mm and degrees that are still the same
+    matched         pairs of moves, or of their parts, that were compared
+    ends_only       how many of them only at their ends: rapids, and from an unknown start
+    parted          lines of A and B from which nothing fits, None if everything does
+    """
+
+    deviation: float
+    line_a: int
+    line_b: int
+    angle: float
+    tolerance: float
+    matched: int
+    ends_only: int
+    parted: tuple[int, int] | None = None
+    feeds: tuple[Difference, ...] = ()
+    events: tuple[Difference, ...] = ()
+
+    @property
+    def same(self) -> bool:
+        """Whether path, feeds and events are the same within the tolerance."""
+        near = self.deviation <= self.tolerance and self.angle <= self.tolerance
+        return near and self.parted is None and not self.feeds and not self.events
+
+
+def compare(
+    a: Program,
+    b: Program,
+    tolerance: float = TOLERANCE,
+    through: Pass | None = None,
+    machine: Machine | None = None,
+) -> Comparison:
+    """Return how program B differs from program A, in whatever dialects, cut wherever they are.
+
+    With `through`, B holds commands that came from this pass, and what the machine does with them
+    is compared. Raises InputError where one of them is refused.
+    """
+    path_a, path_b = _same_axes(a.path, b.path)
+    if through is not None:
+        context = PassContext(a.dialect, b.dialect, b.dialect.numbers, machine)
+        through.begin(context)
+        path_b = through.undo(path_b, context)
+    matching = match(path_a, path_b, tolerance, max(REACH, tolerance))
+    found = measure(path_a, path_b, matching)
+    worst = int(np.argmax(found.distance)) if len(matching.a) else -1
+    return Comparison(
+        np.inf if matching.parted else float(found.distance.max(initial=0.0)),
+        _line(path_a, matching.a, worst),
+        _line(path_b, matching.b, worst),
+        float(found.angle.max(initial=0.0)),
+        tolerance,
+        len(matching.a),
+        int(found.ends_only.sum()),
+        _parted(path_a, path_b, matching),
+        tuple(_feeds(path_a, path_b, matching)),
+        tuple(_events((path_a, a.dialect), (path_b, b.dialect), matching, tolerance)),
+    )
+
+
+def _same_axes(a: Toolpath, b: Toolpath) -> tuple[Toolpath, Toolpath]:
+    """Return the paths over the axes that any of them has; the position of others is unknown."""
+    axes = a.axes + "".join(axis for axis in b.axes if axis not in a.axes)
+    return _over(a, axes), _over(b, axes)
+
+
+def _over(path: Toolpath, axes: str) -> Toolpath:
+    if path.axes == axes:
+        return path
+    end, entry = np.full((len(path), len(axes)), np.nan), np.full(len(axes), np.nan)
+    for k, axis in enumerate(axes):
+        if axis in path.axes:
+            end[:, k] = path.end[:, path.axes.index(axis)]
+            entry[k] = path.entry[path.axes.index(axis)]
+    return path.replace(axes=axes, end=end, entry=entry)
+
+
+def _line(path: Toolpath, pieces: Pieces, index: int) -> int:
+    """Return the line, from 1, that a piece came from; 0 if there is none."""
+    return int(path.source[pieces.row[index]]) + 1 if 0 <= index < len(pieces) else 0
+
+
+def _parted(a: Toolpath, b: Toolpath, matching: Matching) -> tuple[int, int] | None:
+    if matching.parted is None:
+        return None
+    one, other = (
+        int(path.source[row]) + 1 if row >= 0 else 0
+        for path, row in zip((a, b), matching.parted, strict=True)
+    )
+    return one, other
+
+
+def _feeds(a: Toolpath, b: Toolpath, matching: Matching) -> list[Difference]:
+    """Return where feeds, feed modes or work offsets differ, once for each line of A."""
+    one, other = matching.a, matching.b
+    feed_a, feed_b = a.feed[one.row], b.feed[other.row]
+    mode_a, mode_b = a.feed_mode[one.row], b.feed_mode[other.row]
+    inverse = mode_a == FeedMode.INVERSE_TIME
+    part_a, part_b = one.high - one.low, other.high - other.low
+    moves = (part_a > 0) & (part_b > 0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        feed_a = np.where(inverse, feed_a / part_a, feed_a)
+        feed_b = np.where(inverse, feed_b / part_b, feed_b)
+        apart = np.abs(feed_a - feed_b) > FEED_SLIP * np.abs(feed_a)
+    wrong = moves & (a.kind[one.row] != Kind.RAPID) & (apart | (mode_a != mode_b))
+    frames = moves & (a.frame[one.row] != b.frame[other.row])
+    found: dict[int, Difference] = {}
+    for k in np.flatnonzero(wrong | frames).tolist():
+        lines = _line(a, one, k), _line(b, other, k)
+        text = f"feed {feed_a[k]:g} became {feed_b[k]:g}"
+        if mode_a[k] != mode_b[k]:
+            text = f"feed mode G{mode_a[k]} became G{mode_b[k]}"
+        if frames[k]:
+            names = (frame_name(int(p.frame[q.row[k]])) for p, q in ((a, one), (b, other)))
+            text = " became ".join(names)
+        found.setdefault(lines[0], Difference(text, *lines))
+    return list(found.values())
+
+
+# --- events ----------------------------------------------------------------------------------------
+
+Side = tuple[Toolpath, type[Dialect]]
+
+
+def _events(a: Side, b: Side, matching: Matching, tolerance: float) -> list[Difference]:
+    """Return the first event that differs in name, numbers or place, and nothing after it."""
+    ours, theirs = _told(a, b[1]), _told(b, a[1])
+    lengths = _lengths(a[0], matching.a)
+    for one, other in zip_longest(ours, theirs):
+        text = _difference(one, other)
+        if not text and one and other and matching.parted is None:
+            places = _place(matching.a, one.row), _place(matching.b, other.row)
+            between = lengths[min(places) : max(places)]
+            text = f"{_shown(one)} stands elsewhere" if between.sum() > tolerance else ""
+        if text:
+            lines = (event.line + 1 if event else 0 for event in (one, other))
+            return [Difference(text, *lines)]
+    return []
+
+
+def _told(side: Side, other: type[Dialect]) -> list[Event]:
+    """Return the events but for those that the other dialect reads as a mode and not as an event."""
+    path, _ = side
+    return [
+        event
+        for event in path.events
+        if event.what not in other.codes or other.codes[event.what].effect is not Effect.MODAL
+    ]
+
+
+def _difference(one: Event | None, other: Event | None) -> str:
+    """Return in what two events differ."""
+    if one is None or other is None:
+        lone = one or other
+        return f"{_shown(lone)} is only in {'A' if one else 'B'}" if lone else ""
+    slip = TIME_SLIP if one.what == "DWELL" else 1e-9
+    same = one.what == other.what and len(one.values) == len(other.values)
+    same = same and all(
+        p[0] == q[0] and abs(p[1] - q[1]) <= slip
+        for p, q in zip(one.values, other.values, strict=True)
+    )
+    return "" if same else f"{_shown(one)} became {_shown(other)}"
+
+
+def _shown(event: Event) -> str:
+    """Return an event as a person writes it."""
+    if event.what == "DWELL":
+        return "dwell " + " ".join(f"{value:g} {unit}" for unit, value in event.values)
+    words = [f"{name}{value:g}" for name, value in event.values]
+    return " ".join(words if len(event.what) == 1 and words else [event.what, *words])
+
+
+def _place(pieces: Pieces, row: int) -> int:
+    """Return before which piece an event stands that stands before a row."""
+    return int(np.searchsorted(pieces.row, row))
+
+
+def _lengths(path: Toolpath, pieces: Pieces) -> NDArray[np.float64]:
+    """Return how far the pieces go: mm, chords for arcs, and at least the sweep."""
+    linear = [k for k, axis in enumerate(path.axes) if axis in LINEAR]
+    way = np.nan_to_num(path.end[pieces.row] - path.start[pieces.row])
+    straight = np.sqrt((way[:, linear] ** 2).sum(axis=1)) + np.abs(way).max(axis=1, initial=0.0)
+    return np.asarray((pieces.high - pieces.low) * (straight + path.sweep[pieces.row]))

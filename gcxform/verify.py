@@ -16,39 +16,15 @@ from numpy.typing import NDArray
 
 from gcxform.contract import Pass, PassContext
 from gcxform.diagnostics import Diagnostic, GcxformError, Location, VerificationError
-from gcxform.dialect import Dialect
-from gcxform.modal.interpreter import Interpreted, Interpreter, Reading
-from gcxform.modal.tables import MeaningTable
-from gcxform.syntax.scan import Window, scan
-from gcxform.syntax.shapes import ShapeTable
+from gcxform.modal.interpreter import Interpreted, Interpreter
+from gcxform.modal.reader import WindowReader
+from gcxform.modal.state import Reading
+from gcxform.syntax.scan import Window
 from gcxform.toolpath.deviation import deviation
 from gcxform.toolpath.path import Event, FeedMode, Kind, Toolpath
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
-
-SHAPES_AT_MOST = 20_000  # a table of shapes that grows beyond is begun anew
-
-
-class WindowReader:
-    """Turns texts of whole lines into windows, with the shapes and meanings they need."""
-
-    def __init__(self, dialect: type[Dialect]) -> None:
-        self.dialect = dialect
-        self.lines = 0
-        self._begin()
-
-    def _begin(self) -> None:
-        self.shapes = ShapeTable(self.dialect.load_grammar())
-        self.table = MeaningTable(self.shapes, self.dialect)
-
-    def read(self, text: bytes) -> Window:
-        """Return the next window."""
-        if len(self.shapes) > SHAPES_AT_MOST:
-            self._begin()
-        window = scan(text, self.lines, self.shapes)
-        self.lines += len(window)
-        return window
 
 
 @dataclass(slots=True)

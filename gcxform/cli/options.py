@@ -11,7 +11,7 @@ from typing import Any, Final, TypeVar
 import click
 
 from gcxform.diagnostics import Location, UsageError
-from gcxform.modal.interpreter import Reading
+from gcxform.modal.state import Reading
 from gcxform.options import Argument, build
 from gcxform.pipeline import Pipeline
 from gcxform.pipelinefile import InputSpec, PipelineSpec, load, parse_chain
@@ -36,7 +36,9 @@ MAP = click.option("--map", "source_map", metavar="FILE", help="Write the source
 FILE = click.argument("file", metavar="FILE")
 
 _PIPELINE = (
-    click.option("-p", "--pipeline", metavar="FILE", help=f"Pipeline (TOML).  [env: {ENVIRONMENT}]"),
+    click.option(
+        "-p", "--pipeline", metavar="FILE", help=f"Pipeline (TOML).  [env: {ENVIRONMENT}]"
+    ),
     click.option("-x", "--chain", metavar="CHAIN", help="Passes: 'absolute | metric'."),
 )
 _READING = (

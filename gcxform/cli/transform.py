@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from gcxform.certificate import Certificate
 from gcxform.cli.outputs import destination
-from gcxform.cli.progress import Progress
 from gcxform.cli.programs import opened
+from gcxform.cli.progress import Progress
 from gcxform.cli.sourcemap import SourceMap
 from gcxform.pipeline import Pipeline
 

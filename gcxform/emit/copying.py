@@ -50,7 +50,7 @@ class Copying:
 
     def _same_modes(self) -> Flags:
         now, old = self.path.blocks, self.original.blocks
-        return (
+        return np.asarray(
             (now.inch == old.inch)
             & (now.incremental == old.incremental)
             & (now.absolute_centre == old.absolute_centre)

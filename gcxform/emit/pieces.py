@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from gcxform.dialect import INCH
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.templates import Feed, Role
-from gcxform.modal.interpreter import fill, turns_only
+from gcxform.modal.lines import fill
+from gcxform.modal.moves import turns_only
 from gcxform.modal.tables import GROUPS
 from gcxform.toolpath.path import FeedMode, Kind
 

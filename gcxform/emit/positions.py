@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from gcxform.dialect import LINEAR
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.numbers import quantise
-from gcxform.modal.interpreter import fill
+from gcxform.modal.lines import fill
 from gcxform.toolpath.path import Small, column_major
 
 Floats = NDArray[np.float64]

@@ -121,7 +121,7 @@ class _Part:
         has = ~np.isnan(self.words.offset)
         has_radius = ~np.isnan(self.words.radius)
         in_plane = has[:, self.first] | has[:, self.second]
-        unknown = np.isnan(np.hstack([self.a, self.b])).any(axis=1)
+        unknown = np.any(np.isnan(np.hstack([self.a, self.b])), axis=1)
         self._refuse(
             unknown,
             "GX208",

@@ -117,4 +117,4 @@ def circle_through(a: Floats, b: Floats, c: Floats) -> Floats:
     with np.errstate(divide="ignore", invalid="ignore"):
         x = (v[:, 1] * uu - u[:, 1] * vv) / cross
         y = (u[:, 0] * vv - v[:, 0] * uu) / cross
-    return a + np.stack([x, y], axis=1)
+    return np.asarray(a + np.stack([x, y], axis=1))

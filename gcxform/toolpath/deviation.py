@@ -57,9 +57,8 @@ class _Comparison:
         before = self.before
         start_of_owner = before.start
         owner_arc = before.is_arc[self.owner]
-        unknown = np.isnan(start_of_owner).any(axis=1)[self.owner] if len(before) else owner_arc
-        known_move = ~np.isnan(start_of_owner) | np.isnan(before.end)
-        unknown = ~known_move.all(axis=1)[self.owner]
+        unknown_move = np.any(np.isnan(start_of_owner) & ~np.isnan(before.end), axis=1)
+        unknown = unknown_move[self.owner]
         rapid = before.kind[self.owner] == Kind.RAPID
         ends_only = unknown | rapid
         lines = ~owner_arc & ~ends_only & ~self.after.is_arc
@@ -154,7 +153,7 @@ class _BesideArc:
     def _slip(self) -> Floats:
         """Return how much a sweep may differ because the arc is tiny."""
         radius = np.hypot(*(self.start[:, self.axes] - self.centre).T)
-        return np.minimum(0.01 / np.maximum(radius, 1e-9), TURN)
+        return np.asarray(np.minimum(0.01 / np.maximum(radius, 1e-9), TURN))
 
     def _progress(self) -> tuple[Floats, Floats]:
         """Return the angle travelled about the owner's centre at the end of each row, and in it."""
@@ -175,7 +174,7 @@ class _BesideArc:
         """Return the owner's radius at an angle: it changes evenly where its ends differ."""
         first = np.hypot(*(self.start[:, self.axes] - self.centre).T)
         last = np.hypot(*(self.goal[:, self.axes] - self.centre).T)
-        return first + (last - first) * np.clip(angle / self.sweep, 0.0, 1.0)
+        return np.asarray(first + (last - first) * np.clip(angle / self.sweep, 0.0, 1.0))
 
     def _in_plane(self, begin: Floats, reach: Floats) -> Floats:
         """Return the largest radial distance in the plane."""
@@ -185,10 +184,10 @@ class _BesideArc:
         ends = np.where(self.all.last[self.rows], np.maximum(ends, self._end_gap()), ends)
         chord = np.minimum(r0, r1) - _nearest(u, v)
         inner = np.where(self.is_arc, self._arc_beside(u, r0, r1), np.abs(chord))
-        return np.maximum(ends, inner)
+        return np.asarray(np.maximum(ends, inner))
 
     def _end_gap(self) -> Floats:
-        return np.hypot(*(self.b - self.goal)[:, self.axes].T)
+        return np.asarray(np.hypot(*(self.b - self.goal)[:, self.axes].T))
 
     def _arc_beside(self, u: Floats, r0: Floats, r1: Floats) -> Floats:
         """Return the largest radial distance of an arc about another centre.

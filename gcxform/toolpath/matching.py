@@ -1,4 +1,4 @@
-"""Which parts of two toolpaths are the same travel, where nobody wrote down which row came from which.
+"""Which parts of two toolpaths are the same travel, where nothing says which row came from which.
 
 Two programs may cut one path at different places: a line against its pieces, an arc against chords,
 pieces against other pieces. Both paths are walked together, and whichever row ends first cuts the
@@ -14,31 +14,35 @@ best can only make it larger. What does not fit anywhere within `reach` is where
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import LINEAR
 from gcxform.toolpath.circles import points_on_arcs
 from gcxform.toolpath.deviation import deviation
-from gcxform.toolpath.path import Kind, Toolpath
+from gcxform.toolpath.path import Kind, Plane, Toolpath
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
-Point = tuple[float, ...]
+Point = Sequence[float]
 
+LEAST = 1e-9  # part of a row; cuts are no nearer to each other
+PREFERRED = 3.0  # two ends are a pair also this many times farther apart than a cut would be
+STREAK = 8  # pairs in a row after which many are looked at together
+RUN = 1 << 12  # rows looked at together
 TURN = 2 * math.pi
-LEAST = 1e-9  # part of a row; a cut nearer to its ends is at the end
-PREFERRED = 3.0  # a pair of ends this many times farther than a cut is still a pair
-RUN = 1 << 12  # rows that are looked at together where two paths are cut alike
-HALF_TURN = math.pi + 0.1  # rad; a chord does not stand for more of an arc
+CHORD = math.pi + 0.1  # rad; a chord stands for no more of an arc
 
 
 @dataclass(frozen=True)
 class Pieces:
-    """Parts of rows of one path: piece k goes from part `low` to part `high` of row `row`."""
+    """Parts of rows of a path: piece k goes from part `low` to part `high` of row `row`.
+
+    A piece with low == high is a point at which the path stands while the other one moves a little.
+    """
 
     row: Ints
     low: Floats
@@ -50,7 +54,7 @@ class Pieces:
 
 @dataclass(frozen=True)
 class Matching:
-    """Pieces of two paths, one by one; `parted` are the rows at which no more fit, if any."""
+    """Pieces of two paths, one by one; `parted` are the rows from which nothing fits, if any."""
 
     a: Pieces
     b: Pieces
@@ -81,26 +85,28 @@ def measure(a: Toolpath, b: Toolpath, matching: Matching) -> Distance:
     one, other = cut(a, matching.a), cut(b, matching.b)
     owner = np.arange(len(one))
     there, back = deviation(one, other, owner), deviation(other, one, owner)
-    nearer = there.distance <= back.distance
+    out, home = there.distance + a.slack, back.distance + b.slack
     return Distance(
-        np.minimum(there.distance, back.distance),
-        np.where(nearer, there.angle, back.angle),
+        np.minimum(out, home),
+        np.where(out <= home, there.angle, back.angle),
         there.unknown_start | back.unknown_start | (one.kind == Kind.RAPID),
     )
 
 
 def cut(path: Toolpath, pieces: Pieces) -> Toolpath:
-    """Return the path that consists of pieces of the rows of a path."""
+    """Return the path that consists of pieces of the rows of a path, without events."""
     new = path.take(pieces.row)
-    start, end = path.start[pieces.row], path.end[pieces.row]
+    end, kind, sweep = new.end.copy(), new.kind.copy(), new.sweep * (pieces.high - pieces.low)
     inner = np.flatnonzero(pieces.high < 1.0)
-    if len(inner):
-        end = end.copy()
-        way = end[inner] - start[inner]
-        end[inner] = start[inner] + pieces.high[inner, None] * way
-        arcs = inner[new.is_arc[inner]]
+    start = path.start[pieces.row[inner]]
+    at = pieces.high[inner, None]
+    end[inner] = np.where(at > 0, start + at * (end[inner] - start), start)
+    arcs = inner[new.is_arc[inner]]
+    if len(arcs):
         end[arcs, :3] = points_on_arcs(path, pieces.row[arcs], pieces.high[arcs])
-    return new.replace(end=end, sweep=new.sweep * (pieces.high - pieces.low), events=())
+    points = pieces.low == pieces.high
+    kind[points], sweep[points] = Kind.LINE, 0.0
+    return new.replace(end=end, kind=kind, sweep=sweep, events=())
 
 
 def moving_rows(path: Toolpath) -> Ints:
@@ -110,111 +116,217 @@ def moving_rows(path: Toolpath) -> Ints:
     return np.flatnonzero(~still.all(axis=1) | path.is_arc)
 
 
-# --- one of the two paths ---------------------------------------------------------------------------
+# --- the walk -----------------------------------------------------------------------------------
 
 
-@dataclass
+class _Walk:
+    """Two paths, each done up to some place."""
+
+    def __init__(self, a: _Side, b: _Side, tolerance: float, reach: float) -> None:
+        self.a, self.b = a, b
+        self.tolerance, self.reach = tolerance, reach
+        self.streak = 0
+
+    def run(self) -> tuple[int, int] | None:
+        """Walk to the end; return the rows at which the paths part, None if they do not."""
+        a, b = self.a, self.b
+        while not (a.over and b.over):
+            if self.streak >= STREAK:
+                self._many()
+            elif a.over or b.over or not self._step():
+                if not (self._wait(a, b) or self._wait(b, a)):
+                    return a.row, b.row
+        return None
+
+    def _many(self) -> None:
+        """Take the rows from here on that end at the same points, many at once."""
+        a, b = self.a, self.b
+        self.streak = 0
+        count = min(RUN, len(a.rows) - a.at, len(b.rows) - b.at)
+        if a.part or b.part or not count:
+            return
+        one, other = slice(a.at, a.at + count), slice(b.at, b.at + count)
+        gap = a.end[one] - b.end[other]
+        gap[np.isnan(a.end[one]) & np.isnan(b.end[other])] = 0.0
+        same = np.einsum("ij,ij->i", gap, gap) <= self.tolerance**2
+        same &= (a.kind[one] == b.kind[other]) & (np.abs(a.sweep[one] - b.sweep[other]) < 1.0)
+        count = count if same.all() else int(np.argmin(same))
+        a.take_rows(count)
+        b.take_rows(count)
+        self.streak = STREAK if count == RUN else 0
+
+    def _step(self) -> bool:
+        """Pair the present rows, one of them cut if need be; return whether they fit."""
+        a, b = self.a, self.b
+        if a.rapid != b.rapid:
+            return False
+        pair = math.inf if _turn_otherwise(a, b) else _apart(a.goal, b.goal)
+        if pair <= self.tolerance:
+            return self._take(1.0, 1.0)
+        on_a, to_a = a.nearest(b)
+        on_b, to_b = b.nearest(a)
+        least = min(to_a, to_b, pair)
+        if not least <= self.reach:
+            return False
+        if pair <= PREFERRED * least:
+            return self._take(1.0, 1.0)
+        return self._take(on_a, 1.0) if to_a <= to_b else self._take(1.0, on_b)
+
+    def _take(self, high_a: float, high_b: float) -> bool:
+        self.streak = self.streak + 1 if high_a == high_b else 0
+        self.a.take(high_a)
+        self.b.take(high_b)
+        return True
+
+    def _wait(self, moving: _Side, waiting: _Side) -> bool:
+        """Let one path go a little way, which the other does not have; return whether it can."""
+        if moving.over or moving.sweep_left or not len(waiting.rows):
+            return False
+        if not _apart(moving.goal, waiting.here()) <= self.tolerance:
+            return False
+        moving.take(1.0)
+        waiting.stay()
+        return True
+
+
+def _turn_otherwise(a: _Side, b: _Side) -> bool:
+    """Return whether the rest of two rows cannot be one travel, though their ends may agree."""
+    one, other = a.sweep_left, b.sweep_left
+    return abs(one - other) > (math.pi if one and other else CHORD)
+
+
 class _Side:
-    """A path while it is walked: row `rows[at]` is done up to `part`."""
+    """A path while it is walked: the present row is `rows[at]`, done up to `part`."""
 
-    path: Toolpath
-    at: int = 0
-    part: float = 0.0
-    _row: list[int] = field(default_factory=list)
-    _low: list[float] = field(default_factory=list)
-    _high: list[float] = field(default_factory=list)
-
-    def __post_init__(self) -> None:
-        path = self.path
+    def __init__(self, path: Toolpath) -> None:
+        self.path = path
         self.rows = moving_rows(path)
-        self.end = path.end[self.rows]
-        self.start = path.start[self.rows]
-        self.rapid = path.kind[self.rows] == Kind.RAPID
-        self.arc = path.is_arc[self.rows]
-        self.linear = [k for k, axis in enumerate(path.axes) if axis in LINEAR]
-
-    def __len__(self) -> int:
-        return len(self.rows)
+        self.start, self.end = path.start[self.rows], path.end[self.rows]
+        self.kind, self.sweep = path.kind[self.rows], path.sweep[self.rows]
+        self.at, self.part = 0, 0.0
+        self.taken: list[tuple[int, float, float]] = []
 
     @property
     def over(self) -> bool:
-        """Whether there is no more."""
+        """Whether there are no more rows."""
         return self.at >= len(self.rows)
+
+    @property
+    def row(self) -> int:
+        """The row of the path that comes next, the last one at the end, -1 if there is none."""
+        return int(self.rows[min(self.at, len(self.rows) - 1)]) if len(self.rows) else -1
+
+    @property
+    def rapid(self) -> bool:
+        """Whether the present row is a rapid."""
+        return bool(self.kind[self.at] == Kind.RAPID)
+
+    @property
+    def goal(self) -> list[float]:
+        """Where the present row ends."""
+        return self.end[self.at].tolist()
+
+    @property
+    def sweep_left(self) -> float:
+        """How far (rad) the present row still turns."""
+        return float(self.sweep[self.at]) * (1.0 - self.part)
 
     def take(self, high: float) -> None:
         """Take the present row up to a part of it."""
-        self._row.append(int(self.rows[self.at]))
-        self._low.append(self.part)
-        self._high.append(high)
+        self.taken.append((int(self.rows[self.at]), self.part, high))
         self.part = high
         if high >= 1.0:
             self.at, self.part = self.at + 1, 0.0
 
-    def stay(self) -> None:
-        """Take a piece without length where the path stands."""
-        at = max(self.at - 1, 0)
-        self._row.append(int(self.rows[at]))
-        self._low.append(1.0)
-        self._high.append(1.0)
-
-    def take_whole(self, count: int) -> None:
+    def take_rows(self, count: int) -> None:
         """Take whole rows."""
-        self._row += self.rows[self.at : self.at + count].tolist()
-        self._low += [0.0] * count
-        self._high += [1.0] * count
+        self.taken += [(row, 0.0, 1.0) for row in self.rows[self.at : self.at + count].tolist()]
         self.at += count
+
+    def stay(self) -> None:
+        """Take the point at which the path stands."""
+        if self.part or not self.at:
+            self.taken.append((int(self.rows[self.at]), self.part, self.part))
+        else:
+            self.taken.append((int(self.rows[self.at - 1]), 1.0, 1.0))
 
     def pieces(self) -> Pieces:
         """Return what was taken."""
-        return Pieces(
-            np.array(self._row, np.int64), np.array(self._low, float), np.array(self._high, float)
-        )
+        row, low, high = zip(*self.taken, strict=True) if self.taken else ((), (), ())
+        return Pieces(np.array(row, np.int64), np.array(low, float), np.array(high, float))
 
-    def here(self) -> Point:
-        """Return where the present row ends."""
-        return tuple(self.end[self.at].tolist())
+    def here(self) -> list[float]:
+        """Return where the path stands."""
+        if self.part:
+            return self._point(self.part)
+        return self.end[self.at - 1].tolist() if self.at else self.start[0].tolist()
 
-    def sweep_left(self) -> float:
-        """Return how far (rad) the present row still turns."""
-        return float(self.path.sweep[self.rows[self.at]]) * (1.0 - self.part)
+    def nearest(self, other: _Side) -> tuple[float, float]:
+        """Return the part of this row nearest to where the other one's row ends, and how far it is.
 
-    def nearest(self, point: Point) -> tuple[float, float]:
-        """Return the part of what is left of the present row that is nearest, and how far it is."""
-        start, end = self.start[self.at].tolist(), self.end[self.at].tolist()
-        if any(math.isnan(p) != math.isnan(q) for p, q in zip(start, end, strict=True)):
-            return 1.0, math.inf
-        part = self._along_arc(point) if self.arc[self.at] else _along(start, end, point)
-        part = min(max(part, self.part, LEAST), 1.0)
-        return part, _apart(self._point(part, start, end), point)
+        Only what is inside the rest of the row counts: otherwise the distance is inf.
+        """
+        goal = other.goal
+        part = self._on_arc(goal, other) if self.sweep[self.at] else self._on_line(goal)
+        part = max(part, self.part + LEAST)
+        return (part, _apart(self._point(part), goal)) if part < 1.0 - LEAST else (1.0, math.inf)
 
-    def _point(self, part: float, start: list[float], end: list[float]) -> Point:
-        at = [p + part * (q - p) for p, q in zip(start, end, strict=True)]
-        if self.arc[self.at]:
-            row = self.rows[self.at : self.at + 1]
-            at[:3] = points_on_one(self.path, int(row[0]), part, start, end)
-        return tuple(at)
+    def _on_line(self, point: Point) -> float:
+        """Return the part of the present line at which a point stands; 1 if it is not known."""
+        along, square = 0.0, 0.0
+        for p, q, x in zip(self.start[self.at].tolist(), self.goal, point, strict=True):
+            if math.isnan(p) != math.isnan(q) or math.isnan(q) != math.isnan(x):
+                return 1.0
+            if not math.isnan(p):
+                along += (x - p) * (q - p)
+                square += (q - p) ** 2
+        return along / square if square else 1.0
 
-    def _along_arc(self, point: Point) -> float:
-        """Return the part of the present arc at which a point stands, nearest to where it is."""
-        row = int(self.rows[self.at])
-        u, v, normal = _plane(self.path, row)
-        centre = self.path.centre[row]
-        start = self.start[self.at]
-        sense = 1.0 if self.path.kind[row] == Kind.ARC_CCW else -1.0
+    def _on_arc(self, point: Point, other: _Side) -> float:
+        """Return the part of the present arc at which a point stands, where `other` ends.
+
+        Of all turns the one is taken that the other's own turning leads to.
+        """
+        u, v, centre = self._circle()
+        start, sweep = self.start[self.at], float(self.sweep[self.at])
         first = math.atan2(start[v] - centre[v], start[u] - centre[u])
-        angle = math.atan2(point[v] - centre[v], point[u] - centre[u])
-        sweep = float(self.path.sweep[row])
-        turned = math.fmod(sense * (angle - first), TURN)
-        whole = self._whole_turns(point, row, normal, sweep, turned)
-        return (turned + TURN * whole) / sweep
+        last = math.atan2(point[v] - centre[v], point[u] - centre[u])
+        turned = self._sense * (last - first)
+        if not math.isfinite(turned):
+            return 1.0
+        wanted = self.part * sweep + (other.sweep_left or math.pi / 2)
+        return (turned + TURN * round((wanted - turned) / TURN)) / sweep
 
-    def _whole_turns(
-        self, point: Point, row: int, normal: int, sweep: float, turned: float
-    ) -> int:
-        """Return how many turns to add: to what is next, or to the height on a helix."""
-        wanted = self.part
-        rise = float(self.path.end[row, normal] - self.start[self.at, normal])
-        if abs(rise) > 0 and math.isfinite(rise):
-            wanted = max(wanted, (point[normal] - float(self.start[self.at, normal])) / rise)
-            return round((min(wanted, 1.0) * sweep - turned) / TURN)
-        return math.ceil((wanted * sweep - turned) / TURN - 1e-9)
+    @property
+    def _sense(self) -> float:
+        return 1.0 if self.kind[self.at] == Kind.ARC_CCW else -1.0
+
+    def _circle(self) -> tuple[int, int, list[float]]:
+        """Return the two axes of the present arc's plane, and its centre."""
+        row = int(self.rows[self.at])
+        u, v, _ = Plane(int(self.path.plane[row])).axes
+        return u, v, self.path.centre[row].tolist()
+
+    def _point(self, part: float) -> list[float]:
+        """Return the point at a part of the present row."""
+        start, goal = self.start[self.at].tolist(), self.goal
+        point = [p + part * (q - p) for p, q in zip(start, goal, strict=True)]
+        if self.sweep[self.at]:
+            u, v, centre = self._circle()
+            first = math.hypot(start[u] - centre[u], start[v] - centre[v])
+            last = math.hypot(goal[u] - centre[u], goal[v] - centre[v])
+            radius = first + part * (last - first)
+            angle = math.atan2(start[v] - centre[v], start[u] - centre[u])
+            angle += self._sense * float(self.sweep[self.at]) * part
+            point[u] = centre[u] + radius * math.cos(angle)
+            point[v] = centre[v] + radius * math.sin(angle)
+        return point
+
+
+def _apart(p: Point, q: Point) -> float:
+    """Return the distance of two positions, a degree counted as a mm; inf if one knows less."""
+    square = 0.0
+    for x, y in zip(p, q, strict=True):
+        if not (math.isnan(x) and math.isnan(y)):
+            square += (x - y) ** 2
+    return math.inf if math.isnan(square) else math.sqrt(square)

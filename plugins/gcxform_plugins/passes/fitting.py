@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 import gcxform as gx
 
 if TYPE_CHECKING:
-    from gcxform_plugins.passes.volumetric import Compensation
+    from gcxform_plugins.passes.compensation import Compensation
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

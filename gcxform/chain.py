@@ -1,0 +1,49 @@
+"""Whether a chain of passes fits together, decided by facts before any program is read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from gcxform.contract import Pass
+from gcxform.diagnostics import UsageError
+from gcxform.registry import default_registry
+from gcxform.toolpath.facts import AT_READING, Fact
+
+
+def facts_after(passes: Sequence[Pass]) -> frozenset[Fact]:
+    """Return the facts that hold after a chain."""
+    facts = set(AT_READING)
+    for step in passes:
+        facts = (facts - step.clears) | step.ensures
+    return frozenset(facts)
+
+
+def check_chain(passes: Sequence[Pass]) -> None:
+    """Raise UsageError where a pass requires a fact that the chain does not have there."""
+    facts: set[Fact] = set(AT_READING)
+    cleared: dict[Fact, str] = {}
+    for number, step in enumerate(passes, 1):
+        for fact in sorted(step.requires - facts, key=lambda f: f.name):
+            culprit = cleared.get(fact)
+            why = f"which {culprit} has taken away" if culprit else "which no step before ensures"
+            raise UsageError.one(
+                "GX725",
+                f"step {number}, {step.name}, requires {fact.name} ({fact.meaning}), {why}",
+                hint=_mend(fact, culprit, step.name),
+            )
+        for fact in step.clears:
+            cleared[fact] = f"step {number}, {step.name},"
+        facts = (facts - step.clears) | step.ensures
+
+
+def _mend(fact: Fact, culprit: str | None, name: str) -> str:
+    if culprit:
+        return f"put {name} before it, or leave one of the two out"
+    makers = [
+        p.name
+        for p in default_registry().passes.values()
+        if issubclass(p, Pass) and fact in p.ensures
+    ]
+    if makers:
+        return f"put {' or '.join(sorted(makers))} before {name}"
+    return f"no pass that is installed ensures {fact.name}"

@@ -1,0 +1,126 @@
+"""`gcxform check`: the chain of a pipeline before any program, and a program before any run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import click
+import numpy as np
+
+from gcxform.cli import VERBS, options
+from gcxform.cli.failures import warn
+from gcxform.cli.options import Asked
+from gcxform.cli.programs import opened
+from gcxform.contract import Pass
+from gcxform.diagnostics import PRINTED_AT_MOST, Diagnostic, InputError
+from gcxform.modal.interpreter import Interpreter
+from gcxform.pipeline import Pipeline, facts_after, windows_of
+from gcxform.registry import default_registry
+from gcxform.source import Source
+from gcxform.toolpath.facts import Fact
+
+STATELESS = frozenset({"GX101", "GX201", "GX202", "GX205", "GX206", "GX210", "GX211"})
+"""Findings about a block by itself, which hold whatever stood before it."""
+ENOUGH = 100 * PRINTED_AT_MOST
+
+
+@click.command("check", help=VERBS["check"], short_help=VERBS["check"])
+@options.pipeline_options
+@click.argument("file", metavar="[FILE]", required=False)
+def command(file: str | None, **asked: Any) -> int:
+    """Check a pipeline, and a program with it; exit 1 if there are findings."""
+    what = Asked(**asked)
+    if not what.says_chain and file is not None and what.dialect:
+        what = Asked(**{**asked, "chain": ""})
+    pipeline = what.build()
+    warn(default_registry().diagnostics)
+    click.echo("\n".join(chain(pipeline)))
+    return _check(pipeline, file) if file is not None else 0
+
+
+# --- the chain ---------------------------------------------------------------------------------------
+
+
+def chain(pipeline: Pipeline) -> list[str]:
+    """Return the steps of a pipeline with their facts and promises, and the budget."""
+    lines = [f"read   {pipeline.source.name}: {_names(facts_after(()))}"]
+    done: list[Pass] = []
+    for number, step in enumerate(pipeline.passes, 1):
+        lines.append(f"{number:<6} {step.name}")
+        if not isinstance(step, Pass):
+            lines.append("       changes text and no meaning")
+            continue
+        done.append(step)
+        for name in ("requires", "ensures", "clears"):
+            if facts := getattr(step, name):
+                lines.append(f"       {name:8} {_names(facts)}")
+        lines.append(f"       then     {_names(facts_after(done))}")
+        lines.append(f"       promise  {_length(step.promise)}")
+    return [*lines, f"write  {pipeline.target.name}", *_budget(pipeline)]
+
+
+def _names(facts: frozenset[Fact]) -> str:
+    return " ".join(sorted(fact.name for fact in facts)) or "nothing"
+
+
+def _length(size: float) -> str:
+    if not np.isfinite(size):
+        return "none: the budget is explicit, and what comes out is measured"
+    return f"{size * 1000:g} um" if size else "exact"
+
+
+def _budget(pipeline: Pipeline) -> list[str]:
+    kind = "explicit" if pipeline.budget is not None else "what the steps need"
+    return [
+        f"steps     {_length(pipeline.promised())}",
+        f"rounding  {pipeline.rounding() * 1000:.3g} um",
+        f"budget    {pipeline.limit() * 1000:.4g} um, {kind}",
+    ]
+
+
+# --- the program ---------------------------------------------------------------------------------------
+
+
+def _check(pipeline: Pipeline, file: str) -> int:
+    """Say what speaks against a program; return the exit code."""
+    with opened(file) as source:
+        found = list(_first(reading_findings(pipeline, source))) or _refusals(pipeline, source)
+        lines = sum(len(window) for window, _ in windows_of(source, pipeline.source))
+    if found:
+        warn(found)
+    text = f"{len(found)}{'+' if len(found) >= ENOUGH else ''}" if found else "no"
+    click.echo(f"{source.name}: {lines} lines, {text} finding{'' if len(found) == 1 else 's'}")
+    return 1 if found else 0
+
+
+def _first(found: Iterator[Diagnostic]) -> Iterator[Diagnostic]:
+    for _, diagnostic in zip(range(ENOUGH), found, strict=False):
+        yield diagnostic
+
+
+def reading_findings(pipeline: Pipeline, source: Source) -> Iterator[Diagnostic]:
+    """Yield what speaks against reading a program.
+
+    After the first window that is refused nothing is known of the state any more, so from there on
+    only those findings count that are about a block by itself.
+    """
+    letters = source.letters()
+    axes = "".join(a for a in pipeline.source.axes if a in letters or a in "XYZ")
+    interpreter = Interpreter(pipeline.source, pipeline.reading, axes, source.name)
+    refused = False
+    for window, reader in windows_of(source, pipeline.source):
+        try:
+            interpreter.interpret(window, reader.table)
+        except InputError as error:
+            yield from (d for d in error.diagnostics if not refused or d.code in STATELESS)
+            refused = True
+
+
+def _refusals(pipeline: Pipeline, source: Source) -> list[Diagnostic]:
+    """Return why the passes or the writing refuse a program that can be read."""
+    try:
+        pipeline.run_stream(source, len)
+    except InputError as error:
+        return list(error.diagnostics)
+    return []

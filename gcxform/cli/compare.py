@@ -1,0 +1,124 @@
+"""`gcxform compare`: how far two programs are apart, however each of them is cut."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from gcxform.api import TOLERANCE, Comparison, Program, compare, read
+from gcxform.cli import VERBS, options
+from gcxform.cli.options import Asked, excluding, needed_dialect
+from gcxform.cli.outputs import STDOUT
+from gcxform.cli.programs import opened
+from gcxform.contract import Pass
+from gcxform.diagnostics import Location, UsageError
+from gcxform.machine.machine import LENGTH, load_machine
+from gcxform.options import Argument, build
+from gcxform.registry import default_registry
+
+MODEL_PASS = "volumetric"
+SHOWN = 10
+
+
+@click.command("compare", help=VERBS["compare"], short_help=VERBS["compare"])
+@click.option("-f", "--from", "dialect", metavar="DIALECT", help="Dialect of A.")
+@click.option("-t", "--to", metavar="DIALECT", help="Dialect of B.  [default: that of A]")
+@click.option(
+    "--tolerance",
+    metavar="LENGTH",
+    default=f"{TOLERANCE:g}",
+    help=f"What is still the same, in mm or with a unit.  [default: {TOLERANCE * 1000:g} um]",
+)
+@click.option("--model", metavar="FILE", help="B is what a machine with these errors is told.")
+@click.option("--part-origin", metavar="X,Y,Z", help="Origin of the programs in the machine.")
+@click.option("--table-origin", metavar="X,Y,Z", help="Origin of the measurement.")
+@click.option("--outside", metavar="POLICY", help="What the error is beyond the table.")
+@options.MACHINE
+@options.reading_options
+@click.argument("a", metavar="A")
+@click.argument("b", metavar="B")
+def command(
+    a: str,
+    b: str,
+    dialect: str | None,
+    to: str | None,
+    tolerance: str,
+    machine: str | None,
+    start: str | None,
+    increment: str | None,
+    block_delete: str | None,
+    **model: str | None,
+) -> int:
+    """Compare two programs; exit 1 if path, feeds or events differ."""
+    asked = Asked(start=start, increment=increment, block_delete=block_delete)
+    if a == b == STDOUT:
+        raise excluding("stdin as A and stdin as B")
+    limit = _length(tolerance)
+    through = _model(model)
+    geometry = load_machine(Path(machine)) if machine else None
+    first = _program(a, needed_dialect(dialect), asked)
+    second = _program(b, to or needed_dialect(dialect), asked)
+    found = compare(first, second, limit, through, geometry)
+    click.echo(report(found, first, second))
+    return 0 if found.same else 1
+
+
+def _length(text: str) -> float:
+    try:
+        length = LENGTH.parse(text, bare=True)
+    except ValueError as error:
+        raise UsageError.one("GX708", str(error), Location("--tolerance")) from None
+    if not length > 0:
+        raise UsageError.one("GX706", f"{text} is not above 0 mm", Location("--tolerance"))
+    return length
+
+
+def _model(given: dict[str, Any]) -> Pass | None:
+    """Return the pass that made B, None if there is none."""
+    raw = {k.replace("_", "-"): Argument(v) for k, v in given.items() if v is not None}
+    if "model" not in raw:
+        if raw:
+            raise UsageError.one("GX705", f"--{next(iter(raw))} needs --model")
+        return None
+    registry = default_registry()
+    chosen = registry.pass_(MODEL_PASS)
+    formats = registry.formats.values()
+    step = build(chosen, raw, Path.cwd(), formats, lambda key: Location(f"--{key}"))
+    assert isinstance(step, Pass)
+    return step
+
+
+def _program(file: str, dialect: str, asked: Asked) -> Program:
+    kind, reading = default_registry().dialect(dialect), asked.reading()
+    with opened(file) as source:
+        text = b"".join(source.windows())
+        return Program(text, kind, reading, source.name)
+
+
+def report(found: Comparison, a: Program, b: Program) -> str:
+    """Return a comparison in words."""
+    lines = [f"{k}: {p.name} ({p.dialect.name}), {_moves(p)}" for k, p in (("A", a), ("B", b))]
+    if found.parted:
+        one, other = (f"line {n}" if n else "nothing" for n in found.parted)
+        lines.append(f"the paths part: {one} of A, {other} of B")
+        lines.append(f"until then {found.matched} pairs of moves belong together")
+    else:
+        place = f", line {found.line_a} of A, line {found.line_b} of B" if found.line_a else ""
+        limit = f"tolerance {found.tolerance:g} mm"
+        lines.append(f"largest deviation {found.deviation:.6f} mm ({limit}){place}")
+        if found.angle:
+            lines.append(f"largest difference of a rotary axis {found.angle:.6f} degrees")
+    if found.ends_only:
+        lines.append(f"{found.ends_only} moves only at their ends: rapids, unknown starts")
+    for name, all_ in (("feeds", found.feeds), ("events", found.events)):
+        lines.append(f"{name}: {'differ' if all_ else 'the same'}")
+        lines += [f"  {d.what} (line {d.line_a} of A, line {d.line_b} of B)" for d in all_[:SHOWN]]
+        lines += [f"  ... and {len(all_) - SHOWN} more"] if len(all_) > SHOWN else []
+    return "\n".join([*lines, "SAME" if found.same else "DIFFERENT"])
+
+
+def _moves(program: Program) -> str:
+    count = len(program.path)
+    return f"{count} move{'' if count == 1 else 's'}"

@@ -1,0 +1,108 @@
+"""`gcxform list`: what is installed, where it comes from, and which options it has."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+from typing import Any
+
+import click
+
+from gcxform.cli import VERBS
+from gcxform.cli.failures import warn
+from gcxform.contract import Pass, TextPass
+from gcxform.diagnostics import UsageError
+from gcxform.dialect import Dialect
+from gcxform.options import OptionDoc, describe
+from gcxform.registry import Registry, default_registry
+from gcxform.tomltext import did_you_mean
+
+KINDS = {"passes": "pass", "dialects": "dialect", "kinematics": "kinematics", "formats": "format"}
+
+
+@click.command("list", help=VERBS["list"], short_help=VERBS["list"])
+@click.argument("kind", type=click.Choice(list(KINDS)))
+@click.argument("name", required=False)
+def command(kind: str, name: str | None) -> None:
+    """List things of a kind, or describe one of them."""
+    registry = default_registry()
+    warn(registry.diagnostics)
+    things: Mapping[str, type] = getattr(registry, kind)
+    if name is None:
+        for line in _table(things, KINDS[kind], registry):
+            click.echo(line)
+    else:
+        click.echo("\n".join(_described(_chosen(things, kind, name), KINDS[kind], registry)))
+
+
+def _chosen(things: Mapping[str, type], kind: str, name: str) -> type:
+    if name in things:
+        return things[name]
+    code = {"passes": "GX704", "dialects": "GX703"}.get(kind, "GX730")
+    what = {"kinematics": "kinematic model", "formats": "format"}.get(kind, KINDS[kind])
+    raise UsageError.one(code, f"there is no {what} {name!r}", hint=did_you_mean(name, things))
+
+
+def _table(things: Mapping[str, type], kind: str, registry: Registry) -> list[str]:
+    rows = [(n, _first_line(t), registry.origin(kind, n)) for n, t in things.items()]
+    width = max((len(name) for name, _, _ in rows), default=0)
+    middle = max((len(text) for _, text, _ in rows), default=0)
+    return [f"{name:{width}}  {text:{middle}}  {origin}" for name, text, origin in rows]
+
+
+def _first_line(thing: type) -> str:
+    return (inspect.getdoc(thing) or "").partition("\n\n")[0].replace("\n", " ")
+
+
+def _described(thing: Any, kind: str, registry: Registry) -> list[str]:
+    """Return all that is known of one thing."""
+    lines = [f"{thing.name}   {registry.origin(kind, thing.name)}", ""]
+    lines += (inspect.getdoc(thing) or "").splitlines()
+    if issubclass(thing, Pass | TextPass):
+        lines += ["", *_options(describe(thing))]
+    if issubclass(thing, Pass):
+        lines += _facts(thing)
+    if issubclass(thing, Dialect):
+        lines += ["", *_dialect(thing)]
+    if suffixes := getattr(thing, "suffixes", ()):
+        lines += ["", f"files: {' '.join(suffixes)}"]
+    return lines
+
+
+def _options(found: list[OptionDoc]) -> list[str]:
+    """Return the options of a pass, one a line."""
+    if not found:
+        return ["no options"]
+    rows = [(option.name, _type(option), _help(option)) for option in found]
+    width = max(len(name) for name, _, _ in rows)
+    middle = max(len(kind) for _, kind, _ in rows)
+    return [f"  {name:{width}}  {kind:{middle}}  {text}".rstrip() for name, kind, text in rows]
+
+
+def _type(option: OptionDoc) -> str:
+    return " | ".join(option.choices) or option.type
+
+
+def _help(option: OptionDoc) -> str:
+    default = f"default {option.default}" if option.default else ""
+    last = "mandatory" if option.mandatory else default
+    return "; ".join(part for part in (option.help, option.range, last) if part)
+
+
+def _facts(thing: type[Pass]) -> list[str]:
+    names = ("requires", "ensures", "clears")
+    sets = {name: sorted(fact.name for fact in getattr(thing, name)) for name in names}
+    return [f"{name:8} {' '.join(facts)}" for name, facts in sets.items() if facts]
+
+
+def _dialect(thing: type[Dialect]) -> list[str]:
+    """Return what a dialect can do, in a few lines."""
+    codes = sorted(thing.codes, key=lambda code: float(code[1:]))
+    numbers = thing.numbers
+    return [
+        f"axes      {' '.join(thing.axes)}",
+        f"G codes   {' '.join(codes)}",
+        f"M codes   {' '.join(f'M{code}' for code in sorted(thing.m_codes))}",
+        f"at start  {' '.join(thing.initial.values())}",
+        f"decimals  {numbers.mm} in mm, {numbers.inch} in inch, {numbers.angle} of degrees",
+    ]

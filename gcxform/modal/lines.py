@@ -1,0 +1,235 @@
+"""The lines of a window as columns: words, modal groups and feed, filled forward line by line."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.dialect import INCH, LINEAR, Dialect
+from gcxform.modal.findings import Findings
+from gcxform.modal.state import Modes, Reading, State
+from gcxform.modal.tables import GROUPS, NUMBER, MeaningTable
+from gcxform.syntax.scan import Window
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Small = NDArray[np.int8]
+Flags = NDArray[np.bool_]
+
+DISTANCES = "XYZABCUVWIJKR"
+LENGTHS = LINEAR + "IJKR"
+NOTHING = 0  # the shape of an empty line
+
+
+def fill(values: NDArray[Any], present: Flags, initial: float) -> NDArray[Any]:
+    """Return a column in which every line has the value last set before or on it."""
+    if not present.any():
+        return np.full(len(values), initial, values.dtype)
+    if present.all():
+        return values
+    at = np.where(present, np.arange(len(values)), -1)
+    np.maximum.accumulate(at, out=at)
+    filled = values[at]
+    filled[at < 0] = initial
+    return filled
+
+
+class Lines:
+    """The lines of a window that the control executes.
+
+    live     how many there are; those after the end of the program are not executed
+    shape    (live,) their shapes; blocks that are skipped have that of an empty line
+    first    (live,) index of the first number of each
+    """
+
+    def __init__(
+        self,
+        dialect: type[Dialect],
+        reading: Reading,
+        state: State,
+        window: Window,
+        table: MeaningTable,
+        file: str,
+    ) -> None:
+        self.dialect = dialect
+        self.reading = reading
+        self.state = state
+        self.window = window
+        self.table = table
+        self.findings = Findings(file, window, table)
+        self.live = self._live()
+        self.shape = window.shape[: self.live]
+        self.first = window.first_number[: self.live]
+        self._used = table.slots[np.unique(self.shape)].max(axis=0, initial=-1) >= 0
+
+    def flag(self, name: str) -> Flags:
+        """Return a flag of the meaning of each line."""
+        return self.table.flag(name, self.shape)
+
+    def stated(self, group: str) -> Flags:
+        """Return which lines have a code of a group."""
+        return np.asarray(self.table.groups[self.shape, GROUPS.index(group)] >= 0)
+
+    def refuse_statically(self) -> None:
+        """Raise InputError for what can be seen without numbers."""
+        self._deleted_blocks()
+        self._lone_line_ends()
+        for line in np.flatnonzero(self.flag("wrong")).tolist():
+            self.findings.add_refusal(line)
+        self.findings.raise_if_any()
+
+    def _live(self) -> int:
+        """Return how many lines the control executes before the program ends."""
+        if self.state.ended:
+            return 0
+        shape = self.window.shape
+        ends = np.zeros(len(shape), np.bool_)
+        if self.dialect.stops_at_end:
+            ends |= self.table.flag("ends", shape) & ~self.table.flag("deleted", shape)
+        percent = np.flatnonzero(self.table.flag("percent", shape))
+        for line in percent[max(0, 1 - self.state.percents) :][:1]:
+            ends[line] = True
+        self.state.percents += len(percent)
+        if not ends.any():
+            return len(shape)
+        self.state.ended = True
+        return int(np.argmax(ends)) + 1
+
+    def _deleted_blocks(self) -> None:
+        """Execute or silence blocks with a slash, or refuse them."""
+        deleted = np.flatnonzero(self.flag("deleted"))
+        policy = self.reading.block_delete or self.dialect.block_delete
+        if not len(deleted) or policy == "execute":
+            return
+        if policy == "skip":
+            self.shape = self.shape.copy()
+            self.shape[deleted] = NOTHING
+            return
+        for line in deleted.tolist():
+            self.findings.add(
+                line,
+                "GX211",
+                "a switch of the control decides whether this block is executed",
+                hint='say which: block-delete = "execute" or "skip" in [input]',
+            )
+
+    def _lone_line_ends(self) -> None:
+        """Refuse lines that the control would take together."""
+        window = self.window
+        if not self.dialect.lone_cr_is_blank or b"\r" not in window.text:
+            return
+        text = np.frombuffer(window.text + b"\n", np.uint8)
+        stop = window.end[: self.live]
+        lone = (text[stop] == 13) & (window.next[: self.live] - stop == 1)
+        for line in np.flatnonzero(lone)[: Findings.enough].tolist():
+            self.findings.add(
+                line,
+                "GX102",
+                f"the line ends with CR alone, which {self.dialect.name} reads as a blank",
+                hint="convert the line ends of the file to LF or CRLF",
+            )
+
+    def word(self, address: str) -> tuple[Floats, Flags] | None:
+        """Return value and presence of a word on each line; None if no line has it."""
+        column = ord(address) - 65
+        if not self._used[column]:
+            return None
+        slot = self.table.slots[self.shape, column]
+        present = slot >= 0
+        number = self.first + slot
+        if not present.all():
+            number = np.where(present, number, 0)
+        value = self.window.value[number] if len(self.window.value) else np.zeros(self.live)
+        if self.dialect.point_required and address in DISTANCES:
+            value = self._with_increment(address, value, present, number)
+        return value, present
+
+    def _with_increment(self, address: str, value: Floats, present: Flags, number: Ints) -> Floats:
+        """Return distances with those that have no point scaled by the increment."""
+        pointless = present & (self.window.decimals[number] < 0) & (value != 0)
+        if not pointless.any():
+            return value
+        if self.reading.increment is None:
+            for line in np.flatnonzero(pointless).tolist():
+                self.findings.add(
+                    line,
+                    "GX205",
+                    f"{address} has no decimal point: its unit depends on the control",
+                    address,
+                    'say what 1 is worth: increment = "0.001 mm" in [input]',
+                )
+            return value
+        return np.where(pointless, value * self.reading.increment, value)
+
+    def _group(self, name: str) -> Small:
+        """Return the number of the code in force of a group, on each line."""
+        values = self.table.groups[self.shape, GROUPS.index(name)]
+        present = values >= 0
+        if present.any():
+            self.state.stated.add(name)
+        if name in self.dialect.resets_at_end:
+            after = np.flatnonzero(self.flag("ends")) + 1
+            after = after[after < self.live]
+            after = after[~present[after]]
+            values[after] = NUMBER[self.dialect.resets_at_end[name]]
+            present[after] = True
+        return fill(values, present, self.state.groups[name])
+
+    def modes(self) -> Modes:
+        """Return what holds on each line after its words."""
+        groups = {name: self._group(name) for name in GROUPS}
+        inch = groups["units"] == 1
+        feed, feed_unit = self._feed(groups["feed-mode"], inch)
+        return Modes(
+            groups["motion"],
+            groups["plane"],
+            groups["distance"] == 1,
+            groups["arc-distance"] == 1,
+            groups["feed-mode"],
+            inch,
+            groups["frame"],
+            feed,
+            feed_unit,
+        )
+
+    def _feed(self, feed_mode: Small, inch: Flags) -> tuple[Floats, Floats]:
+        """Return the feed number in force after each line's words, and its unit in mm."""
+        word = self.word("F")
+        value = np.full(self.live, np.nan)
+        present = np.zeros(self.live, np.bool_)
+        if word is not None:
+            value, present = np.where(word[1], word[0], np.nan), word[1]
+            self._refuse_pointless_feed(present, feed_mode, inch)
+        present = present | self._cleared(feed_mode, inch)
+        if self.dialect.feed_before_units:
+            inch = np.append(self.state.groups["units"] == 1, inch[:-1])[: self.live]
+        unit = np.where(inch, INCH, 1.0)
+        return (
+            fill(value, present, self.state.feed),
+            fill(unit, present, self.state.feed_unit),
+        )
+
+    def _cleared(self, feed_mode: Small, inch: Flags) -> Flags:
+        """Return the lines that leave no feed in force unless they program one."""
+        cleared = np.zeros(self.live, np.bool_)
+        if self.dialect.feed_mode_clears_feed:
+            cleared |= self.stated("feed-mode")
+        if self.dialect.change_clears_feed and self.live:
+            mode = np.append(np.int8(self.state.groups["feed-mode"]), feed_mode)
+            unit = np.append(self.state.groups["units"] == 1, inch)
+            cleared |= (mode[1:] != mode[:-1]) | (unit[1:] != unit[:-1])
+        return cleared
+
+    def _refuse_pointless_feed(self, present: Flags, feed_mode: Small, inch: Flags) -> None:
+        """Refuse feeds without a point where their unit depends on the control."""
+        if not self.dialect.point_required:
+            return
+        slot = self.table.slots[self.shape, ord("F") - 65]
+        number = np.where(present, self.first + slot, 0)
+        odd = present & (self.window.decimals[number] < 0)
+        odd &= inch | (feed_mode == NUMBER["G95"])
+        for line in np.flatnonzero(odd)[: Findings.enough].tolist():
+            message = "F has no decimal point: its unit depends on the control"
+            self.findings.add(line, "GX205", message, "F", "write the feed with a point")

@@ -1,0 +1,246 @@
+"""One run of a pipeline on a program: read, transform, write and verify, window by window."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gcxform.certificate import Certificate
+from gcxform.contract import Pass, TextPass
+from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
+from gcxform.dialect import LINEAR
+from gcxform.emit.emitter import Emitted, Emitter
+from gcxform.modal.interpreter import Interpreter
+from gcxform.modal.reader import WindowReader
+from gcxform.modal.state import Reading
+from gcxform.modal.tables import GROUPS
+from gcxform.options import to_toml
+from gcxform.source import Source
+from gcxform.syntax.scan import Window
+from gcxform.textpasses import TextRun
+from gcxform.toolpath.path import Toolpath
+from gcxform.verify import Verifier
+from gcxform.version import VERSION
+
+if TYPE_CHECKING:
+    from gcxform.pipeline import Pipeline
+
+Sink = Callable[[bytes], object]
+
+
+@dataclass
+class Output:
+    """Where the text of a run goes, and what is counted on the way."""
+
+    sink: Sink
+    source_map: list[int] | None
+    read: hashlib._Hash = field(default_factory=hashlib.sha256)
+    written: hashlib._Hash = field(default_factory=hashlib.sha256)
+    lines_in: int = 0
+    lines_out: int = 0
+
+    def put(self, text: bytes) -> None:
+        """Hand text on."""
+        self.written.update(text)
+        self.sink(text)
+
+
+class Run:
+    """One run: its readers, writer and verifier."""
+
+    def __init__(self, pipeline: Pipeline, source: Source, verify: str) -> None:
+        self.pipeline = pipeline
+        self.source = source
+        self.verify = verify
+        self.steps = pipeline.path_passes
+        self.text = TextRun(pipeline.text_passes, pipeline.target, source.name)
+        self.reader = WindowReader(pipeline.source)
+        self.verifier: Verifier | None = None
+        self.interpreter: Interpreter | None = None
+        if not pipeline.copies:
+            self._prepare()
+
+    def _prepare(self) -> None:
+        pipeline = self.pipeline
+        letters = self.source.letters()
+        axes = "".join(a for a in pipeline.source.axes if a in letters or a in "XYZ")
+        reading = _with_assumed_start(pipeline, axes)
+        self.axes = axes
+        self.interpreter = Interpreter(pipeline.source, reading, axes, self.source.name)
+        start = self.interpreter.state.position
+        self.emitter = Emitter(pipeline.manner, start, self.source.name)
+        if self.verify != "off":
+            self.verifier = Verifier(
+                self.steps,
+                pipeline.context,
+                replace(reading, units=_first_units(pipeline)),
+                axes,
+                pipeline.limit(),
+                10.0 ** -pipeline.manner.decimals_of("F", False) * 25.4,
+                1.01 * 10.0 ** -pipeline.manner.decimals_of("A", False),
+                self.source.name,
+            )
+
+    def window(self, text: bytes, out: Output) -> None:
+        """Transform one window and hand it on."""
+        if self.pipeline.copies:
+            self._copy(text, out)
+            return
+        window = self.reader.read(text)
+        emitted = self._transform(window)
+        out.lines_in += len(window)
+        if out.source_map is None and not self.text.passes:
+            out.lines_out += len(emitted.source)
+            out.put(emitted.text)
+        else:
+            self._put(emitted.text, emitted.source.tolist(), out)
+
+    def _copy(self, text: bytes, out: Output) -> None:
+        """Hand a window on as it is, but for passes that change text."""
+        first = self.reader.lines
+        if out.source_map is None and not self.text.passes:
+            out.put(text)
+            return
+        count = len(self.reader.read(text))
+        out.lines_in += count
+        self._put(text, list(range(first, first + count)), out)
+
+    def _put(self, text: bytes, lines: list[int], out: Output) -> None:
+        text, lines = self.text.edit(text, lines)
+        out.lines_out += len(lines)
+        if out.source_map is not None:
+            out.source_map += lines
+        out.put(text)
+
+    def _transform(self, window: Window) -> Emitted:
+        """Interpret, pass, emit and verify one window."""
+        assert self.interpreter is not None
+        read = self.interpreter.interpret(window, self.reader.table)
+        path = read.path
+        for step in self.steps:
+            path = self._apply(step, path, window)
+        emitted = self.emitter.emit(window, self.reader.table, read, path)
+        if self.verifier is not None:
+            self.verifier.check(read, window, emitted.text, emitted.source)
+        return emitted
+
+    def _apply(self, step: Pass, path: Toolpath, window: Window) -> Toolpath:
+        try:
+            after = step.apply(path, self.pipeline.context)
+        except InputError as error:
+            raise _located(error, window, self.source.name) from None
+        if self.verify == "full":
+            for fact in step.ensures:
+                if not fact.check(after):
+                    raise VerificationError.one(
+                        "GX602", f"{step.name} ensures {fact.name}, and the path does not have it"
+                    )
+        return after
+
+    # --- the certificate ---
+
+    def certificate(self, out: Output) -> Certificate:
+        """Return the proof of the out."""
+        pipeline = self.pipeline
+        self.text.finish()
+        certificate = Certificate(
+            VERSION,
+            {"name": self.source.name, "dialect": pipeline.source.name, "lines": out.lines_in}
+            | {"sha256": out.read.hexdigest()},
+            {"dialect": pipeline.target.name, "lines": out.lines_out}
+            | {"sha256": out.written.hexdigest()},
+            [_described(step) for step in pipeline.passes],
+            _budget(pipeline),
+            self.verifier is not None or (pipeline.copies and self.verify != "off"),
+        )
+        self._fill(certificate)
+        return certificate
+
+    def _fill(self, certificate: Certificate) -> None:
+        if self.verifier is None:
+            if self.pipeline.copies and not self.text.passes:
+                certificate.not_checked.append("meaning: every byte was copied")
+            elif self.verify == "off":
+                certificate.not_checked.append("anything: verification was switched off")
+            return
+        found = self.verifier.findings
+        certificate.largest = {
+            "deviation": found.deviation,
+            "source_line": found.source_line,
+            "output_line": found.output_line,
+            "angle": found.angle,
+        }
+        certificate.checked = {"moves": found.moves, "events": found.events}
+        self._not_checked(certificate)
+
+    def _not_checked(self, certificate: Certificate) -> None:
+        assert self.verifier is not None
+        assert self.interpreter is not None
+        found = self.verifier.findings
+        for count, what in (
+            (
+                found.rapids,
+                "rapids: only their ends, because controls do not move straight in them",
+            ),
+            (found.unknown_starts, "moves from an unknown position: only their ends"),
+            (found.lines_after_end, "lines after the end of the program: copied, not read"),
+        ):
+            if count:
+                certificate.not_checked.append(f"{count} {what}")
+        stated = self.interpreter.state.stated
+        for group in GROUPS:
+            if group not in stated and group not in ("motion", "arc-distance"):
+                code = self.pipeline.source.initial[group]
+                certificate.assumed.append(f"{group} {code}, which the program does not state")
+        for axis, value in self.interpreter.reading.start.items():
+            certificate.assumed.append(f"{axis} stands at {value:g} before the first block")
+
+
+def _with_assumed_start(pipeline: Pipeline, axes: str) -> Reading:
+    """Return what is known at the start; where only programmed words are written, the rest is 0."""
+    reading = pipeline.reading
+    if pipeline.words != "programmed":
+        return reading
+    zeros = {axis: 0.0 for axis in axes if axis in LINEAR}
+    return replace(reading, start={**zeros, **reading.start})
+
+
+def _first_units(pipeline: Pipeline) -> str:
+    """Return the units the output starts in: every block that needs others states them."""
+    return "in" if pipeline.target.initial["units"] == "G20" else "mm"
+
+
+def _described(step: Pass | TextPass) -> dict[str, object]:
+    """Return a step's name, options and promise for the certificate."""
+    entry: dict[str, object] = {"use": step.name, **to_toml(step)}
+    if isinstance(step, Pass):
+        entry["promise"] = step.promise if np.isfinite(step.promise) else None
+    return entry
+
+
+def _budget(pipeline: Pipeline) -> dict[str, object]:
+    promised = pipeline.promised()
+    return {
+        "deviation": pipeline.limit(),
+        "explicit": pipeline.budget is not None,
+        "steps": promised if np.isfinite(promised) else None,
+        "rounding": pipeline.rounding(),
+    }
+
+
+def _located(error: InputError, window: Window, file: str) -> GcxformError:
+    """Return an error with the text of the lines it is about."""
+    found = []
+    for diagnostic in error.diagnostics:
+        where = diagnostic.where
+        if where is not None and not where.file and where.line:
+            text = window.line(where.line - 1 - window.first_line).decode("latin-1")
+            start = len(text) - len(text.lstrip()) + 1
+            where = Location(file, where.line, start, text, max(1, len(text.strip())))
+            diagnostic = diagnostic.at(where)
+        found.append(diagnostic)
+    return InputError(tuple(found))

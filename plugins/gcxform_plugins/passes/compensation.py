@@ -1,0 +1,215 @@
+"""How `volumetric` works forward: from where the tool shall be to what is commanded."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+import gcxform as gx
+from gcxform_plugins.passes.fitting import ArcFitter
+from gcxform_plugins.passes.splitting import cuts_of_lines
+
+if TYPE_CHECKING:
+    from gcxform_plugins.passes.volumetric import Volumetric
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class Compensation:
+    """The forward work on one window."""
+
+    def __init__(self, step: Volumetric, path: gx.Toolpath, offset: Floats) -> None:
+        self.step = step
+        self.path = path
+        self.offset = offset
+        self.start = path.start[:, :3] + offset
+        self.end = path.end[:, :3] + offset
+
+    def offset_of(self, rows: Ints) -> Floats:
+        """Return table position minus program position of rows."""
+        return self.offset if len(self.offset) == 1 else self.offset[rows]
+
+    def correction(self, rows: Ints, part: Floats) -> Floats:
+        """Return the error (n, 3) at parts of the way of arcs."""
+        point = gx.points_on_arcs(self.path, rows, part)
+        return self.step.error(point + self.offset_of(rows))
+
+    def run(self) -> gx.Toolpath:
+        """Return the commands."""
+        self._check_known()
+        self._check_inside()
+        commands = self.step.command(self.end)
+        self.entry_command = self.step.command(self.start[:1])[0]
+        rows, part = self._cuts(commands)
+        if len(rows):
+            return self._cut(rows, part, commands)
+        self._check_size(commands, self.end, np.arange(len(self.path)))
+        end = self._with_others(commands - self.offset)
+        return self._arcs(self.path.replace(end=end, entry=self._entry()), np.arange(len(end)))
+
+    def _entry(self) -> Floats:
+        entry = self.path.entry.copy()
+        if np.isfinite(self.entry_command).all():
+            entry[:3] = self.entry_command - self.offset[0]
+        return entry
+
+    def _cuts(self, commands: Floats) -> tuple[Ints, Floats]:
+        """Return row and part of all cuts."""
+        if self.step.split == "none":
+            return np.empty(0, np.int64), np.empty(0)
+        row, part = cuts_of_lines(self, commands)
+        if self.path.has_arcs:
+            arc_row, arc_part = ArcFitter(self).cuts()
+            row, part = np.append(row, arc_row), np.append(part, arc_part)
+        return row, part
+
+    # --- refusals ---
+
+    def _check_known(self) -> None:
+        unknown = np.isnan(self.end)
+        if unknown.any():
+            row = int(np.argmax(unknown.any(axis=1)))
+            axis = "XYZ"[int(np.argmax(unknown[row]))]
+            raise self.path.refuse(
+                "GX311",
+                np.array([row]),
+                f"where {axis} stands is not known here, and the error depends on it",
+                f"program {axis} before, or say start = {{ {axis} = ... }} in [input]",
+            )
+
+    def _check_inside(self) -> None:
+        """Refuse positions beyond the table, or too far beyond it."""
+        points, rows = self.end, np.arange(len(self.path))
+        if self.path.has_arcs:
+            more, owners = gx.arc_extremes(self.path)
+            offset = self.offset if len(self.offset) == 1 else self.offset[owners]
+            points = np.vstack([points, more + offset])
+            rows = np.append(rows, owners)
+        model = self.step.model.model
+        beyond = model.outside(points)
+        if not beyond.any():
+            return
+        if self.step.outside is gx.Outside.ERROR:
+            self._refuse_outside(points, rows, beyond, "")
+        elif self.step.outside is gx.Outside.EXTRAPOLATE:
+            for axis in range(3):
+                nodes = model.nodes[axis]
+                if len(nodes):
+                    self._check_extrapolation(points, rows, axis, nodes)
+
+    def _refuse_outside(
+        self, points: Floats, rows: Ints, beyond: NDArray[np.bool_], more: str
+    ) -> None:
+        first = int(np.argmax(beyond.any(axis=1)))
+        axis = int(np.argmax(beyond[first]))
+        low, high = self.step.model.model.range_of(axis)
+        value = float(points[first, axis])
+        limit = low if value < low else high
+        raise self.path.refuse(
+            "GX310",
+            rows[first : first + 1],
+            f"{'XYZ'[axis]} {value:.3f} is outside the error table, which ends at {limit:g}{more}",
+            'outside = "clamp" or "extrapolate" goes beyond, or measure a larger volume',
+        )
+
+    def _check_extrapolation(self, points: Floats, rows: Ints, axis: int, nodes: Floats) -> None:
+        allowed = self.step.max_extrapolation
+        low = nodes[0] - allowed * (nodes[1] - nodes[0])
+        high = nodes[-1] + allowed * (nodes[-1] - nodes[-2])
+        beyond = np.zeros(points.shape, np.bool_)
+        beyond[:, axis] = (points[:, axis] < low - 1e-9) | (points[:, axis] > high + 1e-9)
+        if beyond.any():
+            self._refuse_outside(points, rows, beyond, f", by more than {allowed:g} cells")
+
+    def _check_size(self, command: Floats, target: Floats, rows: Ints) -> None:
+        size = np.sqrt(((command - target) ** 2).sum(axis=1))
+        if np.nanmax(size, initial=0.0) > self.step.max_correction:
+            worst = int(np.nanargmax(size))
+            raise self.path.refuse(
+                "GX313",
+                rows[worst : worst + 1],
+                f"the correction is {size[worst]:.4f} mm, more than {self.step.max_correction:g}",
+                "values in the table are in mm; if they are, raise max-correction",
+            )
+
+    # --- rows ---
+
+    def _with_others(self, command: Floats) -> Floats:
+        """Return the ends of all rows: commands for X, Y, Z, the other axes as they are."""
+        path = self.path
+        end = gx.column_major(len(path), len(path.axes))
+        end[:, :3], end[:, 3:] = command, path.end[:, 3:]
+        if self.step.rapids == "skip":
+            rapid = path.kind == gx.Kind.RAPID
+            end[rapid] = path.end[rapid]
+        return end
+
+    def _cut(self, cut_row: Ints, cut_part: Floats, commands: Floats) -> gx.Toolpath:
+        """Return the path cut at parts of its rows."""
+        path = self.path
+        row = np.append(np.arange(len(path)), cut_row)
+        part = np.append(np.ones(len(path)), cut_part)
+        order = np.lexsort((part, row))
+        row, part = row[order], part[order]
+        inner = part < 1.0
+        target = self.end[row]
+        target[inner] = self._between(row[inner], part[inner])
+        command = commands[row]
+        command[inner] = self.step.command(target[inner])
+        self._check_size(command, target, row)
+        end = self._with_others(commands - self.offset)[row]
+        end[:, :3] = np.where(inner[:, None], command - self.offset_of(row), end[:, :3])
+        a, b = path.start[row, 3:], path.end[row, 3:]
+        end[:, 3:] = np.where(inner[:, None], a + part[:, None] * (b - a), b)
+        low = np.where(np.append(True, row[1:] != row[:-1]), 0.0, np.append(0.0, part[:-1]))
+        columns = self._timed_and_swept(row, part - low)
+        counts = np.bincount(row, minlength=len(path))
+        new = path.with_rows(counts, end=np.asfortranarray(end), **columns)
+        return self._arcs(new.replace(entry=self._entry()), row, low, part)
+
+    def _between(self, rows: Ints, part: Floats) -> Floats:
+        """Return the points of rows at parts of their way, in the table."""
+        start, end = self.start[rows], self.end[rows]
+        point = start + part[:, None] * (end - start)
+        arcs = self.path.is_arc[rows]
+        if arcs.any():
+            on_arc = gx.points_on_arcs(self.path, rows[arcs], part[arcs])
+            point[arcs] = on_arc + self.offset_of(rows[arcs])
+        return np.asarray(point)
+
+    def _timed_and_swept(self, row: Ints, share: Floats) -> dict[str, Floats]:
+        """Return sweeps of the pieces, and feeds where a feed is the inverse of a time."""
+        path = self.path
+        columns: dict[str, Floats] = {}
+        if path.has_arcs:
+            columns["sweep"] = path.sweep[row] * share
+        inverse = path.feed_mode[row] == gx.FeedMode.INVERSE_TIME
+        if inverse.any():
+            columns["feed"] = np.where(inverse, path.feed[row] / share, path.feed[row])
+        return columns
+
+    def _arcs(
+        self, new: gx.Toolpath, row: Ints, low: Floats | None = None, high: Floats | None = None
+    ) -> gx.Toolpath:
+        """Return the path with the centres of its arcs moved to suit the commands."""
+        if not new.has_arcs:
+            return new
+        arcs = np.flatnonzero(new.is_arc)
+        centre = new.centre.copy()
+        if self.step.arc_centres == "nominal":
+            nominal = self._between_starts(row[arcs], None if low is None else low[arcs])
+            centre[arcs] = new.start[arcs, :3] + (self.path.centre[row[arcs]] - nominal)
+            return new.replace(centre=centre, refit_centres=False)
+        begin = np.zeros(len(arcs)) if low is None else low[arcs]
+        stop = np.ones(len(arcs)) if high is None else high[arcs]
+        centre[arcs] = ArcFitter(self).centres(row[arcs], begin, stop)
+        return new.replace(centre=centre)
+
+    def _between_starts(self, rows: Ints, low: Floats | None) -> Floats:
+        """Return where pieces start in the program's coordinates, before compensation."""
+        if low is None:
+            return np.asarray(self.path.start[rows, :3])
+        return self._between(rows, low) - self.offset_of(rows)

@@ -1,0 +1,106 @@
+"""How `volumetric` is undone: from what is commanded to where the machine goes.
+
+The forward model alone: nothing here is shared with the search for commands.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+import gcxform as gx
+
+if TYPE_CHECKING:
+    from gcxform_plugins.passes.volumetric import Volumetric
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+UNDO_SLACK = 2e-6  # mm; how far pieces of an undone arc are from the curve they stand for
+
+
+class Machine:
+    """Where the machine goes with commands: the forward model alone."""
+
+    def __init__(self, step: Volumetric, path: gx.Toolpath, offset: Floats) -> None:
+        self.step = step
+        self.path = path
+        self.offset = offset
+        self.start = path.start[:, :3] + offset
+        self.end = path.end[:, :3] + offset
+
+    def run(self) -> gx.Toolpath:
+        path = self.path
+        rows, part, _, _ = self._crossings()
+        whole = np.arange(len(path))
+        counts = np.ones(len(path), np.int64)
+        every, at = whole, np.ones(len(path))
+        if len(rows):
+            every = np.concatenate([whole, rows])
+            at = np.concatenate([at, part])
+            order = np.lexsort((at, every))
+            every, at = every[order], at[order]
+            counts = np.bincount(every, minlength=len(path))
+        point = self._points(every, at)
+        offset = self.offset if len(self.offset) == 1 else self.offset[every]
+        actual = point + self.step.error(point + offset)
+        if self.step.rapids == "skip":
+            rapid = path.kind[every] == gx.Kind.RAPID
+            actual[rapid] = point[rapid]
+        return self._path(counts, every, at, actual)
+
+    def _crossings(self) -> tuple[Ints, Floats, Ints, Floats]:
+        """Return where lines and arcs are cut: at nodes, and arcs also where they turn far."""
+        path = self.path
+        points = np.empty((3, len(path) + 1)).T
+        points[0], points[1:] = self.start[0], self.end
+        lines = path.kind == gx.Kind.LINE
+        row, part, axis, plane = gx.line_crossings(points, lines, self.step.nodes())
+        if path.has_arcs:
+            reach = self.step.model.model.lipschitz
+            arc_row, arc_part = gx.arc_cuts(path, self.offset, self.step.nodes(), reach, UNDO_SLACK)
+            row, part = np.append(row, arc_row), np.append(part, arc_part)
+        return row, part, axis, plane
+
+    def _points(self, rows: Ints, part: Floats) -> Floats:
+        """Return commanded points (n, 3) of rows at parts of their way."""
+        path = self.path
+        if len(rows) == len(path):
+            return np.asarray(path.end[:, :3])
+        start, end = path.start[rows, :3], path.end[rows, :3]
+        point = start + part[:, None] * (end - start)
+        arcs = path.is_arc[rows]
+        if arcs.any():
+            point[arcs] = gx.points_on_arcs(path, rows[arcs], part[arcs])
+        return np.where((part == 1.0)[:, None] | np.isnan(point), end, point)
+
+    def _path(self, counts: Ints, rows: Ints, part: Floats, actual: Floats) -> gx.Toolpath:
+        path = self.path
+        end = gx.column_major(len(rows), len(path.axes))
+        end[:, :3] = actual
+        a, b = path.start[rows, 3:], path.end[rows, 3:]
+        end[:, 3:] = np.where((part == 1.0)[:, None], b, a + part[:, None] * (b - a))
+        entry = path.entry.copy()
+        if np.isfinite(entry[:3]).all():
+            entry[:3] += self.step.error(entry[None, :3] + self.offset[:1])[0]
+        columns: dict[str, Floats] = {"end": end}
+        if path.has_arcs:
+            before = np.where(
+                np.append(True, rows[1:] != rows[:-1]), 0.0, np.append(0.0, part[:-1])
+            )
+            columns["sweep"] = path.sweep[rows] * (part - before)
+            middle = self._points_between(rows, (part + before) / 2)
+            columns["centre"] = path.centre[rows] + middle
+        slack = UNDO_SLACK if path.has_arcs else 0.0
+        return path.with_rows(counts, **columns).replace(entry=entry, slack=path.slack + slack)
+
+    def _points_between(self, rows: Ints, part: Floats) -> Floats:
+        """Return the errors (n, 3) in the middle of pieces of arcs; 0 for other rows."""
+        errors = np.zeros((len(rows), 3))
+        arcs = np.flatnonzero(self.path.is_arc[rows])
+        point = gx.points_on_arcs(self.path, rows[arcs], part[arcs])
+        offset = self.offset if len(self.offset) == 1 else self.offset[rows[arcs]]
+        errors[arcs] = self.step.error(point + offset)
+        return errors
