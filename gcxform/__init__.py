@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from gcxform.toolpath.circles import circle_through as circle_through
     from gcxform.toolpath.circles import points_on_arcs as points_on_arcs
     from gcxform.toolpath.circles import radius_and_angle as radius_and_angle
+    from gcxform.toolpath.circles import swept_anew as swept_anew
     from gcxform.toolpath.crossings import line_crossings as line_crossings
     from gcxform.toolpath.deviation import deviation as deviation
     from gcxform.toolpath.facts import ABSOLUTE as ABSOLUTE
@@ -86,7 +87,8 @@ _HOMES = {
     "pipeline": "Pipeline Result",
     "registry": "Registry",
     "syntax.tree": "Block Comment Number Word",
-    "toolpath.circles": "arc_cuts arc_extremes circle_through points_on_arcs radius_and_angle",
+    "toolpath.circles": "arc_cuts arc_extremes circle_through points_on_arcs radius_and_angle "
+    "swept_anew",
     "toolpath.crossings": "line_crossings",
     "toolpath.deviation": "deviation",
     "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NOMINAL XY_ARCS "

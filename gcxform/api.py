@@ -40,7 +40,7 @@ def write(result: Result | bytes, path: str | Path) -> None:
         put(text)
 
 
-# --- programs in memory --------------------------------------------------------------------------
+# --- programs in memory ---
 
 
 @dataclass(frozen=True)
@@ -105,12 +105,12 @@ def _empty(axes: str, position: NDArray[np.float64]) -> Toolpath:
     return Toolpath(axes, *columns, position, Blocks(0, flags, flags, flags))
 
 
-# --- comparison ------------------------------------------------------------------------------------
+# --- comparison ---
 
 
 @dataclass(frozen=True)
 class Difference:
-    """Something other than the path that differs: lines of A and B from 1, 0 where there is none."""
+    """Something other than the path that differs; lines of A and B from 1, 0 for none."""
 
     what: str
     line_a: int
@@ -241,7 +241,7 @@ def _feeds(a: Toolpath, b: Toolpath, matching: Matching) -> list[Difference]:
     return list(found.values())
 
 
-# --- events ----------------------------------------------------------------------------------------
+# --- events ---
 
 Side = tuple[Toolpath, type[Dialect]]
 
@@ -263,7 +263,7 @@ def _events(a: Side, b: Side, matching: Matching, tolerance: float) -> list[Diff
 
 
 def _told(side: Side, other: type[Dialect]) -> list[Event]:
-    """Return the events but for those that the other dialect reads as a mode and not as an event."""
+    """Return the events, without those that the other dialect reads as modes."""
     path, _ = side
     return [
         event

@@ -8,7 +8,135 @@ Codes are never reused. The hundreds say where a thing was found: 1 text, 2 mean
 from __future__ import annotations
 
 CATALOGUE: dict[str, tuple[str, str]] = {
-    # --- 3xx: geometry --------------------------------------------------------------------
+    # --- 1xx: text ---
+    "GX101": (
+        "Not a block of this dialect",
+        "The grammar of the dialect does not accept the block at the place shown: a character "
+        "without meaning there, a word without its number, or a comment that is not closed. A "
+        "control would stop here, or read something else than was meant. Correct the block, or "
+        "name the right dialect with -f or `dialect` in [input].",
+    ),
+    "GX102": (
+        "A line ends with CR alone",
+        "Some controls end a block at CR, others read CR as a blank and take the next line as "
+        "part of the same block. A program with such line ends would mean two different things. "
+        "Convert the line ends of the file to LF or CRLF.",
+    ),
+    # --- 2xx: meaning ---
+    "GX201": (
+        "The dialect has no such code or word",
+        "The G code, M code or address letter is not one that the control of this dialect "
+        "knows, so nothing is known of its effect. It is refused because an unknown code may "
+        "move an axis or change where one goes. Check the dialect first; if the code is a macro "
+        "of your machine, a dialect plugin can add it to the table of codes.",
+    ),
+    "GX202": (
+        "Two codes of one modal group in a block",
+        "Codes of one group exclude each other, such as G0 and G1, and the control of this "
+        "dialect refuses a block with two of them. Leave the one in the block that is meant.",
+    ),
+    "GX203": (
+        "A word that belongs to nothing",
+        "A word stands in a block twice, or no code of the block takes it: I, J, K or R without "
+        "an arc, P without a dwell. Controls differ in whether they ignore such words, keep "
+        "them for later, or stop, so there is no one meaning to keep. Remove the word, or write "
+        "the code that it belongs to.",
+    ),
+    "GX204": (
+        "A feed or a time is missing",
+        "A feed move stands where no feed is in force, or a dwell has no time. The feed before "
+        "the first F word is what the control happened to hold, and in G93 every feed block "
+        "needs its own F. Write the word, or say `feed` in [input] if the control starts with a "
+        "feed that you know.",
+    ),
+    "GX205": (
+        "A number without a decimal point",
+        "On this control a distance without a point counts in its least increment, so that X10 "
+        "may be 10 mm or 10 micrometres. The program does not say which, and a guess is wrong "
+        'by a factor of a thousand. Say `increment = "0.001 mm"` in [input], or --increment; 0 '
+        "needs neither.",
+    ),
+    "GX206": (
+        "Code that would have to be run",
+        "The block has an expression, a variable, an assignment or a flow word. Its value "
+        "depends on what ran before, on the control too, and this version computes none. Let "
+        "the CAM system write plain blocks, or run the program through the control's own "
+        "simulation first; the empty pipeline and passes on text keep such blocks as they are.",
+    ),
+    "GX207": (
+        "An incremental move from an unknown position",
+        "In G91 a word adds to where the axis stands, and nothing has said where that is: at "
+        "the start of a program, after a change of the work offset, or after a code that moves "
+        "axes by itself. Program the axis in G90 first, or give the position at the start: "
+        "`start = { X = 0.0 }` in [input], or --start X=0.",
+    ),
+    "GX208": (
+        "An arc from an unknown position",
+        "The circle of an arc follows from its start, its end and its centre, and here the "
+        "start or the end is not known in the plane of the arc. Program both axes of the plane "
+        "before the arc, or give the position at the start: `start = { X = 0.0, Y = 0.0 }` in "
+        "[input], or --start.",
+    ),
+    "GX209": (
+        "Axis words without a motion code",
+        "The block names axes while no G0, G1, G2 or G3 is in force: at the start of a program, "
+        "or after G80. What a control does here depends on its parameters or is an error. Write "
+        "the motion code in the block.",
+    ),
+    "GX210": (
+        "A code that is not resolved",
+        "The code moves axes or shifts coordinates in a way which the program alone does not "
+        "tell: a canned cycle, a return to reference, tool length or radius compensation, an "
+        "offset in the control, a subprogram. A pass that needs positions would work on wrong "
+        "ones. Let the CAM system write plain moves, end the mode before the part that is "
+        "transformed, or leave such programs to pipelines that change text only.",
+    ),
+    "GX211": (
+        "Block delete depends on a switch",
+        "A block that begins with a slash is executed or skipped by a switch on the control "
+        "panel. The path after it depends on that switch, and one output cannot be right for "
+        'both positions. Say which it is: `block-delete = "execute"` or `"skip"` in [input], or '
+        "--block-delete.",
+    ),
+    "GX212": (
+        "A pass on text cannot edit this program",
+        "The pass changes only text, but in this block its edit would change what the program "
+        "does: renumbering a program whose jumps name block numbers, for instance. Leave the "
+        "pass out for such programs.",
+    ),
+    # --- 3xx: geometry ---
+    "GX301": (
+        "The end of an arc is off its circle",
+        "The distances from the centre to the start and to the end of the arc differ by more "
+        "than the control of this dialect accepts, so that it would stop, or cut a spiral "
+        "nobody drew. Often I, J, K were written absolute where the control reads them from the "
+        "start, or the reverse; or the post-processor gives too few decimals. Correct the "
+        "post-processor.",
+    ),
+    "GX302": (
+        "A radius that makes no arc",
+        "R is less than half of the way from start to end, so that no circle goes through both; "
+        "or start and end are one point, where R leaves the centre open. Give the centre by I, "
+        "J, K.",
+    ),
+    "GX303": (
+        "An arc without what makes it one",
+        "The arc has neither a centre nor a radius, only half of an absolute centre, or none of "
+        "the axis words that this control asks for. Some controls cut a straight line here and "
+        "others stop. Write I, J, K or R in the block.",
+    ),
+    "GX304": (
+        "Words of an arc that contradict each other",
+        "The arc has both a centre and a radius, or a centre word that is not in its plane. "
+        "Controls differ in which of the words they follow. Remove one of them, or select the "
+        "plane that was meant with G17, G18 or G19.",
+    ),
+    "GX305": (
+        "The number of turns is not 1, 2, 3 ...",
+        "In this dialect P counts the turns of an arc, the arc itself included. Zero, negative "
+        "and broken numbers have no meaning there. Correct the word, or leave it out for less "
+        "than a full turn.",
+    ),
     "GX309": (
         "The compensated position does not converge",
         "Compensation looks for the command which, together with the error of the machine there, "
@@ -16,7 +144,34 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         'it does at the border of a table with `outside = "zero"`. Choose another policy, or keep '
         "the program away from the border.",
     ),
-    # --- 4xx: machine and error-model files -------------------------------------------------
+    "GX310": (
+        "Outside the error table",
+        "A position lies beyond the range in which the errors of the machine were measured, or "
+        "farther beyond it than may be extrapolated. What the error is there is not known. "
+        "Check part-origin and table-origin first; otherwise measure a larger volume, or choose "
+        '`outside = "clamp"`, `"extrapolate"` or `"zero"` knowing what it means.',
+    ),
+    "GX311": (
+        "The error depends on an axis whose position is not known",
+        "The errors of a machine depend on all of its linear axes, and here one of them has not "
+        "been programmed yet. Program the axis before the first compensated move, or give its "
+        "position at the start: `start = { Z = 100.0 }` in [input], or --start Z=100.",
+    ),
+    "GX313": (
+        "A correction larger than allowed",
+        "The compensation would move a point by more than max-correction. Errors of machine "
+        "tools are tenths of a millimetre at most, so a larger one mostly means a table in "
+        "micrometres read as millimetres, a wrong sign, or a wrong origin. If the values are "
+        "right, raise `max-correction`.",
+    ),
+    "GX314": (
+        "Work offsets that are not known",
+        "The program changes its work offset and the pass was told only one origin, or the "
+        "machine file lacks the offset. The error depends on where the part is in the machine. "
+        "Give a machine file with [work-offset.G54] and the others that are used, in place of "
+        "part-origin.",
+    ),
+    # --- 4xx: machine and error-model files ---
     "GX401": (
         "A configuration file cannot be read",
         "A machine or error-model file does not exist, is a directory or may not be read. Relative "
@@ -169,7 +324,59 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "Not a tool number",
         "The tables of tools are called by whole numbers, [tool.1] for T1, each once.",
     ),
-    # --- 7xx: command line and pipeline -------------------------------------------------------
+    # --- 5xx: emission ---
+    "GX501": (
+        "The target cannot say this",
+        "The control that is written for has no such code, word, comment or plane of arcs, and "
+        'there is no other way to say the same in its language. For arcs the pass "plane" or '
+        '"segment" makes lines of them; otherwise the source program has to do without.',
+    ),
+    "GX502": (
+        "The block would be too long",
+        "The control reads only so many characters of a block and drops or refuses the rest. "
+        'Fewer decimals, the pass "strip" for blanks and comments, or `words = "changed"` in '
+        "[output] make blocks shorter.",
+    ),
+    "GX503": (
+        "A number with too many digits",
+        "The number has more digits than controls take for a word, because a position is far "
+        "away or the decimals are many. Check the units of the program and `decimals` in "
+        "[output].",
+    ),
+    "GX504": (
+        "An arc cannot be written as this control accepts it",
+        "After rounding, the start, end and centre of this arc describe another arc, or one "
+        "that the control refuses by its own rule: mostly a tiny arc, or one of a very large "
+        "radius. Give more decimals in [output], or turn arcs into lines with the pass "
+        '"segment".',
+    ),
+    "GX505": (
+        "A block with a NUL byte would have to be written anew",
+        "NUL bytes are the leader and trailer of punched tape; within a block that changes "
+        "there is no telling what they were for. Remove them from the file.",
+    ),
+    # --- 6xx: verification ---
+    "GX601": (
+        "The output does not do what the program does",
+        "The written text was read again, taken through the models of the machine and compared "
+        "with the input, and differs by more than the budget, or in a feed, an event or a kind "
+        "of move. Nothing was written. If the budget was set by hand it may be too small for "
+        "what the steps do; otherwise this is a bug of gcxform or of a plugin, and a report "
+        "with the program and the pipeline helps.",
+    ),
+    "GX602": (
+        "A pass does not keep what it promises",
+        "A pass says that its output has a property, and the path it returned does not have it. "
+        "Nothing was written. This is a bug of the pass: report it to the author of the plugin, "
+        "see `gcxform list passes`.",
+    ),
+    "GX603": (
+        "A pass on text changed the meaning of a block",
+        "A pass that may change comments, blanks and block numbers only has changed a word. "
+        "Nothing was written. This is a bug of the pass: report it to the author of the plugin, "
+        "see `gcxform list passes`.",
+    ),
+    # --- 7xx: command line and pipeline ---
     "GX701": (
         "Unknown key in a pipeline",
         "A pipeline file, or an option of a pass, has a key which means nothing there; a misspelt "
@@ -237,7 +444,75 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "Each option by itself is right, but the pass cannot do what they ask for together. "
         "Change one of them.",
     ),
-    # --- 8xx: plugins -------------------------------------------------------------------------
+    "GX720": (
+        "segment needs to know how close chords must be",
+        "To make lines of arcs the pass has to be told the largest distance between chord and "
+        'arc, and there is no value that suits every part. Write `chord-error = "2 um"`, or '
+        '`arcs = "split"` to keep arcs as arcs.',
+    ),
+    "GX721": (
+        "volumetric needs to know where the part is",
+        "The error depends on the position in the machine, and the program counts from its own "
+        "origin. Give `part-origin = [x, y, z]` in machine coordinates, or a machine file with "
+        "work offsets.",
+    ),
+    "GX722": (
+        "The dialect of a program is not named",
+        "The same words mean different things to different controls, and nothing in a file says "
+        "for sure which one it is for, least of all its name. Name the dialect: -f fanuc, or "
+        '`dialect = "fanuc"` in [input]; `gcxform list dialects` shows what there is.',
+    ),
+    "GX723": (
+        "A step without a bound needs a budget",
+        'One of the steps, or `words = "programmed"`, promises no bound for the deviation, so '
+        "that a limit cannot be computed from the steps. Say what is allowed, [budget] "
+        'deviation = "20 um"; the certificate states what was measured.',
+    ),
+    "GX724": (
+        "The budget is smaller than what the steps may take",
+        "The tolerances of the steps and the rounding of the numbers add up to more than the "
+        "budget, so a right run could fail. Raise the budget, lower a tolerance, or write more "
+        "decimals.",
+    ),
+    "GX725": (
+        "Steps that do not fit together",
+        "A step requires a property of the path that the steps before it do not give, or that "
+        "one of them has taken away. Reorder the steps, or add the pass named in the hint; "
+        "`gcxform check` shows the properties after each step.",
+    ),
+    "GX726": (
+        "There is no pipeline",
+        "Nothing says what is to be done with the program. Give a pipeline file with -p, a "
+        "chain with -x, or name a file in the environment variable GCXFORM_PIPELINE. An empty "
+        "chain, -x '' with -f DIALECT, is the pipeline that changes nothing.",
+    ),
+    "GX727": (
+        "An output would overwrite an input",
+        "The output, the certificate or the map has the name of a file that is read, perhaps by "
+        "another path or through a link. Write to another place. To replace the program by the "
+        "result on purpose use --in-place, or `gcxform post`.",
+    ),
+    "GX728": (
+        "Options that exclude each other",
+        "Two options ask for different things, or name one place for two outputs. Leave one of "
+        "them out.",
+    ),
+    "GX729": (
+        "There is no such code",
+        "Diagnostic codes are GX and three digits, as they stand in brackets in a message. To "
+        "explain a block of a program write FILE:LINE and the dialect with -f.",
+    ),
+    "GX730": (
+        "Nothing installed has this name",
+        "No installed plugin offers a thing of this kind and name. `gcxform list` with the kind "
+        "alone shows what there is.",
+    ),
+    "GX731": (
+        "The program has no such line",
+        "Lines count from 1, as in an editor and in messages. `gcxform info FILE` says how many "
+        "there are.",
+    ),
+    # --- 8xx: plugins ---
     "GX801": (
         "Two plugins offer the same name",
         "Which one a pipeline means would depend on the order of installation. Uninstall one of "
@@ -248,5 +523,22 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "A plugin cannot be imported, or one of its hooks fails or returns what it should not; "
         "what it offers is missing and all else works. Update or uninstall the distribution "
         "named, or tell its author.",
+    ),
+    # --- 9xx: files ---
+    "GX901": (
+        "A program cannot be read",
+        "The file does not exist, is a directory, or may not be read; or its device failed. "
+        "Correct the name or the permissions. Nothing was written.",
+    ),
+    "GX902": (
+        "A result cannot be written",
+        "The directory does not exist or may not be written to, the disk is full, or a limit on "
+        "the size of files was reached. The destination is as it was: results are written to a "
+        "temporary file beside it and renamed at the end.",
+    ),
+    "GX903": (
+        "Input or output failed",
+        "The operating system refused to read or to write; the message is its own. Results are "
+        "renamed into place only when they are complete.",
     ),
 }

@@ -51,6 +51,11 @@ class Pass:
         """How far the path may deviate (mm); inf where nothing is promised."""
         return 0.0
 
+    @property
+    def promise_angle(self) -> float:
+        """How far (deg) rotary axes may be from where they should be at a point of the path."""
+        return 0.0
+
     def begin(self, context: PassContext) -> None:
         """Look at the context before any input is read; raise UsageError if it does not fit."""
 

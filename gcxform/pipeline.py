@@ -177,6 +177,11 @@ class Pipeline:
             total += ARC_ROUNDING * self.manner.step("X", False)
         return total
 
+    def angle_limit(self) -> float:
+        """Return how far (deg) rotary axes may be off: what steps promise, and the rounding."""
+        promised = sum(step.promise_angle for step in self.path_passes)
+        return promised + 1.01 * self.manner.step("A", False)
+
     def _check_budget(self) -> None:
         """Refuse a budget that the steps cannot keep, and steps without bound or budget."""
         bounded = self.promised() < np.inf and self.words != "programmed"

@@ -80,8 +80,7 @@ class Run:
                 replace(reading, units=_first_units(pipeline)),
                 axes,
                 pipeline.limit(),
-                10.0 ** -pipeline.manner.decimals_of("F", False) * 25.4,
-                1.01 * 10.0 ** -pipeline.manner.decimals_of("A", False),
+                pipeline.angle_limit(),
                 self.source.name,
             )
 

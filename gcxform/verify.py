@@ -27,6 +27,9 @@ Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
 
+FEED_ERROR = 2e-4  # relative: what the rounding of a feed may change
+
+
 @dataclass(slots=True)
 class Findings:
     """What the verification has found so far: counts, and the worst places.
@@ -57,7 +60,6 @@ class Verifier:
         reading: Reading,
         axes: str,
         budget: float,
-        feed_step: float,
         angle_budget: float,
         file: str = "-",
     ) -> None:
@@ -66,7 +68,6 @@ class Verifier:
         self.reader = WindowReader(context.target)
         self.interpreter = Interpreter(context.target, reading, axes, "output")
         self.budget = budget
-        self.feed_step = feed_step
         self.angle_budget = angle_budget
         self.file = file
         self.findings = Findings()
@@ -105,7 +106,7 @@ class Verifier:
         self._missing(trace)
         if not len(trace.owner):
             return
-        off = deviation(before, after, trace.owner)
+        off = deviation(before, after, trace.owner, self.budget)
         self.findings.unknown_starts += int(off.unknown_start.sum())
         self._start(trace)
         worst = int(np.argmax(off.distance))
@@ -170,7 +171,7 @@ class Verifier:
             self._fail("the feed mode has changed", trace, int(np.argmax(mode & moving)))
         inverse = after.feed_mode == FeedMode.INVERSE_TIME
         plain = moving & ~inverse
-        off = np.abs(after.feed - before.feed[owner]) > self.feed_step + 1e-9 * np.abs(after.feed)
+        off = np.abs(after.feed - before.feed[owner]) > FEED_ERROR * np.abs(after.feed)
         if (off & plain).any():
             self._fail("the feed has changed", trace, int(np.argmax(off & plain)))
         if (moving & inverse).any():

@@ -8,14 +8,16 @@ from typing import Any
 import click
 import numpy as np
 
+from gcxform.chain import facts_after
 from gcxform.cli import VERBS, options
+from gcxform.cli.asked import Asked
 from gcxform.cli.failures import warn
-from gcxform.cli.options import Asked
 from gcxform.cli.programs import opened
 from gcxform.contract import Pass
 from gcxform.diagnostics import PRINTED_AT_MOST, Diagnostic, InputError
 from gcxform.modal.interpreter import Interpreter
-from gcxform.pipeline import Pipeline, facts_after, windows_of
+from gcxform.modal.reader import windows_of
+from gcxform.pipeline import Pipeline
 from gcxform.registry import default_registry
 from gcxform.source import Source
 from gcxform.toolpath.facts import Fact
@@ -39,7 +41,7 @@ def command(file: str | None, **asked: Any) -> int:
     return _check(pipeline, file) if file is not None else 0
 
 
-# --- the chain ---------------------------------------------------------------------------------------
+# --- the chain ---
 
 
 def chain(pipeline: Pipeline) -> list[str]:
@@ -79,7 +81,7 @@ def _budget(pipeline: Pipeline) -> list[str]:
     ]
 
 
-# --- the program ---------------------------------------------------------------------------------------
+# --- the program ---
 
 
 def _check(pipeline: Pipeline, file: str) -> int:

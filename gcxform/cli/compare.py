@@ -7,9 +7,9 @@ from typing import Any
 
 import click
 
-from gcxform.api import TOLERANCE, Comparison, Program, compare, read
+from gcxform.api import TOLERANCE, Comparison, Program, compare
 from gcxform.cli import VERBS, options
-from gcxform.cli.options import Asked, excluding, needed_dialect
+from gcxform.cli.asked import Asked, excluding, needed_dialect
 from gcxform.cli.outputs import STDOUT
 from gcxform.cli.programs import opened
 from gcxform.contract import Pass

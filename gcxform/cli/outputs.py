@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
-from gcxform.cli.options import excluding
+from gcxform.cli.asked import excluding
 from gcxform.cli.programs import IN_MEMORY
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.files import write_atomically

@@ -12,7 +12,7 @@ from typing import Any, Final
 import click
 
 from gcxform.cli import VERBS, options
-from gcxform.cli.options import Asked, excluding
+from gcxform.cli.asked import Asked, excluding
 from gcxform.cli.outputs import STDOUT, check_places
 from gcxform.cli.transform import Job, transform
 from gcxform.diagnostics import GcxformError

@@ -8,8 +8,8 @@ import click
 
 from gcxform.certificate import Certificate
 from gcxform.cli import VERBS, options
+from gcxform.cli.asked import Asked, excluding
 from gcxform.cli.failures import say, warn
-from gcxform.cli.options import Asked, excluding
 from gcxform.cli.outputs import STDOUT, check_places, same
 from gcxform.cli.transform import Done, Job, transform
 from gcxform.pipeline import Pipeline

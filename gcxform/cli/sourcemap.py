@@ -27,14 +27,14 @@ class SourceMap(list[int]):
     def __init__(self) -> None:
         super().__init__()
         self.runs: list[Run] = []
-        self.count = 0
+        self.total = 0
 
-    def __iadd__(self, lines: Iterable[int], /) -> Self:  # type: ignore[misc]
+    def __iadd__(self, lines: Iterable[int], /) -> Self:  # type: ignore[override,misc]
         values = np.fromiter(lines, np.int64)
         for first, length in _even_parts(values):
             step = int(values[first + 1] - values[first]) if length > 1 else 1
-            self._add([self.count + first + 1, int(values[first]) + 1, length, step])
-        self.count += len(values)
+            self._add([self.total + first + 1, int(values[first]) + 1, length, step])
+        self.total += len(values)
         return self
 
     def _add(self, run: Run) -> None:

@@ -1,8 +1,8 @@
 """Centres of arcs on the formatted grid, tested with the control's own rule before writing.
 
 Both ends of an arc are already rounded; a centre that is rounded on its own leaves them on two
-different circles, and the control stops in the cut. So the centre is first moved onto the bisector
-of the rounded ends, then the grid points around it are tried and the best is taken.
+different circles, and the control stops in the cut. So the grid points around the centre are
+tried: of those that the control takes, the one that moves the arc least is written.
 """
 
 from __future__ import annotations
@@ -18,16 +18,17 @@ from gcxform.modal.arcs import TURN, accepts, swept
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-NEAR_FULL = np.radians(350.0)  # beyond it the bisector of the ends says little about the centre
 SWEEP_SLIP = np.radians(1.0)  # a sweep that changes by more in formatting is another arc
 STRICT = 0.002  # mm; tighter than any control asks, so that the arc passes elsewhere too
+REACH = 2  # grid points tried on either side of the centre
 
 
 @dataclass(frozen=True, slots=True)
 class ArcEnds:
     """Arcs of one plane, (n, 2) in mm: start and end as formatted, and the centre that is meant.
 
-    `base` (n, 2) is what the centre words are counted from, `step` (n,) the last decimal in mm.
+    `base` (n, 2) is what the centre words are counted from, `step` (n,) the last decimal in mm,
+    `spiral` (n,) by how much the radii at start and end differ before rounding.
     """
 
     start: Floats
@@ -37,6 +38,7 @@ class ArcEnds:
     step: Floats
     sweep: Floats
     sense: Floats
+    spiral: Floats
 
 
 def centre_words(arcs: ArcEnds, rule: ArcRule, refit: bool) -> tuple[Floats, Flags]:
@@ -44,37 +46,21 @@ def centre_words(arcs: ArcEnds, rule: ArcRule, refit: bool) -> tuple[Floats, Fla
 
     An arc is good if the control accepts it and its sweep is still the one that was meant.
     """
+    near = _rounded((arcs.centre - arcs.base) / arcs.step[:, None])
     if not refit:
-        words = _rounded((arcs.centre - arcs.base) / arcs.step[:, None])
-        return words, _good(arcs, words, rule)
-    aim = (_on_bisector(arcs) - arcs.base) / arcs.step[:, None]
-    best = _rounded(aim)
-    least = _mismatch(arcs, best)
-    for shift in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
-        if not (least > arcs.step / 2).any():
-            break
-        trial = _rounded(aim) + shift
-        delta = _mismatch(arcs, trial)
-        better = (delta < least) & (least > arcs.step / 2)
-        best = np.where(better[:, None], trial, best)
-        least = np.where(better, delta, least)
-    return best, _good(arcs, best, rule)
+        return near, _good(arcs, near, rule)
+    best, least = near, np.full(len(near), np.inf)
+    for x in range(-REACH, REACH + 1):
+        for y in range(-REACH, REACH + 1):
+            trial = near + (x, y)
+            cost = _cost(arcs, trial, rule)
+            best = np.where((cost < least)[:, None], trial, best)
+            least = np.minimum(cost, least)
+    return best, np.isfinite(least) & _good(arcs, best, rule)
 
 
 def _rounded(value: Floats) -> Floats:
     return np.copysign(np.floor(np.abs(value) + (0.5 + 1e-6)), value)
-
-
-def _on_bisector(arcs: ArcEnds) -> Floats:
-    """Return the points equally far from start and end that are nearest to the centres."""
-    chord = arcs.end - arcs.start
-    length = np.hypot(*chord.T)
-    partial = (np.mod(arcs.sweep, TURN) < NEAR_FULL) & (length > 4 * arcs.step)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        along = chord / length[:, None]
-    middle = (arcs.start + arcs.end) / 2
-    beside = ((arcs.centre - middle) * along).sum(axis=1)[:, None] * along
-    return np.where(partial[:, None], arcs.centre - beside, arcs.centre)
 
 
 def _radii(arcs: ArcEnds, words: Floats) -> tuple[Floats, Floats, Floats]:
@@ -82,16 +68,23 @@ def _radii(arcs: ArcEnds, words: Floats) -> tuple[Floats, Floats, Floats]:
     return np.hypot(*(arcs.start - centre).T), np.hypot(*(arcs.end - centre).T), centre
 
 
-def _mismatch(arcs: ArcEnds, words: Floats) -> Floats:
-    first, last, _ = _radii(arcs, words)
-    return np.abs(first - last)
+def _limit(arcs: ArcEnds, rule: ArcRule) -> Floats:
+    """Return by how much (mm) the radii may differ: an arc that is a spiral may stay one."""
+    round_one = np.minimum(np.maximum(STRICT, arcs.step), rule.absolute / 2)
+    return np.asarray(np.maximum(round_one, arcs.spiral + 1.5 * arcs.step))
+
+
+def _cost(arcs: ArcEnds, words: Floats, rule: ArcRule) -> Floats:
+    """Return how much (mm) an arc is moved by a centre; inf if the radii differ too much."""
+    first, last, centre = _radii(arcs, words)
+    delta = np.abs(first - last)
+    moved = np.hypot(*(centre - arcs.centre).T)
+    return np.where(delta <= _limit(arcs, rule), moved + delta / 2, np.inf)
 
 
 def _good(arcs: ArcEnds, words: Floats, rule: ArcRule) -> Flags:
     first, last, centre = _radii(arcs, words)
     sweep = swept(arcs.start - centre, arcs.end - centre, arcs.sense)
     slip = np.abs(sweep - (np.mod(arcs.sweep - 1e-12, TURN) + 1e-12))
-    delta = np.abs(first - last)
-    tight = delta <= np.maximum(STRICT, arcs.step)
-    good: Flags = accepts(rule, first, last) & tight & (slip < SWEEP_SLIP)
+    good: Flags = accepts(rule, first, last) & (slip < SWEEP_SLIP)
     return good

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError
 from gcxform.emit.arcs import ArcEnds, centre_words
-from gcxform.emit.copying import Copying
+from gcxform.emit.copying import EXACT, Copying
 from gcxform.emit.manner import Believed, Manner, Task
-from gcxform.emit.numbers import quantise
+from gcxform.emit.numbers import MOST_DECIMALS, quantise
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, motion_kinds
 from gcxform.emit.render import Renderer, interleave
@@ -155,15 +155,37 @@ class _Job:
             np.where(inch, manner.step(letter, True), manner.step(letter, False)),
             self.path.sweep[rows],
             self.path.sense[rows],
+            self._spiral(rows, axes),
         )
         self.centre[rows], good = centre_words(arcs, manner.target.arc_rule, refit)
-        full = np.mod(self.path.sweep[rows] + 1e-9, TURN) < 2e-9
-        for axis in plane.axes[:2]:
-            self.positions.write[rows[full], axis] = True
+        good |= self._full_circles(rows, axes, begin, refit)
         if refit and not good.all():
             message = f"rounded, this arc is another one, or one that {manner.target.name} refuses"
             hint = 'give more decimals, or turn arcs into lines with the pass "segment"'
             self._refuse(rows[~good], "GX504", message, hint)
+
+    def _full_circles(self, rows: Ints, axes: Ints, begin: Floats, refit: bool) -> Flags:
+        """Settle the end words of full circles; return which of them are good for that.
+
+        The end is written where it is the start to the letter, as every control reads it. A start
+        off the grid, in a block that was copied, cannot be written: the words are left out.
+        """
+        full = np.mod(self.path.sweep[rows] + 1e-9, TURN) < 2e-9
+        on_grid = (np.abs(self.positions.held[np.ix_(rows, axes)] - begin) < EXACT).all(axis=1)
+        silent = full & ~on_grid & refit
+        if self.task.manner.target.circle_needs_axis_word:
+            silent[:] = False
+        for axis in axes.tolist():
+            self.positions.write[rows[full], axis] = True
+            self.positions.write[rows[silent], axis] = False
+        return np.asarray(silent)
+
+    def _spiral(self, rows: Ints, axes: Ints) -> Floats:
+        """Return by how much (mm) the radii of arcs at start and end differ before rounding."""
+        centre = self.path.centre[np.ix_(rows, axes)]
+        first = self.path.start[np.ix_(rows, axes)] - centre
+        last = self.path.end[np.ix_(rows, axes)] - centre
+        return np.asarray(np.abs(np.hypot(*first.T) - np.hypot(*last.T)))
 
     def _refuse(self, rows: Ints, code: str, message: str, hint: str) -> None:
         lines = self.path.block[rows[:20]].tolist()
@@ -264,8 +286,9 @@ class _Job:
             everywhere = np.ones(len(rows), np.bool_)
             renderer.number(field.gap, field.address, whole, decimals, everywhere)
         else:
-            decimals = manner.decimals_of("F", inch)
-            whole = quantise(self.pieces.feed_value[members], decimals)
+            feed = self.pieces.feed_value[members]
+            decimals = _decimals_for(feed, manner.decimals_of("F", inch))
+            whole = quantise(feed, decimals)
             everywhere = np.ones(len(rows), np.bool_)
             renderer.number(field.gap, "F", whole, decimals, everywhere, point=False)
 
@@ -314,3 +337,12 @@ def _groups(ways: Ints) -> list[Ints]:
         order = left[np.argsort(ways[left], kind="stable")]
         groups += np.split(order, np.flatnonzero(np.diff(ways[order])) + 1)
     return groups
+
+
+def _decimals_for(value: Floats, usual: int) -> int:
+    """Return as many decimals as keep values to a ten thousandth: small feeds need more."""
+    for decimals in range(usual, MOST_DECIMALS):
+        error = np.abs(quantise(value, decimals) / 10.0**decimals - value)
+        if (error <= 1e-4 * np.abs(value)).all():
+            return decimals
+    return MOST_DECIMALS

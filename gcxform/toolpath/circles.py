@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.modal.arcs import TURN
+from gcxform.modal.arcs import TURN, swept
 from gcxform.toolpath.crossings import arc_crossings
 from gcxform.toolpath.path import Plane, Toolpath
 
@@ -46,6 +46,24 @@ def points_on_arcs(path: Toolpath, rows: Ints, part: Floats) -> Floats:
         point[here, a] = path.centre[rows[here], a] + size[here] * np.cos(at[here])
         point[here, b] = path.centre[rows[here], b] + size[here] * np.sin(at[here])
     return np.asarray(point)
+
+
+def swept_anew(path: Toolpath) -> Floats:
+    """Return the sweeps (rad) of all rows, those of arcs measured about their centres.
+
+    Full turns, and arcs too short to measure, are taken from the sweeps that the path has.
+    """
+    sweep = np.array(path.sweep)
+    start = path.start
+    for plane in Plane:
+        rows = np.flatnonzero(path.is_arc & (path.plane == plane))
+        axes = np.array(plane.axes[:2])
+        centre = path.centre[np.ix_(rows, axes)]
+        u, v = start[np.ix_(rows, axes)] - centre, path.end[np.ix_(rows, axes)] - centre
+        measured = swept(u, v, path.sense[rows])
+        measured += TURN * np.round((sweep[rows] - measured) / TURN)
+        sweep[rows] = np.where(measured > 0, measured, sweep[rows])
+    return sweep
 
 
 def arc_extremes(path: Toolpath) -> tuple[Floats, Ints]:

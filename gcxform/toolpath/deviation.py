@@ -34,18 +34,20 @@ class Deviation:
     unknown_start: Flags
 
 
-def deviation(before: Toolpath, after: Toolpath, owner: Ints) -> Deviation:
+def deviation(before: Toolpath, after: Toolpath, owner: Ints, ahead: float = 0.0) -> Deviation:
     """Return how far the rows of `after` are from the rows of `before` that own them.
 
     `owner` (len(after),) never decreases. Rows that have nothing in common with their owner, a
-    line for an arc of another sense for instance, are infinitely far.
+    line for an arc of another sense for instance, are infinitely far. A point may be `ahead` (mm)
+    on its way or behind: by what rotary axes turn on that length their angles may differ.
     """
-    return _Comparison(before, after, owner).run()
+    return _Comparison(before, after, owner, ahead).run()
 
 
 class _Comparison:
-    def __init__(self, before: Toolpath, after: Toolpath, owner: Ints) -> None:
+    def __init__(self, before: Toolpath, after: Toolpath, owner: Ints, ahead: float) -> None:
         self.before, self.after, self.owner = before, after, owner
+        self.ahead = ahead
         self.linear = [i for i, a in enumerate(before.axes) if a in LINEAR]
         self.rotary = [i for i, a in enumerate(before.axes) if a not in LINEAR]
         self.last = np.append(owner[1:] != owner[:-1], True)[: len(owner)]
@@ -99,7 +101,14 @@ class _Comparison:
         distance, angle = self._between(end, start + part[:, None] * way + (goal - goal))
         back = self._backwards(part, rows, np.sqrt(square))
         self.distance[rows] = distance + back
-        self.angle[rows] = angle
+        length = np.sqrt((way[:, self.linear] ** 2).sum(axis=1))
+        turned = np.abs(way[:, self.rotary]).max(axis=1, initial=0.0)
+        self.angle[rows] = np.maximum(angle - self.turned_ahead(turned, length), 0.0)
+
+    def turned_ahead(self, turned: Floats, length: Floats) -> Floats:
+        """Return by how much (deg) rotary axes turn on the length that a point may be ahead."""
+        rate = np.divide(turned, length, out=np.zeros_like(turned), where=length > 0)
+        return np.asarray(np.minimum(rate * self.ahead, turned))
 
     def _backwards(self, part: Floats, rows: Ints, length: Floats) -> Floats:
         """Return half the way that rows go back along their owner."""
@@ -123,6 +132,7 @@ class _BesideArc:
     def __init__(self, comparison: _Comparison, plane: Plane, rows: Ints, starts: Floats) -> None:
         self.all = comparison
         self.axes = list(plane.axes[:2])
+        self.normal = plane.axes[2]
         self.rows = rows
         self.owner = comparison.owner[rows]
         before, after = comparison.before, comparison.after
@@ -212,26 +222,50 @@ class _BesideArc:
         return np.where(np.isnan(worst), np.inf, np.maximum(worst, np.minimum(spiral, size)))
 
     def _other_axes(self, begin: Floats, reach: Floats, step: Floats) -> tuple[Floats, Floats]:
-        """Return how far the axes outside the plane are from turning evenly with the angle."""
+        """Return how far (mm, deg) the axes outside the plane are from turning with the angle.
+
+        A point that is off along the axis of a helix is nearer to another point of the helix than
+        to the one at its own angle: it is beside it by the cosine of the helix's slope, and by the
+        bend of the helix on the way there. Rotary axes are compared at that nearer point.
+        """
+        reach = np.where(self.all.last[self.rows], self.sweep, reach)
         uneven = np.where(self.is_arc, 0.0, _uneven(np.abs(step)))
-        square = np.zeros(len(self.rows))
-        angle = np.zeros(len(self.rows))
+        radius = np.maximum(self._radius(begin), 1e-9)
+        rise = np.nan_to_num(self.goal - self.start)[:, self.normal]
+        length = np.hypot(radius * self.sweep, rise)
+        flat = radius * self.sweep / length
+        parts = [np.clip(at / self.sweep, 0.0, 1.0) for at in (begin, reach)]
+        off = [
+            self._off(self.normal, part, p) for part, p in zip(parts, (self.a, self.b), strict=True)
+        ]
+        parts = [part + gap * rise / length**2 for part, gap in zip(parts, off, strict=True)]
+        own_rise = np.abs(np.nan_to_num(self.b - self.a)[:, self.normal])
+        along = np.maximum(np.abs(off[0]), np.abs(off[1])) + uneven * own_rise
+        ahead = along * np.abs(rise) / length
+        square = np.minimum(along, along * flat + (ahead * flat) ** 2 / radius / 2) ** 2
+        angle, turned = np.zeros((2, len(self.rows)))
         for k in range(self.b.shape[1]):
-            if k in self.axes:
+            if k in self.axes or k == self.normal:
                 continue
-            way = np.nan_to_num(self.goal[:, k] - self.start[:, k])
-            gap = np.zeros(len(self.rows))
-            for position, at in ((self.a[:, k], begin), (self.b[:, k], reach)):
-                wanted = self.start[:, k] + way * np.clip(at / self.sweep, 0.0, 1.0)
-                difference = np.abs(position - wanted)
-                difference[np.isnan(position) & np.isnan(wanted)] = 0.0
-                gap = np.maximum(gap, np.where(np.isnan(difference), np.inf, difference))
+            way = np.abs(np.nan_to_num(self.goal[:, k] - self.start[:, k]))
+            gap = np.maximum(
+                np.abs(self._off(k, parts[0], self.a)), np.abs(self._off(k, parts[1], self.b))
+            )
             gap = gap + uneven * np.nan_to_num(np.abs(self.b[:, k] - self.a[:, k]))
             if k in self.all.linear:
                 square += gap**2
             else:
-                angle = np.maximum(angle, gap)
-        return np.sqrt(square), angle
+                angle, turned = np.maximum(angle, gap), np.maximum(turned, way)
+        allowed = self.all.turned_ahead(turned, length)
+        return np.sqrt(square), np.maximum(angle - allowed, 0.0)
+
+    def _off(self, k: int, part: Floats, point: Floats) -> Floats:
+        """Return how far one axis of a point is from the owner's at a part of the way; signed."""
+        way = np.nan_to_num(self.goal[:, k] - self.start[:, k])
+        wanted = self.start[:, k] + way * part
+        gap = point[:, k] - wanted
+        gap[np.isnan(point[:, k]) & np.isnan(wanted)] = 0.0
+        return np.where(np.isnan(gap), np.inf, gap)
 
 
 def _nearest(u: Floats, v: Floats) -> Floats:

@@ -31,6 +31,7 @@ Point = Sequence[float]
 
 LEAST = 1e-9  # part of a row; cuts are no nearer to each other
 PREFERRED = 3.0  # two ends are a pair also this many times farther apart than a cut would be
+CLEAR = 4.0  # two ends are surely a pair if the rows about them are this many times longer
 STREAK = 8  # pairs in a row after which many are looked at together
 RUN = 1 << 12  # rows looked at together
 TURN = 2 * math.pi
@@ -116,7 +117,7 @@ def moving_rows(path: Toolpath) -> Ints:
     return np.flatnonzero(~still.all(axis=1) | path.is_arc)
 
 
-# --- the walk -----------------------------------------------------------------------------------
+# --- the walk ---
 
 
 class _Walk:
@@ -133,9 +134,8 @@ class _Walk:
         while not (a.over and b.over):
             if self.streak >= STREAK:
                 self._many()
-            elif a.over or b.over or not self._step():
-                if not (self._wait(a, b) or self._wait(b, a)):
-                    return a.row, b.row
+            elif not (self._step() or self._wait(a, b) or self._wait(b, a)):
+                return a.row, b.row
         return None
 
     def _many(self) -> None:
@@ -148,7 +148,8 @@ class _Walk:
         one, other = slice(a.at, a.at + count), slice(b.at, b.at + count)
         gap = a.end[one] - b.end[other]
         gap[np.isnan(a.end[one]) & np.isnan(b.end[other])] = 0.0
-        same = np.einsum("ij,ij->i", gap, gap) <= self.tolerance**2
+        apart = np.sqrt(np.einsum("ij,ij->i", gap, gap))
+        same = apart <= np.minimum(self.tolerance, np.minimum(a.clear[one], b.clear[other]))
         same &= (a.kind[one] == b.kind[other]) & (np.abs(a.sweep[one] - b.sweep[other]) < 1.0)
         count = count if same.all() else int(np.argmin(same))
         a.take_rows(count)
@@ -158,10 +159,11 @@ class _Walk:
     def _step(self) -> bool:
         """Pair the present rows, one of them cut if need be; return whether they fit."""
         a, b = self.a, self.b
-        if a.rapid != b.rapid:
+        if a.over or b.over or a.rapid != b.rapid:
             return False
-        pair = math.inf if _turn_otherwise(a, b) else _apart(a.goal, b.goal)
-        if pair <= self.tolerance:
+        otherwise = _turns_otherwise(a.sweep_left, b.sweep_left)
+        pair = math.inf if otherwise else _apart(a.goal, b.goal)
+        if pair <= min(self.tolerance, a.clear[a.at], b.clear[b.at]):
             return self._take(1.0, 1.0)
         on_a, to_a = a.nearest(b)
         on_b, to_b = b.nearest(a)
@@ -189,9 +191,8 @@ class _Walk:
         return True
 
 
-def _turn_otherwise(a: _Side, b: _Side) -> bool:
-    """Return whether the rest of two rows cannot be one travel, though their ends may agree."""
-    one, other = a.sweep_left, b.sweep_left
+def _turns_otherwise(one: float, other: float) -> bool:
+    """Return whether sweeps (rad) cannot be one travel, though the ends of the moves may agree."""
     return abs(one - other) > (math.pi if one and other else CHORD)
 
 
@@ -203,8 +204,16 @@ class _Side:
         self.rows = moving_rows(path)
         self.start, self.end = path.start[self.rows], path.end[self.rows]
         self.kind, self.sweep = path.kind[self.rows], path.sweep[self.rows]
+        self.clear = self._clear()
         self.at, self.part = 0, 0.0
         self.taken: list[tuple[int, float, float]] = []
+
+    def _clear(self) -> Floats:
+        """Return how near to the end of each row nothing else of the path ends."""
+        way = np.nan_to_num(self.end - self.start, nan=np.inf)
+        length = np.sqrt(np.einsum("ij,ij->i", way, way))
+        length[np.isinf(way).any(axis=1) | (self.sweep > 0)] = np.inf
+        return np.minimum(length, np.append(length[1:], np.inf)[: len(length)]) / CLEAR
 
     @property
     def over(self) -> bool:
@@ -222,9 +231,9 @@ class _Side:
         return bool(self.kind[self.at] == Kind.RAPID)
 
     @property
-    def goal(self) -> list[float]:
+    def goal(self) -> Point:
         """Where the present row ends."""
-        return self.end[self.at].tolist()
+        return _listed(self.end[self.at])
 
     @property
     def sweep_left(self) -> float:
@@ -255,11 +264,11 @@ class _Side:
         row, low, high = zip(*self.taken, strict=True) if self.taken else ((), (), ())
         return Pieces(np.array(row, np.int64), np.array(low, float), np.array(high, float))
 
-    def here(self) -> list[float]:
+    def here(self) -> Point:
         """Return where the path stands."""
         if self.part:
             return self._point(self.part)
-        return self.end[self.at - 1].tolist() if self.at else self.start[0].tolist()
+        return _listed(self.end[self.at - 1] if self.at else self.start[0])
 
     def nearest(self, other: _Side) -> tuple[float, float]:
         """Return the part of this row nearest to where the other one's row ends, and how far it is.
@@ -269,12 +278,15 @@ class _Side:
         goal = other.goal
         part = self._on_arc(goal, other) if self.sweep[self.at] else self._on_line(goal)
         part = max(part, self.part + LEAST)
-        return (part, _apart(self._point(part), goal)) if part < 1.0 - LEAST else (1.0, math.inf)
+        turned = float(self.sweep[self.at]) * (part - self.part)
+        if part > 1.0 - LEAST or _turns_otherwise(turned, other.sweep_left):
+            return 1.0, math.inf
+        return part, _apart(self._point(part), goal)
 
     def _on_line(self, point: Point) -> float:
         """Return the part of the present line at which a point stands; 1 if it is not known."""
         along, square = 0.0, 0.0
-        for p, q, x in zip(self.start[self.at].tolist(), self.goal, point, strict=True):
+        for p, q, x in zip(_listed(self.start[self.at]), self.goal, point, strict=True):
             if math.isnan(p) != math.isnan(q) or math.isnan(q) != math.isnan(x):
                 return 1.0
             if not math.isnan(p):
@@ -301,15 +313,15 @@ class _Side:
     def _sense(self) -> float:
         return 1.0 if self.kind[self.at] == Kind.ARC_CCW else -1.0
 
-    def _circle(self) -> tuple[int, int, list[float]]:
+    def _circle(self) -> tuple[int, int, Point]:
         """Return the two axes of the present arc's plane, and its centre."""
         row = int(self.rows[self.at])
         u, v, _ = Plane(int(self.path.plane[row])).axes
-        return u, v, self.path.centre[row].tolist()
+        return u, v, _listed(self.path.centre[row])
 
-    def _point(self, part: float) -> list[float]:
+    def _point(self, part: float) -> Point:
         """Return the point at a part of the present row."""
-        start, goal = self.start[self.at].tolist(), self.goal
+        start, goal = _listed(self.start[self.at]), self.goal
         point = [p + part * (q - p) for p, q in zip(start, goal, strict=True)]
         if self.sweep[self.at]:
             u, v, centre = self._circle()
@@ -321,6 +333,12 @@ class _Side:
             point[u] = centre[u] + radius * math.cos(angle)
             point[v] = centre[v] + radius * math.sin(angle)
         return point
+
+
+def _listed(position: Floats) -> Point:
+    """Return a position as plain numbers, which are faster one by one."""
+    numbers: list[float] = position.tolist()
+    return numbers
 
 
 def _apart(p: Point, q: Point) -> float:

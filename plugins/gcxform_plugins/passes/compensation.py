@@ -206,7 +206,8 @@ class Compensation:
         begin = np.zeros(len(arcs)) if low is None else low[arcs]
         stop = np.ones(len(arcs)) if high is None else high[arcs]
         centre[arcs] = ArcFitter(self).centres(row[arcs], begin, stop)
-        return new.replace(centre=centre)
+        new = new.replace(centre=centre)
+        return new.replace(sweep=gx.swept_anew(new))
 
     def _between_starts(self, rows: Ints, low: Floats | None) -> Floats:
         """Return where pieces start in the program's coordinates, before compensation."""

@@ -19,6 +19,8 @@ Flags = NDArray[np.bool_]
 FEWEST, MOST = 8, 256  # points at which a piece is looked at
 AT_ONCE = 200_000  # points looked at together
 HALVINGS = 24
+FLAT = 0.1  # mm; with less between arc and chord, three points say little about the centre
+LONGEST = 1.9 * np.pi  # rad; rounded, the ends of a longer piece may change places
 
 
 class ArcFitter:
@@ -40,6 +42,7 @@ class ArcFitter:
             if not len(row):
                 break
             far = self._residual(row, low, high) > self.limit
+            far |= self._goes_round(row, low, high)
             row, low, high = row[far], low[far], high[far]
             middle = (low + high) / 2
             cut_rows.append(row)
@@ -50,12 +53,20 @@ class ArcFitter:
             return np.empty(0, np.int64), np.empty(0)
         return np.concatenate(cut_rows), np.concatenate(cut_parts)
 
+    def _goes_round(self, row: Ints, low: Floats, high: Floats) -> Flags:
+        """Return the pieces of about a turn whose ends are not one point: they would be lost."""
+        long = np.flatnonzero((high - low) * self.path.sweep[row] > LONGEST)
+        gap = self._command(row[long], high[long]) - self._command(row[long], low[long])
+        round_ones = np.zeros(len(row), np.bool_)
+        round_ones[long] = np.abs(gap).max(axis=1, initial=0.0) > 0.0
+        return round_ones
+
     def centres(self, row: Ints, low: Floats, high: Floats) -> Floats:
         """Return the centres (n, 3), in the program's coordinates, of pieces of arcs."""
         centre = np.full((len(row), 3), np.nan)
         if not len(row):
             return centre
-        share = np.where((high - low) * self.path.sweep[row] > 1.9 * np.pi, 1 / 3, 1 / 2)
+        share = np.where((high - low) * self.path.sweep[row] > LONGEST, 1 / 3, 1 / 2)
         first = self._command(row, low)
         second = self._command(row, low + (high - low) * share)
         third = self._command(row, np.where(share < 0.5, low + (high - low) * 2 / 3, high))
@@ -66,8 +77,11 @@ class ArcFitter:
                 *(point[here][:, [a, b]] for point in (first, second, third))
             )
             centre[here, normal] = first[here, normal]
-        fallback = self.path.centre[row] - self.work.correction(row, low)
-        return np.where(np.isfinite(centre), centre, fallback)
+        shift = (self.work.correction(row, low) + self.work.correction(row, high)) / 2
+        size, _, _ = gx.radius_and_angle(self.path, row)
+        sag = size * (1 - np.cos((high - low) * self.path.sweep[row] / 2))
+        flat = ~np.isfinite(centre).all(axis=1) | (sag < FLAT)
+        return np.where(flat[:, None], self.path.centre[row] - shift, centre)
 
     def _command(self, row: Ints, part: Floats) -> Floats:
         """Return commands (n, 3), in the program's coordinates, for points of arcs."""
@@ -108,16 +122,25 @@ class ArcFitter:
         return np.asarray(off.reshape(len(row), number).max(axis=1))
 
     def _beside(self, row: Ints, part: Floats, wanted: Floats, actual: Floats) -> Floats:
-        """Return the distance of points from arcs, their travel along the arc left out."""
+        """Return the distance of points from arcs and helices.
+
+        A helix is compared where it has the angle of the point; what is off along its axis there
+        is nearer to the helix by the cosine of its slope.
+        """
         off = np.zeros(len(row))
         for plane in gx.Plane:
             here = np.flatnonzero(self.path.plane[row] == plane)
             a, b, normal = plane.axes
             centre = self.path.centre[row[here]][:, [a, b]]
-            radial = np.hypot(*(actual[here][:, [a, b]] - centre).T) - np.hypot(
-                *(wanted[here][:, [a, b]] - centre).T
-            )
-            off[here] = np.hypot(radial, actual[here, normal] - wanted[here, normal])
+            u, v = actual[here][:, [a, b]] - centre, wanted[here][:, [a, b]] - centre
+            size = np.hypot(*v.T)
+            ahead = (v[:, 0] * u[:, 1] - v[:, 1] * u[:, 0]) / np.maximum(size, 1e-9) ** 2
+            sweep = self.path.sense[row[here]] * self.path.sweep[row[here]]
+            way = np.nan_to_num(self.path.end - self.path.start)[row[here], normal]
+            along = actual[here, normal] - wanted[here, normal] - way * ahead / sweep
+            length = np.abs(size * sweep)
+            along *= length / np.maximum(np.hypot(length, way), 1e-12)
+            off[here] = np.hypot(np.hypot(*u.T) - size, along)
         return off
 
     def _fitted(self, row: Ints, low: Floats, high: Floats, centre: Floats) -> gx.Toolpath:
@@ -127,4 +150,5 @@ class ArcFitter:
         end[0::2, :3], end[1::2, :3] = self._command(row, low), self._command(row, high)
         sweep = np.array(path.sweep)
         sweep[1::2] *= high - low
-        return path.replace(end=end, sweep=sweep, centre=np.repeat(centre, 2, axis=0))
+        path = path.replace(end=end, sweep=sweep, centre=np.repeat(centre, 2, axis=0))
+        return path.replace(sweep=gx.swept_anew(path))

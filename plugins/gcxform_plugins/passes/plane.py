@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.passes.segment import chords, cut_arcs
+from gcxform_plugins.passes.segment import ANGLE_ERROR, chords, cut_arcs
 
 
 @dataclass(frozen=True)
@@ -24,6 +24,11 @@ class PlanePass(gx.Pass):
     def promise(self) -> float:
         """The chord error."""
         return self.chord_error
+
+    @property
+    def promise_angle(self) -> float:
+        """What the chords of arcs with rotary words are held to."""
+        return ANGLE_ERROR
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path with arcs in the target's planes only."""

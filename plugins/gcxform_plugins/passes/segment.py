@@ -16,6 +16,8 @@ Flags = NDArray[np.bool_]
 
 WIDEST = np.pi / 2
 """The largest angle of a chord: with larger ones the sense of rotation could be lost."""
+ANGLE_ERROR = 0.001
+"""How far (deg) a rotary axis may be off on a chord: it turns evenly with the chord, not the arc."""
 JUST_WHOLE = 1e-9  # a move that is so little longer than n pieces is cut into n
 
 
@@ -46,6 +48,13 @@ class Segment(gx.Pass):
         if self.arcs == "split":
             return 0.0
         return self.chord_error if self.chord_error is not None else float("inf")
+
+    @property
+    def promise_angle(self) -> float:
+        """What the chords of arcs with rotary words are held to."""
+        if self.arcs == "split":
+            return 0.0
+        return ANGLE_ERROR if self.chord_error is not None else float("inf")
 
     def begin(self, context: gx.PassContext) -> None:
         """Refuse options that say nothing."""
@@ -121,11 +130,13 @@ def chords(path: gx.Toolpath, chord_error: float) -> Ints:
     angle = 2 * np.arccos(np.clip(1 - chord_error / size, -1.0, 1.0))
     pieces = np.maximum(_whole(path.sweep / WIDEST), _whole(path.sweep / np.maximum(angle, 1e-9)))
     rise = np.abs(_rise(path))
+    turned = np.nan_to_num(np.abs(path.end - path.start)[:, 3:]).max(axis=1, initial=0.0)
     for _ in range(60):
         step = path.sweep / pieces
         sag = size * (1 - np.cos(step / 2))
-        uneven = rise / pieces * step**2 / 54.0
-        over = np.hypot(sag, uneven) > chord_error * (1 + 1e-9)
+        uneven = step**2 / 54.0 / pieces
+        over = np.hypot(sag, rise * uneven) > chord_error * (1 + 1e-9)
+        over |= turned * uneven > ANGLE_ERROR
         if not (over & path.is_arc).any():
             break
         pieces = np.where(over, np.ceil(pieces * 1.02).astype(np.int64), pieces)

@@ -1,0 +1,4 @@
+G21 G90 G94 (Fräsen µm)
+G0 X0
+G90 X1. (Übergang)
+M30

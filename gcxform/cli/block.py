@@ -1,0 +1,166 @@
+"""One block of a program in words: its tree, the state before it, and the move it makes."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from gcxform.cli.asked import Asked, needed_dialect
+from gcxform.cli.programs import opened
+from gcxform.cli.tolerant import Tolerant
+from gcxform.diagnostics import UsageError
+from gcxform.dialect import INCH
+from gcxform.modal.state import State
+from gcxform.modal.tables import GROUPS, NUMBER, frame_name
+from gcxform.registry import default_registry
+from gcxform.source import Source
+from gcxform.syntax.tree import Block, Comment, Mark, Number, Word
+from gcxform.toolpath.circles import radius_and_angle
+from gcxform.toolpath.path import Event, FeedMode, Kind, Plane, Toolpath
+
+_MOVES = {
+    Kind.RAPID: "rapid",
+    Kind.LINE: "line",
+    Kind.ARC_CW: "clockwise arc",
+    Kind.ARC_CCW: "counter-clockwise arc",
+}
+_FAMILIES = {
+    "motion": ("G0", "G1", "G2", "G3", "G80"),
+    "plane": ("G17", "G18", "G19"),
+    "distance": ("G90", "G91"),
+    "arc-distance": ("G91.1", "G90.1"),
+    "feed-mode": ("G93", "G94", "G95"),
+    "units": ("G21", "G20"),
+}
+_UNITS = {
+    FeedMode.INVERSE_TIME: "1/min",
+    FeedMode.PER_MINUTE: "mm/min",
+    FeedMode.PER_TURN: "mm/turn",
+}
+
+
+def explained(file: str, line: int, dialect: str | None, asked: Mapping[str, Any]) -> list[str]:
+    """Return a line, from 1, of a file in words. Raises UsageError if the file is shorter."""
+    kind = default_registry().dialect(needed_dialect(dialect))
+    reading = Asked(**asked).reading()
+    with opened(file) as source:
+        tolerant = Tolerant(kind, source, reading)
+        text = _up_to(tolerant, source, line)
+        earlier = sorted(tolerant.refused)
+        before = copy.deepcopy(tolerant.interpreter.state)
+        _, path = tolerant.window(text)
+    block = kind.load_grammar().parse(text.rstrip(b"\r\n").decode("latin-1"))
+    lines = [f"{file}:{line}  {block.text}", "", *_items(block)]
+    if earlier:
+        count = len(earlier)
+        lines += ["", f"read without {count} refused line(s) before, first line {earlier[0]}"]
+    lines += ["", "before it", *_state(before, tolerant.interpreter.axes)]
+    refusal = tolerant.refused.get(line)
+    if refusal is not None:
+        return [*lines, "", f"refused [{refusal.code}]: {refusal.message}", *_hint(refusal.hint)]
+    if before.ended:
+        return [*lines, "", "the program has ended: the control does not execute this block"]
+    return [*lines, "", "what it does", *_doings(path)]
+
+
+def _hint(hint: str) -> list[str]:
+    return [f"  {hint}"] if hint else []
+
+
+def _up_to(tolerant: Tolerant, source: Source, line: int) -> bytes:
+    """Read all before a line; return the text of that line."""
+    for text in source.windows():
+        first = tolerant.reader.lines
+        window = tolerant.reader.read(text)
+        tolerant.reader.lines = first
+        index = line - 1 - first
+        if 0 <= index < len(window):
+            start, end = int(window.start[index]), int(window.next[index])
+            if start:
+                tolerant.window(text[:start])
+            return text[start:end]
+        tolerant.window(text)
+    message = f"{source.name} has {tolerant.reader.lines} lines and no line {line}"
+    raise UsageError.one("GX731", message)
+
+
+def _items(block: Block) -> Iterator[str]:
+    """Yield the items of a block's tree."""
+    if block.error is not None:
+        yield f"  column {block.error[0]}: {block.error[1]}"
+    elif not block.items:
+        yield "  an empty block"
+    for item in block.items:
+        text = block.text[item.start : item.end]
+        if isinstance(item, Word):
+            kind = "number" if isinstance(item.value, Number) else "expression"
+            yield f"  word {item.address}, {kind} {block.text[item.value.start : item.value.end]}"
+        elif isinstance(item, Comment):
+            yield f"  comment {text}"
+        elif isinstance(item, Mark):
+            yield f"  {item.kind.replace('_', ' ')} {text}"
+        else:
+            yield f"  {item.kind.replace('_', ' ')}: {text}"
+
+
+def _state(state: State, axes: str) -> Iterator[str]:
+    """Yield the codes in force and the position."""
+    codes = [_code(group, state.groups[group]) for group in GROUPS]
+    feed = "none" if math.isnan(state.feed) else f"{state.feed:g}"
+    unit = " inch" if state.feed_unit == INCH else ""
+    yield f"  modal {' '.join(codes)}, F {feed}{unit if feed != 'none' else ''}"
+    yield f"  at    {_point(axes, state.position)}"
+
+
+def _code(group: str, number: int) -> str:
+    """Return the code of a modal group by its number."""
+    if group == "frame":
+        return frame_name(number)
+    return next(code for code in _FAMILIES[group] if NUMBER[code] == number)
+
+
+def _point(axes: str, position: Any) -> str:
+    return " ".join(
+        f"{axis}{'?' if math.isnan(value) else f'{value:.6g}'}"
+        for axis, value in zip(axes, position.tolist(), strict=True)
+        if axis in "XYZ" or not math.isnan(value)
+    )
+
+
+def _doings(path: Toolpath | None) -> Iterator[str]:
+    """Yield moves and events."""
+    if path is None or not (len(path) or path.events):
+        yield "  it moves nothing and switches nothing"
+        return
+    events = iter(path.events)
+    told = [event for event in path.events if event.row == 0]
+    yield from (f"  {_event(event)}" for event in told)
+    for row in range(len(path)):
+        yield from _move(path, row)
+    yield from (f"  {_event(event)}" for event in events if event not in told)
+
+
+def _event(event: Event) -> str:
+    values = " ".join(f"{name} {value:g}" for name, value in event.values)
+    return f"{event.what.lower() if event.what == 'DWELL' else event.what} {values}".rstrip()
+
+
+def _move(path: Toolpath, row: int) -> Iterator[str]:
+    """Yield a move, and the circle of an arc."""
+    kind = Kind(int(path.kind[row]))
+    unit = _UNITS[FeedMode(int(path.feed_mode[row]))]
+    feed = "" if kind == Kind.RAPID else f" at {path.feed[row]:g} {unit}"
+    yield f"  {_MOVES[kind]}{feed}"
+    yield f"    from {_point(path.axes, path.start[row])}"
+    yield f"    to   {_point(path.axes, path.end[row])}"
+    if path.is_arc[row]:
+        plane = Plane(int(path.plane[row]))
+        u, v, _ = plane.axes
+        first, _, _ = radius_and_angle(path, np.array([row]))
+        centre = f"{'XYZ'[u]}{path.centre[row, u]:.6g} {'XYZ'[v]}{path.centre[row, v]:.6g}"
+        yield f"    about {centre}, radius {first[0]:.6g} mm, in the plane {plane.name}"
+        yield f"    through {math.degrees(path.sweep[row]):.6g} degrees"

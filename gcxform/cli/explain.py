@@ -1,0 +1,47 @@
+"""`gcxform explain`: what a diagnostic code means, or what one block of a program does."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Iterator
+from typing import Any
+
+import click
+
+from gcxform.catalogue import CATALOGUE
+from gcxform.cli import VERBS, options
+from gcxform.diagnostics import UsageError
+from gcxform.tomltext import did_you_mean
+
+_CODE = re.compile(r"GX\d+|\d{3}", re.IGNORECASE)
+_LINE = re.compile(r"(.+):(\d+)")
+
+
+@click.command("explain", help=VERBS["explain"], short_help=VERBS["explain"])
+@options.FROM
+@options.reading_options
+@click.argument("what", metavar="CODE|FILE:LINE")
+def command(what: str, dialect: str | None, **asked: Any) -> None:
+    """Explain a code of the catalogue, or a line of a program."""
+    line = _LINE.fullmatch(what)
+    if line:
+        from gcxform.cli.block import explained  # what a code means is said without numpy
+
+        click.echo("\n".join(explained(line[1], int(line[2]), dialect, asked)))
+    else:
+        click.echo("\n".join(_code(what)))
+
+
+def _code(text: str) -> Iterator[str]:
+    """Yield the explanation of a code. Raises UsageError if there is none of that name."""
+    name = text.upper() if text[:1].isalpha() else f"GX{text}"
+    if name not in CATALOGUE:
+        near = did_you_mean(name, CATALOGUE) if _CODE.fullmatch(text) else ""
+        near = near if near.endswith("?") else ""
+        hint = near or "a code such as GX301, or FILE:LINE with -f DIALECT"
+        raise UsageError.one("GX729", f"there is no code {text!r}", hint=hint)
+    title, explanation = CATALOGUE[name]
+    yield f"{name}: {title}"
+    yield ""
+    yield from textwrap.wrap(explanation, 88, break_on_hyphens=False)

@@ -1,0 +1,29 @@
+"""Profiles of the property tests, and the folder of data that is not part of the repository.
+
+`HYPOTHESIS_PROFILE` chooses a profile: `dev` while writing, `ci` (the default, the same examples
+on every run), `long` over night.
+"""
+
+import os
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_too_much]
+settings.register_profile("dev", max_examples=30, deadline=None, suppress_health_check=SLOW)
+settings.register_profile(
+    "ci", max_examples=100, deadline=None, derandomize=True, suppress_health_check=SLOW
+)
+settings.register_profile("long", max_examples=20_000, deadline=None, suppress_health_check=SLOW)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
+
+SHARED = Path(__file__).parents[2] / "shared"
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """Return the folder of published data; skip, visibly, where it is not beside the repository."""
+    if not SHARED.is_dir():
+        pytest.skip(f"{SHARED} is not here: published data not compared")
+    return SHARED

@@ -1,0 +1,194 @@
+"""The corpus: every case runs, every file is a case, every diagnostic code is triggered."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from oracles import rs274
+
+import gcxform as gx
+from gcxform.catalogue import CATALOGUE
+from gcxform.emit.numbers import MOST_DECIMALS
+from gcxform.testing.cases import Case, Outcome, outcome, read_case, run_case
+
+ROOT = Path(__file__).parents[1]
+CORPUS = ROOT / "corpus"
+PLACES = {"lddm": ROOT / "examples" / "lddm" / "model.toml"}
+LONGEST_PAGE = 60
+
+ELSEWHERE = {
+    "GX602": "test_corpus.py",  # a pass that does not ensure what it says
+    "GX603": "test_corpus.py",  # a text pass that changes words
+    "GX712": "test_pipelinefile.py",  # a chain on the command line
+    "GX713": "test_options.py",  # a pass that looks at its options together
+    "GX801": "test_plugin_dist.py",
+    "GX802": "test_plugin_dist.py",
+    "GX901": "test_corpus.py",
+    "GX902": "test_corpus.py",
+}
+"""Codes that no case can trigger, with the file of the test that does; those of the command line
+are looked for in any test."""
+COMMAND_LINE = re.compile(r"GX72[6-9]|GX73\d|GX903")
+
+
+def paths() -> list[Path]:
+    """Return the cases: text files, and the directories in `bytes`."""
+    files = [p for p in CORPUS.rglob("*.txt") if CORPUS / "bytes" not in p.parents]
+    return sorted([*files, *(p for p in (CORPUS / "bytes").iterdir() if p.is_dir())])
+
+
+def name(path: Path) -> str:
+    return path.relative_to(CORPUS).with_suffix("").as_posix()
+
+
+CASES = [read_case(path) for path in paths()]
+
+
+def parameter(case: Case) -> object:
+    marks = [pytest.mark.xfail(strict=True, reason=case.xfail)] if case.xfail else []
+    return pytest.param(case, id=name(case.path), marks=marks)
+
+
+@pytest.mark.parametrize("case", [parameter(case) for case in CASES])
+def test_case(case, tmp_path):
+    run_case(case, tmp_path, PLACES)
+
+
+def test_every_file_is_a_case():
+    known = {file for path in paths() for file in ([path] if path.is_file() else path.iterdir())}
+    known.add(CORPUS / "bytes" / ".gitattributes")
+    assert {p for p in CORPUS.rglob("*") if p.is_file()} - known == set()
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: name(case.path))
+def test_a_case_is_a_page(case):
+    if case.path.is_file():
+        text = case.path.read_text("utf-8")
+        assert text.count("\n") <= LONGEST_PAGE
+    assert len(re.findall(r"[.:](?=\s|$)", case.prose)) >= 1, "prose ends with a full stop"
+    assert case.prose.count("\n") < 6
+
+
+def test_names_of_cases_are_unique():
+    assert len({name(case.path) for case in CASES}) == len(CASES)
+
+
+def test_every_code_has_a_case():
+    triggered = {line.split()[-1] for case in CASES for line in case.diagnostics}
+    assert triggered <= set(CATALOGUE), "cases expect codes that the catalogue does not have"
+    tests = {path.name: path.read_text("utf-8") for path in Path(__file__).parent.glob("*.py")}
+    others = [text for file, text in tests.items() if file != Path(__file__).name]
+    for code in sorted(set(CATALOGUE) - triggered):
+        if COMMAND_LINE.fullmatch(code):
+            assert any(code in text for text in others), f"no test of the command line has {code}"
+        else:
+            assert tests[ELSEWHERE.get(code, "")].count(code), f"nothing triggers {code}"
+
+
+def test_no_code_is_listed_without_need():
+    triggered = {line.split()[-1] for case in CASES for line in case.diagnostics}
+    assert not triggered & set(ELSEWHERE)
+
+
+# --- codes that no case can trigger ---
+
+
+@dataclass(frozen=True)
+class Forgetful(gx.Pass):
+    """Ensure metric blocks and do nothing."""
+
+    name = "forgetful"
+    ensures = frozenset({gx.METRIC})
+
+    def apply(self, path, context):
+        return path
+
+
+@dataclass(frozen=True)
+class Careless(gx.TextPass):
+    """Drop the first word of every block."""
+
+    name = "careless"
+
+    def edit(self, block, number):
+        return " ".join(block.text.split()[1:])
+
+
+def chain(step):
+    dialect = gx.Registry.load().dialects["fanuc"]
+    return gx.Pipeline(dialect, dialect, (step,))
+
+
+def test_a_pass_that_does_not_ensure_what_it_says():
+    with pytest.raises(gx.VerificationError, match="GX602"):
+        chain(Forgetful()).run(b"G20 G90\nG0 X1.\n", verify="full")
+
+
+def test_a_text_pass_that_changes_words():
+    with pytest.raises(gx.VerificationError, match="GX603"):
+        chain(Careless()).run(b"G20 G90\nG0 X1.\n")
+
+
+def test_a_directory_is_no_program(tmp_path):
+    with pytest.raises(gx.FileError, match="GX901"):
+        chain(Careless()).run(tmp_path)
+
+
+def test_a_place_that_cannot_be_written(tmp_path):
+    with pytest.raises(gx.FileError, match="GX902"):
+        gx.write(b"G21\n", tmp_path / "none" / "part.nc")
+
+
+# --- what LinuxCNC's own interpreter says to the cases ---
+
+FOR_LINUXCNC = [
+    case
+    for case in CASES
+    if 'dialect = "linuxcnc"' in case.text("pipeline.toml")
+    and not case.xfail
+    and "dialect = " not in case.text("pipeline.toml").replace('dialect = "linuxcnc"', "", 1)
+]
+NEEDS_RS274 = pytest.mark.skipif(not rs274.available(), reason="rs274 is not installed")
+
+
+def result(case: Case, folder: Path) -> Outcome:
+    return outcome(case, folder, PLACES)
+
+
+def grid(case: Case) -> float:
+    """Return the distance (mm) within which ends are the same: a decimal, and rs274's own."""
+    said = re.search(r"decimals = (\d)", case.text("pipeline.toml"))
+    return 10.0 ** -min(int(said[1]) if said else 4, MOST_DECIMALS) + 0.0051
+
+
+@NEEDS_RS274
+@pytest.mark.parametrize(
+    "case",
+    [c for c in FOR_LINUXCNC if not c.diagnostics and c.sections["input.nc"].strip()],
+    ids=lambda c: name(c.path),
+)
+def test_linuxcnc_goes_the_same_way(case, tmp_path):
+    source = rs274.run(case.sections["input.nc"])
+    written = rs274.run(result(case, tmp_path).text)
+    if "volumetric" in case.text("pipeline.toml"):
+        return
+    ends = [move.end for move in written.moves]
+    for move in source.moves:
+        while ends and any(abs(move.end[a] - ends[0][a]) > grid(case) for a in "XYZABC"):
+            ends.pop(0)
+        assert ends, f"line {move.line}: nothing ends at {move.end}"
+
+
+@NEEDS_RS274
+@pytest.mark.parametrize(
+    "case",
+    [c for c in FOR_LINUXCNC if c.diagnostics and "(rs274 2.9" in c.prose],
+    ids=lambda c: name(c.path),
+)
+def test_linuxcnc_refuses_it_too(case):
+    with pytest.raises(rs274.Rejected) as refusal:
+        rs274.run(case.sections["input.nc"])
+    assert refusal.value.line == int(case.diagnostics[0].split(":")[0])
