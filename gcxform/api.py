@@ -24,6 +24,7 @@ from gcxform.modal.tables import frame_name
 from gcxform.pipeline import Result
 from gcxform.registry import default_registry
 from gcxform.source import Source
+from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.matching import Matching, Pieces, match, measure
 from gcxform.toolpath.path import COLUMNS, Blocks, Event, FeedMode, Kind, Toolpath
 
@@ -177,7 +178,7 @@ def compare(
         len(matching.a),
         int(found.ends_only.sum()),
         _parted(path_a, path_b, matching),
-        tuple(_feeds(path_a, path_b, matching)),
+        tuple(_feeds(path_a, path_b, matching, tolerance)),
         tuple(_events((path_a, a.dialect), (path_b, b.dialect), matching, tolerance)),
     )
 
@@ -214,31 +215,58 @@ def _parted(a: Toolpath, b: Toolpath, matching: Matching) -> tuple[int, int] | N
     return one, other
 
 
-def _feeds(a: Toolpath, b: Toolpath, matching: Matching) -> list[Difference]:
-    """Return where feeds, feed modes or work offsets differ, once for each line of A."""
-    one, other = matching.a, matching.b
-    feed_a, feed_b = a.feed[one.row], b.feed[other.row]
-    mode_a, mode_b = a.feed_mode[one.row], b.feed_mode[other.row]
-    inverse = mode_a == FeedMode.INVERSE_TIME
-    part_a, part_b = one.high - one.low, other.high - other.low
-    moves = (part_a > 0) & (part_b > 0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        feed_a = np.where(inverse, feed_a / part_a, feed_a)
-        feed_b = np.where(inverse, feed_b / part_b, feed_b)
-        apart = np.abs(feed_a - feed_b) > FEED_SLIP * np.abs(feed_a)
-    wrong = moves & (a.kind[one.row] != Kind.RAPID) & (apart | (mode_a != mode_b))
-    frames = moves & (a.frame[one.row] != b.frame[other.row])
+@dataclass(frozen=True)
+class _Manner:
+    """How pieces are travelled: feed, or 1/min of the whole piece in G93; feed mode; work offset."""
+
+    feed: NDArray[np.float64]
+    mode: NDArray[np.int8]
+    frame: NDArray[np.int8]
+    rapid: NDArray[np.bool_]
+    line: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, path: Toolpath, pieces: Pieces) -> _Manner:
+        row = pieces.row
+        mode, rapid = path.feed_mode[row], path.kind[row] == Kind.RAPID
+        part = np.where(mode == FeedMode.INVERSE_TIME, pieces.high - pieces.low, 1.0)
+        feed = np.divide(path.feed[row], part, out=np.full(len(row), np.inf), where=part > 0)
+        return cls(feed, mode, path.frame[row], rapid, path.source[row] + 1)
+
+    def alike(self, other: _Manner, at: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Return whether pieces `at` are travelled as the pieces of the other path."""
+        feed, mode = self.feed[at], self.mode[at]
+        with np.errstate(invalid="ignore"):
+            near = (feed == other.feed) | (np.abs(feed - other.feed) <= FEED_SLIP * np.abs(feed))
+        same = self.rapid[at] | (near & (mode == other.mode))
+        return np.asarray(same & (self.frame[at] == other.frame))
+
+
+def _feeds(a: Toolpath, b: Toolpath, matching: Matching, tolerance: float) -> list[Difference]:
+    """Return where feeds, feed modes or work offsets differ, once for each line of A.
+
+    A piece no longer than the tolerance may as well be travelled as its neighbours are.
+    """
+    one, other = _Manner.of(a, matching.a), _Manner.of(b, matching.b)
+    short = np.minimum(_lengths(a, matching.a), _lengths(b, matching.b)) <= tolerance
+    here = np.arange(len(short))
+    before, after = np.maximum(here - 1, 0), np.minimum(here + 1, len(here) - 1)
+    same = one.alike(other, here)
+    same |= short & (one.alike(other, before) | one.alike(other, after))
     found: dict[int, Difference] = {}
-    for k in np.flatnonzero(wrong | frames).tolist():
-        lines = _line(a, one, k), _line(b, other, k)
-        text = f"feed {feed_a[k]:g} became {feed_b[k]:g}"
-        if mode_a[k] != mode_b[k]:
-            text = f"feed mode G{mode_a[k]} became G{mode_b[k]}"
-        if frames[k]:
-            names = (frame_name(int(p.frame[q.row[k]])) for p, q in ((a, one), (b, other)))
-            text = " became ".join(names)
-        found.setdefault(lines[0], Difference(text, *lines))
+    for k in np.flatnonzero(~same).tolist():
+        lines = int(one.line[k]), int(other.line[k])
+        found.setdefault(lines[0], Difference(_changed(one, other, k), *lines))
     return list(found.values())
+
+
+def _changed(one: _Manner, other: _Manner, k: int) -> str:
+    """Return in what a piece is travelled otherwise."""
+    if one.frame[k] != other.frame[k]:
+        return f"{frame_name(int(one.frame[k]))} became {frame_name(int(other.frame[k]))}"
+    if one.mode[k] != other.mode[k]:
+        return f"feed mode G{one.mode[k]} became G{other.mode[k]}"
+    return f"feed {one.feed[k]:g} became {other.feed[k]:g}"
 
 
 # --- events ---
@@ -255,7 +283,7 @@ def _events(a: Side, b: Side, matching: Matching, tolerance: float) -> list[Diff
         if not text and one and other and matching.parted is None:
             places = _place(matching.a, one.row), _place(matching.b, other.row)
             between = lengths[min(places) : max(places)]
-            text = f"{_shown(one)} stands elsewhere" if between.sum() > tolerance else ""
+            text = f"{_shown(one)} stands elsewhere" if between.sum() > 2 * tolerance else ""
         if text:
             lines = (event.line + 1 if event else 0 for event in (one, other))
             return [Difference(text, *lines)]
@@ -300,8 +328,12 @@ def _place(pieces: Pieces, row: int) -> int:
 
 
 def _lengths(path: Toolpath, pieces: Pieces) -> NDArray[np.float64]:
-    """Return how far the pieces go: mm, chords for arcs, and at least the sweep."""
+    """Return how far the pieces go: mm, or degrees where only rotary axes turn."""
     linear = [k for k, axis in enumerate(path.axes) if axis in LINEAR]
-    way = np.nan_to_num(path.end[pieces.row] - path.start[pieces.row])
-    straight = np.sqrt((way[:, linear] ** 2).sum(axis=1)) + np.abs(way).max(axis=1, initial=0.0)
-    return np.asarray((pieces.high - pieces.low) * (straight + path.sweep[pieces.row]))
+    way = np.nan_to_num(path.end - path.start)
+    length = np.maximum(np.sqrt((way[:, linear] ** 2).sum(axis=1)), np.abs(way).max(axis=1))
+    if path.has_arcs:
+        arcs = np.flatnonzero(path.is_arc)
+        first, last, _ = radius_and_angle(path, arcs)
+        length[arcs] = np.maximum(length[arcs], (first + last) / 2 * path.sweep[arcs])
+    return np.asarray((pieces.high - pieces.low) * length[pieces.row])

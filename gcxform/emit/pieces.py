@@ -118,19 +118,20 @@ class Pieces:
         word = (slot >= 0)[self.line] & self.leads
         feeding = self._of_rows(self.kind != Kind.RAPID, False)
         inverse = modes.feed_mode == FeedMode.INVERSE_TIME
-        unit_of_line = np.where(path.blocks.inch, INCH, 1.0)
+        unit_here = np.where(self._inch_for_feed(), INCH, 1.0)
         plain = turns_only(path.axes, path.entry, path.end) & (self.kind < Kind.ARC_CW)
         has_unit = self._of_rows(~plain, True) & ~inverse[self.line]
-        unit = np.where(has_unit, unit_of_line[self.line], 1.0)
-        given = modes.feed * np.where(inverse, 1.0, modes.feed_unit / unit_of_line)
-        need = np.where(word, given[self.line], np.nan)
+        unit = np.where(has_unit, unit_here, 1.0)
+        given = modes.feed * np.where(inverse, 1.0, modes.feed_unit)
+        given = given[self.line] / np.where(inverse[self.line], 1.0, unit_here)
+        need = np.where(word, given, np.nan)
         need = np.where(feeding, self._of_rows(path.feed, np.nan) / unit, need)
         sets = ~np.isnan(need)
         self.feed_after = fill(need, sets, self.believed.feed)
-        self.unit_after = fill(unit_of_line[self.line], sets, self.believed.feed_unit)
+        self.unit_after = fill(unit_here, sets, self.believed.feed_unit)
         number = np.append(self.believed.feed, self.feed_after[:-1])[: len(need)]
         size = np.append(self.believed.feed_unit, self.unit_after[:-1])[: len(need)]
-        held = np.where(has_unit, number * size / unit_of_line[self.line], number)
+        held = np.where(has_unit, number * size / unit_here, number)
         changes = feeding & (~_close(held, need) | inverse[self.line])
         kept = word & _close(need, modes.feed[self.line])
         self.feed = np.where(
@@ -138,6 +139,13 @@ class Pieces:
         ).astype(np.int8)
         self.repaired |= self.feed == Feed.WRITE
         self.feed_value = need
+
+    def _inch_for_feed(self) -> Flags:
+        """Return, per piece, whether the control reads its feed in inches."""
+        after = fill(self.inch, self.inch >= 0, self.believed.inch) == 1
+        if not self.task.manner.target.feed_before_units:
+            return np.asarray(after)
+        return np.append(self.believed.inch == 1, after[:-1])[: len(after)]
 
 
 def _close(a: Floats, b: Floats) -> Flags:

@@ -151,13 +151,17 @@ class TemplateWriter:
             self._item(item, lead, slot)
             if isinstance(item, Word) and item.address not in CODES:
                 slot += isinstance(item.value, Number)
+        self._rest()
+        if whole and at < len(self.text):
+            self.fields.append(Literal(self.text[at:].encode("latin-1")))
+        return tuple(self.fields)
+
+    def _rest(self) -> None:
+        """Write what the piece needs and no item of the block has stood for."""
         self._repair()
         self._axes(b"")
         self._centre(b"")
         self._feed_at_end()
-        if whole and at < len(self.text):
-            self.fields.append(Literal(self.text[at:].encode("latin-1")))
-        return tuple(self.fields)
 
     # --- one item ---
 
@@ -165,6 +169,8 @@ class TemplateWriter:
         if isinstance(item, Word):
             self._word(item, lead, slot)
         elif isinstance(item, Comment):
+            if self.text[item.start] == ";":
+                self._rest()
             if self.key.role not in (Role.MIDDLE, Role.LAST):
                 self._literal(lead, self._comment(item))
         elif isinstance(item, Mark):
@@ -376,6 +382,7 @@ class TemplateWriter:
 
     def _feed_at_end(self) -> None:
         if self.key.feed is Feed.WRITE and "feed" not in self.stated:
+            self.stated.add("feed")
             self.fields.append(FeedWord(self._gap(b"")))
 
 

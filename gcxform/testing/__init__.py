@@ -1,1 +1,18 @@
-"""The kit for plugin authors: strategies, checks and case files."""
+"""The kit for plugin authors: checks of passes and dialects, case files, strategies.
+
+Strategies are in `gcxform.testing.strategies`, which needs hypothesis.
+"""
+
+from gcxform.testing.cases import Case, Outcome, outcome, read_case, run_case
+from gcxform.testing.dialects import check_dialect
+from gcxform.testing.kit import check_pass
+
+__all__ = [
+    "Case",
+    "Outcome",
+    "check_dialect",
+    "check_pass",
+    "outcome",
+    "read_case",
+    "run_case",
+]

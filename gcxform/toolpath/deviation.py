@@ -94,8 +94,9 @@ class _Comparison:
         start, goal = starts[owner], self.before.end[owner]
         way = np.nan_to_num(goal - start)
         end = self.after.end[rows]
-        square = np.einsum("ij,ij->i", way, way)
-        along = np.einsum("ij,ij->i", np.nan_to_num(end - start), way)
+        straight = self._weighed(way)
+        square = np.einsum("ij,ij->i", straight, straight)
+        along = np.einsum("ij,ij->i", np.nan_to_num(end - start), straight)
         part = np.divide(along, square, out=np.ones_like(along), where=square > 0)
         part = np.where(self.last[rows], 1.0, np.clip(part, 0.0, 1.0))
         distance, angle = self._between(end, start + part[:, None] * way + (goal - goal))
@@ -104,6 +105,15 @@ class _Comparison:
         length = np.sqrt((way[:, self.linear] ** 2).sum(axis=1))
         turned = np.abs(way[:, self.rotary]).max(axis=1, initial=0.0)
         self.angle[rows] = np.maximum(angle - self.turned_ahead(turned, length), 0.0)
+
+    def _weighed(self, way: Floats) -> Floats:
+        """Return ways without their rotary axes where a linear one moves."""
+        if not self.rotary:
+            return way
+        straight = way.copy()
+        moves = (way[:, self.linear] != 0).any(axis=1)
+        straight[np.ix_(moves, self.rotary)] = 0.0
+        return straight
 
     def turned_ahead(self, turned: Floats, length: Floats) -> Floats:
         """Return by how much (deg) rotary axes turn on the length that a point may be ahead."""

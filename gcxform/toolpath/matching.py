@@ -213,7 +213,8 @@ class _Side:
         way = np.nan_to_num(self.end - self.start, nan=np.inf)
         length = np.sqrt(np.einsum("ij,ij->i", way, way))
         length[np.isinf(way).any(axis=1) | (self.sweep > 0)] = np.inf
-        return np.minimum(length, np.append(length[1:], np.inf)[: len(length)]) / CLEAR
+        following = np.append(length[1:], np.inf)[: len(length)]
+        return np.asarray(np.minimum(length, following) / CLEAR)
 
     @property
     def over(self) -> bool:

@@ -32,6 +32,8 @@ class ArcFitter:
         self.step = work.step
         self.limit = self.step.limit
         self.reach = self.step.model.model.lipschitz
+        rotary = np.nan_to_num(self.path.end - self.path.start)[:, 3:]
+        self._turning = (rotary != 0).any(axis=1)
 
     def cuts(self) -> tuple[Ints, Floats]:
         """Return row and part of the cuts of the arcs."""
@@ -125,7 +127,8 @@ class ArcFitter:
         """Return the distance of points from arcs and helices.
 
         A helix is compared where it has the angle of the point; what is off along its axis there
-        is nearer to the helix by the cosine of its slope.
+        is nearer to the helix by the cosine of its slope. Where a rotary axis turns with the arc,
+        what is off along the arc counts as well.
         """
         off = np.zeros(len(row))
         for plane in gx.Plane:
@@ -141,6 +144,8 @@ class ArcFitter:
             length = np.abs(size * sweep)
             along *= length / np.maximum(np.hypot(length, way), 1e-12)
             off[here] = np.hypot(np.hypot(*u.T) - size, along)
+        turning = self._turning[row]
+        off[turning] = np.sqrt(((actual - wanted)[turning] ** 2).sum(axis=1))
         return off
 
     def _fitted(self, row: Ints, low: Floats, high: Floats, centre: Floats) -> gx.Toolpath:

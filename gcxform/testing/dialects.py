@@ -1,0 +1,226 @@
+"""`check_dialect`: whether a dialect's tables fit together, and whether it reads what it writes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from gcxform.contract import Pass, PassContext
+from gcxform.diagnostics import GcxformError
+from gcxform.dialect import INCH, Dialect
+from gcxform.emit.numbers import MOST_DECIMALS
+from gcxform.modal.codes import ISO, Effect
+from gcxform.modal.meaning import Meaning, meaning_of
+from gcxform.modal.tables import GROUPS, NUMBER
+from gcxform.pipeline import Pipeline
+from gcxform.syntax.shapes import Shape, slots_of
+from gcxform.toolpath.path import Plane, Toolpath
+
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+SET_ASIDE = "GMO"  # addresses whose value is a code
+ARCS = {
+    "XY": "G17 G2 X40. Y15. I0. J-10. F100.",
+    "ZX": "G18 G3 X50. Z-11.5 I0. K-10. F100.",
+    "YZ": "G19 G2 Y25. Z-1.5 J10. K0. F100.",
+}
+"""An arc in each plane, from (30, 25, -1.5); each starts where the one before it ends."""
+
+
+class Common(Dialect):
+    """What programs are written in that a dialect has to refuse or to translate."""
+
+    name = "common"
+
+
+@dataclass(frozen=True)
+class Same(Pass):
+    """Leave the path as it is, so that the program is read, written and verified."""
+
+    name = "same"
+
+    def apply(self, path: Toolpath, context: PassContext) -> Toolpath:
+        """Return the path."""
+        return path
+
+
+def check_dialect(dialect: type[Dialect]) -> None:
+    """Hold a dialect to its contract.
+
+    Documented, a grammar that loads, tables that fit together, every code of them read and
+    understood, a program that is written and read again as the same path, and a refusal with a
+    code for everything it does not have. Raises AssertionError.
+    """
+    _check_declaration(dialect)
+    _check_tables(dialect)
+    for code in dialect.codes:
+        _check_code(dialect, code)
+    for number in dialect.m_codes:
+        _check_m_code(dialect, number)
+    _check_program(dialect)
+    _check_refusals(dialect)
+    _check_planes(dialect)
+
+
+def _check_declaration(dialect: type[Dialect]) -> None:
+    here = dialect.__name__
+    assert issubclass(dialect, Dialect), f"{here} is not a Dialect"
+    assert NAME.fullmatch(dialect.name), f"{here} has the name {dialect.name!r}"
+    assert dialect.__dict__.get("__doc__"), f"{here} has no docstring: which control, which version"
+    try:
+        block = dialect.load_grammar().parse("")
+    except Exception as error:
+        message = f"the grammar {dialect.grammar} of {dialect.name} does not load: {error}"
+        raise AssertionError(message) from error
+    assert block.error is None, f"the grammar of {dialect.name} refuses an empty block"
+
+
+def _check_tables(dialect: type[Dialect]) -> None:
+    """Check that the tables speak of things that exist."""
+
+    def check(good: bool, message: str) -> None:
+        assert good, f"{dialect.name}: {message}"
+
+    axes = dialect.axes
+    check(axes.startswith("XYZ"), f"axes are {axes!r}; X, Y and Z come first")
+    check(len(set(axes)) == len(axes), f"an axis stands twice in {axes!r}")
+    check(not set(axes) & set(dialect.words), "a letter is an axis and a word")
+    for group in GROUPS:
+        code = dialect.initial.get(group, "")
+        check(code in NUMBER, f"initial[{group!r}] is {code!r}, which is no code of that group")
+    planes = {plane.name for plane in Plane}
+    check(dialect.arc_planes <= planes, f"arc_planes are {set(dialect.arc_planes)}, not {planes}")
+    check(set(dialect.comments) <= set("(;"), f"comments begin with {dialect.comments!r}")
+    check(dialect.block_delete in ("", "execute", "skip"), "block_delete is not one of its words")
+    numbers = dialect.numbers
+    for name in ("mm", "inch", "angle", "feed"):
+        places = getattr(numbers, name)
+        check(0 <= places <= MOST_DECIMALS, f"{places} decimals of {name}: 0 to {MOST_DECIMALS}")
+    check(dialect.arc_rule.absolute > 0, "arc_rule.absolute is the tolerance of arcs, above 0 mm")
+    step = 10.0**-numbers.mm
+    check(step < INCH, "lengths are written in whole inches")
+
+
+def _meaning(dialect: type[Dialect], text: str) -> Meaning:
+    """Return what a block means."""
+    block = dialect.load_grammar().parse(text)
+    return meaning_of(Shape(block, tuple(slots_of(block)), False), dialect)
+
+
+def _check_code(dialect: type[Dialect], name: str) -> None:
+    """Check that a G code is read and does what the table says."""
+    here = f"{dialect.name}: {name}"
+    assert re.fullmatch(r"G[0-9]+(\.[1-9])?", name), f"{here} is not how codes are called: G5.1"
+    code = dialect.codes[name]
+    unknown = set(code.takes) - set(dialect.words + dialect.axes + SET_ASIDE)
+    assert not unknown, f"{here} takes {sorted(unknown)}, which are no words of the dialect"
+    if code.effect is Effect.MODAL:
+        assert code.group in GROUPS, f"{here}: the core has no group {code.group!r}; use inert"
+        assert name in NUMBER, f"{here} is a modal code that the core does not know"
+    word = next(iter(dialect.dwell), "P") + "1." if code.effect is Effect.DWELL else ""
+    meaning = _meaning(dialect, f"{name} {word}".strip())
+    refusal = meaning.refusal
+    if code.effect is Effect.BARRIER:
+        assert refusal is not None, f"{here} is a barrier and is not refused"
+        assert refusal.code == "GX210", f"{here} is refused otherwise: {refusal.message}"
+        assert code.reason, f"{here} is a barrier without a reason"
+    else:
+        assert refusal is None, f"{here} is in the table and is refused: {refusal.message}"
+        assert meaning.groups.get(code.group) == name, f"{here} is not understood"
+
+
+def _check_m_code(dialect: type[Dialect], number: int) -> None:
+    """Check that an M code is read and becomes an event."""
+    here = f"{dialect.name}: M{number}"
+    meaning = _meaning(dialect, f"M{number}")
+    refusal = meaning.refusal
+    if dialect.m_codes[number].barrier:
+        assert refusal is not None, f"{here} is a barrier and is not refused"
+        assert refusal.code == "GX210", f"{here} is refused otherwise: {refusal.message}"
+    else:
+        assert refusal is None, f"{here} is in the table and is refused: {refusal.message}"
+        events = [event.what for event in meaning.events]
+        assert events == [f"M{number}"], f"{here} is not understood"
+
+
+# --- programs ---
+
+
+def program(dialect: type[Dialect]) -> str:
+    """Return a small program of what a dialect has, in millimetres and absolute."""
+    has = dialect.codes
+    modes = [code for code in ("G21", "G90", "G94", "G17") if code in has]
+    lines = [" ".join(modes), "G0 X10. Y20. Z5."]
+    if 3 in dialect.m_codes and "S" in dialect.words:
+        lines.append("S1000 M3")
+    lines += ["G1 Z-1.5 F100.", "X30. Y25."]
+    for plane, code in (("XY", "G17"), ("ZX", "G18"), ("YZ", "G19")):
+        if plane not in dialect.arc_planes or code not in has or not {"G2", "G3"} <= set(has):
+            break
+        lines.append(ARCS[plane])
+    for axis in dialect.axes[3:]:
+        lines.append(f"G1 {axis}10. F100.")
+    if "G4" in has and dialect.dwell:
+        lines.append(f"G4 {next(iter(dialect.dwell))}1.")
+    lines.append("G1 X31.25 F200.")
+    lines += [f"M{number}" for number in (5, 30) if number in dialect.m_codes]
+    return "\n".join(line for line in lines if line) + "\n"
+
+
+def _check_program(dialect: type[Dialect]) -> None:
+    """Check that a program is written anew, verified, and written the same way again."""
+    text = program(dialect).encode()
+    try:
+        pipeline = Pipeline(dialect, dialect, (Same(),), words="all")
+        first = pipeline.run(text, verify="full")
+        second = pipeline.run(first.text, verify="full")
+    except GcxformError as error:
+        said = text.decode()
+        raise AssertionError(f"{dialect.name}: this program fails:\n{said}\n{error}") from None
+    written = first.text.decode("latin-1")
+    assert first.text != text, f"{dialect.name}: nothing is written anew:\n{written}"
+    assert second.text == first.text, f"{dialect.name}: what it writes changes again:\n{written}"
+
+
+def _lacking(dialect: type[Dialect]) -> Iterator[str]:
+    """Yield blocks of what a dialect does not have."""
+    yield from (f"{code} P1" for code in ISO if code not in dialect.codes)
+    yield "G987"
+    if dialect.unknown_m is None:
+        yield from (f"M{n}" for n in (3, 6, 8, 987) if n not in dialect.m_codes)
+    known = dialect.axes + dialect.words + SET_ASIDE
+    yield from (f"{chr(c)}1." for c in range(65, 91) if chr(c) not in known)
+    if not dialect.has_program_number:
+        yield "O1000"
+    if not dialect.has_percent:
+        yield "%"
+
+
+def _check_refusals(dialect: type[Dialect]) -> None:
+    """Check that what a dialect does not have is refused, with a code and a place."""
+    for text in _lacking(dialect):
+        refusal = _meaning(dialect, text).refusal
+        here = f"{dialect.name} does not have {text!r}"
+        assert refusal is not None, f"{here} and takes it"
+        assert refusal.code in ("GX101", "GX201"), f"{here}: {refusal.code}, not GX201"
+
+
+def _check_planes(dialect: type[Dialect]) -> None:
+    """Check that arcs in planes the control lacks are refused when they are written."""
+    for plane, arc in ARCS.items():
+        if plane in dialect.arc_planes:
+            continue
+        start = "G21 G90 G94\nG0 X30. Y25. Z-1.5\n"
+        move = {"ZX": "G1 X40. F100.\n", "YZ": "G1 X50. Y15. Z-11.5 F100.\n"}.get(plane, "")
+        codes = _codes(Pipeline(Common, dialect), f"{start}{move}{arc}\n")
+        message = f"{dialect.name} has no arcs in {plane}; for one the codes are {codes}, not GX501"
+        assert codes == {"GX501"}, message
+
+
+def _codes(pipeline: Pipeline, text: str) -> set[str]:
+    """Return the codes with which a program is refused."""
+    try:
+        pipeline.run(text.encode())
+    except GcxformError as error:
+        return {diagnostic.code for diagnostic in error.diagnostics}
+    return set()

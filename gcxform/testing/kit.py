@@ -1,0 +1,391 @@
+"""Checks for plugin authors: `check_pass` and `check_dialect` hold a class to its contract.
+
+    def test_shift():
+        check_pass(Shift, Shift(by=(1.0, 0.0, 0.0)))
+
+    def test_acme():
+        check_dialect(Acme)
+
+Both raise AssertionError with a sentence that says what is wrong, and on which path or code.
+Passes are tried on small toolpaths between 0 and 200 mm: lines, rapids, arcs in all planes,
+helices, full circles, inches, inverse time, rotary axes, an unknown start, one row and no row.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.contract import Pass, PassContext, TextPass
+from gcxform.diagnostics import GcxformError, InputError, Location
+from gcxform.dialect import Dialect
+from gcxform.machine.machine import Machine
+from gcxform.modal.interpreter import Interpreter
+from gcxform.modal.reader import WindowReader
+from gcxform.options import build, describe, to_toml
+from gcxform.registry import default_registry
+from gcxform.testing.dialects import check_dialect
+from gcxform.textpasses import TextRun
+from gcxform.toolpath.deviation import deviation
+from gcxform.toolpath.facts import Fact
+from gcxform.toolpath.path import COLUMNS, Blocks, FeedMode, Kind, Toolpath
+
+__all__ = ["check_dialect", "check_pass", "paths"]
+
+SLACK = 1e-7  # mm and degrees; what arithmetic may add to a promise
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+
+HEAD = "G21 G90 G94 G17\n"
+PROGRAMS: dict[str, str] = {
+    "no block": "",
+    "no move": HEAD + "M3 S100\n",
+    "one row": HEAD + "G0 X20 Y30 Z40\n",
+    "lines": HEAD + "G0 X10 Y10 Z50\nG1 Z10 F100\nX190\nY190 Z120\nX10 Y10 Z10\nG0 Z50\nG1 X10\n",
+    "arcs": HEAD
+    + "G0 X60 Y50 Z20\nG2 X50 Y40 I-10 J0 F200\nG3 X50 Y40 I10 J0 Z30\nG2 X70 Y60 R25\n"
+    + "G18 G3 X80 Z20 I0 K-10\nG2 X80 Z20 I15 K0\nG19 G2 Y70 Z30 J10 K0\nG3 Y110 Z70 J40 K0\n",
+    "events": HEAD
+    + "T1 M6\nS500 M3\nG0 X20 Y20 Z20 M8\nG1 X150 F300 M5\nG4 P0.5\nG3 X150 Y60 I0 J20 M0\nM9\n",
+    "inches": "G20 G90 G94 G17\nG0 X1 Y1 Z1\nG1 X5 Y4 F10\nG91 G2 X1 Y-1 J-1\nG1 X-1.5\n",
+    "incremental": HEAD
+    + "G0 X20 Y20 Z20\nG91 G1 X30 F100\nY40 Z-5\nG3 X-10 Y10 I-10\nG90 G0 X20\n",
+    "inverse time": HEAD + "G0 X20 Y20 Z20\nG93 G1 X180 F2\nG3 X160 Y40 I-20 F4\nG94 G1 X20 F100\n",
+    "rotary": HEAD + "G0 X20 Y20 Z20 A0 B0 C0\nG1 X180 A45 F100\nC-90\nG2 X160 Y0 I-20 B10\n",
+    "unknown start": HEAD + "G0 Z30\nX20\nG1 X60 F100\nY20\nX120 Y100\n",
+}
+"""Small programs in the common part of all dialects."""
+
+
+class Plain(Dialect):
+    """The common part of all dialects, on which passes are tried."""
+
+    name = "plain"
+
+
+class PlainXY(Plain):
+    """A control that cuts arcs in the XY plane only."""
+
+    name = "plain-xy"
+    arc_planes: ClassVar[frozenset[str]] = frozenset({"XY"})
+
+
+def paths() -> Iterator[tuple[str, Toolpath]]:
+    """Yield the toolpaths on which passes are tried, each with its name."""
+    for name, program in PROGRAMS.items():
+        reader = WindowReader(Plain)
+        window = reader.read(program.encode())
+        yield name, Interpreter(Plain).interpret(window, reader.table).path
+
+
+def check_pass(
+    pass_class: type[Pass] | type[TextPass],
+    *instances: Pass | TextPass,
+    machine: Machine | None = None,
+) -> None:
+    """Hold a pass to its contract; without instances, the one with all defaults is tried.
+
+    Declared and documented, options that survive TOML, no change of what it is given, the facts
+    it ensures, source lines and events kept, windows of any size, and the law
+    deviation(before, undo(after)) <= promise.
+    """
+    _check_declaration(pass_class)
+    if not instances:
+        try:
+            instances = (pass_class(),)
+        except TypeError:
+            raise AssertionError(
+                f"{pass_class.__name__} has mandatory options: give check_pass an instance"
+            ) from None
+    for instance in instances:
+        assert type(instance) is pass_class, f"{instance!r} is not a {pass_class.__name__}"
+        _check_options(instance)
+        if isinstance(instance, TextPass):
+            _check_text(instance)
+        else:
+            _PathCheck(instance, machine).run()
+
+
+def _check_declaration(pass_class: type[Pass] | type[TextPass]) -> None:
+    name = pass_class.__name__
+    assert issubclass(pass_class, Pass | TextPass), f"{name} is not a Pass"
+    assert NAME.fullmatch(pass_class.name), f"{name} has the name {pass_class.name!r}"
+    text = pass_class.__dict__.get("__doc__") or f"{name}("
+    assert not text.startswith(f"{name}("), f"{name} has no docstring"
+    parameters = pass_class.__dict__.get("__dataclass_params__")
+    frozen = parameters is not None and parameters.frozen
+    assert frozen, f"{name} is not a frozen dataclass: @dataclass(frozen=True)"
+    describe(pass_class)
+    if issubclass(pass_class, Pass):
+        for group in ("requires", "ensures", "clears"):
+            facts = getattr(pass_class, group)
+            good = isinstance(facts, frozenset) and all(isinstance(f, Fact) for f in facts)
+            assert good, f"{name}.{group} is not a frozenset of facts"
+
+
+def _check_options(instance: Pass | TextPass) -> None:
+    """Check that the options come back from what a TOML file would say."""
+    raw = to_toml(instance)
+    formats = default_registry().formats.values()
+    try:
+        again = build(type(instance), raw, Path.cwd(), formats, lambda key: Location("kit"))
+    except GcxformError as error:
+        raise AssertionError(f"{instance!r}: its options {raw} are refused: {error}") from None
+    assert again == instance, f"{instance!r} comes back from TOML as {again!r}"
+
+
+def _check_text(instance: TextPass) -> None:
+    """Try a text pass on the programs: it may change no word, and the same one always alike."""
+    for label, program in PROGRAMS.items():
+        text = program.encode()
+        lines = list(range(program.count("\n")))
+        found = []
+        for _ in range(2):
+            run = TextRun((instance,), Plain, "-")
+            try:
+                found.append(run.edit(text, lines))
+            except InputError:
+                found.append((b"", []))
+            except Exception as error:
+                raise AssertionError(f"{instance.name} on {label!r}: {error}") from error
+        assert found[0] == found[1], f"{instance.name} edits {label!r} differently the second time"
+
+
+@dataclass
+class _Trial:
+    """One path given to a pass, and what came back."""
+
+    label: str
+    before: Toolpath
+    after: Toolpath
+
+
+class _PathCheck:
+    """The checks of one instance of a pass."""
+
+    def __init__(self, step: Pass, machine: Machine | None) -> None:
+        self.step = step
+        self.machine = machine
+
+    def run(self) -> None:
+        promise = self.step.promise
+        assert promise >= 0.0, f"{self.step.name} promises {promise!r}, which is no distance"
+        for target in (Plain, PlainXY):
+            self.context = PassContext(Plain, target, target.numbers, self.machine)
+            try:
+                self.step.begin(self.context)
+            except GcxformError as error:
+                message = f"{self.step.name} does not begin; give another instance: {error}"
+                raise AssertionError(message) from None
+            self._run_in_context()
+
+    def _run_in_context(self) -> None:
+        trials = [
+            _Trial(label, path, after)
+            for label, path in paths()
+            if all(fact.check(path) for fact in self.step.requires)
+            and (after := self._apply(label, path)) is not None
+        ]
+        moved = any(len(trial.before) for trial in trials)
+        assert moved, f"{self.step.name} refuses every path; give another instance"
+        for trial in reversed(trials):
+            again = self._apply(trial.label, trial.before)
+            same = again is not None and _differs(trial.after, again, 0.0) == ""
+            self._assert(same, trial, "gives another path the second time: it keeps something")
+        for trial in trials:
+            self._check(trial)
+
+    def _assert(self, good: bool, trial: _Trial, message: str) -> None:
+        assert good, f"{self.step.name} on {trial.label!r}: {message}"
+
+    # --- calls ---
+
+    def _apply(self, label: str, path: Toolpath) -> Toolpath | None:
+        """Return the changed path, None if it is refused with a code."""
+        return self._call(self.step.apply, "apply", label, path)
+
+    def _undo(self, label: str, path: Toolpath) -> Toolpath:
+        undone = self._call(self.step.undo, "undo", label, path)
+        assert undone is not None, f"{self.step.name}.undo refuses its own output on {label!r}"
+        return undone
+
+    def _call(
+        self,
+        function: Callable[[Toolpath, PassContext], Toolpath],
+        name: str,
+        label: str,
+        path: Toolpath,
+    ) -> Toolpath | None:
+        given, kept = _locked(path), _locked(path)
+        here = f"{self.step.name}.{name} on {label!r}"
+        try:
+            result = function(given, self.context)
+        except GcxformError as error:
+            if not error.diagnostics:
+                raise AssertionError(f"{here} refuses without a code") from error
+            return None
+        except Exception as error:
+            change = "changes what it was given" if "read-only" in str(error) else "fails"
+            raise AssertionError(f"{here} {change}: {type(error).__name__}: {error}") from error
+        changed = _differs(given, kept, 0.0)
+        assert not changed, f"{here} changes what it was given: {changed}"
+        assert isinstance(result, Toolpath), f"{here} returns {type(result).__name__}"
+        sizes = {len(getattr(result, column)) for column in COLUMNS}
+        assert len(sizes) == 1, f"{here} returns columns of {sorted(sizes)} rows"
+        return result
+
+    # --- what must hold ---
+
+    def _check(self, trial: _Trial) -> None:
+        self._facts(trial)
+        owner = self._owner(trial, trial.after)
+        self._kinds(trial, owner)
+        self._events(trial, owner)
+        self._law(trial)
+        self._windows(trial)
+
+    def _facts(self, trial: _Trial) -> None:
+        step = self.step
+        for fact in step.ensures:
+            self._assert(
+                fact.check(trial.after), trial, f"ensures {fact}, and the path does not have it"
+            )
+        for fact in default_registry().facts.values():
+            if fact not in step.clears and fact.check(trial.before):
+                message = f"loses {fact}, and does not say so in `clears`"
+                self._assert(fact.check(trial.after), trial, message)
+
+    def _owner(self, trial: _Trial, path: Toolpath) -> NDArray[np.int64]:
+        """Return the row of the source that each row belongs to, after checking `source`."""
+        before = trial.before.source
+        known = bool(np.isin(path.source, before).all())
+        self._assert(known, trial, "loses `source`: a row belongs to no line of the program")
+        ordered = bool((np.diff(path.source) >= 0).all())
+        self._assert(ordered, trial, "loses the order of `source`")
+        lost = np.flatnonzero(~np.isin(before, path.source))
+        way = np.nan_to_num(trial.before.end - trial.before.start)[lost]
+        short = np.sqrt((way**2).sum(axis=1)) <= self.step.promise + SLACK
+        gone = bool((short & ~trial.before.is_arc[lost]).all())
+        self._assert(gone, trial, "leaves a move out: a line of the program has no row")
+        return np.searchsorted(before, path.source)
+
+    def _kinds(self, trial: _Trial, owner: NDArray[np.int64]) -> None:
+        before, after = trial.before, trial.after
+        rapid = (before.kind == Kind.RAPID)[owner]
+        same = bool((rapid == (after.kind == Kind.RAPID)).all())
+        self._assert(same, trial, "makes a rapid of a feed move, or the reverse")
+        mode = bool((before.feed_mode[owner] == after.feed_mode).all())
+        self._assert(mode, trial, "changes the feed mode")
+        timed = ~rapid & (after.feed_mode == FeedMode.INVERSE_TIME)
+        plain = ~rapid & ~timed
+        kept = np.allclose(after.feed[plain], before.feed[owner[plain]], rtol=1e-9, equal_nan=True)
+        self._assert(kept, trial, "changes the feed")
+        time = np.bincount(owner[timed], 1 / after.feed[timed], len(before))
+        used = np.unique(owner[timed])
+        good = np.allclose(time[used], 1 / before.feed[used], rtol=1e-6)
+        self._assert(good, trial, "changes the time of a move in G93: its pieces share it")
+
+    def _events(self, trial: _Trial, owner: NDArray[np.int64]) -> None:
+        before, after = trial.before.events, trial.after.events
+        same = [replace(e, row=0) for e in before] == [replace(e, row=0) for e in after]
+        self._assert(same, trial, "changes events: spindle, coolant, dwell, stops")
+        for old, new in zip(before, after, strict=True):
+            earlier = new.row == 0 or int(owner[new.row - 1]) < old.row
+            later = new.row >= len(owner) or int(owner[new.row]) >= old.row
+            self._assert(earlier and later, trial, f"moves the event {old.what}; use with_rows")
+
+    def _law(self, trial: _Trial) -> None:
+        """Check deviation(before, undo(after)) <= promise, from the first point on."""
+        promise = self.step.promise
+        undone = self._undo(trial.label, trial.after)
+        off = deviation(trial.before, undone, self._owner(trial, undone))
+        if not np.isfinite(promise):
+            return
+        worst = float(off.distance.max(initial=0.0))
+        message = f"undo(after) is {worst:g} mm from before; the promise is {promise:g} mm"
+        self._assert(worst <= promise + SLACK, trial, message)
+        turned = float(off.angle.max(initial=0.0))
+        self._assert(turned <= SLACK, trial, f"undo(after) is {turned:g} degrees from before")
+        gap = float(np.nan_to_num(np.abs(undone.entry - trial.before.entry)).max(initial=0.0))
+        message = f"undo(after) begins {gap:g} mm off: apply and undo change `entry` as well"
+        self._assert(gap <= promise + SLACK, trial, message)
+
+    def _windows(self, trial: _Trial) -> None:
+        """Check that a program in two windows gives what it gives in one."""
+        if len(trial.before) < 2:
+            return
+        lines = trial.before.source
+        for line in (int(lines[1]), int(lines[len(lines) // 2])):
+            for whole, call in ((trial.before, self._apply), (trial.after, self._undo)):
+                first, second = _halves(whole, line)
+                parts = [call(trial.label, first), call(trial.label, second)]
+                both = call(trial.label, whole)
+                message = "refuses a part of a path that it takes as a whole"
+                self._assert(None not in parts and both is not None, trial, message)
+                said = _differs_joined(both, parts)
+                self._assert(
+                    not said, trial, f"a program in two windows comes out otherwise: {said}"
+                )
+
+
+# --- paths ---
+
+
+def _locked(path: Toolpath) -> Toolpath:
+    """Return a copy of a path in which nothing can be written."""
+
+    def copy(array: NDArray[Any]) -> NDArray[Any]:
+        array = np.array(array, order="F")
+        array.flags.writeable = False
+        return array
+
+    was = path.blocks
+    modes = copy(was.inch), copy(was.incremental), copy(was.absolute_centre)
+    blocks = Blocks(was.first, *modes)
+    columns = {name: copy(getattr(path, name)) for name in (*COLUMNS, "entry")}
+    return path.replace(blocks=blocks, **columns)
+
+
+def _differs(a: Toolpath, b: Toolpath, allowed: float) -> str:
+    """Return the name of something in which two paths differ, or nothing."""
+    for name in (*COLUMNS, "entry"):
+        one, other = getattr(a, name), getattr(b, name)
+        if one.shape != other.shape or not np.allclose(one, other, 0.0, allowed, equal_nan=True):
+            return name
+    for name in ("inch", "incremental", "absolute_centre"):
+        if not np.array_equal(getattr(a.blocks, name), getattr(b.blocks, name)):
+            return f"blocks.{name}"
+    for name in ("axes", "events", "slack", "refit_centres"):
+        if getattr(a, name) != getattr(b, name):
+            return name
+    return ""
+
+
+def _halves(path: Toolpath, line: int) -> tuple[Toolpath, Toolpath]:
+    """Return the rows before a line and those from it on, as two windows of a program."""
+    cut = int(np.searchsorted(path.source, line))
+    rows = np.arange(len(path))
+    early = tuple(e for e in path.events if e.line < line)
+    late = tuple(replace(e, row=e.row - cut) for e in path.events if e.line >= line)
+    first, second = path.take(rows[:cut]), path.take(rows[cut:])
+    entry = np.array(path.end[cut - 1] if cut else path.entry)
+    return first.replace(events=early), second.replace(events=late, entry=entry)
+
+
+def _differs_joined(whole: Toolpath | None, parts: list[Toolpath | None]) -> str:
+    """Return the name of a column in which a path differs from its two parts, or nothing."""
+    assert whole is not None
+    first, second = (part for part in parts if part is not None)
+    for name in COLUMNS:
+        joined = np.concatenate([getattr(first, name), getattr(second, name)])
+        one = getattr(whole, name)
+        if one.shape != joined.shape or not np.allclose(one, joined, 0.0, SLACK, equal_nan=True):
+            return name
+    if len(first) and not np.allclose(second.entry, first.end[-1], 0.0, SLACK, equal_nan=True):
+        return "entry"
+    return ""
