@@ -217,7 +217,7 @@ def _parted(a: Toolpath, b: Toolpath, matching: Matching) -> tuple[int, int] | N
 
 @dataclass(frozen=True)
 class _Manner:
-    """How pieces are travelled: feed, or 1/min of the whole piece in G93; feed mode; work offset."""
+    """How pieces are travelled: feed (in G93 that of the whole piece), feed mode, work offset."""
 
     feed: NDArray[np.float64]
     mode: NDArray[np.int8]

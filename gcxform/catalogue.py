@@ -132,7 +132,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "plane that was meant with G17, G18 or G19.",
     ),
     "GX305": (
-        "The number of turns is not 1, 2, 3 ...",
+        "The number of turns is not a positive whole number",
         "In this dialect P counts the turns of an arc, the arc itself included. Zero, negative "
         "and broken numbers have no meaning there. Correct the word, or leave it out for less "
         "than a full turn.",

