@@ -98,6 +98,8 @@ class Dialect:
     skips_first_text: ClassVar[bool] = False
     line_length: ClassVar[int] = 0
     """The longest block the control takes, in characters; 0: no limit."""
+    length_without_blanks: ClassVar[bool] = False
+    """The limit counts neither blanks nor comments."""
     comments: ClassVar[str] = "("
     """How a comment may begin: any of "(" and ";"."""
     has_percent: ClassVar[bool] = True

@@ -25,7 +25,7 @@ from gcxform.pipelinefile import PipelineSpec, load, parse_chain
 from gcxform.registry import Registry, default_registry
 from gcxform.run import Output, Run, Sink
 from gcxform.source import Source
-from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY, METRIC
+from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY
 
 ARC_ROUNDING = 2.0  # of the last decimal: what rounding ends and centre can add along an arc
 VERIFY = ("off", "on", "full")
@@ -154,27 +154,25 @@ class Pipeline:
         """Whether there is nothing to do but to copy."""
         return not self.path_passes and self.source is self.target
 
-    def rounding(self) -> float:
-        """Return the largest distance (mm) that rounding alone can make."""
-        facts = facts_after(self.path_passes)
-        size = max(self.manner.rounding(False), self.manner.rounding(True))
-        if METRIC in facts or self.reading.units == "mm":
-            size = self.manner.rounding(False)
-        if ABSOLUTE in facts:
-            return size
-        return 2 * size
+    def rounding(self, inch: bool = False) -> float:
+        """Return the largest distance (mm) that rounding alone can make, for blocks in a unit.
+
+        Where distances are written, what is off in one block stays in the next: twice as much.
+        """
+        size = self.manner.rounding(inch)
+        return size if ABSOLUTE in facts_after(self.path_passes) else 2 * size
 
     def promised(self) -> float:
         """Return the sum of what the passes promise (mm); inf if one promises nothing."""
         return sum(step.promise for step in self.path_passes)
 
-    def limit(self) -> float:
-        """Return the deviation (mm) that a run may have."""
+    def limit(self, inch: bool = False) -> float:
+        """Return the deviation (mm) that a run may have, in blocks of a unit."""
         if self.budget is not None:
             return self.budget
-        total = self.promised() + self.rounding()
+        total = self.promised() + self.rounding(inch)
         if LINEAR_ONLY not in facts_after(self.path_passes):
-            total += ARC_ROUNDING * self.manner.step("X", False)
+            total += ARC_ROUNDING * self.manner.step("X", inch)
         return total
 
     def angle_limit(self) -> float:
@@ -192,17 +190,14 @@ class Pipeline:
                     "a step promises no bound, so the pipeline needs an explicit budget",
                     hint='[budget] deviation = "20 um"; the certificate states what was measured',
                 )
-        elif bounded and self.promised() + self._least_rounding() > self.budget * (1 + 1e-9):
+        elif bounded and self.promised() + self.manner.rounding(False) > self.budget * (1 + 1e-9):
             raise UsageError.one(
                 "GX724",
                 f"the steps may deviate by {self.promised() * 1000:g} um and rounding by "
-                f"{self._least_rounding() * 1000:.2f} um: more than the budget of "
+                f"{self.manner.rounding(False) * 1000:.2f} um: more than the budget of "
                 f"{self.budget * 1000:g} um",
                 hint="raise the budget, lower a tolerance, or write more decimals",
             )
-
-    def _least_rounding(self) -> float:
-        return self.manner.rounding(False)
 
     # --- runs ---
 

@@ -12,7 +12,7 @@ import numpy as np
 from gcxform.certificate import Certificate
 from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
-from gcxform.dialect import LINEAR
+from gcxform.dialect import LINEAR, Dialect
 from gcxform.emit.emitter import Emitted, Emitter
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
@@ -79,7 +79,7 @@ class Run:
                 pipeline.context,
                 replace(reading, units=_first_units(pipeline)),
                 axes,
-                pipeline.limit(),
+                (pipeline.limit(False), pipeline.limit(True)),
                 pipeline.angle_limit(),
                 self.source.name,
             )
@@ -122,6 +122,7 @@ class Run:
         path = read.path
         for step in self.steps:
             path = self._apply(step, path, window)
+        path = _in_words_of(self.pipeline.target, path)
         emitted = self.emitter.emit(window, self.reader.table, read, path)
         if self.verifier is not None:
             self.verifier.check(read, window, emitted.text, emitted.source)
@@ -153,7 +154,7 @@ class Run:
             {"dialect": pipeline.target.name, "lines": out.lines_out}
             | {"sha256": out.written.hexdigest()},
             [_described(step) for step in pipeline.passes],
-            _budget(pipeline),
+            _budget(pipeline, self.verifier is not None and self.verifier.inch),
             self.verifier is not None or (pipeline.copies and self.verify != "off"),
         )
         self._fill(certificate)
@@ -199,6 +200,14 @@ class Run:
             certificate.assumed.append(f"{axis} stands at {value:g} before the first block")
 
 
+def _in_words_of(target: type[Dialect], path: Toolpath) -> Toolpath:
+    """Return the path written without absolute arc centres if the target has none."""
+    if "G90.1" in target.codes or not path.blocks.absolute_centre.any():
+        return path
+    never = np.zeros(len(path.blocks.absolute_centre), np.bool_)
+    return path.replace(blocks=replace(path.blocks, absolute_centre=never))
+
+
 def _with_assumed_start(pipeline: Pipeline, axes: str) -> Reading:
     """Return what is known at the start; where only programmed words are written, the rest is 0."""
     reading = pipeline.reading
@@ -221,13 +230,13 @@ def _described(step: Pass | TextPass) -> dict[str, object]:
     return entry
 
 
-def _budget(pipeline: Pipeline) -> dict[str, object]:
+def _budget(pipeline: Pipeline, inch: bool) -> dict[str, object]:
     promised = pipeline.promised()
     return {
-        "deviation": pipeline.limit(),
+        "deviation": pipeline.limit(inch),
         "explicit": pipeline.budget is not None,
         "steps": promised if np.isfinite(promised) else None,
-        "rounding": pipeline.rounding(),
+        "rounding": pipeline.rounding(inch),
     }
 
 

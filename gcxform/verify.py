@@ -59,7 +59,7 @@ class Verifier:
         context: PassContext,
         reading: Reading,
         axes: str,
-        budget: float,
+        budgets: tuple[float, float],
         angle_budget: float,
         file: str = "-",
     ) -> None:
@@ -67,10 +67,16 @@ class Verifier:
         self.context = context
         self.reader = WindowReader(context.target)
         self.interpreter = Interpreter(context.target, reading, axes, "output")
-        self.budget = budget
+        self.budgets = budgets
+        self.inch = False
         self.angle_budget = angle_budget
         self.file = file
         self.findings = Findings()
+
+    @property
+    def budget(self) -> float:
+        """What the path may deviate (mm): more once a block in inches has been written."""
+        return self.budgets[self.inch]
 
     def check(self, read: Interpreted, window: Window, text: bytes, source: Ints) -> None:
         """Check the text written for a window; `source` is the input line of each output line.
@@ -84,6 +90,7 @@ class Verifier:
         except GcxformError as error:
             raise VerificationError(error.diagnostics) from None
         path = back.path
+        self.inch |= bool(path.blocks.inch[path.block].any())
         for step in reversed(self.passes):
             path = step.undo(path, self.context)
         trace = _Trace(read.path, window, back.path, path, source, first)

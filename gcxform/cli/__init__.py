@@ -28,6 +28,7 @@ VERBS: Final = {
     "explain": "Explain a diagnostic code, or what a block does.",
     "schema": "Print the JSON Schema of a kind of files.",
 }
+FILES: Final = {"list": "listing"}  # a module named `list` would hide the builtin in this one
 DEBUG: Final = "show_traceback"
 
 
@@ -42,7 +43,9 @@ class Verbs(click.Group):
         """Import a verb."""
         if cmd_name not in VERBS:
             return None
-        command: click.Command = import_module(f"gcxform.cli.{cmd_name}").command
+        command: click.Command = import_module(
+            f"gcxform.cli.{FILES.get(cmd_name, cmd_name)}"
+        ).command
         if not command.params or command.params[-1].name != DEBUG:
             command.params.append(_debug_option())
         return command

@@ -52,7 +52,7 @@ def centre_words(arcs: ArcEnds, rule: ArcRule, refit: bool) -> tuple[Floats, Fla
     best, least = near, np.full(len(near), np.inf)
     for x in range(-REACH, REACH + 1):
         for y in range(-REACH, REACH + 1):
-            trial = near + (x, y)
+            trial = near + np.array([x, y])
             cost = _cost(arcs, trial, rule)
             best = np.where((cost < least)[:, None], trial, best)
             least = np.minimum(cost, least)

@@ -37,10 +37,12 @@ class Copying:
         self.lines = (old_count == 0) & (pieces.count == 0)
         if task.manner.crossing:
             self.lines &= self._nothing_to_say()
+            self.lines[pieces.line[pieces.repaired]] = False
         else:
-            self._rows(old_count, pieces)
-            self.lines &= self._same_modes()
-        self.lines[pieces.line[pieces.repaired]] = False
+            may = self._same_modes()
+            may[pieces.line[pieces.repaired]] = False
+            self.lines &= may
+            self._rows(old_count, pieces, may)
 
     def _nothing_to_say(self) -> Flags:
         """Return the lines without any item: the same in every dialect."""
@@ -56,14 +58,15 @@ class Copying:
             & (now.absolute_centre == old.absolute_centre)
         )
 
-    def _rows(self, old_count: Ints, pieces: Pieces) -> None:
+    def _rows(self, old_count: Ints, pieces: Pieces, may: Flags) -> None:
         """Add the lines that have one row, as in the source, which means the same."""
         single = (old_count == 1) & (pieces.count == 1)
         rows = np.flatnonzero(single[self.path.block])
         others = np.flatnonzero(single[self.original.block])
         if not len(rows):
             return
-        good = self.path.kind[rows] == self.original.kind[others]
+        good = may[self.path.block[rows]]
+        good &= self.path.kind[rows] == self.original.kind[others]
         good &= pieces.kind[rows] == self.original.kind[others]
         good &= self._same_ends(rows, others)
         starts_exact = self._track_exactness(rows, others, good)

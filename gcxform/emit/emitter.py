@@ -9,6 +9,7 @@ written in the same way share a template, and each template is rendered as a mat
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -106,7 +107,7 @@ class _Job:
         renderer = Renderer(self.task)
         self._render(chosen, renderer)
         text, lengths = renderer.text(len(chosen))
-        self._check_lengths(lengths, chosen)
+        self._check_lengths(text, lengths, chosen)
         whole, source = interleave(self.task, copied, self.pieces.line[chosen], text, lengths)
         self._carry()
         return Emitted(whole, source + self.task.window.first_line)
@@ -290,19 +291,24 @@ class _Job:
             decimals = _decimals_for(feed, manner.decimals_of("F", inch))
             whole = quantise(feed, decimals)
             everywhere = np.ones(len(rows), np.bool_)
-            renderer.number(field.gap, "F", whole, decimals, everywhere, point=False)
+            point = manner.target.point_required
+            renderer.number(field.gap, "F", whole, decimals, everywhere, point)
 
     # --- after ---
 
-    def _check_lengths(self, lengths: Ints, chosen: Ints) -> None:
-        limit = self.task.manner.target.line_length
+    def _check_lengths(self, text: bytes, lengths: Ints, chosen: Ints) -> None:
+        target = self.task.manner.target
+        limit = target.line_length
         if not limit or not len(lengths) or int(lengths.max()) <= limit:
             return
+        if target.length_without_blanks:
+            lengths = _without_blanks(text, lengths)
+            if int(lengths.max()) <= limit:
+                return
         worst = int(np.argmax(lengths))
         line = int(self.pieces.line[chosen[worst]])
         message = (
-            f"the block would have {int(lengths[worst])} characters; "
-            f"{self.task.manner.target.name} takes {limit}"
+            f"the block would have {int(lengths[worst])} characters; {target.name} takes {limit}"
         )
         raise InputError.one("GX502", message, self.task.location(line))
 
@@ -346,3 +352,10 @@ def _decimals_for(value: Floats, usual: int) -> int:
         if (error <= 1e-4 * np.abs(value)).all():
             return decimals
     return MOST_DECIMALS
+
+
+def _without_blanks(text: bytes, lengths: Ints) -> Ints:
+    """Return the lengths of lines (given one after another) without blanks and comments."""
+    ends = np.cumsum(lengths)
+    lines = [text[int(e - n) : int(e)] for e, n in zip(ends, lengths, strict=True)]
+    return np.array([len(re.sub(rb"\([^)]*\)|;.*|\s", b"", line)) for line in lines], np.int64)

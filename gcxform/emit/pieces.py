@@ -126,19 +126,37 @@ class Pieces:
         given = given[self.line] / np.where(inverse[self.line], 1.0, unit_here)
         need = np.where(word, given, np.nan)
         need = np.where(feeding, self._of_rows(path.feed, np.nan) / unit, need)
-        sets = ~np.isnan(need)
+        sets = ~np.isnan(need) | self._feed_lost()
         self.feed_after = fill(need, sets, self.believed.feed)
         self.unit_after = fill(unit_here, sets, self.believed.feed_unit)
         number = np.append(self.believed.feed, self.feed_after[:-1])[: len(need)]
         size = np.append(self.believed.feed_unit, self.unit_after[:-1])[: len(need)]
         held = np.where(has_unit, number * size / unit_here, number)
         changes = feeding & (~_close(held, need) | inverse[self.line])
-        kept = word & _close(need, modes.feed[self.line])
+        kept = word & _close(need, modes.feed[self.line]) & ~self._must_have_point()
         self.feed = np.where(
             kept, Feed.KEEP, np.where(word | changes, Feed.WRITE, Feed.NONE)
         ).astype(np.int8)
         self.repaired |= self.feed == Feed.WRITE
         self.feed_value = need
+
+    def _must_have_point(self) -> bool:
+        """Whether feed words cannot be copied, because the target may want a point in them."""
+        return self.task.manner.crossing and self.task.manner.target.point_required
+
+    def _feed_lost(self) -> Flags:
+        """Return the pieces at which the target forgets the feed."""
+        lost = np.zeros(len(self.line), np.bool_)
+        target = self.task.manner.target
+        if target.feed_mode_clears_feed:
+            lost |= self._stated_in("feed-mode") & self.leads
+        if target.change_clears_feed:
+            inch = fill(self.inch, self.inch >= 0, self.believed.inch)
+            lost |= np.append(np.int8(self.believed.inch), inch[:-1])[: len(inch)] != inch
+            mode = self.task.read.modes.feed_mode[self.line]
+            before = np.int8(self.task.read.before.groups["feed-mode"])
+            lost |= np.append(before, mode[:-1])[: len(mode)] != mode
+        return lost
 
     def _inch_for_feed(self) -> Flags:
         """Return, per piece, whether the control reads its feed in inches."""

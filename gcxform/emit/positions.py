@@ -9,6 +9,7 @@ from gcxform.dialect import LINEAR
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.numbers import quantise
 from gcxform.modal.lines import fill
+from gcxform.modal.moves import SAME_PLACE
 from gcxform.toolpath.path import Small, column_major
 
 Floats = NDArray[np.float64]
@@ -33,6 +34,8 @@ class Positions:
         self.inch = path.blocks.inch[path.block]
         self.held = column_major(rows, axes)
         self.before = column_major(rows, axes)
+        self._mixed = bool(path.blocks.inch.any()) and not path.blocks.inch.all()
+        self._mixed |= bool(path.blocks.inch[:1].any()) != bool(believed.inch)
         self.step: list[Floats | float] = []
         self.programmed = np.empty((axes, rows), np.bool_).T
         self.write = np.empty((axes, rows), np.bool_).T
@@ -59,6 +62,7 @@ class Positions:
         self.held[:, column] = held
         self.before[1:, column] = held[:-1]
         self.before[:1, column] = self.believed.position[column]
+        self.before[self.task.path.lost, column] = np.nan
 
     def _choose(self, column: int) -> None:
         """Decide which words of an axis are needed: those that change or were programmed."""
@@ -70,8 +74,23 @@ class Positions:
         elif words == "all":
             self.write[:, column] = known
         else:
-            moved = ~(np.abs(held - self.before[:, column]) < 0.5 * self.step[column])
+            moved = ~(np.abs(held - self.before[:, column]) < self._threshold(column))
             self.write[:, column] = (moved | (programmed & self._last)) & known
+
+    def _threshold(self, column: int) -> Floats | float:
+        """Return by how much the control must be off for an axis to be written.
+
+        It is half of the last decimal. Where the program changes its unit, an axis that stands
+        still may be off by the rounding in the unit before: to write it would make it move.
+        """
+        half = 0.5 * self.step[column]
+        if not self._mixed:
+            return half
+        path, manner = self.task.path, self.task.manner
+        axis = path.axes[column]
+        still = np.abs(path.end[:, column] - path.start[:, column]) < SAME_PLACE
+        both = 0.505 * (manner.step(axis, False) + manner.step(axis, True))
+        return np.where(still, both, half)
 
     @property
     def _last(self) -> Flags:

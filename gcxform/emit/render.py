@@ -123,8 +123,7 @@ def interleave(
     copied.
     """
     window = task.window
-    total = len(window)
-    whole = np.concatenate([copied, np.ones(total - len(copied), np.bool_)])
+    whole = np.concatenate([copied, _unreached(task)])
     keep = np.flatnonzero(whole)
     order = np.argsort(np.concatenate([keep, written]), kind="stable")
     source = np.concatenate([keep, written])[order]
@@ -143,6 +142,19 @@ def interleave(
             parts.append(text[int(at[done]) : int(at[done + last - first])])
             done += last - first
     return b"".join(parts), source
+
+
+def _unreached(task: Task) -> Flags:
+    """Return which of the lines that the control does not reach are copied.
+
+    In another dialect they would be foreign text: only blank lines and the final % stay.
+    """
+    shapes = task.window.shape[task.read.live :]
+    if not task.manner.crossing:
+        return np.ones(len(shapes), np.bool_)
+    percent = task.table.flag("percent", shapes) & task.manner.target.has_percent
+    blank = [not task.table.shapes.shapes[int(shape)].block.items for shape in shapes]
+    return np.asarray(percent | np.array(blank, np.bool_))
 
 
 def _copied_runs(task: Task, lines: Ints) -> list[bytes]:

@@ -259,7 +259,8 @@ class TemplateWriter:
             wanted = self._wanted(group)
             self.stated.add(group)
             if wanted is not None:
-                self._literal(lead, text if wanted == name else _like(text, wanted))
+                if not self._goes_without_saying(word, wanted):
+                    self._literal(lead, text if wanted == name else _like(text, wanted))
                 return
             if group == "motion" and self.key.role is not Role.NONE:
                 return
@@ -308,6 +309,14 @@ class TemplateWriter:
         value = getattr(self.key, STATED[group][0])
         return None if value < 0 else STATED[group][1][value]
 
+    def _goes_without_saying(self, word: Word, code: str) -> bool:
+        """Whether the target has no such code because it knows nothing else."""
+        if code in self.target.codes:
+            return False
+        if code != "G91.1":
+            self._refuse(word, code)
+        return True
+
     def _repair_before(self, word: Word, lead: bytes) -> bytes:
         """State before the first word what the block leaves to modes that no longer hold."""
         self._repairs_wait = False
@@ -316,7 +325,8 @@ class TemplateWriter:
         for group in STATED:
             wanted = self._wanted(group)
             if wanted is not None and group not in explicit:
-                texts.append(wanted)
+                if not self._goes_without_saying(word, wanted):
+                    texts.append(wanted)
                 self.stated.add(group)
         if not texts:
             return lead

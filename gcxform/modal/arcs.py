@@ -51,7 +51,9 @@ def resolve_arcs(
     for plane in Plane:
         here = path.plane[rows] == plane
         if here.any():
-            part = _Part(plane, _select(words, here), start[here], end[here], dialect, findings)
+            unknown = ~path.starts_known[rows[here]]
+            chosen = _select(words, here)
+            part = _Part(plane, chosen, start[here], end[here], unknown, dialect, findings)
             middle, angle = part.resolve(path.sense[rows[here]])
             centre[rows[here]], sweep[rows[here]] = middle, angle
     return path.replace(centre=centre, sweep=sweep)
@@ -82,12 +84,14 @@ class _Part:
         words: ArcWords,
         start: Floats,
         end: Floats,
+        unknown: Flags,
         dialect: type[Dialect],
         findings: Findings,
     ) -> None:
         self.first, self.second, self.normal = plane.axes
         self.words = words
         self.start = start
+        self.unknown = unknown
         self.a = start[:, [self.first, self.second]]
         self.b = end[:, [self.first, self.second]]
         self.dialect = dialect
@@ -121,7 +125,7 @@ class _Part:
         has = ~np.isnan(self.words.offset)
         has_radius = ~np.isnan(self.words.radius)
         in_plane = has[:, self.first] | has[:, self.second]
-        unknown = np.any(np.isnan(np.hstack([self.a, self.b])), axis=1)
+        unknown = np.any(np.isnan(np.hstack([self.a, self.b])), axis=1) | self.unknown
         self._refuse(
             unknown,
             "GX208",

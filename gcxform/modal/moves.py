@@ -88,7 +88,7 @@ class Moves:
     def _positions(self, rows: Ints) -> Floats:
         """Return the ends of the moves; the state's position becomes that after the window."""
         lost = self.lines.flag("loses_position")
-        lost = lost | self._other_frame()
+        self.lost = lost = lost | self._other_frame()
         any_lost = bool(lost.any())
         ends = column_major(len(rows), len(self.axes))
         for column, axis in enumerate(self.axes):
@@ -152,6 +152,7 @@ class Moves:
             self.modes.feed_mode[rows],
             self.modes.frame[rows],
             rows + self.lines.window.first_line,
+            self._lost_before(rows),
             self.entry,
             Blocks(
                 self.lines.window.first_line,
@@ -165,6 +166,11 @@ class Moves:
             return path
         arcs = np.flatnonzero(path.is_arc)
         return resolve_arcs(path, self._arc_words(rows[arcs]), self.dialect, self.findings)
+
+    def _lost_before(self, rows: Ints) -> Flags:
+        """Return the moves before which the position was lost since the move before."""
+        lost = np.cumsum(self.lost)[rows] if self.lost.any() else np.zeros(len(rows), np.int64)
+        return np.diff(lost, prepend=0) > 0
 
     def _feed_of_rows(self, rows: Ints, ends: Floats) -> Floats:
         """Return feeds in mm/min, 1/min, mm/turn, or deg/min where only rotary axes turn."""

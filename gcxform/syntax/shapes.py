@@ -48,6 +48,7 @@ class ShapeTable:
         self.grammar = grammar
         self.shapes: list[Shape] = []
         self._index: dict[bytes, int] = {}
+        self._numbers: list[int] = []
         self._slot_counts: Ints = np.empty(0, np.int64)
         self._add(b"", b"")
 
@@ -66,15 +67,16 @@ class ShapeTable:
         return np.fromiter(map(known.__getitem__, keys), np.int64, len(keys))
 
     def slot_counts(self) -> Ints:
-        """Return how many slots each shape has."""
+        """Return how many numbers the lines of each shape have, also of those not understood."""
         if len(self._slot_counts) < len(self.shapes):
-            self._slot_counts = np.array([len(s.slots) for s in self.shapes], np.int64)
+            self._slot_counts = np.array(self._numbers, np.int64)
         return self._slot_counts
 
     def _add(self, key: bytes, text: bytes) -> int:
         block = self.grammar.parse(text.decode("latin-1"))
         shape = Shape(block, tuple(slots_of(block)), key.startswith(OWN))
         self.shapes.append(shape)
+        self._numbers.append(len(shape.slots) if shape.own else key.count(b"#"))
         self._index[key] = len(self.shapes) - 1
         return len(self.shapes) - 1
 

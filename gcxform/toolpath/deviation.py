@@ -41,7 +41,8 @@ def deviation(before: Toolpath, after: Toolpath, owner: Ints, ahead: float = 0.0
     line for an arc of another sense for instance, are infinitely far. A point may be `ahead` (mm)
     on its way or behind: by what rotary axes turn on that length their angles may differ.
     """
-    return _Comparison(before, after, owner, ahead).run()
+    with np.errstate(invalid="ignore"):
+        return _Comparison(before, after, owner, ahead).run()
 
 
 class _Comparison:

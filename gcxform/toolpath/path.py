@@ -92,6 +92,7 @@ COLUMNS = (
     "feed_mode",
     "frame",
     "source",
+    "lost",
 )
 
 
@@ -108,6 +109,7 @@ class Toolpath:
     feed, feed_mode (n,) mm/min, 1/min or mm/turn; nan where none is known; `FeedMode`
     frame           (n,) index of the work offset: 0 is G54
     source          (n,) line of the program, from 0, that the move came from
+    lost            (n,) whether the position was lost before the move, by a tool change for example
     entry           (axes,) position before the first row
     blocks          how the blocks the rows came from are to be written
     events          what happens between the moves
@@ -125,6 +127,7 @@ class Toolpath:
     feed_mode: Small
     frame: Small
     source: Ints
+    lost: Flags
     entry: Floats
     blocks: Blocks
     events: tuple[Event, ...] = ()
@@ -144,7 +147,14 @@ class Toolpath:
         start = np.empty_like(self.end)
         start[1:] = self.end[:-1]
         start[:1] = self.entry
+        if self.lost.any():
+            start[self.lost] = np.nan
         return start
+
+    @property
+    def starts_known(self) -> Flags:
+        """(n,) whether every axis that a move takes somewhere is known to start somewhere."""
+        return np.asarray(~(np.isnan(self.start) & ~np.isnan(self.end)).any(axis=1))
 
     @property
     def is_arc(self) -> Flags:
@@ -184,12 +194,14 @@ class Toolpath:
     def with_rows(self, counts: Ints, **columns: Any) -> Toolpath:
         """Return the path with row i standing `counts[i]` times, and some columns new.
 
-        Events move along with the row they stand before.
+        Events move along with the row they stand before. Of the rows that stand for one, only the
+        first can start where the position was lost.
         """
         first = np.append(0, np.cumsum(counts))
         events = tuple(dataclass_replace(e, row=int(first[e.row])) for e in self.events)
         row = np.repeat(np.arange(len(self)), counts)
         kept = {n: getattr(self, n)[row] for n in COLUMNS if n not in columns}
+        kept["lost"] = kept["lost"] & (np.arange(len(row)) == first[row])
         return self.replace(**kept, **columns, events=events)
 
 

@@ -70,7 +70,6 @@ def check_program(program: bytes, name: str) -> None:
 A_REFUSED_LINE_BEFORE = example(b"A0A\nG1 X10 Y-2.5 F100\n")
 
 
-@pytest.mark.xfail(strict=True, reason="the numbers of a refused line shift those after it")
 @in_every_dialect
 @given(program=lines_of_bytes())
 @A_REFUSED_LINE_BEFORE

@@ -56,6 +56,7 @@ class Grbl(gx.Dialect):
         "frame": "G54",
     }
     line_length = 79
+    length_without_blanks = True
     comments = "(;"
     has_percent = False
     has_program_number = False

@@ -20,7 +20,7 @@ FEWEST, MOST = 8, 256  # points at which a piece is looked at
 AT_ONCE = 200_000  # points looked at together
 HALVINGS = 24
 FLAT = 0.1  # mm; with less between arc and chord, three points say little about the centre
-MARGIN = 0.97  # of the tolerance: what looking at points, and not along the curve, may miss
+MARGIN = 0.9  # of the tolerance: what looking at points, and not along the curve, may miss
 LONGEST = 1.9 * np.pi  # rad; rounded, the ends of a longer piece may change places
 
 

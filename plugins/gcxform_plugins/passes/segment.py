@@ -17,7 +17,7 @@ Flags = NDArray[np.bool_]
 WIDEST = np.pi / 2
 """The largest angle of a chord: with larger ones the sense of rotation could be lost."""
 ANGLE_ERROR = 0.001
-"""How far (deg) a rotary axis may be off on a chord: it turns evenly with the chord, not the arc."""
+"""How far (deg) a rotary axis may be off on a chord: it turns with the chord, not the arc."""
 JUST_WHOLE = 1e-9  # a move that is so little longer than n pieces is cut into n
 
 
@@ -75,6 +75,7 @@ class Segment(gx.Pass):
             lines = path.kind == gx.Kind.LINE
             length = np.nan_to_num(_length(path.start, path.end))
             pieces = np.where(lines, _whole(length / self.max_length), pieces)
+        pieces = np.where(path.starts_known, pieces, 1)
         if arcs.any():
             return cut_arcs(path, pieces, arcs, keep=self.arcs == "split")
         return cut_lines(path, pieces)

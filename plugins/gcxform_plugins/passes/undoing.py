@@ -32,6 +32,7 @@ class Machine:
         self.end = path.end[:, :3] + offset
 
     def run(self) -> gx.Toolpath:
+        """Return the path of the machine."""
         path = self.path
         rows, part, _, _ = self._crossings()
         whole = np.arange(len(path))
@@ -56,7 +57,7 @@ class Machine:
         path = self.path
         points = np.empty((3, len(path) + 1)).T
         points[0], points[1:] = self.start[0], self.end
-        lines = path.kind == gx.Kind.LINE
+        lines = (path.kind == gx.Kind.LINE) & path.starts_known
         row, part, axis, plane = gx.line_crossings(points, lines, self.step.nodes())
         if path.has_arcs:
             reach = self.step.model.model.lipschitz
