@@ -18,7 +18,7 @@ from gcxform.files import write_atomically
 from gcxform.machine.machine import Machine
 from gcxform.modal.codes import Effect
 from gcxform.modal.interpreter import Interpreter
-from gcxform.modal.reader import windows_of
+from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import frame_name
 from gcxform.pipeline import Result
@@ -63,9 +63,10 @@ class Program:
         letters = source.letters()
         axes = "".join(a for a in self.dialect.axes if a in letters or a in "XYZ")
         interpreter = Interpreter(self.dialect, self.reading, axes, self.name)
-        windows = windows_of(source, self.dialect)
-        parts = [interpreter.interpret(window, reader.table).path for window, reader in windows]
-        return joined(parts) if parts else _empty(axes, interpreter.state.position)
+        reader = WindowReader(self.dialect)
+        texts = [*source.windows()] or [b""]
+        windows = (reader.read(text) for text in texts)
+        return joined([interpreter.interpret(w, reader.table).path for w in windows])
 
 
 def read(program: bytes | str | Path, dialect: str | type[Dialect], **reading: Any) -> Program:
@@ -95,15 +96,6 @@ def joined(parts: Sequence[Toolpath]) -> Toolpath:
     flags = [np.concatenate([getattr(p.blocks, name) for p in parts]) for name in names]
     blocks = Blocks(parts[0].blocks.first, *flags)
     return parts[0].replace(**columns, events=events, blocks=blocks)
-
-
-def _empty(axes: str, position: NDArray[np.float64]) -> Toolpath:
-    """Return the toolpath of a program without lines."""
-    none, flags = np.empty(0), np.empty(0, np.bool_)
-    small, whole = np.empty(0, np.int8), np.empty(0, np.int64)
-    ends, centres = np.empty((0, len(axes))), np.empty((0, 3))
-    columns = (small, ends, centres, none, small, none, small, small, whole)
-    return Toolpath(axes, *columns, position, Blocks(0, flags, flags, flags))
 
 
 # --- comparison ---

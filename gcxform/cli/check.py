@@ -37,8 +37,13 @@ def command(file: str | None, **asked: Any) -> int:
         what = Asked(**{**asked, "chain": ""})
     pipeline = what.build()
     warn(default_registry().diagnostics)
-    click.echo("\n".join(chain(pipeline)))
-    return _check(pipeline, file) if file is not None else 0
+    text = "\n".join(chain(pipeline))
+    if file is None:
+        click.echo(text)
+        return 0
+    with opened(file) as source:
+        click.echo(text)
+        return _check(pipeline, source)
 
 
 # --- the chain ---
@@ -84,15 +89,13 @@ def _budget(pipeline: Pipeline) -> list[str]:
 # --- the program ---
 
 
-def _check(pipeline: Pipeline, file: str) -> int:
+def _check(pipeline: Pipeline, source: Source) -> int:
     """Say what speaks against a program; return the exit code."""
-    with opened(file) as source:
-        found = list(_first(reading_findings(pipeline, source))) or _refusals(pipeline, source)
-        lines = sum(len(window) for window, _ in windows_of(source, pipeline.source))
-    if found:
-        warn(found)
-    text = f"{len(found)}{'+' if len(found) >= ENOUGH else ''}" if found else "no"
-    click.echo(f"{source.name}: {lines} lines, {text} finding{'' if len(found) == 1 else 's'}")
+    found = list(_first(reading_findings(pipeline, source))) or _refusals(pipeline, source)
+    lines = sum(len(window) for window, _ in windows_of(source, pipeline.source))
+    warn(found)
+    count = f"{len(found)}{'+' if len(found) >= ENOUGH else ''}" if found else "no"
+    click.echo(f"{source.name}: {lines} lines, {count} finding{'' if len(found) == 1 else 's'}")
     return 1 if found else 0
 
 

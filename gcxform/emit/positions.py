@@ -39,6 +39,7 @@ class Positions:
         self.step: list[Floats | float] = []
         self.programmed = np.empty((axes, rows), np.bool_).T
         self.write = np.empty((axes, rows), np.bool_).T
+        self.stays = np.empty((axes, rows), np.bool_).T
         for column, axis in enumerate(path.axes):
             slot = task.table.slots[task.shape, ord(axis) - 65]
             self.programmed[:, column] = (slot >= 0)[path.block]
@@ -59,6 +60,10 @@ class Positions:
             self.step.append(manner.step(axis, False))
         if manner.words == "programmed":
             held = fill(held, self.programmed[:, column], self.believed.position[column])
+        stays = self._stays(column, held)
+        self.stays[:, column] = stays
+        if stays.any():
+            held = fill(held, ~stays, self.believed.position[column])
         self.held[:, column] = held
         self.before[1:, column] = held[:-1]
         self.before[:1, column] = self.believed.position[column]
@@ -72,25 +77,25 @@ class Positions:
         if words == "programmed":
             self.write[:, column] = programmed & known
         elif words == "all":
-            self.write[:, column] = known
+            self.write[:, column] = known & ~self.stays[:, column]
         else:
-            moved = ~(np.abs(held - self.before[:, column]) < self._threshold(column))
+            moved = ~(np.abs(held - self.before[:, column]) < 0.5 * self.step[column])
             self.write[:, column] = (moved | (programmed & self._last)) & known
 
-    def _threshold(self, column: int) -> Floats | float:
-        """Return by how much the control must be off for an axis to be written.
+    def _stays(self, column: int, held: Floats) -> Flags:
+        """Return the rows in which an axis stands still that the source line does not name.
 
-        It is half of the last decimal. Where the program changes its unit, an axis that stands
-        still may be off by the rounding in the unit before: to write it would make it move.
+        Where the program changes its unit, such an axis may be off by the rounding in the unit
+        before; it stays there, because to write it would make it move.
         """
-        half = 0.5 * self.step[column]
-        if not self._mixed:
-            return half
         path, manner = self.task.path, self.task.manner
+        if not self._mixed or not len(path):
+            return np.zeros(len(path), np.bool_)
         axis = path.axes[column]
         still = np.abs(path.end[:, column] - path.start[:, column]) < SAME_PLACE
         both = 0.505 * (manner.step(axis, False) + manner.step(axis, True))
-        return np.where(still, both, half)
+        still[0] &= abs(held[0] - self.believed.position[column]) < both
+        return np.asarray(still & ~self.programmed[:, column])
 
     @property
     def _last(self) -> Flags:
