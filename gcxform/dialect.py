@@ -96,6 +96,8 @@ class Dialect:
     """What the control does with `/` blocks: "execute", "skip", or "" when a switch decides."""
     stops_at_end: ClassVar[bool] = True
     skips_first_text: ClassVar[bool] = False
+    number_first: ClassVar[bool] = False
+    """A sequence number anywhere but at the head of its block is refused."""
     line_length: ClassVar[int] = 0
     """The longest block the control takes, in characters; 0: no limit."""
     length_without_blanks: ClassVar[bool] = False

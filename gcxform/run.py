@@ -19,7 +19,7 @@ from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import GROUPS
 from gcxform.options import to_toml
-from gcxform.source import Source
+from gcxform.source import Source, lines_in
 from gcxform.syntax.scan import Window
 from gcxform.textpasses import TextRun
 from gcxform.toolpath.path import Toolpath
@@ -102,6 +102,8 @@ class Run:
         """Hand a window on as it is, but for passes that change text."""
         first = self.reader.lines
         if out.source_map is None and not self.text.passes:
+            lines = lines_in(text)
+            out.lines_in, out.lines_out = out.lines_in + lines, out.lines_out + lines
             out.put(text)
             return
         count = len(self.reader.read(text))

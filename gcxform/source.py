@@ -71,3 +71,9 @@ def _last_line_end(text: bytes) -> int:
     if carriage_return > line_feed and text[carriage_return : carriage_return + 1] != b"\n":
         return carriage_return
     return line_feed
+
+
+def lines_in(text: bytes) -> int:
+    """Return the number of lines of a text: LF, CRLF and CR end one, the last may have none."""
+    ends = text.count(b"\n") + text.count(b"\r") - text.count(b"\r\n")
+    return ends + (not text.endswith((b"\n", b"\r")))

@@ -65,7 +65,7 @@ class Verbs(click.Group):
         **extra: Any,
     ) -> NoReturn:
         """Run a command line and exit."""
-        if any(name.startswith("_GCXFORM_") for name in os.environ):
+        if "_GCXFORM_COMPLETE" in os.environ:
             super().main(args, prog_name, complete_var, **extra)
         from gcxform.cli.failures import guarded
 

@@ -34,6 +34,7 @@ from gcxform.emit.templates import (
     Literal,
     Role,
     TemplateWriter,
+    gaps_between,
 )
 from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
@@ -81,9 +82,9 @@ class Emitter:
             self.line_end = window.text[int(window.end[0]) : int(window.next[0])] or b"\n"
         if self.gap is None:
             for shape in table.shapes.shapes:
-                words = list(shape.block.words)
-                if len(words) > 1:
-                    self.gap = b" " if words[1].start > words[0].end else b""
+                gaps = list(gaps_between(shape.block.text, list(shape.block.words)))
+                if gaps:
+                    self.gap = b" " if any(gaps) else b""
                     break
 
 
@@ -172,7 +173,8 @@ class _Job:
         off the grid, in a block that was copied, cannot be written: the words are left out.
         """
         full = np.mod(self.path.sweep[rows] + 1e-9, TURN) < 2e-9
-        on_grid = (np.abs(self.positions.held[np.ix_(rows, axes)] - begin) < EXACT).all(axis=1)
+        said = np.stack([self.positions.said(axis, rows) for axis in axes.tolist()], axis=1)
+        on_grid = (np.abs(said - begin) < EXACT).all(axis=1)
         silent = full & ~on_grid & refit
         if self.task.manner.target.circle_needs_axis_word:
             silent[:] = False
@@ -228,7 +230,7 @@ class _Job:
         """Render the pieces, one template after another."""
         for places in _groups(self._ways(chosen)):
             members = chosen[places]
-            renderer.begin(len(members))
+            renderer.begin(self.pieces.line[members])
             for field in self._template(int(members[0])):
                 self._field(field, members, renderer)
             lines = self.pieces.line[members]

@@ -14,7 +14,7 @@ from gcxform.emit.manner import Believed, Task
 from gcxform.emit.templates import Feed, Role
 from gcxform.modal.lines import fill
 from gcxform.modal.moves import turns_only
-from gcxform.modal.tables import GROUPS
+from gcxform.modal.tables import GROUPS, NUMBER
 from gcxform.toolpath.path import FeedMode, Kind
 
 Floats = NDArray[np.float64]
@@ -90,10 +90,19 @@ class Pieces:
         here = wanted[self.line].astype(np.int8)
         if not explicit.any() and (here == before).all():
             return np.broadcast_to(NOTHING, (len(self.line),))
-        held = fill(here, explicit | needs, before)
-        missing = needs & (np.append(np.int8(before), held[:-1]) != here) & ~explicit
+        held = self._held(np.where(explicit | needs, here, NOTHING), group, before)
+        missing = needs & (held != here) & ~explicit
         self.repaired |= missing
         return np.where(explicit | missing, here, NOTHING)
+
+    def _held(self, sets: Small, group: str, before: int) -> Small:
+        """Return what holds before each piece, given what each sets (-1: nothing)."""
+        resets = self.task.manner.target.resets_at_end
+        if group in resets:
+            ends = self.task.table.flag("ends", self.task.shape)[self.line] & self.ends
+            sets = np.where(ends, np.int8(NUMBER[resets[group]]), sets)
+        held = fill(sets, sets >= 0, before)
+        return np.append(np.int8(before), held[:-1])[: len(sets)]
 
     def _motions(self) -> None:
         """State a motion code where the source stated one, and where the motion changes."""
@@ -101,7 +110,7 @@ class Pieces:
         sets = np.where(self.leads, group[self.line], NOTHING)
         sets[self.has_row] = self.kind
         self.motion_after = fill(sets, sets >= 0, self.believed.motion)
-        before = np.append(np.int8(self.believed.motion), self.motion_after[:-1])
+        before = self._held(sets, "motion", self.believed.motion)
         explicit = self._stated_in("motion")
         changes = self.has_row & (before != self.motion_after)
         self.repaired |= changes & ~explicit

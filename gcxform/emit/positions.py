@@ -103,6 +103,15 @@ class Positions:
         block = self.task.path.block
         return np.append(block[1:] != block[:-1], True)[: len(block)]
 
+    def said(self, column: int, rows: NDArray[np.int64]) -> Floats:
+        """Return where an axis would be (mm, deg) in rows if its word were written."""
+        step = self.step[column]
+        if isinstance(step, np.ndarray):
+            step = step[rows]
+        incremental = self.task.path.blocks.incremental[self.task.path.block[rows]]
+        before = np.where(incremental, self.before[rows, column], 0.0)
+        return np.asarray(before + self.words_of(column, rows) * step)
+
     def words_of(self, column: int, rows: NDArray[np.int64]) -> Floats:
         """Return the numbers to be written, as whole numbers of the last decimal."""
         step = self.step[column]

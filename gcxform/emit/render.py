@@ -24,18 +24,21 @@ class Renderer:
         self._parts: list[Bytes] = []
         self._done: list[tuple[Ints, Bytes]] = []
         self._rows = 0
+        self._lines: Ints = np.zeros(0, np.int64)
         self._begun: Flags = np.zeros(0, np.bool_)
 
-    def begin(self, rows: int) -> None:
-        """Begin a template of some rows."""
+    def begin(self, lines: Ints) -> None:
+        """Begin a template; its rows are pieces of these lines."""
         self._parts = []
-        self._rows = rows
-        self._begun = np.zeros(rows, np.bool_)
+        self._lines = lines
+        self._rows = len(lines)
+        self._begun = np.zeros(len(lines), np.bool_)
 
     def literal(self, text: bytes) -> None:
         """Add bytes that all rows have."""
         if b"\0" in text:
-            raise InputError.one("GX505", "a block with a NUL byte has to be written anew")
+            where = self.task.location(int(self._lines[0]))
+            raise InputError.one("GX505", "a block with a NUL byte has to be written anew", where)
         if text.strip():
             self._begun[:] = True
         self._where(text, None)
@@ -77,8 +80,10 @@ class Renderer:
         """
         if not present.any():
             return
-        if (np.abs(whole[present]) >= LARGEST * 10.0**decimals).any():
-            raise InputError.one("GX503", f"{address} has more digits than a control takes")
+        long = present & (np.abs(whole) >= LARGEST * 10.0**decimals)
+        if long.any():
+            where = self.task.location(int(self._lines[np.argmax(long)]))
+            raise InputError.one("GX503", f"{address} has more digits than a control takes", where)
         if gap:
             self._where(gap, present & self._begun)
         self._where(address.encode(), present)

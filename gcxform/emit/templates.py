@@ -8,6 +8,7 @@ then a matter of whole arrays.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 from itertools import pairwise
@@ -109,6 +110,14 @@ class CannotSayError(Exception):
         self.message = message
 
 
+def gaps_between(text: str, words: list[Word]) -> Iterator[bool]:
+    """Yield, for each two words that follow one another, whether blanks are between them."""
+    for one, other in pairwise(words):
+        between = text[one.end : other.start]
+        if not between.strip(" \t"):
+            yield bool(between)
+
+
 class TemplateWriter:
     """Makes the templates of one shape."""
 
@@ -133,7 +142,7 @@ class TemplateWriter:
         words = list(self.shape.block.words)
         if len(words) < 2:
             return usual
-        return b" " if any(b.start > a.end for a, b in pairwise(words)) else b""
+        return b" " if any(gaps_between(self.text, words)) else b""
 
     def write(self, key: Key) -> tuple[Field, ...]:
         """Return the fields of a piece of the block. Raises CannotSayError."""
@@ -264,6 +273,8 @@ class TemplateWriter:
                 return
             if group == "motion" and self.key.role is not Role.NONE:
                 return
+        elif group in self.stated:
+            return  # of several codes of a group one has been written
         if self.key.role in (Role.MIDDLE, Role.LAST):
             return
         self._check_code(word, name, code)
@@ -353,10 +364,18 @@ class TemplateWriter:
         if lead and not self.fields:
             self.fields.append(Literal(lead))
             lead = b""
+        self._check_axes(named)
+        order = [address for address in order if address in self.target.axes]
         for nth, address in enumerate(order):
             gap = lead if lead else (self.gap if nth or self._ends_in_word() else b"")
             self.fields.append(Axis(gap, address))
             lead = b""
+
+    def _check_axes(self, named: list[str]) -> None:
+        """Raise CannotSayError for an axis that the target has not."""
+        for word in self.shape.block.words:
+            if word.address in named and word.address not in self.target.axes:
+                self._refuse(word, f"{word.address}: it has no such axis")
 
     def _gap(self, lead: bytes) -> bytes:
         return lead or (self.gap if self.fields else b"")

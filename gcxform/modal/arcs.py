@@ -197,6 +197,7 @@ class _Part:
         first = np.hypot(*(self.a - middle).T)
         last = np.hypot(*(self.b - middle).T)
         bad = ~accepts(self.rule, first, last) & ~by_radius & ~np.isnan(first + last)
+        bad &= ~np.isnan(self.words.offset[:, [self.first, self.second]]).all(axis=1)
         for index in np.flatnonzero(bad)[: Findings.enough].tolist():
             delta = abs(float(first[index] - last[index]))
             self.findings.add(

@@ -76,6 +76,7 @@ def _read(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Re
     yield from _items(shape, dialect, meaning)
     yield from _g_codes(shape, dialect, meaning)
     yield from _m_codes(shape, dialect, meaning)
+    yield from _number_first(shape, dialect)
     yield from _words(shape, dialect, meaning)
     meaning.events.sort(key=lambda event: (event.after, event.order))
 
@@ -204,6 +205,15 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         meaning.loses_position |= code.loses_position
         order = {"tool": 30, "spindle": 40, "coolant": 41, "override": 42}.get(code.group, 43)
         meaning.events.append(EventShape(order, name, _take(code, dialect, meaning), code.after))
+
+
+def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
+    """Refuse a sequence number behind something else where the control wants it first."""
+    items = [item for item in shape.block.items if not isinstance(item, Mark)]
+    for item in items[1:]:
+        if isinstance(item, Word) and item.address == "N" and dialect.number_first:
+            message = f"{dialect.name} takes a sequence number only at the head of a block"
+            yield Refusal("GX203", item.start, item.end - item.start, message)
 
 
 def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:

@@ -56,6 +56,7 @@ class Moves:
         for line in np.flatnonzero(centre & arc & self._dwells()).tolist():
             message = "a dwell and an arc: the control takes some words for both"
             self.findings.add(line, "GX203", message, hint="write the dwell in a block of its own")
+        moves &= self.modes.motion != NUMBER["G80"]
         rows = np.flatnonzero(moves | (centre & arc))
         self._check_feed(rows)
         return rows

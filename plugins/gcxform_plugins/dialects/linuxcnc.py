@@ -90,6 +90,7 @@ class LinuxCNC(gx.Dialect):
     feed_mode_clears_feed = True
     feed_before_units = True
     lone_cr_is_blank = True
+    number_first = True
     turns_address = "P"
     line_length = 252
     comments = "(;"
