@@ -72,8 +72,8 @@ class Pass:
 class TextPass:
     """The base of the passes that change text and no meaning: `edit` returns a block's new text.
 
-    `edit` gets the tree of a block and its number in the output, counted from 0 over the blocks
-    that stay; None drops the block. The words of a block, but for N, must stay as they are: this
+    `edit` gets the tree of a block and its number, counted from 0 over the blocks that have words
+    and stay; None drops the block. The words of a block, but for N, must stay as they are: this
     is checked on every run.
     """
 

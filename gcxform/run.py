@@ -73,6 +73,7 @@ class Run:
         self.interpreter = Interpreter(pipeline.source, reading, axes, self.source.name)
         start = self.interpreter.state.position
         self.emitter = Emitter(pipeline.manner, start, self.source.name)
+        self.emitter.believed.inch = int(_first_units(pipeline) == "in")
         if self.verify != "off":
             self.verifier = Verifier(
                 self.steps,
@@ -220,7 +221,9 @@ def _with_assumed_start(pipeline: Pipeline, axes: str) -> Reading:
 
 
 def _first_units(pipeline: Pipeline) -> str:
-    """Return the units the output starts in: every block that needs others states them."""
+    """Return the units the output starts in: those of its control before the program."""
+    if pipeline.source is pipeline.target and pipeline.reading.units:
+        return pipeline.reading.units
     return "in" if pipeline.target.initial["units"] == "G20" else "mm"
 
 

@@ -30,6 +30,8 @@ class TextRun:
     def _one(
         self, index: int, step: TextPass, text: bytes, lines: list[int]
     ) -> tuple[bytes, list[int]]:
+        if not text:
+            return text, lines
         parts, kept = [], []
         table = ShapeTable(self.dialect.load_grammar())
         window = scan(text, 0, table)
@@ -48,7 +50,7 @@ class TextRun:
             end = text[int(window.end[line]) : int(window.next[line])]
             parts.append(new.encode("latin-1") + end)
             kept.append(lines[line])
-            self.counts[index] += 1
+            self.counts[index] += any(True for _ in block.words)
         return b"".join(parts), kept
 
     def _edited(self, step: TextPass, block: Block, number: int, line: int) -> str | None:

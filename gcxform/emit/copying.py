@@ -71,7 +71,7 @@ class Copying:
         good &= self._same_ends(rows, others)
         starts_exact = self._track_exactness(rows, others, good)
         incremental = self.path.blocks.incremental[self.path.block[rows]]
-        good &= ~incremental | starts_exact
+        good &= ~incremental | starts_exact | self._starts_alike(rows, others)
         if self.path.has_arcs:
             good &= ~self.path.is_arc[rows] | self._same_arcs(rows, others, starts_exact)
         self.lines[self.path.block[rows[good]]] = True
@@ -88,6 +88,12 @@ class Copying:
             if not good.any():
                 break
         return good
+
+    def _starts_alike(self, rows: Ints, others: Ints) -> Flags:
+        """Return which rows begin where their source begins, in the axes that the block names."""
+        start = self.original.start[others]
+        same = np.abs(self.positions.before[rows] - start) <= EXACT
+        return np.asarray((same | ~self.positions.programmed[rows]).all(axis=1))
 
     def _track_exactness(self, rows: Ints, others: Ints, good: Flags) -> Flags:
         """Follow how far everything is exactly as in the source; return where rows start so."""

@@ -102,7 +102,7 @@ class Task:
     @property
     def shape(self) -> NDArray[np.int64]:
         """Shapes of the lines that the control executes."""
-        return self.window.shape[: self.read.live]
+        return self.read.shape
 
     def location(self, line: int, column: int = 0, width: int = 0) -> Location:
         """Return a place in a line of the window; column from 0."""

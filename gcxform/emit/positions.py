@@ -36,6 +36,7 @@ class Positions:
         self.before = column_major(rows, axes)
         self._mixed = bool(path.blocks.inch.any()) and not path.blocks.inch.all()
         self._mixed |= bool(path.blocks.inch[:1].any()) != bool(believed.inch)
+        self._mixed |= self._off_grid()
         self.step: list[Floats | float] = []
         self.programmed = np.empty((axes, rows), np.bool_).T
         self.write = np.empty((axes, rows), np.bool_).T
@@ -81,6 +82,15 @@ class Positions:
         else:
             moved = ~(np.abs(held - self.before[:, column]) < 0.5 * self.step[column])
             self.write[:, column] = (moved | (programmed & self._last)) & known
+
+    def _off_grid(self) -> bool:
+        """Whether the control stands at a place that cannot be written in the present unit."""
+        inch = bool(self.inch.any())
+        for axis, place in zip(self.task.path.axes, self.believed.position, strict=True):
+            step = self.task.manner.step(axis, inch)
+            if abs(np.rint(place / step) * step - place) > SAME_PLACE:
+                return True
+        return False
 
     def _stays(self, column: int, held: Floats) -> Flags:
         """Return the rows in which an axis stands still that the source line does not name.

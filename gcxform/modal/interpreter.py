@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, Dialect
 from gcxform.modal.lines import Lines
@@ -23,11 +24,15 @@ from gcxform.toolpath.path import Toolpath
 
 @dataclass(frozen=True)
 class Interpreted:
-    """A window's toolpath and the modes of its lines; `live` lines are those the control runs."""
+    """A window's toolpath and the modes of its lines; `live` lines are those the control runs.
+
+    `shape` (live,) are their shapes: that of an empty line for blocks that are skipped.
+    """
 
     path: Toolpath
     modes: Modes
     live: int
+    shape: NDArray[np.int64]
     before: State
 
 
@@ -68,7 +73,7 @@ class Interpreter:
         path = Moves(lines, modes, self.axes).path()
         lines.findings.raise_if_any()
         self._carry(lines, modes)
-        return Interpreted(path, modes, lines.live, before)
+        return Interpreted(path, modes, lines.live, lines.shape, before)
 
     def _carry(self, lines: Lines, modes: Modes) -> None:
         """Leave the state in which the window ends."""

@@ -163,10 +163,20 @@ class Moves:
             ),
             events_of(self.lines, rows),
         )
+        path = self._with_history(path)
         if not path.has_arcs:
             return path
         arcs = np.flatnonzero(path.is_arc)
         return resolve_arcs(path, self._arc_words(rows[arcs]), self.dialect, self.findings)
+
+    def _with_history(self, path: Toolpath) -> Toolpath:
+        """Return the path with what passes may want to know of the moves before it."""
+        state, after_rapid = self.state, self.state.rapid
+        if len(path):
+            if state.first_frame < 0:
+                state.first_frame = int(path.frame[0])
+            state.rapid = bool(path.kind[-1] == Kind.RAPID)
+        return path.replace(first_frame=max(state.first_frame, 0), after_rapid=after_rapid)
 
     def _lost_before(self, rows: Ints) -> Flags:
         """Return the moves before which the position was lost since the move before."""

@@ -43,6 +43,8 @@ class State:
     frame_known: bool
     ended: bool = False
     percents: int = 0
+    first_frame: int = -1
+    rapid: bool = False
     stated: set[str] = field(default_factory=set)
 
 

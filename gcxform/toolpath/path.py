@@ -114,6 +114,8 @@ class Toolpath:
     blocks          how the blocks the rows came from are to be written
     events          what happens between the moves
     slack           mm; how far a row may be from the curve it stands for
+    first_frame     the work offset in which the program's first move was
+    after_rapid     whether the move before the first row was a rapid
     refit_centres   whether centres may be moved so that both ends are on the circle as formatted
     """
 
@@ -132,6 +134,8 @@ class Toolpath:
     blocks: Blocks
     events: tuple[Event, ...] = ()
     slack: float = 0.0
+    first_frame: int = 0
+    after_rapid: bool = False
     refit_centres: bool = True
 
     def __post_init__(self) -> None:

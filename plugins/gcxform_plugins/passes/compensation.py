@@ -43,6 +43,8 @@ class Compensation:
         self._check_inside()
         commands = self.step.command(self.end)
         self.entry_command = self.step.command(self.start[:1])[0]
+        if self.step.rapids == "skip" and self.path.after_rapid:
+            self.entry_command = self.start[0]
         rows, part = self._cuts(commands)
         if len(rows):
             return self._cut(rows, part, commands)

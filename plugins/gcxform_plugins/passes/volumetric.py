@@ -113,9 +113,9 @@ class Volumetric(gx.Pass):
         """Return table position minus program position of each row (n, 3), or of all (1, 3)."""
         origin = np.array(self.table_origin)
         if self.part_origin is not None:
-            frames = path.frame[path.frame != path.frame[0]]
-            if len(frames):
-                row = int(np.argmax(path.frame != path.frame[0]))
+            others = path.frame != path.first_frame
+            if others.any():
+                row = int(np.argmax(others))
                 raise path.refuse(
                     "GX314",
                     np.array([row]),

@@ -1,0 +1,382 @@
+"""Do the tests see a wrong gcxform? Each mutation is a small fault; a test must fail on it.
+
+    python tests/mutations.py [--jobs 2] [NAME ...]
+
+The packages are copied to a temporary directory, one fault at a time is written into the copy, and
+a few fast tests are run on it. A fault that no test notices survives; then the exit code is 1.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import queue
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("gcxform", "plugins/gcxform_plugins", "grammars/gcxform_grammars")
+FAILED = 1  # pytest's exit code for tests that failed
+TIMEOUT = 180  # seconds; a mutant that hangs is noticed too
+
+PASSES = "plugins/gcxform_plugins/passes"
+VERIFY = "tests/test_verify.py"
+FIGURES = "tests/test_volumetric.py"
+FOUND = "tests/properties/test_found.py"
+KIT = "tests/test_kit.py::test_registered_passes"
+LAWS = "tests/properties/test_laws.py"
+READING = "tests/properties/test_interpreting.py::test_columns_and_scalars_read_alike[linuxcnc]"
+
+
+@dataclass(frozen=True)
+class Mutation:
+    """A fault: `old`, which stands once in `file`, becomes `new`; a test of `tests` must fail."""
+
+    name: str
+    file: str
+    old: str
+    new: str
+    tests: str
+
+
+def _verifier(name: str, old: str, new: str = "if False:") -> Mutation:
+    return Mutation(f"verifier: {name}", "gcxform/verify.py", old, new, VERIFY)
+
+
+MUTATIONS = (
+    # the error model and the search for commands
+    Mutation(
+        "compensate: the sign of the error is swapped",
+        "gcxform/machine/errors.py",
+        "np.subtract(target, command, out=command)",
+        "np.add(target, command, out=command)",
+        FIGURES,
+    ),
+    Mutation(
+        "undo: the sign of the error is swapped",
+        f"{PASSES}/undoing.py",
+        "actual = point + self.step.error(point + offset)",
+        "actual = point - self.step.error(point + offset)",
+        VERIFY,
+    ),
+    Mutation(
+        "E: an axis is dropped",
+        "gcxform/machine/errors.py",
+        'for k in range(3):\n            # "clip" spares',
+        'for k in range(2):\n            # "clip" spares',
+        FIGURES,
+    ),
+    Mutation(
+        "E: one cell farther",
+        "gcxform/machine/errors.py",
+        "return cell.astype(np.intp), part",
+        "return cell.astype(np.intp), part + 1.0",
+        FIGURES,
+    ),
+    Mutation(
+        "volumetric: the first node is skipped",
+        f"{PASSES}/volumetric.py",
+        "(n if bends else n[1:-1] for n in",
+        "(n if bends else n[2:-1] for n in",
+        FIGURES,
+    ),
+    Mutation(
+        "volumetric: the last node of a move is skipped",
+        "gcxform/toolpath/crossings.py",
+        "np.maximum(high - low, 0)",
+        "np.maximum(high - low - 1, 0)",
+        FIGURES,
+    ),
+    Mutation(
+        "volumetric: cuts are not made where the command crosses",
+        f"{PASSES}/splitting.py",
+        "part = part + np.where(",
+        "part = part + 3.0 * np.where(",
+        FIGURES,
+    ),
+    Mutation(
+        "volumetric: the tolerance is doubled",
+        f"{PASSES}/splitting.py",
+        "limit = residual * (1 - 1e-6)",
+        "limit = 2 * residual * (1 - 1e-6)",
+        FIGURES,
+    ),
+    Mutation(
+        "volumetric: pieces in inverse time keep the feed",
+        f"{PASSES}/compensation.py",
+        "path.feed[row] / share, path.feed[row]",
+        "path.feed[row], path.feed[row]",
+        VERIFY,
+    ),
+    # segment
+    Mutation(
+        "segment: the chord error is doubled",
+        f"{PASSES}/segment.py",
+        "chords(path, self.chord_error))",
+        "chords(path, 2 * self.chord_error))",
+        f"{KIT}[segment]",
+    ),
+    Mutation(
+        "segment: pieces in inverse time keep the feed",
+        f"{PASSES}/segment.py",
+        "path.feed[row] * pieces[row], path.feed[row]",
+        "path.feed[row], path.feed[row]",
+        VERIFY,
+    ),
+    Mutation(
+        "segment: pieces of arcs keep the sweep",
+        f"{PASSES}/segment.py",
+        "(path.sweep / pieces)[row]",
+        "path.sweep[row]",
+        f"{KIT}[segment]",
+    ),
+    # reading
+    Mutation(
+        "reading: inches are millimetres",
+        "gcxform/modal/moves.py",
+        "value = np.where(self.modes.inch, value * INCH, value)",
+        "value = np.where(self.modes.inch, value, value)",
+        READING,
+    ),
+    Mutation(
+        "reading: the sense of arcs is swapped",
+        "gcxform/toolpath/path.py",
+        "2.0 * self.kind - 5.0",
+        "5.0 - 2.0 * self.kind",
+        READING,
+    ),
+    Mutation(
+        "reading: a full circle has no sweep",
+        "gcxform/modal/arcs.py",
+        "return np.where(same, TURN, angle)",
+        "return np.where(same, 0.0, angle)",
+        READING,
+    ),
+    Mutation(
+        "reading: the long arc by radius is the short one",
+        "gcxform/modal/arcs.py",
+        "np.where(radius > 0, sense, -sense)",
+        "np.where(radius > 0, sense, sense)",
+        READING,
+    ),
+    Mutation(
+        "reading: distances are added to the last absolute position only",
+        "gcxform/modal/moves.py",
+        "np.where(placed, value - steps, 0.0)",
+        "np.where(placed, value, 0.0)",
+        READING,
+    ),
+    Mutation(
+        "reading: positions are not carried into the next window",
+        "gcxform/modal/moves.py",
+        "self.state.position[column] = last",
+        "del last",
+        VERIFY,
+    ),
+    Mutation(
+        "reading: modes are not carried into the next window",
+        "gcxform/modal/interpreter.py",
+        "int(column[-1]) for name, column in last.items()",
+        "self.state.groups[name] for name in last",
+        VERIFY,
+    ),
+    Mutation(
+        "reading: a lost position is ignored",
+        "gcxform/toolpath/path.py",
+        "start[self.lost] = np.nan",
+        "start[self.lost] = start[self.lost]",
+        FOUND,
+    ),
+    # writing
+    Mutation(
+        "writing: numbers are cut off, not rounded",
+        "gcxform/emit/numbers.py",
+        "(0.5 + TIE))\n    return np.copysign",
+        "TIE)\n    return np.copysign",
+        FIGURES,
+    ),
+    Mutation(
+        "writing: an axis that the block does not name stays behind",
+        "gcxform/emit/positions.py",
+        "moved = ~(np.abs(held - self.before[:, column]) < 0.5 * self.step[column])",
+        "moved = np.zeros(len(held), np.bool_)",
+        FIGURES,
+    ),
+    Mutation(
+        "writing: a motion code that has changed is not stated",
+        "gcxform/emit/pieces.py",
+        "changes = self.has_row & (before != self.motion_after)",
+        "changes = np.zeros(len(before), np.bool_)",
+        LAWS + "::test_a_motion_code_that_no_longer_holds_is_stated",
+    ),
+    Mutation(
+        "writing: centres count from where the start was before rounding",
+        "gcxform/emit/emitter.py",
+        "self.path.start if not self.path.refit_centres else self._exact_starts()",
+        "self.path.start",
+        LAWS + "::test_centres_count_from_the_start_as_it_is_written",
+    ),
+    Mutation(
+        "writing: distances are rounded one by one",
+        "gcxform/emit/positions.py",
+        "value - self.before[rows, column], value)",
+        "value - self.task.path.start[rows, column], value)",
+        LAWS + "::test_distances_do_not_drift",
+    ),
+    Mutation(
+        "writing: what the control believes is not carried into the next window",
+        "gcxform/emit/emitter.py",
+        "believed.position = np.array(held)",
+        "del held",
+        VERIFY,
+    ),
+    # verification
+    _verifier("the budget is ignored", "if not off.distance[worst] <= self.budget:"),
+    _verifier("rotary axes are ignored", "if not off.angle[turned] <= self.angle_budget:"),
+    _verifier("kinds are ignored", "if wrong.any():"),
+    _verifier("feeds are ignored", "if (off & plain).any():"),
+    _verifier("feed modes are ignored", "if (mode & moving).any():"),
+    _verifier("times are ignored", "if len(wrong):"),
+    _verifier("events are ignored", "self._events(read.path.events, back.path.events, trace)", ""),
+    _verifier("missing events are ignored", "if len(old) != len(new):"),
+    _verifier(
+        "the place of events is ignored", "or not trace.stands_before(after.row, before.row)", ""
+    ),
+    _verifier("missing moves are ignored", "self._missing(trace)\n        if not", "if not"),
+    _verifier("moves of nobody are ignored", "if len(trace.owner) and int(trace.owner.min()) < 0:"),
+    _verifier("nothing is undone", "path = step.undo(path, self.context)", "pass"),
+    Mutation(
+        "deviation: the sense of arcs is ignored",
+        "gcxform/toolpath/deviation.py",
+        "(after.sense[rows] == self.sense)",
+        "np.isfinite(self.sense)",
+        VERIFY,
+    ),
+)
+
+
+# --- the copy ---
+
+
+def problems() -> list[str]:
+    """Return the mutations whose old text does not stand exactly once in its file."""
+    found = []
+    for mutation in MUTATIONS:
+        file = ROOT / mutation.file
+        count = file.read_text(encoding="utf-8").count(mutation.old) if file.is_file() else 0
+        if count != 1:
+            found.append(f"{mutation.name}: stands {count} times in {mutation.file}")
+    return found
+
+
+def copied(folder: Path) -> Path:
+    """Copy the packages into a folder."""
+    for package in PACKAGES:
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(ROOT / package, folder / package, ignore=ignored)
+    return folder
+
+
+def run(folder: Path, *tests: str) -> int:
+    """Run tests on the packages in a folder; return pytest's exit code."""
+    places = [folder, *((folder / package).parent for package in PACKAGES[1:])]
+    environment = os.environ | {
+        "PYTHONPATH": os.pathsep.join(map(str, places)),
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "HYPOTHESIS_PROFILE": "ci",
+    }
+    environment.pop("GCXFORM_MUTATIONS", None)
+    own = [sys.executable, "-P"]  # the current directory holds the packages without the fault
+    seen = subprocess.run(
+        [*own, "-c", "import gcxform; print(gcxform.__file__)"],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert seen.stdout.startswith(str(folder)), seen.stdout
+    command = [*own, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *tests]
+    try:
+        done = subprocess.run(
+            command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=TIMEOUT
+        )
+    except subprocess.TimeoutExpired:
+        return FAILED
+    if done.returncode not in (0, FAILED):
+        print(done.stdout[-3000:], done.stderr[-1000:], sep="\n")
+    return done.returncode
+
+
+def verdict(mutation: Mutation, folder: Path) -> str:
+    """Run the tests of a mutation on a copy that has it; the copy is mended again."""
+    file = folder / mutation.file
+    text = file.read_text(encoding="utf-8")
+    assert text.count(mutation.old) == 1, mutation.name
+    file.write_text(text.replace(mutation.old, mutation.new), encoding="utf-8")
+    try:
+        code = run(folder, mutation.tests)
+    finally:
+        file.write_text(text, encoding="utf-8")
+    return {0: "SURVIVED", FAILED: "caught"}.get(code, f"BROKEN ({code})")
+
+
+# --- the script ---
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run all mutations, or those named; return the exit code."""
+    parser = argparse.ArgumentParser(description="Do the tests see a wrong gcxform?")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("names", nargs="*", help="parts of names of mutations")
+    asked = parser.parse_args(arguments)
+    chosen = [m for m in MUTATIONS if not asked.names or any(n in m.name for n in asked.names)]
+    if found := problems():
+        print("\n".join(found))
+        return 1
+    with tempfile.TemporaryDirectory() as temporary:
+        folders = [copied(Path(temporary) / str(n)) for n in range(asked.jobs)]
+        tests = sorted({m.tests for m in chosen})
+        if run(folders[0], *tests):
+            print("the tests fail without any mutation")
+            return 1
+        verdicts = report(chosen, in_parallel(chosen, folders))
+    print(f"{verdicts.count('caught')} of {len(verdicts)} mutations are caught")
+    return int(any(v != "caught" for v in verdicts))
+
+
+def report(chosen: list[Mutation], verdicts: Iterable[str]) -> list[str]:
+    """Print the table row by row, as the verdicts come in; return them."""
+    width = max(len(mutation.name) for mutation in chosen)
+    found = []
+    for mutation, one in zip(chosen, verdicts, strict=True):
+        print(f"{mutation.name:{width}}  {one}", flush=True)
+        found.append(one)
+    return found
+
+
+def in_parallel(chosen: list[Mutation], folders: list[Path]) -> Iterator[str]:
+    """Yield the verdicts on mutations, found as many at a time as there are copies."""
+    free: queue.Queue[Path] = queue.Queue()
+    for folder in folders:
+        free.put(folder)
+
+    def work(mutation: Mutation) -> str:
+        folder = free.get()
+        try:
+            return verdict(mutation, folder)
+        finally:
+            free.put(folder)
+
+    with ThreadPoolExecutor(len(folders)) as pool:
+        yield from pool.map(work, chosen)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

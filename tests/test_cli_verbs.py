@@ -1,0 +1,180 @@
+"""`check`, `compare`, `info`, `list`, `explain` and `schema`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from cli_kit import ABSOLUTE, COMPENSATED, call, workplace
+
+from gcxform.source import WINDOW
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    return workplace(tmp_path, monkeypatch)
+
+
+# --- check ---
+
+
+def test_check_shows_the_chain(here: Path) -> None:
+    found = call("check", "-x", COMPENSATED, "-f", "linuxcnc")
+    assert found.exit_code == 0, found.stderr
+    for word in ("1      absolute", "ensures  COMPENSATED", "promise  1 um", "rounding", "budget"):
+        assert word in found.stdout
+
+
+def test_check_counts_findings(here: Path) -> None:
+    assert "no findings" in call("check", "-p", "job.toml", "part.nc").stdout
+    (here / "two.nc").write_bytes(b"G0 G1 X0\nG99.9\n")
+    found = call("check", "-f", "linuxcnc", "two.nc")
+    assert found.exit_code == 1
+    assert "2 lines, 2 findings" in found.stdout
+    assert "two.nc:1:4: error[GX202]" in found.stderr
+    assert "two.nc:2:1: error[GX201]" in found.stderr
+
+
+def test_check_finds_what_is_wrong_in_later_windows(here: Path) -> None:
+    line = b"G1 F100 X1 (as long as a comment can be, so that a window is soon full)\n"
+    text = b"G91.5\n" + line * (2 * WINDOW // len(line)) + b"G28\n"
+    (here / "long.nc").write_bytes(text)
+    found = call("check", "-f", "grbl", "long.nc")
+    assert found.exit_code == 1
+    assert "GX201" in found.stderr
+    assert f"long.nc:{text.count(bytes([10]))}:1: error[GX210]" in found.stderr
+
+
+def test_check_asks_the_passes(here: Path) -> None:
+    chain = "volumetric model=model.toml part-origin=-5,0,0"
+    found = call("check", "-x", chain, "-f", "linuxcnc", "part.nc")
+    assert (found.exit_code, "GX310" in found.stderr) == (1, True)
+
+
+# --- compare ---
+
+
+def test_compare(here: Path) -> None:
+    (here / "out.nc").write_bytes(ABSOLUTE)
+    (here / "far.nc").write_bytes(ABSOLUTE.replace(b"X10.", b"X10.004"))
+    same = call("compare", "-f", "linuxcnc", "part.nc", "out.nc")
+    assert (same.exit_code, same.stdout.splitlines()[-1]) == (0, "SAME")
+    differs = call("compare", "-f", "linuxcnc", "part.nc", "far.nc")
+    assert (differs.exit_code, differs.stdout.splitlines()[-1]) == (1, "DIFFERENT")
+    assert "largest deviation 0.004000 mm" in differs.stdout
+    near = call("compare", "-f", "linuxcnc", "--tolerance", "5 um", "part.nc", "far.nc")
+    assert near.exit_code == 0
+
+
+def test_compare_dialects_and_places(here: Path) -> None:
+    (here / "f.nc").write_bytes(b"G1 F100. X0. Y0. Z0.\nX10000\nG4 X2.\n")
+    (here / "l.nc").write_bytes(b"G1 F100 X0 Y0 Z0\nX4\nX10\nG4 P2\n")
+    words = ["compare", "-f", "fanuc", "-t", "linuxcnc", "--increment", "1um", "f.nc", "l.nc"]
+    assert call(*words).exit_code == 0, call(*words).output
+    found = call(*words[:-1], "-", stdin=b"G1 F100 X0 Y0 Z0\nX4 Y50\n")
+    assert found.exit_code == 1
+    assert "the paths part: line 2 of A, line 2 of B" in found.stdout
+
+
+def test_compare_through_a_model(here: Path) -> None:
+    run = call("run", "-x", COMPENSATED, "-f", "linuxcnc", "-o", "out.nc", "part.nc")
+    assert run.exit_code == 0, run.stderr
+    plain = ["compare", "-f", "linuxcnc", "part.nc", "out.nc"]
+    assert call(*plain).exit_code == 1
+    words = [*plain, "--model", "model.toml", "--part-origin", "10,10,10"]
+    found = call(*words, "--outside", "extrapolate")
+    assert found.exit_code == 0, found.output
+
+
+def test_compare_refuses_what_it_cannot_read(here: Path) -> None:
+    (here / "lost.nc").write_bytes(b"G91 G1 F100 X1\n")
+    assert call("compare", "-f", "linuxcnc", "part.nc", "lost.nc").exit_code == 3
+
+
+# --- info ---
+
+
+def test_info_of_words(here: Path) -> None:
+    found = json.loads(call("info", "--json", "part.nc").stdout)
+    assert found["lines"] == 6
+    assert found["line_ends"] == {"CRLF": 6}
+    assert found["codes"] == {"G1": 1, "G17": 1, "G21": 1, "G90": 2, "G91": 1, "M30": 1}
+    assert found["letters"]["X"] == 3
+    assert "dialect" not in found
+
+
+def test_info_of_meaning(here: Path) -> None:
+    text = b"T3 M6\nG0 X0 Y0 Z5\nG1 F100 Z0\nG2 X0 Y0 I5 J0\nG4 P1\nG28\nM2\n"
+    (here / "p.nc").write_bytes(text)
+    words = ["info", "-f", "linuxcnc", "p.nc"]
+    found = json.loads(call(*words, "--json").stdout)
+    assert found["moves"] == {"rapids": 1, "lines": 1, "arcs cw": 1}
+    assert found["extents"] == {"X": [0.0, 10.0], "Y": [-5.0, 5.0], "Z": [0.0, 5.0]}
+    assert found["length_mm"]["feed"] == pytest.approx(5 + 31.416, abs=1e-3)
+    assert found["tools"] == ["T3"]
+    assert found["refused"] == 1
+    assert found["first_refused"]["6"].startswith("GX210")
+    shown = call(*words).stdout
+    assert "arcs cw 1" in shown
+    assert "line 6: GX210" in shown
+
+
+@pytest.mark.parametrize(
+    "text",
+    [b"", b"\n", b"\0" * 50, bytes(range(256)) * 300, b"\r\r\n\r", b"G1 X" * 900, b"%\n%\n%"],
+)
+@pytest.mark.parametrize("dialect", ["", "fanuc", "linuxcnc", "grbl"])
+def test_info_of_anything(here: Path, text: bytes, dialect: str) -> None:
+    found = call("info", *(["-f", dialect] if dialect else []), "--json", "-", stdin=text)
+    assert found.exit_code == 0, found.output
+    report = json.loads(found.stdout)
+    assert report["bytes"] == len(text)
+    assert report.get("refused", 0) <= report["lines"]
+
+
+# --- list, explain, schema ---
+
+
+def test_lists() -> None:
+    for kind, name in (("passes", "segment"), ("dialects", "grbl"), ("formats", "lddm")):
+        found = call("list", kind)
+        assert found.exit_code == 0
+        (line,) = [line for line in found.stdout.splitlines() if line.startswith(f"{name} ")]
+        assert line.rstrip()[-1].isdigit()
+        assert call("list", kind, name).stdout.startswith(name)
+    assert call("list", "kinematics").exit_code == 0
+    assert "chord-error" in call("list", "passes", "segment").stdout
+    assert "did you mean 'segment'" in call("list", "passes", "segmnt").stderr
+
+
+def test_explain_a_code() -> None:
+    for name in ("GX301", "gx301", "301"):
+        assert call("explain", name).stdout.startswith("GX301: The end of an arc")
+    assert "did you mean" in call("explain", "GX3O1").stderr + call("explain", "GX315").stderr
+
+
+def test_explain_a_block(here: Path) -> None:
+    (here / "p.nc").write_bytes(b"G28\nG1 F100 X0 Y0 Z0\nN7 G2 X10 I5 M8 (so)\nM2\n")
+    found = call("explain", "-f", "linuxcnc", "p.nc:3").stdout
+    for words in (
+        "word X, number 10",
+        "comment (so)",
+        "modal G1 G17 G90 G91.1 G94 G21 G54, F 100",
+        "X0 Y0 Z0",
+        "first line 1",
+        "clockwise arc at 100 mm/min",
+        "radius 5 mm, in the plane XY",
+        "through 180 degrees",
+        "M8",
+    ):
+        assert words in found
+    assert "refused [GX210]" in call("explain", "-f", "linuxcnc", "p.nc:1").stdout
+    (here / "end.nc").write_bytes(b"M2\nX5\n(so)\n")
+    assert "the program has ended" in call("explain", "-f", "linuxcnc", "end.nc:2").stdout
+    assert "moves nothing" in call("explain", "-f", "grbl", "end.nc:3").stdout
+
+
+@pytest.mark.parametrize("kind", ["pipeline", "machine", "model"])
+def test_schemas(kind: str) -> None:
+    assert json.loads(call("schema", kind).stdout)

@@ -1,0 +1,363 @@
+"""What the documents say is so: names, tables, snippets, figures, links.
+
+`UPDATE_DOCS=1 pytest tests/test_docs.py` writes the generated tables of README.md anew.
+"""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gcxform as gx
+from gcxform.catalogue import CATALOGUE
+from gcxform.cli import VERBS
+from gcxform.modal.codes import Effect
+from gcxform.options import describe
+from gcxform.pipelinefile import KEYS, SECTIONS
+from gcxform.registry import default_registry
+from gcxform.testing import check_dialect, check_pass
+from gcxform.toolpath.deviation import deviation
+from gcxform.version import VERSION
+
+ROOT = Path(__file__).parents[1]
+PAGES = sorted([*ROOT.glob("*.md"), ROOT / "benchmarks" / "README.md"])
+README = ROOT / "README.md"
+TEXT = README.read_text("utf-8")
+REGISTRY = default_registry()
+FIRST_PARTY = {n: p for n, p in REGISTRY.passes.items() if p.__module__.startswith("gcxform_pl")}
+DIALECTS = {n: d for n, d in REGISTRY.dialects.items() if d.__module__.startswith("gcxform_pl")}
+
+
+def blocks(language):
+    """Return the fenced blocks of a language in README.md."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", TEXT, re.MULTILINE | re.DOTALL)
+
+
+# --- names ---
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_is_explained(verb):
+    assert f"| `gcxform {verb}` |" in TEXT
+
+
+@pytest.mark.parametrize("name", ["UsageError", "InputError", "VerificationError", "FileError"])
+def test_every_error_stands_with_its_exit_code(name):
+    code = getattr(gx, name).exit_code
+    assert re.search(rf"^\| {code} \|.*\| `{name}` \|$", TEXT, re.MULTILINE)
+    assert f"`gx.{name}`" in TEXT
+
+
+def test_every_class_of_diagnostics_is_explained():
+    for hundreds in {code[:3] for code in CATALOGUE}:
+        assert f"| {hundreds}.. |" in TEXT
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+def test_codes_that_are_named_can_be_explained(page):
+    assert set(re.findall(r"\bGX\d{3}\b", page.read_text("utf-8"))) <= set(CATALOGUE)
+
+
+def test_every_key_of_a_pipeline_is_shown():
+    shown = tomllib.loads(next(b for b in blocks("toml") if "[budget]" in b))
+    assert set(shown) == set(KEYS)
+    for name, section in SECTIONS.items():
+        assert set(shown[name]) == {option.name for option in describe(section)}
+
+
+def test_every_key_of_a_certificate_is_explained():
+    pipeline = gx.Pipeline.load(ROOT / "examples" / "lddm" / "linear.toml")
+    result = pipeline.run((ROOT / "examples" / "lddm" / "linear_in.nc").read_bytes())
+    for key in json.loads(result.certificate.to_json()):
+        assert key in ("format", "version") or f"`{key}`" in TEXT
+
+
+def test_the_version_is_one():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    assert project["version"] == VERSION
+
+
+# --- tables ---
+
+
+def options_table():
+    lines = ["| pass | option | takes | default | what it says |", "|---|---|---|---|---|"]
+    for name, step in FIRST_PARTY.items():
+        said = " ".join(step.__doc__.partition("\n\n")[0].split())
+        lines.append(f"| **`{name}`** | | | | {said} |")
+        for option in describe(step):
+            takes = ", ".join(f"`{c}`" for c in option.choices) or option.type
+            takes += f", {option.range}" if option.range else ""
+            default = "mandatory" if option.mandatory else option.default
+            lines.append(f"| | `{option.name}` | {takes} | {default} | {option.help} |")
+    return lines
+
+
+def codes_table():
+    lines = ["| dialect | | codes |", "|---|---|---|"]
+    for name, dialect in DIALECTS.items():
+        said = dialect.__doc__.partition("\n")[0]
+        lines.append(f"| **`{name}`** | axes {' '.join(dialect.axes)} | {said} |")
+        codes = sorted(dialect.codes.items(), key=lambda item: float(item[0][1:]))
+        m_codes = sorted(dialect.m_codes.items())
+        effects = {
+            "read": (Effect.MODAL, Effect.DWELL),
+            "kept": (Effect.INERT,),
+            "refused": (Effect.BARRIER,),
+        }
+        for word, which in effects.items():
+            found = [g for g, code in codes if code.effect in which]
+            if word != "read":
+                found += [f"M{m}" for m, code in m_codes if bool(code.barrier) == (word[0] == "r")]
+            lines.append(f"| | {word} | {_runs(found)} |")
+    return lines
+
+
+def _runs(codes):
+    """Return codes in words; M100 to M199 as a range."""
+    text = " ".join(codes)
+    return re.sub(r"M100 (M1\d\d )+M199", "M100 ... M199", text)
+
+
+@pytest.mark.parametrize(("mark", "table"), [("options", options_table), ("codes", codes_table)])
+def test_tables_are_those_of_the_code(mark, table):
+    begin, end = f"<!-- {mark}: begin -->\n", f"<!-- {mark}: end -->"
+    text = README.read_text("utf-8")
+    wanted = "\n".join(["", *table(), "", ""])
+    before, rest = text.split(begin)
+    found, after = rest.split(end)
+    if os.environ.get("UPDATE_DOCS"):
+        README.write_text(f"{before}{begin}{wanted}{end}{after}", "utf-8")
+        found = wanted
+    assert found == wanted, "UPDATE_DOCS=1 pytest tests/test_docs.py writes it anew"
+
+
+# --- figures ---
+
+LDDM_WAY = {
+    "passes": 'split = "none"\niterations = 1\noutside = "extrapolate"',
+    "output": 'words = "programmed"',
+    "budget": '[budget]\ndeviation = "20 um"',
+}
+ROWS = {
+    "`tolerance` absent": {},
+    '`tolerance = "1e-9 mm"`': {"passes": 'tolerance = "1e-9 mm"'},
+    '`tolerance = "1 um"`': {"passes": 'tolerance = "1 um"'},
+    '`split = "none"`': {"passes": 'split = "none"', "budget": LDDM_WAY["budget"]},
+    "as LDDM": LDDM_WAY,
+}
+
+
+def compensated(tmp_path, passes="", output="", budget=""):
+    """Return moves, deviation before rounding (mm) and after it (mm) of the LDDM example."""
+    example = ROOT / "examples" / "lddm"
+    (tmp_path / "p.toml").write_text(
+        f'format = 1\n[input]\ndialect = "fanuc"\n{budget}\n[[pass]]\nuse = "volumetric"\n'
+        f"model = '{example / 'model.toml'}'\npart-origin = [0, 0, 0]\n{passes}\n"
+        f"[output]\n{output}\n"
+    )
+    pipeline = gx.Pipeline.load(tmp_path / "p.toml")
+    program = (example / "linear_in.nc").read_bytes()
+    path = gx.read(program, "fanuc").path
+    step = pipeline.path_passes[0]
+    command = step.apply(path, pipeline.context)
+    actual = step.undo(command, pipeline.context)
+    off = deviation(path, actual, np.searchsorted(path.source, actual.source))
+    written = pipeline.run(program).certificate.largest["deviation"]
+    return len(command) - 1, float(off.distance.max()), written
+
+
+@pytest.mark.parametrize("row", ROWS)
+def test_figures_of_accuracy(row, tmp_path):
+    line = next(line for line in TEXT.splitlines() if line.startswith(f"| {row}"))
+    moves, exact, written = compensated(tmp_path, **ROWS[row])
+    before = f"{exact:.1e} mm" if exact < 1e-5 else f"{exact * 1000:.2f} um"
+    if row == "as LDDM":
+        before = ""
+    wanted = [str(moves), before, f"{written * 1000:.2f} um"]
+    assert [cell.strip() for cell in line.split("|")[2:5]] == wanted
+
+
+def test_architecture_gives_the_same_figures():
+    page = " ".join((ROOT / "ARCHITECTURE.md").read_text("utf-8").split())
+    for row in ("`tolerance` absent", '`tolerance = "1e-9 mm"`'):
+        line = next(line for line in TEXT.splitlines() if line.startswith(f"| {row}"))
+        moves, before = (cell.strip() for cell in line.split("|")[2:4])
+        assert re.search(rf"\b{moves}\b[^.]* {re.escape(before)}", page)
+
+
+# --- snippets ---
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Return a folder with the examples, in which the shell snippets run one after the other."""
+    path = tmp_path_factory.mktemp("newcomer")
+    shutil.copytree(ROOT / "examples", path / "examples", ignore=shutil.ignore_patterns("out"))
+    return path
+
+
+def commands(block):
+    """Return the commands of a console block, each with what it prints."""
+    parts = re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]
+    return [tuple(part.split("\n", 1)) for part in parts]
+
+
+@pytest.mark.parametrize("block", blocks("console"), ids=lambda b: b[2:40].split("\n")[0])
+def test_console_snippets_print_what_is_shown(block, folder):
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    for command, shown in commands(block):
+        done = subprocess.run(
+            ["bash", "-c", command],
+            cwd=folder,
+            env={**os.environ, "PATH": path},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        lines = _timeless(shown).splitlines()
+        pattern = "".join(r"(?:.*\n)*?" if s == "..." else re.escape(s) + "\n" for s in lines)
+        assert re.fullmatch(pattern, _timeless(done.stdout)), f"{command}\n{done.stdout}"
+        assert done.returncode == 0 or command.startswith("diff ")
+
+
+def _timeless(text):
+    return re.sub(r"\d+\.\d\d s$", "T s", text, flags=re.MULTILINE)
+
+
+def test_python_snippet_of_the_api_runs(folder, monkeypatch, capsys):
+    monkeypatch.chdir(folder)
+    snippet = next(b for b in blocks("python") if "Pipeline.load" in b)
+    exec(compile(snippet, "README.md", "exec"), {})
+    assert 0 < float(capsys.readouterr().out) < 1e-3
+    assert (folder / "out.nc").read_bytes().startswith(b"%")
+
+
+def plugin(name, mark):
+    """Return a class of the snippet of README.md that has the mark; it is short."""
+    snippet = next(b for b in blocks("python") if mark in b)
+    body = snippet[snippet.index(f"class {name}") :]
+    assert len([line for line in body.splitlines() if line.strip()]) < 20
+    names = {"__name__": "readme"}
+    exec(compile(snippet, "README.md", "exec"), names)
+    return names[name]
+
+
+def test_dialect_and_pass_of_the_readme_work():
+    dialect = plugin("Acme", "gcxform_dialects")
+    step = plugin("Shift", "gcxform_passes")(by=(1.0, 0.0, -2.0))
+    pipeline = gx.Pipeline(dialect, dialect, (REGISTRY.passes["absolute"](), step))
+    program = b"G21 G90 G17 G0 X1. Y2. Z5.\nG2 X3. I1. J0. F200.\nG91 G1 Z-1.\nM30\n"
+    result = pipeline.run(program)
+    assert result.text.decode().splitlines() == [
+        "G21 G90 G17 G0 X2.000 Y2.000 Z3.000",
+        "G2 X4.000 I1.000 J0.000 F200.",
+        "G90 G1 Z2.000",
+        "M30",
+    ]
+    assert result.certificate.verified
+    check_dialect(dialect)
+    check_pass(type(step), step)
+
+
+def test_toml_snippets_are_right(folder, tmp_path):
+    for snippet in blocks("toml"):
+        tomllib.loads(snippet)
+        if snippet.startswith("format"):
+            (folder / "snippet.toml").write_text(snippet, "utf-8")
+            gx.Pipeline.load(folder / "snippet.toml")
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "examples").glob("*/*.toml")), ids=lambda f: f.name)
+def test_pipelines_of_the_examples_run(file):
+    if "[[pass]]" not in file.read_text("utf-8"):
+        return
+    pipeline = gx.Pipeline.load(file)
+    programs = {"linear": "linear_in.nc", "arc": "arc_in.nc"}
+    program = file.parent / programs.get(file.stem, f"{file.stem}.nc")
+    result = pipeline.run(program.read_bytes(), verify="full")
+    assert result.certificate.verified
+    assert 0 < result.certificate.largest["deviation"] < 0.002
+
+
+@pytest.mark.skipif(shutil.which("rs274") is None, reason="rs274 is not installed")
+def test_linuxcnc_reads_the_bracket(tmp_path):
+    """As many moves as the certificate says, before and after."""
+    folder = ROOT / "examples" / "bracket"
+    source = (folder / "bracket.nc").read_bytes()
+    result = gx.Pipeline.load(folder / "bracket.toml").run(source)
+    for text in (source, result.text):
+        (tmp_path / "in.nc").write_bytes(text)
+        command = ["rs274", "-t", folder / "tool.tbl", "-g", "in.nc", "out.txt"]
+        subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, timeout=30)
+        moves = re.findall(r"STRAIGHT_|ARC_FEED", (tmp_path / "out.txt").read_text())
+        assert len(moves) == len(gx.read(text, "linuxcnc").path)
+
+
+# --- files ---
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.relative_to(ROOT).as_posix())
+def test_links_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text("utf-8")):
+        assert "://" in target or (page.parent / target).exists(), target
+
+
+@pytest.mark.parametrize("name", ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"])
+def test_files_that_are_named_exist(name):
+    named = re.findall(r"[ `(]((?:gcxform|plugins|grammars|tests|corpus|benchmarks|examples)/"
+                       r"[\w./*-]*)", (ROOT / name).read_text("utf-8"))  # fmt: skip
+    made = ("examples/out",)
+    for path in named:
+        path = path.rstrip(".")
+        if "..." not in path and not path.startswith(made):
+            assert list(ROOT.glob(path.rstrip("/"))), path
+
+
+def test_commands_of_the_first_screen_exist():
+    first = "\n".join(TEXT.splitlines()[:24])
+    scripts = re.findall(r"^(\./\S+)", first, re.MULTILINE)
+    assert len(scripts) == 2
+    for script in [*scripts, ".ci/run"]:
+        assert os.access(ROOT / script, os.X_OK)
+    assert scripts[1] in (ROOT / ".ci" / "run").read_text("utf-8")
+
+
+def tracked():
+    """Return the files of the repository, those not yet committed included."""
+    if shutil.which("git") is None or not (ROOT / ".git").exists():
+        pytest.skip("this is not a git clone")
+    listed = subprocess.run(
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    return [ROOT / name for name in listed.stdout.split("\0") if (ROOT / name).is_file()]
+
+
+FORBIDDEN = ["py" + "pi.", "python" + "hosted", "/wo" + "rk/", "sess" + "ion", "/ro" + "ot/"]
+ALLOWED = re.compile(r'scope="\w+"')  # of pytest's fixtures
+
+
+def test_no_file_names_a_registry_or_a_computer():
+    for file in tracked():
+        text = ALLOWED.sub("", file.read_bytes().decode("latin-1")).lower()
+        assert not [word for word in FORBIDDEN if word in text], file
+
+
+def test_pages_are_not_wider_than_a_window():
+    for page in PAGES:
+        prose = re.sub(r"^```.*?^```$", "", page.read_text("utf-8"), flags=re.M | re.DOTALL)
+        wide = [line for line in prose.splitlines() if len(line) > 100 and line[0] not in "|<"]
+        assert not wide, page

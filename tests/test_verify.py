@@ -1,0 +1,227 @@
+"""The verification, fed with texts that somebody tampered with: each must be refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gcxform as gx
+from gcxform.emit.emitter import Emitted
+from gcxform.run import Output, Run
+from gcxform.source import Source
+
+MODEL = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"
+CHAIN = "absolute"
+COMPENSATED = f"absolute | volumetric model={MODEL} part-origin=100,100,100"
+PROGRAM = b"""\
+G21 G90 G17 G94
+S1000 M3
+G0 X0 Y0 Z5 A0
+M8
+G1 Z-1.5 F100
+X40 Y-10 F300
+G2 X60 Y10 I0 J20
+G1 X60 Y40 A90
+X80
+X60
+G4 P1.5
+G93 G1 X0 Y40 F2
+G94 G3 X0 Y40 I5 J0 F100
+G18 G2 X10 Z-1.5 I5 K0
+G0 Z5
+G91 G1 X1.5 Y-2.5
+X1.5 Y-2.5
+M2
+"""
+
+Line = tuple[bytes, int]  # text with its end, and line of the input from 0
+Change = Callable[[list[Line]], Iterable[Line]]
+
+
+def run(
+    change: Change = iter, chain: str = CHAIN, program: bytes = PROGRAM, size: int = 1 << 19
+) -> bytes:
+    """Run a chain whose emitter lies: the lines it writes are changed before they are verified."""
+    source = Source.of_bytes(program)
+    job = Run(gx.Pipeline.parse(chain, "linuxcnc"), source, "full")
+    emit, texts = job.emitter.emit, list[bytes]()
+
+    def lying(*task: object) -> Emitted:
+        emitted = emit(*task)  # type: ignore[arg-type]
+        lines = emitted.text.splitlines(keepends=True)
+        changed = list(change(list(zip(lines, emitted.source.tolist(), strict=True))))
+        text = b"".join(line for line, _ in changed)
+        return Emitted(text, np.array([number for _, number in changed], np.int64))
+
+    job.emitter.emit = lying  # type: ignore[method-assign]
+    for window in source.windows(size):
+        job.window(window, Output(texts.append, None))
+    return b"".join(texts)
+
+
+# --- ways to tamper with a text ---
+
+
+def said(old: str, new: str) -> Change:
+    """Say something else, once."""
+
+    def change(lines: list[Line]) -> Iterable[Line]:
+        assert sum(text.count(old.encode()) for text, _ in lines) == 1, old
+        return [(text.replace(old.encode(), new.encode()), number) for text, number in lines]
+
+    return change
+
+
+def dropped(*wanted: int) -> Change:
+    """Leave out what was written for lines of the input."""
+
+    def change(lines: list[Line]) -> Iterable[Line]:
+        assert set(wanted) <= {number for _, number in lines}
+        return [line for line in lines if line[1] not in wanted]
+
+    return change
+
+
+def swapped(first: int) -> Change:
+    """Let the texts of two lines change places."""
+
+    def change(lines: list[Line]) -> Iterable[Line]:
+        texts = [text for text, _ in lines]
+        texts[first : first + 2] = reversed(texts[first : first + 2])
+        return zip(texts, (number for _, number in lines), strict=True)
+
+    return change
+
+
+def moved_on(word: str) -> Change:
+    """Say a word one line later, behind the words there."""
+
+    def change(lines: list[Line]) -> Iterable[Line]:
+        texts = [text for text, _ in lines]
+        at = texts.index(word.encode() + b"\n")
+        texts[at : at + 2] = b"\n", texts[at + 1].rstrip() + b" " + texts[at]
+        return zip(texts, (number for _, number in lines), strict=True)
+
+    return change
+
+
+def inserted(text: str, number: int) -> Change:
+    """Write one line more behind what was written for a line of the input."""
+
+    def change(lines: list[Line]) -> Iterable[Line]:
+        place = max(k for k, line in enumerate(lines) if line[1] == number) + 1
+        return [*lines[:place], (text.encode() + b"\n", number), *lines[place:]]
+
+    return change
+
+
+TAMPERED = {
+    "the sign of a position": (said("Y-10", "Y10"), "off"),
+    "another depth": (said("Z-1.5 F100", "Z-1.6 F100"), "off"),
+    "another unit": (said("G21", "G20"), "off"),
+    "the end of a rapid": (said("G0 X0", "G0 X1"), "off"),
+    "a rotary axis": (said("A90", "A91"), "degrees off"),
+    "a move is dropped": (dropped(5), "."),
+    "there and back are dropped": (dropped(8, 9), "missing"),
+    "the last move is dropped": (dropped(16), "missing"),
+    "two lines change places": (swapped(7), "."),
+    "an extra move for a line that has none": (inserted("X60 Y40", 10), "does not have"),
+    "an extra move beyond the end": (inserted("X90", 8), "off"),
+    "an extra move back and forth": (inserted("X70\nX80", 8), "."),
+    "another feed": (said("F300", "F301"), "feed"),
+    "a feed is dropped": (said(" F300", ""), "feed"),
+    "another time in G93": (said("F2\n", "F2.01\n"), "time"),
+    "another feed mode": (said("G93 G1", "G1"), "feed mode"),
+    "a rapid cuts": (said("G0 Z5", "G1 Z5"), "rapid"),
+    "a cut becomes a rapid": (said("G1 X60", "G0 X60"), "rapid"),
+    "the sense of an arc": (said("G2 X60", "G3 X60"), "."),
+    "the sense of a full circle": (said("G94 G3", "G94 G2"), "off"),
+    "a circle becomes a line": (said("G94 G3 X0 Y40 I5 J0", "G94 G1 X0 Y40"), "off"),
+    "the centre of a circle": (said("I5 J0", "I5.1 J0"), "off"),
+    "the plane of an arc": (said("G18 ", "G17 "), "."),
+    "an arc becomes its chord": (said("G2 X60 Y10 I0 J20", "G1 X60 Y10"), "off"),
+    "two turns": (said("I5 J0 F100", "I5 J0 P2 F100"), "off"),
+    "M8 is missing": (said("M8\n", "\n"), "M8"),
+    "M8 comes twice": (inserted("M8", 3), "M8"),
+    "M8 becomes M9": (said("M8", "M9"), "M8"),
+    "M8 after the cut has begun": (moved_on("M8"), "M8"),
+    "another speed": (said("S1000", "S1001"), "S"),
+    "another dwell": (said("P1.5", "P1.6"), "G4|dwell|DWELL"),
+    "the end is missing": (said("M2\n", "\n"), "M2"),
+}
+
+
+@pytest.mark.parametrize("name", TAMPERED)
+def test_a_text_tampered_with_is_refused(name: str) -> None:
+    change, message = TAMPERED[name]
+    with pytest.raises(gx.VerificationError, match=message):
+        run(change)
+
+
+@pytest.mark.parametrize("name", ["the sign of a position", "M8 is missing", "another feed"])
+def test_it_is_refused_in_small_windows(name: str) -> None:
+    old, new = {"t": ("Y-10", "Y10"), "M": ("M8\n", "\n"), "a": ("F300", "F301")}[name[0]]
+
+    def change(lines: list[Line]) -> Iterable[Line]:
+        return [(text.replace(old.encode(), new.encode()), number) for text, number in lines]
+
+    with pytest.raises(gx.VerificationError):
+        run(change, size=20)
+
+
+@pytest.mark.parametrize("chain", [CHAIN, COMPENSATED])
+@pytest.mark.parametrize("axis", "XYZ")
+@pytest.mark.parametrize("sign", [1, -1])
+def test_an_axis_may_not_be_off_by_twice_the_budget(chain: str, axis: str, sign: int) -> None:
+    program = b"G21 G90 G94\nG0 X0 Y0 Z0\nG1 X31.5 Y32.5 Z33.5 F100\nX0 Y0 Z0\nM2\n"
+    budget = gx.Pipeline.parse(chain, "linuxcnc").limit()
+
+    def change(lines: list[Line]) -> Iterable[Line]:
+        last = max(k for k, line in enumerate(lines) if line[1] == 2)
+        words = lines[last][0].split()
+        moved = [w if w[:1] != axis.encode() else by(w, sign * 2 * budget) for w in words]
+        assert moved != words
+        lines[last] = (b" ".join(moved) + b"\n", 2)
+        return lines
+
+    run(chain=chain, program=program)
+    with pytest.raises(gx.VerificationError, match="off"):
+        run(change, chain, program)
+
+
+def by(word: bytes, distance: float) -> bytes:
+    """Return an axis word farther on."""
+    return word[:1] + f"{float(word[1:]) + distance:.6f}".encode()
+
+
+def test_nodes_that_are_not_stopped_at_are_seen() -> None:
+    program = b"G21 G90 G94\nG0 X-100 Y0 Z0\nG1 X300 F100\nM2\n"
+
+    def change(lines: list[Line]) -> Iterable[Line]:
+        pieces = [k for k, line in enumerate(lines) if line[1] == 2]
+        assert len(pieces) > 5
+        return [line for k, line in enumerate(lines) if k not in pieces[1:-1]]
+
+    with pytest.raises(gx.VerificationError, match="off"):
+        run(change, COMPENSATED, program)
+
+
+# --- what is right passes ---
+
+
+@pytest.mark.parametrize("size", [1, 20, 1 << 19])
+@pytest.mark.parametrize(
+    "chain",
+    [
+        CHAIN,
+        COMPENSATED,
+        COMPENSATED + " tolerance=1um",
+        "segment chord-error=2um max-length=3mm",
+        f"metric | segment arcs=split arc-step=10deg | {COMPENSATED}",
+    ],
+)
+def test_what_was_written_passes_in_windows_of_any_size(chain: str, size: int) -> None:
+    assert run(chain=chain, size=size) == run(chain=chain)
