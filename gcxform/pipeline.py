@@ -7,7 +7,7 @@ grow with the program. Nothing here touches the file system: see `gcxform.files`
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -23,14 +23,12 @@ from gcxform.machine.machine import Machine, load_machine
 from gcxform.modal.state import Reading
 from gcxform.pipelinefile import PipelineSpec, load, parse_chain
 from gcxform.registry import Registry, default_registry
-from gcxform.run import Output, Run, Sink
+from gcxform.run import Output, Progress, Run, Sink
 from gcxform.source import Source
 from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY
 
 ARC_ROUNDING = 2.0  # of the last decimal: what rounding ends and centre can add along an arc
 VERIFY = ("off", "on", "full")
-
-Progress = Callable[[int], None]
 
 
 @dataclass(frozen=True)
@@ -203,12 +201,14 @@ class Pipeline:
 
     def run(self, program: bytes | str | Path, verify: str = "on") -> Result:
         """Run on a program: its bytes, or a path. Raises GcxformError; writes no file."""
-        source = (
-            Source.of_bytes(program) if isinstance(program, bytes) else Source.open(Path(program))
-        )
+        if isinstance(program, bytes):
+            source = Source.of_bytes(program)
+        else:
+            source = Source.open(Path(program))
         parts: list[bytes] = []
         lines: list[int] = []
-        certificate = self.run_stream(source, parts.append, verify, lines)
+        with source.stream:
+            certificate = self.run_stream(source, parts.append, verify, lines)
         return Result(b"".join(parts), certificate, lines)
 
     def run_stream(
@@ -225,11 +225,7 @@ class Pipeline:
         """
         out = Output(sink, source_map)
         run = Run(self, source, verify)
-        for text in source.windows():
-            out.read.update(text)
-            run.window(text, out)
-            if progress is not None:
-                progress(len(text))
+        run.over(source.windows(), out, progress or (lambda size: None))
         return run.certificate(out)
 
 

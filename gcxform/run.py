@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -14,10 +15,10 @@ from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.emit.emitter import Emitted, Emitter
-from gcxform.modal.interpreter import Interpreter
+from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
-from gcxform.modal.tables import GROUPS
+from gcxform.modal.tables import GROUPS, MeaningTable
 from gcxform.options import to_toml
 from gcxform.source import Source, lines_in
 from gcxform.syntax.scan import Window
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from gcxform.pipeline import Pipeline
 
 Sink = Callable[[bytes], object]
+Progress = Callable[[int], object]
 
 
 @dataclass
@@ -85,13 +87,65 @@ class Run:
                 self.source.name,
             )
 
-    def window(self, text: bytes, out: Output) -> None:
-        """Transform one window and hand it on."""
+    def over(self, texts: Iterator[bytes], out: Output, progress: Progress) -> None:
+        """Run over the windows of a program.
+
+        The next window is read, and the one before proved, while one is transformed: each on a
+        thread of its own, which pays because numpy works outside of Python's lock.
+        """
         if self.pipeline.copies:
-            self._copy(text, out)
+            for text in texts:
+                out.read.update(text)
+                self._copy(text, out)
+                progress(len(text))
             return
-        window = self.reader.read(text)
-        emitted = self._transform(window)
+        with ThreadPoolExecutor(2) as pool:
+            self._transform_all(pool, self._read_ahead(pool, texts, out), out, progress)
+
+    def _read_ahead(
+        self, pool: ThreadPoolExecutor, texts: Iterator[bytes], out: Output
+    ) -> Iterator[tuple[Window, MeaningTable]]:
+        """Yield windows, each with its table of meanings, while the next is being read."""
+
+        def read(text: bytes) -> tuple[Window, MeaningTable]:
+            out.read.update(text)
+            window = self.reader.read(text)
+            return window, self.reader.table
+
+        waiting: Future[tuple[Window, MeaningTable]] | None = None
+        for text in texts:
+            coming = pool.submit(read, text)
+            if waiting is not None:
+                yield waiting.result()
+            waiting = coming
+        if waiting is not None:
+            yield waiting.result()
+
+    def _transform_all(
+        self,
+        pool: ThreadPoolExecutor,
+        windows: Iterator[tuple[Window, MeaningTable]],
+        out: Output,
+        progress: Progress,
+    ) -> None:
+        """Transform the windows; of several errors the first in the program is raised."""
+        proof: Future[None] | None = None
+        try:
+            for window, table in windows:
+                read, emitted = self._transform(window, table)
+                if proof is not None:
+                    proof.result()
+                if self.verifier is not None:
+                    proof = pool.submit(
+                        self.verifier.check, read, window, emitted.text, emitted.source
+                    )
+                self._hand_on(window, emitted, out)
+                progress(len(window.text))
+        finally:
+            if proof is not None:
+                proof.result()
+
+    def _hand_on(self, window: Window, emitted: Emitted, out: Output) -> None:
         out.lines_in += len(window)
         if out.source_map is None and not self.text.passes:
             out.lines_out += len(emitted.source)
@@ -118,18 +172,15 @@ class Run:
             out.source_map += lines
         out.put(text)
 
-    def _transform(self, window: Window) -> Emitted:
-        """Interpret, pass, emit and verify one window."""
+    def _transform(self, window: Window, table: MeaningTable) -> tuple[Interpreted, Emitted]:
+        """Interpret one window, run the passes, and write it."""
         assert self.interpreter is not None
-        read = self.interpreter.interpret(window, self.reader.table)
+        read = self.interpreter.interpret(window, table)
         path = read.path
         for step in self.steps:
             path = self._apply(step, path, window)
         path = _in_words_of(self.pipeline.target, path)
-        emitted = self.emitter.emit(window, self.reader.table, read, path)
-        if self.verifier is not None:
-            self.verifier.check(read, window, emitted.text, emitted.source)
-        return emitted
+        return read, self.emitter.emit(window, table, read, path)
 
     def _apply(self, step: Pass, path: Toolpath, window: Window) -> Toolpath:
         try:

@@ -9,7 +9,7 @@ from typing import BinaryIO
 
 from gcxform.diagnostics import FileError
 
-WINDOW = 1 << 19  # bytes; what is worked on at once should stay in the processor's cache
+WINDOW = 1 << 20  # bytes; what is worked on at once should stay in the processor's cache
 CHUNK = 1 << 22
 
 

@@ -209,6 +209,47 @@ def test_nodes_that_are_not_stopped_at_are_seen() -> None:
         run(change, COMPENSATED, program)
 
 
+def test_an_event_stays_before_the_first_piece_of_its_move() -> None:
+    program = b"G21 G90 G94\nG0 X0 Y0 Z0\nG1 X9 F100 M8\nM2\n"
+
+    def change(lines: list[Line]) -> Iterable[Line]:
+        first = next(k for k, line in enumerate(lines) if b"M8" in line[0])
+        lines[first] = (lines[first][0].replace(b" M8", b""), 2)
+        lines[first + 1] = (lines[first + 1][0].replace(b"\n", b" M8\n"), 2)
+        return lines
+
+    chain = "segment arcs=split max-length=3mm"
+    assert run(chain=chain, program=program).count(b"M8") == 1
+    with pytest.raises(gx.VerificationError, match="M8"):
+        run(change, chain, program)
+
+
+# --- the reader, on which the proof stands ---
+
+
+def test_the_proof_reads_as_the_control_does() -> None:
+    program = b"""\
+G20 G90 G17
+G0 X1 Y0 Z0
+G21 G2 X45.4 Y0 I10 J0 F100
+G3 X45.4 Y0 I-5 J0
+G3 X55.4 Y10 R-10
+G91 G1 X1.5 Y-1
+X1.5
+G90 X3
+G91 X1
+M2
+"""
+    path = gx.read(program, "linuxcnc").path
+    ends = [25.4, 45.4, 45.4, 55.4, 56.9, 58.4, 3.0, 4.0]
+    assert path.end[:, 0].tolist() == pytest.approx(ends)
+    assert path.sense.tolist()[1:4] == [-1, 1, 1]
+    assert path.sweep[1:4].tolist() == pytest.approx([np.pi, 2 * np.pi, 1.5 * np.pi])
+    assert path.centre[1:4, :2].tolist() == [
+        pytest.approx(centre, abs=1e-9) for centre in ([35.4, 0.0], [40.4, 0.0], [55.4, 0.0])
+    ]
+
+
 # --- what is right passes ---
 
 

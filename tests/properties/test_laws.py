@@ -235,18 +235,6 @@ def test_a_chain_follows_the_program(name: str) -> None:
     assert sum(done) > 0.8 * len(done)  # few are refused
 
 
-def test_a_segment_of_any_size_follows_an_arc_by_angle() -> None:
-    """Without a chord error nothing is promised, so the budget is said."""
-    chain = pipeline(chain_of("segment arc-step=5deg"), "linuxcnc", budget=2.0)
-
-    @FEW
-    @given(program=programs(max_blocks=10))
-    def check(program: bytes) -> None:
-        follow(chain, program)
-
-    check()
-
-
 @st.composite
 def models(draw: st.DrawFn) -> gx.AxisFunctions:
     """Draw a model of nine functions on nodes that are not evenly spaced."""
