@@ -10,6 +10,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from gcxform.api import Comparison as Comparison
+    from gcxform.api import Difference as Difference
+    from gcxform.api import Program as Program
     from gcxform.api import compare as compare
     from gcxform.api import read as read
     from gcxform.api import write as write
@@ -73,7 +76,7 @@ if TYPE_CHECKING:
     from gcxform.toolpath.path import column_major as column_major
 
 _HOMES = {
-    "api": "compare read write",
+    "api": "Comparison Difference Program compare read write",
     "contract": "Pass PassContext TextPass",
     "diagnostics": "Diagnostic FileError GcxformError InputError Location UsageError "
     "VerificationError",

@@ -72,12 +72,16 @@ class Pass:
 class TextPass:
     """The base of the passes that change text and no meaning: `edit` returns a block's new text.
 
-    `edit` gets the tree of a block and its number, counted from 0 over the blocks that have words
-    and stay; None drops the block. The words of a block, but for N, must stay as they are: this
-    is checked on every run.
+    `edit` gets the tree of a block and its number, counted from 0 over the blocks that `counts`
+    names and that stay; None drops the block. The words of a block, but for N, must stay as they
+    are: this is checked on every run.
     """
 
     name: ClassVar[str] = ""
+
+    def counts(self, block: Block) -> bool:
+        """Return whether a block has a number: whether it has words."""
+        return any(True for _ in block.words)
 
     def edit(self, block: Block, number: int) -> str | None:
         """Return the block's new text, or None to drop it."""

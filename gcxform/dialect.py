@@ -96,6 +96,8 @@ class Dialect:
     """What the control does with `/` blocks: "execute", "skip", or "" when a switch decides."""
     stops_at_end: ClassVar[bool] = True
     skips_first_text: ClassVar[bool] = False
+    lower_case: ClassVar[bool] = True
+    """Whether words may be written in small letters."""
     number_first: ClassVar[bool] = False
     """A sequence number anywhere but at the head of its block is refused."""
     line_length: ClassVar[int] = 0

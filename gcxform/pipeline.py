@@ -157,8 +157,12 @@ class Pipeline:
 
         Where distances are written, what is off in one block stays in the next: twice as much.
         """
-        size = self.manner.rounding(inch)
-        return size if ABSOLUTE in facts_after(self.path_passes) else 2 * size
+        return self._repeated * self.manner.rounding(inch)
+
+    @property
+    def _repeated(self) -> int:
+        """How often a rounding can count: twice where blocks may be incremental."""
+        return 1 if ABSOLUTE in facts_after(self.path_passes) else 2
 
     def promised(self) -> float:
         """Return the sum of what the passes promise (mm); inf if one promises nothing."""
@@ -170,7 +174,7 @@ class Pipeline:
             return self.budget
         total = self.promised() + self.rounding(inch)
         if LINEAR_ONLY not in facts_after(self.path_passes):
-            total += ARC_ROUNDING * self.manner.step("X", inch)
+            total += self._repeated * ARC_ROUNDING * self.manner.step("X", inch)
         return total
 
     def angle_limit(self) -> float:

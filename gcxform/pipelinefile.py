@@ -63,7 +63,7 @@ class OutputSpec:
 
     dialect: Annotated[str | None, Option("the controller to write for")] = None
     decimals: Annotated[
-        int | dict[str, int] | None, Option("decimals of numbers", at_least=0, at_most=9)
+        int | dict[str, int] | None, Option("decimals of numbers", at_least=0, at_most=6)
     ] = None
     words: Annotated[
         Literal["changed", "programmed", "all"], Option("which axes a changed block names")

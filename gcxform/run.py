@@ -19,7 +19,7 @@ from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import GROUPS, MeaningTable
-from gcxform.options import to_toml
+from gcxform.options import ModelFile, to_toml
 from gcxform.source import Source, lines_in
 from gcxform.syntax.scan import Window
 from gcxform.textpasses import TextRun
@@ -99,8 +99,8 @@ class Run:
                 self._copy(text, out)
                 progress(len(text))
             return
-        with ThreadPoolExecutor(2) as pool:
-            self._transform_all(pool, self._read_ahead(pool, texts, out), out, progress)
+        with ThreadPoolExecutor(1) as ahead, ThreadPoolExecutor(1) as behind:
+            self._transform_all(behind, self._read_ahead(ahead, texts, out), out, progress)
 
     def _read_ahead(
         self, pool: ThreadPoolExecutor, texts: Iterator[bytes], out: Output
@@ -244,7 +244,7 @@ class Run:
             (found.lines_after_end, "lines after the end of the program: copied, not read"),
         ):
             if count:
-                certificate.not_checked.append(f"{count} {what}")
+                certificate.not_checked.append(f"{what}: {count}")
         stated = self.interpreter.state.stated
         for group in GROUPS:
             if group not in stated and group not in ("motion", "arc-distance"):
@@ -281,6 +281,9 @@ def _first_units(pipeline: Pipeline) -> str:
 def _described(step: Pass | TextPass) -> dict[str, object]:
     """Return a step's name, options and promise for the certificate."""
     entry: dict[str, object] = {"use": step.name, **to_toml(step)}
+    for key, value in vars(step).items():
+        if isinstance(value, ModelFile):
+            entry[key] = {"file": value.path.name, "sha256": value.sha256}
     if isinstance(step, Pass):
         entry["promise"] = step.promise if np.isfinite(step.promise) else None
     return entry

@@ -50,7 +50,7 @@ class TextRun:
             end = text[int(window.end[line]) : int(window.next[line])]
             parts.append(new.encode("latin-1") + end)
             kept.append(lines[line])
-            self.counts[index] += any(True for _ in block.words)
+            self.counts[index] += step.counts(block)
         return b"".join(parts), kept
 
     def _edited(self, step: TextPass, block: Block, number: int, line: int) -> str | None:

@@ -290,7 +290,6 @@ def test_a_move_from_a_lost_position_is_not_cut(dialect: str, between: str) -> N
     assert result.text.splitlines()[-1] == b"G1 X20. Y10. Z0."
 
 
-@pytest.mark.xfail(strict=True, reason="blocks that are skipped are written anew")
 @pytest.mark.parametrize("block", ["/M8", "/X2"])
 def test_a_block_that_is_skipped_stays_as_it_is(here: Path, block: str) -> None:
     (here / "part.nc").write_text(f"G1 F100 X0\nG91 X1\n{block}\nM2\n")

@@ -61,19 +61,7 @@ def test_case(case, tmp_path):
     run_case(case, tmp_path, PLACES)
 
 
-SEEN_IN_ONE_WINDOW = {
-    "dialects/grbl/goes-on-after-m30": "the modes that M30 leaves are not carried into the next "
-    "window by the writer",
-}
-
-
-def in_windows(case: Case) -> object:
-    reason = SEEN_IN_ONE_WINDOW.get(name(case.path))
-    marks = [pytest.mark.xfail(strict=True, reason=reason)] if reason else []
-    return pytest.param(case, id=name(case.path), marks=marks)
-
-
-@pytest.mark.parametrize("case", [in_windows(case) for case in CASES if not case.xfail])
+@pytest.mark.parametrize("case", [parameter(case) for case in CASES if not case.xfail])
 def test_windows_make_no_difference(case, tmp_path, monkeypatch):
     """Run every case line by line: what one window knows, the next one must know as well."""
     monkeypatch.setattr(Source.windows, "__defaults__", (1,))

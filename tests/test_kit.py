@@ -56,9 +56,6 @@ def test_registered_passes(name):
     check_pass(passes()[name], *instances(name))
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a window that begins after a skipped rapid gets a compensated entry"
-)
 def test_volumetric_without_rapids():
     made = passes()["volumetric"]
     check_pass(made, made(model=ModelFile.load(MODEL), part_origin=HERE, rapids="skip"))

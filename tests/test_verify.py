@@ -57,8 +57,7 @@ def run(
         return Emitted(text, np.array([number for _, number in changed], np.int64))
 
     job.emitter.emit = lying  # type: ignore[method-assign]
-    for window in source.windows(size):
-        job.window(window, Output(texts.append, None))
+    job.over(source.windows(size), Output(texts.append, None), lambda _: None)
     return b"".join(texts)
 
 

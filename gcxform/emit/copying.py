@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.diagnostics import InputError
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions
@@ -43,6 +44,16 @@ class Copying:
             may[pieces.line[pieces.repaired]] = False
             self.lines &= may
             self._rows(old_count, pieces, may)
+        self._skipped()
+
+    def _skipped(self) -> None:
+        """Copy the blocks that the control skips; another control might not skip them."""
+        skipped = self.task.window.shape[: len(self.task.shape)] != self.task.shape
+        if skipped.any() and self.task.manner.crossing:
+            where = self.task.location(int(np.argmax(skipped)))
+            message = "a block that is skipped cannot be taken into another dialect"
+            raise InputError.one("GX501", message, where, "leave the block out of the program")
+        self.lines |= skipped
 
     def _nothing_to_say(self) -> Flags:
         """Return the lines without any item: the same in every dialect."""

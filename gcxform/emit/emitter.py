@@ -35,10 +35,11 @@ from gcxform.emit.templates import (
     Role,
     TemplateWriter,
     gaps_between,
+    is_foreign,
 )
 from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
-from gcxform.modal.tables import MeaningTable
+from gcxform.modal.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Kind, Plane, Toolpath
 
@@ -104,7 +105,8 @@ class _Job:
     def run(self) -> Emitted:
         copied = self.copying.lines
         self._arcs()
-        chosen = np.flatnonzero(~copied[self.pieces.line] & ~self._without_words())
+        empty = self._without_words() | self._foreign()
+        chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
         renderer = Renderer(self.task)
         self._render(chosen, renderer)
         text, lengths = renderer.text(len(chosen))
@@ -119,6 +121,17 @@ class _Job:
         inner: Flags = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row
         inner[self.pieces.has_row] &= still
         return inner
+
+    def _foreign(self) -> Flags:
+        """Return the pieces of lines that hold nothing the target dialect has."""
+        if not self.task.manner.crossing:
+            return np.zeros(len(self.pieces.line), np.bool_)
+        target = self.task.manner.target
+        items = [shape.block.items for shape in self.task.table.shapes.shapes]
+        foreign = np.array(
+            [bool(i) and all(is_foreign(item, target) for item in i) for i in items], np.bool_
+        )
+        return np.asarray(foreign[self.task.shape][self.pieces.line])
 
     # --- arcs ---
 
@@ -314,6 +327,13 @@ class _Job:
         )
         raise InputError.one("GX502", message, self.task.location(line))
 
+    def _leave_end(self, believed: Believed) -> None:
+        """Leave the modes in which the end of a program leaves a control that goes on."""
+        resets = self.task.manner.target.resets_at_end
+        if self.task.table.flag("ends", self.task.shape[-1:])[0] and resets:
+            believed.motion = NUMBER[resets["motion"]]
+            believed.incremental = NUMBER[resets["distance"]]
+
     def _carry(self) -> None:
         """Leave what the control believes after the window."""
         believed, pieces = self.emitter.believed, self.pieces
@@ -331,6 +351,7 @@ class _Job:
                 last = np.flatnonzero(stated >= 0)
                 if len(last):
                     setattr(believed, name, int(stated[last[-1]]))
+            self._leave_end(believed)
 
 
 def _groups(ways: Ints) -> list[Ints]:

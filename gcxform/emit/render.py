@@ -132,8 +132,10 @@ def interleave(
     keep = np.flatnonzero(whole)
     order = np.argsort(np.concatenate([keep, written]), kind="stable")
     source = np.concatenate([keep, written])[order]
-    if not len(written):
+    if not len(written) and whole.all():
         return window.text, source
+    if not len(order):
+        return b"", source
     is_copy = order < len(keep)
     edges = np.flatnonzero(np.append(True, is_copy[1:] != is_copy[:-1]))
     ends = np.append(edges[1:], len(order))

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from itertools import pairwise
 
+from gcxform.dialect import Dialect
 from gcxform.emit.manner import Manner
 from gcxform.modal.codes import Code
 from gcxform.modal.meaning import Meaning
@@ -118,6 +119,15 @@ def gaps_between(text: str, words: list[Word]) -> Iterator[bool]:
             yield bool(between)
 
 
+def is_foreign(item: Item, target: type[Dialect]) -> bool:
+    """Whether an item is a part of the program frame that the target has not."""
+    if not isinstance(item, Mark):
+        return False
+    if item.kind == "percent":
+        return not target.has_percent
+    return item.kind.startswith("program") and not target.has_program_number
+
+
 class TemplateWriter:
     """Makes the templates of one shape."""
 
@@ -211,15 +221,9 @@ class TemplateWriter:
         if item.kind == "block_delete":
             if self.source.block_delete != self.target.block_delete:
                 self._check_same(item, "a block with a slash in the same way")
-        elif self.key.role in (Role.MIDDLE, Role.LAST) or self._is_foreign(item):
+        elif self.key.role in (Role.MIDDLE, Role.LAST) or is_foreign(item, self.target):
             return
         self._literal(lead, self.text[item.start : item.end])
-
-    def _is_foreign(self, item: Mark) -> bool:
-        """Whether the target has no such part of the program frame."""
-        if item.kind == "percent":
-            return not self.target.has_percent
-        return item.kind.startswith("program") and not self.target.has_program_number
 
     # --- words ---
 
@@ -244,6 +248,11 @@ class TemplateWriter:
         elif self.key.role not in (Role.MIDDLE, Role.LAST):
             self._copy(word, lead, slot)
 
+    def _said(self, start: int, end: int) -> str:
+        """Return a piece of a word, in capitals where the target knows nothing else."""
+        text = self.text[start:end]
+        return text if self.target.lower_case else text.upper()
+
     def _copy(self, word: Word, lead: bytes, slot: int) -> None:
         """Write a word as it stands in the source."""
         if word.address not in self.target.words + self.target.axes + "GMO":
@@ -251,9 +260,9 @@ class TemplateWriter:
                 word.start, word.end - word.start, f"{self.target.name} has no word {word.address}"
             )
         if word.address in CODES or not isinstance(word.value, Number):
-            self._literal(lead, self.text[word.start : word.end])
+            self._literal(lead, self._said(word.start, word.end))
             return
-        self._literal(lead, self.text[word.start : word.value.start])
+        self._literal(lead, self._said(word.start, word.value.start))
         self.fields.append(Copied(slot))
 
     def _g_word(self, word: Word, lead: bytes) -> None:
@@ -261,7 +270,7 @@ class TemplateWriter:
         name = f"G{round(word.value.value, 6):g}"
         code = self.source.codes.get(name)
         group = code.group if code is not None else ""
-        text = self.text[word.start : word.end]
+        text = self._said(word.start, word.end)
         if self.key.role in (Role.MIDDLE, Role.LAST):
             lead = self._gap(lead)
         if group in STATED and group not in self.stated:
@@ -311,7 +320,7 @@ class TemplateWriter:
         after = code is not None and code.after
         whole = self.key.role in (Role.NONE, Role.ONLY)
         if whole or self.key.role is (Role.LAST if after else Role.FIRST):
-            self._literal(self._gap(lead), self.text[word.start : word.end])
+            self._literal(self._gap(lead), self._said(word.start, word.end))
 
     # --- what has to be stated ---
 

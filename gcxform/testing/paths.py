@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gcxform.dialect import Dialect
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
-from gcxform.toolpath.path import COLUMNS, Blocks, Toolpath
+from gcxform.toolpath.path import COLUMNS, Blocks, Kind, Toolpath
 
 HEAD = "G21 G90 G94 G17\n"
 PROGRAMS: dict[str, str] = {
@@ -94,7 +94,9 @@ def halves(path: Toolpath, line: int) -> tuple[Toolpath, Toolpath]:
     late = tuple(replace(e, row=e.row - cut) for e in path.events if e.line >= line)
     first, second = path.take(rows[:cut]), path.take(rows[cut:])
     entry = np.array(path.end[cut - 1] if cut else path.entry)
-    return first.replace(events=early), second.replace(events=late, entry=entry)
+    rapid = bool(cut) and bool(path.kind[cut - 1] == Kind.RAPID)
+    second = second.replace(events=late, entry=entry, after_rapid=rapid)
+    return first.replace(events=early), second
 
 
 def differs_joined(whole: Toolpath | None, parts: list[Toolpath | None], allowed: float) -> str:

@@ -305,7 +305,6 @@ def test_a_program_means_the_same_in_another_dialect(
     follow(pipeline([], name, target), keeps.upper())
 
 
-@pytest.mark.xfail(strict=True, reason="words are copied in lower case, which a Fanuc cannot read")
 def test_a_fanuc_gets_no_lower_case() -> None:
     result = pipeline([], "linuxcnc", "fanuc").run(b"g21 g90 g94\ng1 x1 y2 z3 f100\nm2\n")
     assert result.text == result.text.upper()

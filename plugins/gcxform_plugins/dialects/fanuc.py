@@ -100,5 +100,6 @@ class Fanuc(gx.Dialect):
     last_code_wins = True
     point_required = True
     change_clears_feed = True
+    lower_case = False
     dwell: ClassVar[Mapping[str, float]] = {"X": 1.0, "U": 1.0, "P": 0.001}
     arc_rule = gx.ArcRule(absolute=0.01)

@@ -31,11 +31,16 @@ class Renumber(gx.TextPass):
                 return f"{block.text[item.start : item.end]} may refer to sequence numbers"
         return ""
 
+    def counts(self, block: gx.Block) -> bool:
+        """Count the blocks that get a number: not the program's own."""
+        words = [item.address for item in block.items if isinstance(item, gx.Word)]
+        return bool(words) and "O" not in words
+
     def edit(self, block: gx.Block, number: int) -> str | None:
         """Return the block with its new number."""
-        words = [item for item in block.items if isinstance(item, gx.Word)]
-        if not words or any(word.address == "O" for word in words):
+        if not self.counts(block):
             return block.text
+        words = [item for item in block.items if isinstance(item, gx.Word)]
         first = words[0]
         count = (self.last - self.start) // self.step + 1
         new = f"N{self.start + self.step * (number % count)}"

@@ -34,7 +34,7 @@ class Machine:
     def run(self) -> gx.Toolpath:
         """Return the path of the machine."""
         path = self.path
-        rows, part, _, _ = self._crossings()
+        rows, part = self._crossings()
         whole = np.arange(len(path))
         counts = np.ones(len(path), np.int64)
         every, at = whole, np.ones(len(path))
@@ -52,18 +52,31 @@ class Machine:
             actual[rapid] = point[rapid]
         return self._path(counts, every, at, actual)
 
-    def _crossings(self) -> tuple[Ints, Floats, Ints, Floats]:
+    def _crossings(self) -> tuple[Ints, Floats]:
         """Return where lines and arcs are cut: at nodes, and arcs also where they turn far."""
         path = self.path
-        points = np.empty((3, len(path) + 1)).T
-        points[0], points[1:] = self.start[0], self.end
-        lines = (path.kind == gx.Kind.LINE) & path.starts_known
-        row, part, axis, plane = gx.line_crossings(points, lines, self.step.nodes())
+        lines = np.flatnonzero((path.kind == gx.Kind.LINE) & path.starts_known)
+        row, part = self._bends(lines)
         if path.has_arcs:
             reach = self.step.model.model.lipschitz
             arc_row, arc_part = gx.arc_cuts(path, self.offset, self.step.nodes(), reach, UNDO_SLACK)
             row, part = np.append(row, arc_row), np.append(part, arc_part)
-        return row, part, axis, plane
+        return row, part
+
+    def _bends(self, lines: Ints) -> tuple[Ints, Floats]:
+        """Return row and part of the way where lines cross a node, node by node."""
+        rows: list[Ints] = [np.empty(0, np.int64)]
+        parts: list[Floats] = [np.empty(0)]
+        for axis, planes in enumerate(self.step.nodes()):
+            a, b = self.start[lines, axis], self.end[lines, axis]
+            moving = np.flatnonzero(a != b)
+            a, way = a[moving], (b - a)[moving]
+            for plane in planes:
+                part = (plane - a) / way
+                inside = np.flatnonzero((part > 0.0) & (part < 1.0))
+                rows.append(lines[moving[inside]])
+                parts.append(part[inside])
+        return np.concatenate(rows), np.concatenate(parts)
 
     def _points(self, rows: Ints, part: Floats) -> Floats:
         """Return commanded points (n, 3) of rows at parts of their way."""
@@ -84,7 +97,8 @@ class Machine:
         a, b = path.start[rows, 3:], path.end[rows, 3:]
         end[:, 3:] = np.where((part == 1.0)[:, None], b, a + part[:, None] * (b - a))
         entry = path.entry.copy()
-        if np.isfinite(entry[:3]).all():
+        skipped = self.step.rapids == "skip" and path.after_rapid
+        if np.isfinite(entry[:3]).all() and not skipped:
             entry[:3] += self.step.error(entry[None, :3] + self.offset[:1])[0]
         columns: dict[str, Floats] = {"end": end}
         if path.has_arcs:
