@@ -6,7 +6,7 @@ output. The law, in the tests and on every run, is
 
     deviation(before, undo(after)) <= promise
 
-along every move. `undo` uses the forward model and shares no code with what it checks.
+along every move. `undo` uses the forward model and shares no code with the search it checks.
 """
 
 from __future__ import annotations
