@@ -205,7 +205,8 @@ def _lengths(path: Toolpath) -> dict[str, float]:
         arcs = np.flatnonzero(path.is_arc)
         first, last, _ = radius_and_angle(path, arcs)
         normal = np.array([plane.axes[2] for plane in Plane])[path.plane[arcs]]
-        length[arcs] = np.hypot((first + last) / 2 * path.sweep[arcs], way[arcs, normal])
+        rise = np.nan_to_num(way[arcs, normal])
+        length[arcs] = np.hypot((first + last) / 2 * path.sweep[arcs], rise)
     rapid = path.kind == Kind.RAPID
     return {"rapid": float(length[rapid].sum()), "feed": float(length[~rapid].sum())}
 
