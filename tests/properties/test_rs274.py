@@ -156,7 +156,7 @@ def compensation(
 def test_linuxcnc_reads_what_gcxform_writes() -> None:
     """Random chains: the same events, and the machine within the budget of the program's path."""
     done = refused = 0
-    for seeds in chunks(COUNT // 2):
+    for seeds in chunks(COUNT):
         jobs = [job for seed in seeds if (job := written(seed)) is not None]
         refused += len(seeds) - len(jobs)
         done += len(jobs)
