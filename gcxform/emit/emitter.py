@@ -18,25 +18,13 @@ from numpy.typing import NDArray
 from gcxform.diagnostics import Diagnostic, InputError
 from gcxform.emit.arcs import ArcEnds, centre_words
 from gcxform.emit.copying import EXACT, Copying
+from gcxform.emit.fields import Axis, Centre, Copied, Feed, Field, Key, Literal, Role
 from gcxform.emit.manner import Believed, Manner, Task
 from gcxform.emit.numbers import MOST_DECIMALS, quantise
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, motion_kinds
 from gcxform.emit.render import Renderer, interleave
-from gcxform.emit.templates import (
-    Axis,
-    CannotSayError,
-    Centre,
-    Copied,
-    Feed,
-    Field,
-    Key,
-    Literal,
-    Role,
-    TemplateWriter,
-    gaps_between,
-    is_foreign,
-)
+from gcxform.emit.templates import CannotSayError, TemplateWriter, gaps_between, is_foreign
 from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.tables import NUMBER, MeaningTable

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH
+from gcxform.emit.fields import Feed, Role
 from gcxform.emit.manner import Believed, Task
-from gcxform.emit.templates import Feed, Role
 from gcxform.modal.lines import fill
 from gcxform.modal.moves import turns_only
 from gcxform.modal.tables import GROUPS, NUMBER

@@ -9,94 +9,16 @@ then a matter of whole arrays.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from enum import IntEnum
 from itertools import pairwise
 
 from gcxform.dialect import Dialect
+from gcxform.emit.fields import Axis, Centre, Copied, Feed, FeedWord, Field, Key, Literal, Role
 from gcxform.emit.manner import Manner
 from gcxform.modal.codes import Code
 from gcxform.modal.meaning import Meaning
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import BLANKS, Comment, Item, Mark, Number, Word
 
-
-class Role(IntEnum):
-    """Which piece of its block a line is; NONE: the block does not move."""
-
-    NONE = 0
-    ONLY = 1
-    FIRST = 2
-    MIDDLE = 3
-    LAST = 4
-
-
-class Feed(IntEnum):
-    """What happens to the feed word of a piece."""
-
-    NONE = 0
-    KEEP = 1
-    WRITE = 2
-
-
-@dataclass(frozen=True, slots=True)
-class Key:
-    """All that decides how a piece of a block is written, but for its numbers.
-
-    `motion`, `inch`, `incremental`, `absolute_centre`: what has to be stated; -1: nothing.
-    `arc`: whether centre words are written, in `plane`; `turns`: full turns beyond the arc.
-    """
-
-    role: Role
-    motion: int
-    inch: int
-    incremental: int
-    absolute_centre: int
-    feed: Feed
-    arc: bool
-    plane: int
-    turns: int
-
-
-@dataclass(frozen=True, slots=True)
-class Literal:
-    """Bytes written as they are."""
-
-    text: bytes
-
-
-@dataclass(frozen=True, slots=True)
-class Copied:
-    """The number in a slot of the source line, as it was written."""
-
-    slot: int
-
-
-@dataclass(frozen=True, slots=True)
-class Axis:
-    """An axis word: left out where it need not be written, its gap where nothing is before it."""
-
-    gap: bytes
-    address: str
-
-
-@dataclass(frozen=True, slots=True)
-class Centre:
-    """A centre word; `index` is 0 for the plane's first axis, 1 for its second."""
-
-    gap: bytes
-    address: str
-    index: int
-
-
-@dataclass(frozen=True, slots=True)
-class FeedWord:
-    """The feed, formatted."""
-
-    gap: bytes
-
-
-Field = Literal | Copied | Axis | Centre | FeedWord
 PLANE_AXES = ("XY", "ZX", "YZ")
 OFFSETS = {"X": "I", "Y": "J", "Z": "K"}
 
