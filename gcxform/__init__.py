@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     from gcxform.toolpath.facts import Fact as Fact
     from gcxform.toolpath.path import Event as Event
     from gcxform.toolpath.path import FeedMode as FeedMode
+    from gcxform.toolpath.path import Form as Form
     from gcxform.toolpath.path import Kind as Kind
     from gcxform.toolpath.path import Plane as Plane
     from gcxform.toolpath.path import Toolpath as Toolpath
@@ -96,7 +97,7 @@ _HOMES = {
     "toolpath.deviation": "deviation",
     "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NOMINAL XY_ARCS "
     "Fact",
-    "toolpath.path": "Event FeedMode Kind Plane Toolpath column_major",
+    "toolpath.path": "Event FeedMode Form Kind Plane Toolpath column_major",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 

@@ -12,7 +12,7 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.lines import LENGTHS, Lines, fill
 from gcxform.modal.state import Modes
 from gcxform.modal.tables import NUMBER
-from gcxform.toolpath.path import Blocks, Kind, Toolpath, column_major, constant
+from gcxform.toolpath.path import Blocks, Form, Kind, Toolpath, column_major, constant
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -153,6 +153,10 @@ class Moves:
             self.modes.feed_mode[rows],
             self.modes.frame[rows],
             rows + self.lines.window.first_line,
+            constant(0, count, np.int64),
+            constant(Form.PLAIN, count, np.int8),
+            constant(0, count, np.int8),
+            constant(np.nan, count),
             self._lost_before(rows),
             self.entry,
             Blocks(

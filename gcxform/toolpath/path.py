@@ -45,6 +45,21 @@ class Plane(IntEnum):
         return ((0, 1, 2), (2, 0, 1), (1, 2, 0))[self]
 
 
+class Form(IntEnum):
+    """What a row is a part of; all but PLAIN are written as the block they came from, or refused.
+
+    CYCLE: a canned cycle. HOME: G28, G30. MACHINE: a move in machine coordinates (G53). PROBE: it
+    ends where something is touched. SYNCHRONISED: it is tied to the spindle.
+    """
+
+    PLAIN = 0
+    CYCLE = 1
+    HOME = 2
+    MACHINE = 3
+    PROBE = 4
+    SYNCHRONISED = 5
+
+
 class FeedMode(IntEnum):
     """What a feed means: 1/min (G93), mm/min (G94) or mm per turn of the spindle (G95)."""
 
@@ -92,6 +107,10 @@ COLUMNS = (
     "feed_mode",
     "frame",
     "source",
+    "nth",
+    "form",
+    "side",
+    "radius",
     "lost",
 )
 
@@ -109,6 +128,11 @@ class Toolpath:
     feed, feed_mode (n,) mm/min, 1/min or mm/turn; nan where none is known; `FeedMode`
     frame           (n,) index of the work offset: 0 is G54
     source          (n,) line of the program, from 0, that the move came from
+    nth             (n,) which of the moves of its line it is, from 0
+    form            (n,) `Form`
+    side            (n,) cutter compensation: +1 left (G41), -1 right (G42), 0 none; `end` is then
+                    the contour as programmed
+    radius          (n,) mm, of the tool that is compensated; nan where it is not known
     lost            (n,) whether the position was lost before the move, by a tool change for example
     entry           (axes,) position before the first row
     blocks          how the blocks the rows came from are to be written
@@ -129,6 +153,10 @@ class Toolpath:
     feed_mode: Small
     frame: Small
     source: Ints
+    nth: Ints
+    form: Small
+    side: Small
+    radius: Floats
     lost: Flags
     entry: Floats
     blocks: Blocks
@@ -193,7 +221,7 @@ class Toolpath:
 
     def take(self, rows: Ints | Flags) -> Toolpath:
         """Return the path of some rows, in the order given; events and entry stay."""
-        return self.replace(**{name: getattr(self, name)[rows] for name in COLUMNS})
+        return self.replace(**{name: _picked(getattr(self, name), rows) for name in COLUMNS})
 
     def with_rows(self, counts: Ints, **columns: Any) -> Toolpath:
         """Return the path with row i standing `counts[i]` times, and some columns new.
@@ -204,9 +232,17 @@ class Toolpath:
         first = np.append(0, np.cumsum(counts))
         events = tuple(dataclass_replace(e, row=int(first[e.row])) for e in self.events)
         row = np.repeat(np.arange(len(self)), counts)
-        kept = {n: getattr(self, n)[row] for n in COLUMNS if n not in columns}
+        kept = {n: _picked(getattr(self, n), row) for n in COLUMNS if n not in columns}
         kept["lost"] = kept["lost"] & (np.arange(len(row)) == first[row])
         return self.replace(**kept, **columns, events=events)
+
+
+def _picked(column: NDArray[Any], rows: Ints | Flags) -> NDArray[Any]:
+    """Return a column at rows; a column that holds one value keeps taking no memory."""
+    if column.strides != (0,) or not len(column):
+        return column[rows]
+    count = int(np.count_nonzero(rows)) if rows.dtype == np.bool_ else len(rows)
+    return np.broadcast_to(column[0], (count,))
 
 
 def column_major(rows: int, columns: int) -> Floats:
