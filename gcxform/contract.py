@@ -45,6 +45,8 @@ class Pass:
     requires: ClassVar[frozenset[Fact]] = frozenset()
     ensures: ClassVar[frozenset[Fact]] = frozenset()
     clears: ClassVar[frozenset[Fact]] = frozenset()
+    folds: ClassVar[bool] = False
+    """Whether the codes that shift coordinates are folded into the words of moves."""
 
     @property
     def promise(self) -> float:

@@ -7,13 +7,17 @@ from enum import IntEnum
 
 
 class Role(IntEnum):
-    """Which piece of its block a line is; NONE: the block does not move."""
+    """Which piece of its block a line is; NONE: the block does not move.
+
+    VERBATIM: the block moves in a way of its own, and its words stay as they are.
+    """
 
     NONE = 0
     ONLY = 1
     FIRST = 2
     MIDDLE = 3
     LAST = 4
+    VERBATIM = 5
 
 
 class Feed(IntEnum):
