@@ -105,7 +105,7 @@ def test_info_of_words(here: Path) -> None:
 
 
 def test_info_of_meaning(here: Path) -> None:
-    text = b"T3 M6\nG0 X0 Y0 Z5\nG1 F100 Z0\nG2 X0 Y0 I5 J0\nG4 P1\nG28\nM2\n"
+    text = b"T3 M6\nG0 X0 Y0 Z5\nG1 F100 Z0\nG2 X0 Y0 I5 J0\nG4 P1\nG38.2 X1\nM2\n"
     (here / "p.nc").write_bytes(text)
     words = ["info", "-f", "linuxcnc", "p.nc"]
     found = json.loads(call(*words, "--json").stdout)
@@ -155,7 +155,7 @@ def test_explain_a_code() -> None:
 
 
 def test_explain_a_block(here: Path) -> None:
-    (here / "p.nc").write_bytes(b"G28\nG1 F100 X0 Y0 Z0\nN7 G2 X10 I5 M8 (so)\nM2\n")
+    (here / "p.nc").write_bytes(b"G38.2 X1\nG1 F100 X0 Y0 Z0\nN7 G2 X10 I5 M8 (so)\nM2\n")
     found = call("explain", "-f", "linuxcnc", "p.nc:3").stdout
     for words in (
         "word X, number 10",
