@@ -232,6 +232,8 @@ def test_linuxcnc_goes_to_the_next_hole_at_a_level_that_depends() -> None:
 def test_from_below_r() -> None:
     low = expanded("linuxcnc", HOLE | {"cycle": 81, "retract": 98}, start=(0, 0, 1))
     assert points(low) == [(0, 0, 2), (1, 2, 2), (1, 2, -4), (1, 2, 2)]
+    again = expanded("linuxcnc", HOLE | {"cycle": 81, "L": 2}, start=(0, 0, 1))
+    assert points(again) == [(0, 0, 2), *[(1, 2, 2), (1, 2, -4), (1, 2, 2)] * 2]
     low = expanded("fanuc", HOLE | {"cycle": 81, "retract": 98}, start=(0, 0, 1))
     assert refusals(low) == ["0: G81 with R above the level from which the cycle began"]
 
