@@ -113,12 +113,6 @@ CYCLE_FAULTS = (
         "_Mode()",
     ),
     (
-        "a hole above R",
-        LEVELS,
-        "self.bottom > self.clearance",
-        "self.bottom > np.inf",
-    ),
-    (
         "pecks begin at the last depth",
         STEPS,
         "depth + back)",

@@ -13,6 +13,7 @@ import numpy as np
 
 from gcxform.modal.cyclerule import TAPPING, CycleRule
 from gcxform.modal.cycles import Calls, Cycles, Steps
+from gcxform.registry import default_registry
 from gcxform.toolpath.path import Kind, Plane
 
 CODES = (73, 74, 81, 82, 83, 84, 85, 86, 87, 88, 89)
@@ -146,6 +147,63 @@ class Player:
         if steps.refusals:
             self.played.refused = int(stretch.line[steps.refusals[0].call]) + 1
             self.played.why = steps.refusals[0].message
+
+
+# --- cases worked out by hand ---
+
+HOLE: Block = {"X": 1, "Y": 2, "Z": -4, "R": 2}
+START = (0.0, 0.0, 10.0)
+AXES_OF = {"G17": (17, "XYZ"), "G18": (18, "ZXY"), "G19": (19, "YZX")}
+PLANE_OF = {"G17": Plane.XY, "G18": Plane.ZX, "G19": Plane.YZ}
+
+
+def rule(dialect: str) -> CycleRule:
+    found = default_registry().dialect(dialect).cycle_rule
+    assert found is not None
+    return found
+
+
+def cycles(dialect: str) -> Cycles:
+    return Cycles(rule(dialect), 0.3, 0.4) if dialect == "fanuc" else Cycles(rule(dialect))
+
+
+def turned(plane: str, block: Block) -> Block:
+    """Return a block for G17 as the same one for another plane."""
+    number, axes = AXES_OF[plane]
+    to = dict(zip("XYZ", axes, strict=True))
+    to |= {"IJK"["XYZ".index(a)]: "IJK"["XYZ".index(b)] for a, b in to.items()}
+    return {"plane": number, **{to.get(key, key): value for key, value in block.items()}}
+
+
+def told(steps: Steps) -> str:
+    """Return levels and events in the words of the tables."""
+    out: list[tuple[float, str]] = []
+    for row, (kind, end) in enumerate(zip(steps.rows.kind, steps.rows.end, strict=True)):
+        level = round(float(end[2]), 9) + 0.0
+        out.append((row, f"{'=' if kind == Kind.LINE else '>'}{level:g}"))
+    for event in steps.rows.events:
+        what = f"{event.values[0][1]:g}" if event.values else event.what
+        out.append((event.row - 0.5, f"!{what}"))
+    return " ".join(text for _, text in sorted(out, key=lambda item: item[0]))
+
+
+def points(steps: Steps, plane: Plane = Plane.XY) -> list[tuple[float, ...]]:
+    ends = spatial(steps.rows.end, plane)
+    return [tuple(round(value, 9) for value in end) for end in ends.tolist()]
+
+
+def refusals(steps: Steps) -> list[str]:
+    return [f"{refusal.call}: {refusal.message}" for refusal in steps.refusals]
+
+
+def expanded(dialect: str, *blocks: Block, start: tuple[float, float, float] = START) -> Steps:
+    """Return the steps of blocks of which modes stay in force, as in a program."""
+    modes: Block = {}
+    full = []
+    for block in blocks:
+        modes |= {m: block[m] for m in ("cycle", "plane", "distance", "retract") if m in block}
+        full.append(modes | block)
+    return cycles(dialect).expand(calls(full, start))
 
 
 # --- programs drawn at random ---

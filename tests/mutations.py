@@ -54,6 +54,13 @@ def _verifier(name: str, old: str, new: str = "if False:") -> Mutation:
 
 MUTATIONS = (
     *(Mutation(f"cycles: {name}", *where, CYCLES) for name, *where in CYCLE_FAULTS),
+    Mutation(
+        "cycles: a hole above R",
+        "gcxform/modal/cycles.py",
+        "self.bottom > self.clearance",
+        "self.bottom > np.inf",
+        "tests/test_cycle_refusals.py",
+    ),
     # the error model and the search for commands
     Mutation(
         "compensate: the sign of the error is swapped",

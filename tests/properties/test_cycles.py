@@ -50,3 +50,12 @@ def difference(played: Played, answer: CanonProgram | rs274.Rejected) -> str:
             return f"line {move.line}: {ours}, theirs {theirs}"
     events = [(row, name) for row, name in answer.events if name[0] not in "S" and name != "M2"]
     return "" if events == played.events else f"events {played.events}, {events}"
+
+
+@pytest.mark.parametrize("code", [74, 84])
+def test_linuxcnc_taps_in_other_planes_at_another_place(code: int) -> None:
+    """Why this is refused: the feed goes to X-4 Y3 Z1, and not to the hole at X1 Y-4 Z3."""
+    turning = "M4" if code == 74 else "M3"
+    program = f"G0 X10 Y20 Z30\n{turning} S100 F100\nG18 G{code} X1 Y-4 Z3 R2\nM2\n"
+    move = next(m for m in rs274.run(program.encode()).moves if m.kind == "LINE")
+    assert [move.end[axis] for axis in "XYZ"] == [-4, 3, 1]
