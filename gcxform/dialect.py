@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from gcxform.modal.codes import ISO, ISO_M, Code, MCode
+from gcxform.modal.cyclerule import CycleRule
 from gcxform.syntax.grammar import Grammar, load
 
 INCH = 25.4  # mm, exact by definition
@@ -140,6 +141,8 @@ class Dialect:
     arc_rotary: ClassVar[bool] = False
     """Whether a rotary axis may turn along an arc."""
     arc_rule: ClassVar[ArcRule] = ArcRule(absolute=0.01)
+    cycle_rule: ClassVar[CycleRule | None] = None
+    """What the control makes of canned cycles; None: it has none, or they are not known."""
 
     @classmethod
     def load_grammar(cls) -> Grammar:

@@ -20,6 +20,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from cycle_faults import CYCLE_FAULTS
+
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("gcxform", "plugins/gcxform_plugins", "grammars/gcxform_grammars")
 FAILED = 1  # pytest's exit code for tests that failed
@@ -31,6 +33,7 @@ FIGURES = "tests/test_volumetric.py"
 FOUND = "tests/properties/test_found.py"
 KIT = "tests/test_kit.py::test_registered_passes"
 LAWS = "tests/properties/test_laws.py"
+CYCLES = "tests/test_cycles.py"
 READING = "tests/test_verify.py::test_the_proof_reads_as_the_control_does"
 
 
@@ -50,6 +53,14 @@ def _verifier(name: str, old: str, new: str = "if False:") -> Mutation:
 
 
 MUTATIONS = (
+    *(Mutation(f"cycles: {name}", *where, CYCLES) for name, *where in CYCLE_FAULTS),
+    Mutation(
+        "cycles: a hole above R",
+        "gcxform/modal/cycles.py",
+        "self.bottom > self.clearance",
+        "self.bottom > np.inf",
+        "tests/test_cycle_refusals.py",
+    ),
     # the error model and the search for commands
     Mutation(
         "compensate: the sign of the error is swapped",

@@ -15,6 +15,7 @@ EVENTS = {
     "FLOOD_OFF": "M9",
     "OPTIONAL_PROGRAM_STOP": "M1",
     "CHANGE_TOOL": "M6",
+    "ORIENT_SPINDLE": "M19",
     "PROGRAM_STOP": "M0",
 }
 
