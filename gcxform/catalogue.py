@@ -54,7 +54,8 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "On this control a distance without a point counts in its least increment, so that X10 "
         "may be 10 mm or 10 micrometres. The program does not say which, and a guess is wrong "
         'by a factor of a thousand. Say `increment = "0.001 mm"` in [input], or --increment; 0 '
-        "needs neither.",
+        "needs neither. A feed without a point is refused where settings of the control decide "
+        "on its unit: write the point, or on a Haas say `feed-increment` in [input].",
     ),
     "GX206": (
         "Code that would have to be run",

@@ -78,6 +78,8 @@ class Dialect:
     """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
     point_required: ClassVar[bool] = False
     """A distance without a point counts in increments of the control, which must be configured."""
+    feed_point_required: ClassVar[bool] = False
+    """An F without a point counts in a unit of the control, which must be configured."""
     circle_needs_axis_word: ClassVar[bool] = False
     turns_address: ClassVar[str] = ""
     """The word that counts the turns of an arc (n - 1 full turns beyond the arc itself)."""
@@ -91,7 +93,9 @@ class Dialect:
     resets_at_end: ClassVar[Mapping[str, str]] = {}
     """Where M2 and M30 do not stop the control: the modes they leave behind."""
     dwell: ClassVar[Mapping[str, float]] = {"P": 1.0}
-    """Seconds for one unit of each word that G4 takes; a value with a point is in seconds."""
+    """Seconds for one unit of each word that G4 takes."""
+    dwell_point_is_seconds: ClassVar[bool] = False
+    """A dwell that is written with a point is in seconds."""
     block_delete: ClassVar[str] = ""
     """What the control does with `/` blocks: "execute", "skip", or "" when a switch decides."""
     stops_at_end: ClassVar[bool] = True
@@ -108,6 +112,8 @@ class Dialect:
     """How a comment may begin: any of "(" and ";"."""
     has_percent: ClassVar[bool] = True
     has_program_number: ClassVar[bool] = True
+    program_number_digits: ClassVar[int] = 0
+    """How many digits a program number may have; 0: any number."""
     words: ClassVar[str] = "DEFHIJKLNPQRST"
     """Addresses the control knows, besides its axes and G, M, O."""
     numbers: ClassVar[NumberFormat] = NumberFormat()

@@ -124,7 +124,7 @@ def test_info_of_meaning(here: Path) -> None:
     "text",
     [b"", b"\n", b"\0" * 50, bytes(range(256)) * 300, b"\r\r\n\r", b"G1 X" * 900, b"%\n%\n%"],
 )
-@pytest.mark.parametrize("dialect", ["", "fanuc", "linuxcnc", "grbl"])
+@pytest.mark.parametrize("dialect", ["", "fanuc", "haas", "linuxcnc", "grbl"])
 def test_info_of_anything(here: Path, text: bytes, dialect: str) -> None:
     found = call("info", *(["-f", dialect] if dialect else []), "--json", "-", stdin=text)
     assert found.exit_code == 0, found.output

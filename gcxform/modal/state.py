@@ -23,6 +23,8 @@ class Reading:
     feed          feed in effect before the first F word, in the program's unit
     block_delete  "execute", "skip", or "" to refuse blocks with a slash that do anything
     units         "mm" or "in" until the program says G20 or G21; "" for the dialect's default
+    feed_increment   what 1 means in an F without a point, in units per minute; None: such an F is
+                  refused where the dialect asks for a point
     """
 
     start: Mapping[str, float] = field(default_factory=dict)
@@ -30,6 +32,7 @@ class Reading:
     feed: float | None = None
     block_delete: str = ""
     units: str = ""
+    feed_increment: float | None = None
 
 
 @dataclass(slots=True)
