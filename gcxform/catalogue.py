@@ -513,6 +513,13 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "Lines count from 1, as in an editor and in messages. `gcxform info FILE` says how many "
         "there are.",
     ),
+    "GX732": (
+        "No safe restart at this line",
+        "A restart must bring the control into the state in which the program is at that line: "
+        "modes, tool, spindle, coolant, and where the axes stand. Something of that is not known, "
+        "or cannot be said by blocks. Begin at an earlier line: at the tool change, at the block "
+        "that states the arc, before the code that is named.",
+    ),
     # --- 8xx: plugins ---
     "GX801": (
         "Two plugins offer the same name",

@@ -92,3 +92,19 @@ def test_features(tmp_path: Path) -> None:
         assert name in features, features
     assert "work offsets (G54 G55)" in features
     assert "canned cycles (G81)" in features
+
+
+@pytest.mark.parametrize(
+    ("dialect", "word"),
+    [
+        ("linuxcnc", "P1.5"),
+        ("grbl", "P1.5"),
+        ("fanuc", "P1500"),
+        ("fanuc", "X1.5"),
+        ("haas", "P1500"),
+        ("haas", "P1.5"),
+    ],
+)
+def test_a_dwell_of_a_second_and_a_half(tmp_path: Path, dialect: str, word: str) -> None:
+    found = info(tmp_path, f"G21 G90 G94\nG4 {word}\nM30\n", dialect=dialect)
+    assert found["time_s"]["dwell"] == pytest.approx(1.5)
