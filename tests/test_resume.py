@@ -14,6 +14,7 @@ from oracles.canon import CanonProgram
 from reference.interpreter import Move, interpret
 
 import gcxform as gx
+from gcxform import vocabulary as v
 from gcxform.cli.restart import Restart
 from gcxform.modal.state import Reading
 from gcxform.registry import default_registry
@@ -280,3 +281,22 @@ def test_the_proof_sees_a_wrong_preamble() -> None:
         with pytest.raises(gx.VerificationError):
             again.prove(preamble, good.replace(old, new).encode())
     assert restart.prove(preamble, good.encode()) is None
+
+
+def test_modal_codes_that_no_preamble_states_are_unsafe() -> None:
+    """A dialect may make any code modal: what is not in the tables is refused by name."""
+
+    class Acme(default_registry().dialect("fanuc")):  # type: ignore[misc]
+        """A control whose G81 and G5 are read, whatever they do."""
+
+        name = "acme"
+        codes = {  # noqa: RUF012
+            **default_registry().dialect("fanuc").codes,
+            "G81": gx.Code("motion"),
+            "G5": gx.Code("thermal", v.inert("").effect),
+        }
+
+    for block, code in (("G81 X3.", "G81"), ("G5", "G5")):
+        text = f"{HEAD}{block}\nG1 X1.\nX2.\nM30\n".encode()
+        with pytest.raises(gx.InputError, match=f"in line 4 {code} was in force"):
+            Restart(Acme, Source.of_bytes(text), Reading(), 6)

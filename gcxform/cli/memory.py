@@ -17,7 +17,6 @@ import numpy as np
 from gcxform.dialect import Dialect
 from gcxform.modal.codes import Effect
 from gcxform.modal.meaning import Meaning
-from gcxform.modal.tables import GROUPS
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import Block, Number, Word
 from gcxform.toolpath.path import Event
@@ -53,6 +52,16 @@ HANDLED: Final[Mapping[str, How]] = {
     "coolant": How.OWN,
     "stop": How.NOTHING,
 }
+RESTATED: Final[Mapping[str, tuple[str, ...]]] = {
+    "motion": ("G0", "G1", "G2", "G3", "G80"),
+    "plane": ("G17", "G18", "G19"),
+    "distance": ("G90", "G91"),
+    "arc-distance": ("G91.1", "G90.1"),
+    "feed-mode": ("G93", "G94", "G95"),
+    "units": ("G21", "G20"),
+    "frame": (*(f"G{n}" for n in range(54, 60)), "G59.1", "G59.2", "G59.3"),
+}
+"""The modal codes that are in the interpreter's state and that a preamble states."""
 ONE_BLOCK: Final = frozenset({"G4", "G9"})
 """Codes that hold for one block."""
 COOLANT_OFF: Final[Mapping[str, tuple[str, ...]]] = {"M9": ("M7", "M8"), "M89": ("M88",)}
@@ -90,7 +99,9 @@ class Memory:
         name = f"{word.address}{round(word.value.value, 6):g}"
         if word.address == "G":
             code = self.dialect.codes.get(name)
-            if code is None or (code.effect is Effect.MODAL and code.group in GROUPS):
+            if code is None or (
+                code.effect is Effect.MODAL and name in RESTATED.get(code.group, ())
+            ):
                 return ""
             known = code.effect in (Effect.INERT, Effect.DWELL) and code.group in HANDLED
             return "" if known else f"{name} was in force, which is not restated"

@@ -10,28 +10,20 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from gcxform.cli.memory import Memory
+from gcxform.cli.memory import RESTATED, Memory
 from gcxform.dialect import INCH, LINEAR, Dialect
 from gcxform.emit.numbers import MOST_DECIMALS, text_of
 from gcxform.modal.state import State
 from gcxform.modal.tables import NUMBER, frame_name
 
 EXACT = 1e-9  # mm, degrees: closer positions are the same
-CODE_OF = {
-    "plane": ("G17", "G18", "G19"),
-    "distance": ("G90", "G91"),
-    "arc-distance": ("G91.1", "G90.1"),
-    "units": ("G21", "G20"),
-    "feed-mode": ("G93", "G94", "G95"),
-    "motion": ("G0", "G1", "G2", "G3", "G80"),
-}
 
 
 def code_of(group: str, number: int) -> str:
     """Return the code of a modal group by its number."""
     if group == "frame":
         return frame_name(number)
-    return next(code for code in CODE_OF[group] if NUMBER[code] == number)
+    return next(code for code in RESTATED[group] if NUMBER[code] == number)
 
 
 @dataclass(frozen=True)
