@@ -54,7 +54,8 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "On this control a distance without a point counts in its least increment, so that X10 "
         "may be 10 mm or 10 micrometres. The program does not say which, and a guess is wrong "
         'by a factor of a thousand. Say `increment = "0.001 mm"` in [input], or --increment; 0 '
-        "needs neither.",
+        "needs neither. A feed without a point is refused where settings of the control decide "
+        "on its unit: write the point, or on a Haas say `feed-increment` in [input].",
     ),
     "GX206": (
         "Code that would have to be run",
@@ -529,6 +530,13 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "The program has no such line",
         "Lines count from 1, as in an editor and in messages. `gcxform info FILE` says how many "
         "there are.",
+    ),
+    "GX732": (
+        "No safe restart at this line",
+        "A restart must bring the control into the state in which the program is at that line: "
+        "modes, tool, spindle, coolant, and where the axes stand. Something of that is not known, "
+        "or cannot be said by blocks. Begin at an earlier line: at the tool change, at the block "
+        "that states the arc, before the code that is named.",
     ),
     # --- 8xx: plugins ---
     "GX801": (

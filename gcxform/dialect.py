@@ -81,6 +81,8 @@ class Dialect:
     """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
     point_required: ClassVar[bool] = False
     """A distance without a point counts in increments of the control, which must be configured."""
+    feed_point_required: ClassVar[bool] = False
+    """An F without a point counts in a unit of the control, which must be configured."""
     circle_needs_axis_word: ClassVar[bool] = False
     turns_address: ClassVar[str] = ""
     """The word that counts the turns of an arc (n - 1 full turns beyond the arc itself)."""
@@ -94,9 +96,13 @@ class Dialect:
     resets_at_end: ClassVar[Mapping[str, str]] = {}
     """Where M2 and M30 do not stop the control: the modes they leave behind."""
     dwell: ClassVar[Mapping[str, float]] = {"P": 1.0}
-    """Seconds for one unit of each word that G4 takes; a value with a point is in seconds."""
+    """Seconds for one unit of each word that G4 takes."""
+    dwell_point_is_seconds: ClassVar[bool] = False
+    """A dwell that is written with a point is in seconds."""
     starts_in_frame: ClassVar[bool] = False
     """Whether the work offset of `initial` is in force for certain when a program starts."""
+    work_names: ClassVar[Mapping[str, str]] = {}
+    """Work offsets that have a second code: the code, and the name by which they are known."""
     g10_offsets: ClassVar[tuple[str, ...]] = ("G54", "G55", "G56", "G57", "G58", "G59")
     """The work offsets that P1, P2 ... of G10 L2 name."""
     g10_p0_is_active: ClassVar[bool] = False
@@ -133,6 +139,8 @@ class Dialect:
     """How a comment may begin: any of "(" and ";"."""
     has_percent: ClassVar[bool] = True
     has_program_number: ClassVar[bool] = True
+    program_number_digits: ClassVar[int] = 0
+    """How many digits a program number may have; 0: any number."""
     words: ClassVar[str] = "DEFHIJKLNPQRST"
     """Addresses the control knows, besides its axes and G, M, O."""
     numbers: ClassVar[NumberFormat] = NumberFormat()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -415,3 +416,20 @@ def test_a_good_dialect():
 def test_broken_dialects(broken, said):
     with pytest.raises(AssertionError, match=re.escape(said)):
         check_dialect(broken)
+
+
+HAAS_FACTS = sorted(
+    (Path(__file__).parents[2] / "shared" / "dialect-facts").glob("haas_*.nc"), key=str
+)
+
+
+@pytest.mark.skipif(not HAAS_FACTS, reason="the collection of dialect facts is absent")
+@pytest.mark.parametrize("path", HAAS_FACTS, ids=lambda path: path.stem)
+def test_facts_about_haas(path):
+    fact = json.loads(path.with_suffix(".json").read_text("utf-8"))
+    assert fact["expect"] in ("ok", "tool_refuse")
+    if fact["expect"] == "ok":
+        gx.read(path.read_bytes(), "haas")
+    else:
+        with pytest.raises(gx.InputError):
+            gx.read(path.read_bytes(), "haas")

@@ -163,8 +163,10 @@ class Pieces:
         self.feed_value = need
 
     def _must_have_point(self) -> bool:
-        """Whether feed words cannot be copied, because the target may want a point in them."""
-        return self.task.manner.crossing and self.task.manner.target.point_required
+        """Whether feed words cannot be copied, because a point decides on their unit."""
+        manner = self.task.manner
+        asks = manner.target.point_required or manner.source.feed_point_required
+        return manner.crossing and asks
 
     def _feed_lost(self) -> Flags:
         """Return the pieces at which the target forgets the feed."""

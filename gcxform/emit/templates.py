@@ -15,7 +15,7 @@ from gcxform.dialect import Dialect
 from gcxform.emit.fields import Axis, Centre, Copied, Feed, FeedWord, Field, Key, Literal, Role
 from gcxform.emit.manner import Manner
 from gcxform.modal.codes import Code
-from gcxform.modal.meaning import FRAMING, Meaning
+from gcxform.modal.meaning import FRAMING, Meaning, program_number_fits
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import BLANKS, Comment, Item, Mark, Number, Word
 
@@ -214,6 +214,8 @@ class TemplateWriter:
             raise CannotSayError(
                 word.start, word.end - word.start, f"{self.target.name} has no word {word.address}"
             )
+        if word.address == "O" and not program_number_fits(word, self.target):
+            self._refuse(word, "this program number")
         if word.address in CODES or not isinstance(word.value, Number):
             self._literal(lead, self._said(word.start, word.end))
             return
@@ -259,7 +261,7 @@ class TemplateWriter:
         if (
             self.meaning.dwell
             and code.group == "non-modal"
-            and self.source.dwell != self.target.dwell
+            and not _same_dwell(self.source, self.target)
         ):
             self._refuse(word, "this dwell")
 
@@ -408,6 +410,11 @@ STATED = {
     "motion": ("motion", ("G0", "G1", "G2", "G3")),
 }
 """Groups whose code may have to be stated: field of the key, and codes by value."""
+
+
+def _same_dwell(one: type[Dialect], other: type[Dialect]) -> bool:
+    """Whether a dwell of one dialect is as long in the other, however it is written."""
+    return one.dwell == other.dwell and one.dwell_point_is_seconds == other.dwell_point_is_seconds
 
 
 def _like(text: str, code: str) -> str:
