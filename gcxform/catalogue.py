@@ -341,7 +341,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "A number with too many digits",
         "The number has more digits than controls take for a word, because a position is far "
         "away or the decimals are many. Check the units of the program and `decimals` in "
-        "[output].",
+        "[output]. In inverse time (G93) the feed of a long and slow move is very small: cut it.",
     ),
     "GX504": (
         "An arc cannot be written as this control accepts it",

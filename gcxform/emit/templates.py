@@ -8,7 +8,7 @@ then a matter of whole arrays.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 from gcxform.dialect import Dialect
@@ -202,7 +202,7 @@ class TemplateWriter:
                 if not self._goes_without_saying(word, wanted):
                     self._literal(lead, text if wanted == name else _like(text, wanted))
                 return
-            if group == "motion" and self.key.role is not Role.NONE:
+            if group == "motion" and (self.key.role is not Role.NONE or self.key.silent):
                 return
         elif group in self.stated:
             return  # of several codes of a group one has been written
@@ -346,10 +346,11 @@ class TemplateWriter:
             self.fields.append(FeedWord(self._gap(b"")))
 
 
-STATED = {
+STATED: Mapping[str, tuple[str, Mapping[int, str] | tuple[str, ...]]] = {
     "units": ("inch", ("G21", "G20")),
     "distance": ("incremental", ("G90", "G91")),
     "arc-distance": ("absolute_centre", ("G91.1", "G90.1")),
+    "feed-mode": ("feed_mode", {93: "G93", 94: "G94", 95: "G95"}),
     "motion": ("motion", ("G0", "G1", "G2", "G3")),
 }
 """Groups whose code may have to be stated: field of the key, and codes by value."""

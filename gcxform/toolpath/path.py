@@ -76,12 +76,17 @@ class Blocks:
     inch            lengths are written in inches (G20)
     incremental     axis words are distances from where the axis stands (G91)
     absolute_centre I, J, K are the centre itself (G90.1)
+    feed_mode       `FeedMode` in which the block is read
     """
 
     first: int
     inch: Flags
     incremental: Flags
     absolute_centre: Flags
+    feed_mode: Small
+
+
+BLOCK_MODES = ("inch", "incremental", "absolute_centre", "feed_mode")
 
 
 @dataclass(frozen=True, slots=True)
