@@ -313,7 +313,7 @@ class _Job:
         for piece in members[lost[:1]].tolist():
             where = self.task.location(int(self.pieces.line[piece]))
             message = f"a feed this small has more than {MOST_DECIMALS} decimals"
-            raise InputError.one("GX503", message, where, "cut the move with \"segment\"")
+            raise InputError.one("GX503", message, where, 'cut the move with "segment"')
 
     def _check_lengths(self, text: bytes, lengths: Ints, chosen: Ints) -> None:
         target = self.task.manner.target

@@ -87,7 +87,7 @@ class Pieces:
         explicit = self.task.table.groups[self.task.shape, GROUPS.index(group)] >= 0
         return np.asarray(explicit[self.line])
 
-    def _mode(self, group: str, wanted: Flags, before: int, needs: Flags) -> Small:
+    def _mode(self, group: str, wanted: Flags | Small, before: int, needs: Flags) -> Small:
         """Return the values of a mode that have to be stated."""
         explicit = self._stated_in(group) & self.leads
         here = wanted[self.line].astype(np.int8)
@@ -113,11 +113,10 @@ class Pieces:
         Feed moves need theirs. So do blocks after which something else than this program may run,
         which shall find the control as the source leaves it.
         """
-        table, shape = self.task.table, self.task.shape
-        wanted, before = self.task.path.blocks.feed_mode, self.task.read.modes.feed_mode
+        blocks = self.task.path.blocks
+        wanted, before = blocks.feed_mode, self.task.read.modes.feed_mode
         self.feeding = self._of_rows(self.kind != Kind.RAPID, False)
-        leaves = (table.flag("ends", shape) | table.flag("loses_position", shape))[self.line]
-        needs = self.feeding | (leaves & self.ends)
+        needs = self.feeding | (blocks.leaves[self.line] & self.ends)
         self.feed_mode = self._mode("feed-mode", wanted, self.believed.feed_mode, needs)
         self.other_mode = (wanted != before)[self.line]
         self.repaired |= self.other_mode & (self.feed_mode >= 0)

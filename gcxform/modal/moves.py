@@ -165,6 +165,7 @@ class Moves:
                 self.modes.incremental,
                 self.modes.absolute_centre,
                 self.modes.feed_mode,
+                self.lines.flag("ends") | self.lines.flag("loses_position"),
             ),
             events_of(self.lines, rows),
         )
