@@ -180,9 +180,9 @@ class Verifier:
         moving = before.kind[owner] != Kind.RAPID
         other = before.feed_mode[owner] != after.feed_mode
         meant = after.feed_mode == self.feed_modes[-1] if self.feed_modes else False
-        wrong = other & moving & ~np.asarray(meant)
-        if wrong.any():
-            self._fail("the feed mode has changed", trace, int(np.argmax(wrong)))
+        strange = other & moving & ~np.asarray(meant)
+        if strange.any():
+            self._fail("the feed mode has changed", trace, int(np.argmax(strange)))
         if self.feed_modes:
             self._converted(trace)
             moving &= ~self._may_be_converted(trace, owner)
@@ -244,9 +244,9 @@ class Verifier:
         least = np.minimum(old.least[rows], self._sums(trace, mine, new.least)[rows])
         most = np.maximum(old.most[rows], self._sums(trace, mine, new.most)[rows])
         low, high = least * (1 - TIME_ERROR) - slack, most * (1 + TIME_ERROR) + slack
-        wrong = rows[~((implied >= low) & (implied <= high))]
-        if len(wrong):
-            line = int(before.source[wrong[0]])
+        off = rows[~((implied >= low) & (implied <= high))]
+        if len(off):
+            line = int(before.source[off[0]])
             self._raise("the time of a move is another after its feed was converted", line, 0)
 
     def _sums(self, trace: _Trace, mine: NDArray[np.bool_], values: Floats) -> Floats:

@@ -88,6 +88,8 @@ class TemplateWriter:
         self._repairs_wait = True
         for item in self.shape.block.items:
             lead = self.text[at : item.start].encode("latin-1") if whole else b""
+            if at and not self.fields:
+                lead = b""  # what stood before is left out, and the blank after it
             at = item.end
             self._item(item, lead, slot)
             if isinstance(item, Word) and item.address not in CODES:

@@ -113,7 +113,8 @@ class FeedPass(gx.Pass):
             self._refuse(path, rows[slow], message)
 
     def _refuse(self, path: gx.Toolpath, rows: Ints, message: str) -> None:
-        raise path.refuse("GX320", rows, message, "leave this part out, or the pass")
+        hint = "let the CAM write this part in the feed mode that is wanted"
+        raise path.refuse("GX320", rows, message, hint)
 
 
 class _Moves:
