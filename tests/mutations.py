@@ -137,6 +137,13 @@ MUTATIONS = (
         "path.sweep[row]",
         f"{KIT}[segment]",
     ),
+    Mutation(
+        "undo: pieces in inverse time keep the feed",
+        f"{PASSES}/undoing.py",
+        "feed / (part - before), feed)",
+        "feed, feed)",
+        f"{KIT}[volumetric]",
+    ),
     # feed
     Mutation(
         "feed: an arc is as long as its chord",

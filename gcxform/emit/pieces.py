@@ -184,9 +184,8 @@ class Pieces:
         """Return the pieces at which the target forgets the feed."""
         target = self.task.manner.target
         stated = self.feed_mode >= 0
-        if target.feed_mode_clears_feed:
-            lost = stated
-        else:
+        lost = stated
+        if not target.feed_mode_clears_feed and stated.any():
             held = self._held(self.feed_mode, "feed-mode", self.believed.feed_mode)
             lost = stated & (self.feed_mode != held)
         if target.change_clears_feed:

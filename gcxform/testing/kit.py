@@ -253,9 +253,15 @@ class _PathCheck:
         plain = ~rapid & ~timed
         kept = np.allclose(after.feed[plain], before.feed[owner[plain]], rtol=1e-9, equal_nan=True)
         self._assert(kept, trial, "changes the feed")
-        time = np.bincount(owner[timed], 1 / after.feed[timed], len(before))
+        self._times(trial, after, owner, timed)
+
+    def _times(
+        self, trial: _Trial, path: Toolpath, owner: NDArray[np.int64], timed: NDArray[np.bool_]
+    ) -> None:
+        """Check that rows in G93 share the time of the row that they come from."""
+        time = np.bincount(owner[timed], 1 / path.feed[timed], len(trial.before))
         used = np.unique(owner[timed])
-        good = np.allclose(time[used], 1 / before.feed[used], rtol=1e-6)
+        good = np.allclose(time[used], 1 / trial.before.feed[used], rtol=1e-6)
         self._assert(good, trial, "changes the time of a move in G93: its pieces share it")
 
     def _converted(self, trial: _Trial, owner: NDArray[np.int64], rows: NDArray[np.bool_]) -> None:
@@ -294,7 +300,11 @@ class _PathCheck:
         """Check deviation(before, undo(after)) <= promise, from the first point on."""
         promise = self.step.promise
         undone = self._undo(trial.label, trial.after)
-        off = deviation(trial.before, undone, self._owner(trial, undone))
+        owner = self._owner(trial, undone)
+        timed = (undone.feed_mode == FeedMode.INVERSE_TIME) & (undone.kind != Kind.RAPID)
+        timed &= trial.before.feed_mode[owner] == FeedMode.INVERSE_TIME
+        self._times(trial, undone, owner, timed)
+        off = deviation(trial.before, undone, owner)
         if not np.isfinite(promise):
             return
         worst = float(off.distance.max(initial=0.0))
