@@ -183,6 +183,19 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "Give a machine file with [work-offset.G54] and the others that are used, in place of "
         "part-origin.",
     ),
+    "GX320": (
+        "A feed that cannot be converted",
+        "Between G93 and G94 a feed is converted by the length of its move, as the control "
+        "measures it. Here that length is not known, or controls do not agree about it, or the "
+        "speed is not the program's: G95 depends on the spindle. Let the CAM write this part in "
+        "the feed mode that is wanted, or leave the pass out.",
+    ),
+    "GX321": (
+        "The program has no end at which its feed mode could be restored",
+        "The pass feed leaves the control in the feed mode in which the source program leaves it, "
+        "and states that mode in the block with M2 or M30. This program has none, and what runs "
+        "after it would find another feed mode. End the program with M2 or M30.",
+    ),
     # --- 4xx: machine and error-model files ---
     "GX401": (
         "A configuration file cannot be read",
@@ -353,7 +366,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "A number with too many digits",
         "The number has more digits than controls take for a word, because a position is far "
         "away or the decimals are many. Check the units of the program and `decimals` in "
-        "[output].",
+        "[output]. In inverse time (G93) the feed of a long and slow move is very small: cut it.",
     ),
     "GX504": (
         "An arc cannot be written as this control accepts it",

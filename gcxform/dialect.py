@@ -90,7 +90,15 @@ class Dialect:
     feed_before_units: ClassVar[bool] = False
     """F is read in the unit that was in force before a G20 or G21 of its own block."""
     change_clears_feed: ClassVar[bool] = False
-    """After another unit or feed mode the feed is not known until it is programmed."""
+    """After another unit the feed is not known until it is programmed; after another feed mode it
+    never is."""
+    feed_along_lines: ClassVar[bool] = False
+    """In moves of several kinds of axes a feed counts along X Y Z, or along all rotary axes where
+    they move alone; otherwise the length of such moves is not known."""
+    inverse_time_arcs: ClassVar[bool] = True
+    """Whether arcs take the time that G93 gives them."""
+    least_inverse_rate: ClassVar[float] = 0.0
+    """Units of the program per minute: in G93 the control moves no slower."""
     lone_cr_is_blank: ClassVar[bool] = False
     """A CR without LF is a blank inside a block, and no line end."""
     resets_at_end: ClassVar[Mapping[str, str]] = {}

@@ -31,6 +31,7 @@ PASSES = "plugins/gcxform_plugins/passes"
 VERIFY = "tests/test_verify.py"
 FIGURES = "tests/test_volumetric.py"
 FOUND = "tests/properties/test_found.py"
+CORPUS = "tests/test_corpus.py::test_case"
 KIT = "tests/test_kit.py::test_registered_passes"
 LAWS = "tests/properties/test_laws.py"
 CYCLES = "tests/test_cycles.py"
@@ -183,6 +184,77 @@ MUTATIONS = (
         "path.sweep[row]",
         f"{KIT}[segment]",
     ),
+    Mutation(
+        "undo: pieces in inverse time keep the feed",
+        f"{PASSES}/undoing.py",
+        "feed / (part - before), feed)",
+        "feed, feed)",
+        f"{KIT}[volumetric]",
+    ),
+    # feed
+    Mutation(
+        "feed: an arc is as long as its chord",
+        f"{PASSES}/feed.py",
+        "size[arcs] = self._arc_lengths(arcs)",
+        "pass",
+        f"{KIT}[feed]",
+    ),
+    Mutation(
+        "feed: a helix does not rise",
+        f"{PASSES}/feed.py",
+        "np.hypot(first * self.path.sweep[rows], self.way[arcs, normal])",
+        "first * self.path.sweep[rows]",
+        f"{KIT}[feed]",
+    ),
+    Mutation(
+        "feed: length over feed for feed over length",
+        f"{PASSES}/feed.py",
+        "factor = 1 / way if",
+        "factor = way if",
+        f"{KIT}[feed]",
+    ),
+    Mutation(
+        "feed: degrees count beside millimetres",
+        f"{PASSES}/feed.py",
+        "self.way[:, self.linear] ** 2",
+        "self.way**2",
+        f"{CORPUS}[feed/rotary]",
+    ),
+    Mutation(
+        "feed: the mode of a tool change is not restored",
+        f"{PASSES}/feed.py",
+        "kept = path.blocks.leaves",
+        "kept = np.zeros_like(path.blocks.leaves)",
+        f"{CORPUS}[feed/macro]",
+    ),
+    Mutation(
+        "feed: the slowest rate of the control is ignored",
+        f"{PASSES}/feed.py",
+        "if slow.any():",
+        "if False:",
+        f"{CORPUS}[bad/gx320-too-slow]",
+    ),
+    Mutation(
+        "writing: a feed mode that has changed is not stated",
+        "gcxform/emit/pieces.py",
+        'self._mode("feed-mode", wanted, self.believed.feed_mode, needs)',
+        'self._mode("feed-mode", wanted, self.believed.feed_mode, needs & False)',
+        f"{CORPUS}[feed/to-inverse-time]",
+    ),
+    Mutation(
+        "writing: the end of a circle in inverse time is written",
+        "gcxform/emit/emitter.py",
+        "silent |= full & (self.path.feed_mode[rows] == FeedMode.INVERSE_TIME)",
+        "silent |= False",
+        f"{CORPUS}[feed/full-circle]",
+    ),
+    Mutation(
+        "a program without end leaves its feed mode behind",
+        "gcxform/run.py",
+        "if feed_modes:",
+        "if False:",
+        f"{CORPUS}[bad/gx321-no-end]",
+    ),
     # reading
     Mutation(
         "reading: inches are millimetres",
@@ -288,7 +360,12 @@ MUTATIONS = (
     _verifier("rotary axes are ignored", "if not off.angle[turned] <= self.angle_budget:"),
     _verifier("kinds are ignored", "if wrong.any():"),
     _verifier("feeds are ignored", "if (off & plain).any():"),
-    _verifier("feed modes are ignored", "if (mode & moving).any():"),
+    _verifier("feed modes are ignored", "if strange.any():"),
+    _verifier("converted feeds are ignored", "if len(off):"),
+    _verifier(
+        "feed modes left behind are ignored",
+        "if (mode != read.modes.feed_mode[line]).any():",
+    ),
     _verifier("times are ignored", "if len(wrong):"),
     _verifier("events are ignored", "self._events(read.path.events, back.path.events, trace)", ""),
     _verifier("missing events are ignored", "if len(old) != len(new):"),

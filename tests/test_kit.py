@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -47,6 +46,8 @@ def instances(name: str) -> list[gx.Pass | gx.TextPass]:
             made(model=model, part_origin=HERE, split="none", iterations=1),
             made(model=model, part_origin=(-100.0, 0.0, 0.0), outside=gx.Outside.CLAMP),
         ]
+    if name == "feed":
+        return [made(mode="inverse-time"), made(mode="per-minute")]
     if name == "strip":
         return [made(), made(blanks=False), made(comments=False, empty=False)]
     return [made()]
@@ -416,20 +417,3 @@ def test_a_good_dialect():
 def test_broken_dialects(broken, said):
     with pytest.raises(AssertionError, match=re.escape(said)):
         check_dialect(broken)
-
-
-HAAS_FACTS = sorted(
-    (Path(__file__).parents[2] / "shared" / "dialect-facts").glob("haas_*.nc"), key=str
-)
-
-
-@pytest.mark.skipif(not HAAS_FACTS, reason="the collection of dialect facts is absent")
-@pytest.mark.parametrize("path", HAAS_FACTS, ids=lambda path: path.stem)
-def test_facts_about_haas(path):
-    fact = json.loads(path.with_suffix(".json").read_text("utf-8"))
-    assert fact["expect"] in ("ok", "tool_refuse")
-    if fact["expect"] == "ok":
-        gx.read(path.read_bytes(), "haas")
-    else:
-        with pytest.raises(gx.InputError):
-            gx.read(path.read_bytes(), "haas")

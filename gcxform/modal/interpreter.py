@@ -100,4 +100,6 @@ class Interpreter:
         self.state.feed_unit = float(modes.feed_unit[-1])
         if lines.flag("ends")[-1]:
             for name, code in self.dialect.resets_at_end.items():
+                if name == "feed-mode" and self.state.groups[name] != NUMBER[code]:
+                    self.state.feed = np.nan
                 self.state.groups[name] = NUMBER[code]

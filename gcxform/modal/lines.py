@@ -239,10 +239,11 @@ class Lines:
         cleared = np.zeros(self.live, np.bool_)
         if self.dialect.feed_mode_clears_feed:
             cleared |= self.stated("feed-mode")
-        if self.dialect.change_clears_feed and self.live:
-            mode = np.append(np.int8(self.state.groups["feed-mode"]), feed_mode)
+        mode = np.append(np.int8(self.state.groups["feed-mode"]), feed_mode)
+        cleared |= mode[1:] != mode[:-1]
+        if self.dialect.change_clears_feed:
             unit = np.append(self.state.groups["units"] == 1, inch)
-            cleared |= (mode[1:] != mode[:-1]) | (unit[1:] != unit[:-1])
+            cleared |= unit[1:] != unit[:-1]
         return cleared
 
     def _with_feed_increment(

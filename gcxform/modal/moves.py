@@ -168,6 +168,8 @@ class Moves:
                 self.modes.inch,
                 self.modes.incremental,
                 self.modes.absolute_centre,
+                self.modes.feed_mode,
+                self.lines.flag("ends") | self.lines.flag("loses_position"),
             ),
             events_of(self.lines, line),
             first=self.state.frames.first,

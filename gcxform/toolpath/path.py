@@ -78,12 +78,20 @@ class Blocks:
     inch            lengths are written in inches (G20)
     incremental     axis words are distances from where the axis stands (G91)
     absolute_centre I, J, K are the centre itself (G90.1)
+    feed_mode       `FeedMode` in which the block is read
+    leaves          whether after the block something else than this program may run: it ends, or
+                    calls what may move axes
     """
 
     first: int
     inch: Flags
     incremental: Flags
     absolute_centre: Flags
+    feed_mode: Small
+    leaves: Flags
+
+
+BLOCK_MODES = ("inch", "incremental", "absolute_centre", "feed_mode", "leaves")
 
 
 @dataclass(frozen=True, slots=True)

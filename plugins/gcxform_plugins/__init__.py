@@ -20,6 +20,7 @@ def gcxform_dialects() -> list[type[gx.Dialect]]:
 def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
     """Return the passes on toolpaths, then those on text."""
     from gcxform_plugins.passes.absolute import Absolute
+    from gcxform_plugins.passes.feed import FeedPass
     from gcxform_plugins.passes.metric import Metric
     from gcxform_plugins.passes.offsets import Offsets
     from gcxform_plugins.passes.plane import PlanePass
@@ -28,7 +29,17 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
     from gcxform_plugins.passes.strip import Strip
     from gcxform_plugins.passes.volumetric import Volumetric
 
-    return [Absolute, Metric, Offsets, PlanePass, Segment, Volumetric, Renumber, Strip]
+    return [
+        Absolute,
+        FeedPass,
+        Metric,
+        Offsets,
+        PlanePass,
+        Segment,
+        Volumetric,
+        Renumber,
+        Strip,
+    ]
 
 
 @gx.hookimpl

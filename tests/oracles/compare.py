@@ -67,13 +67,13 @@ def _feed_difference(ours: Any, theirs: CanonMove) -> str | None:
         return None if ours.feed is theirs.feed else "feed"
     if ours.feed_mode != theirs.feed_mode:
         return "feed mode"
-    linear, rotary = _lengths(ours)
+    linear, rotary = lengths(ours)
     alone = bool(rotary and not linear)  # only rotary axes move
     unit = 1.0 if alone else theirs.unit
     expected, slack = [ours.feed], SLACK + PRINTED * 25.4
     if ours.feed_mode == "G93":
-        lengths = [rotary] if alone else [linear, *_circle_lost(ours)]
-        expected = [max(length * ours.feed, LEAST_RATE * unit) for length in lengths]
+        ways = [rotary] if alone else [linear, *_circle_lost(ours)]
+        expected = [max(way * ours.feed, LEAST_RATE * unit) for way in ways]
         slack += 1e-6 * expected[0]
     if any(abs(rate - theirs.feed[alone]) <= slack for rate in expected):
         return None
@@ -91,7 +91,7 @@ def _circle_lost(move: Any) -> list[float]:
     return [math.hypot(_radius(move) * math.tau * move.turns, rise)]
 
 
-def _lengths(move: Any) -> tuple[float, float]:
+def lengths(move: Any) -> tuple[float, float]:
     """Return the path of the linear axes in mm, and that of the rotary ones in degrees."""
     delta = {a: v - move.start.get(a, 0.0) for a, v in move.end.items()}
     rotary = math.hypot(*(delta.get(a, 0.0) for a in "ABC"))

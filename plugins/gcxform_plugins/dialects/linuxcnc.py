@@ -9,6 +9,7 @@
 | turns of an arc | P n: n - 1 full turns more |
 | start and end radius | refused if they differ by more than 0.0282843 mm and 0.1 % |
 | G93, G94, G95 | set the feed to zero, also when re-stated |
+| feed | along X Y Z; in degrees where only rotary axes move; in G93 no less than 0.1 per minute |
 | `G20 F10` | F is in the unit before; after G20, G21 the feed in mm/min stays |
 | CR without LF | is a blank |
 | M5, M9 | act before the motion of their block |
@@ -156,6 +157,8 @@ class LinuxCNC(gx.Dialect):
     comments = "(;"
     words = "DEFHIJKLNPQRST@^$"
     arc_rotary = True
+    feed_along_lines = True
+    least_inverse_rate = 0.1
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     arc_rule = gx.ArcRule(
         absolute=0.0282843, relative=0.001, largest=2.82843, smallest=0.00127, r_short=0.00127

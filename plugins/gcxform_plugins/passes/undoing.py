@@ -125,10 +125,12 @@ class Machine:
         entry = path.entry.copy()
         entry[:3] = self._entry()
         columns: dict[str, Floats] = {"end": end}
+        before = np.where(np.append(True, rows[1:] != rows[:-1]), 0.0, np.append(0.0, part[:-1]))
+        inverse = path.feed_mode[rows] == gx.FeedMode.INVERSE_TIME
+        if inverse.any():
+            feed = path.feed[rows]
+            columns["feed"] = np.where(inverse, feed / (part - before), feed)
         if path.has_arcs:
-            before = np.where(
-                np.append(True, rows[1:] != rows[:-1]), 0.0, np.append(0.0, part[:-1])
-            )
             columns["sweep"] = path.sweep[rows] * (part - before)
             middle = self._points_between(rows, (part + before) / 2)
             columns["centre"] = path.centre[rows] + middle
