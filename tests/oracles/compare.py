@@ -20,7 +20,7 @@ def difference(program: Any, canon: CanonProgram) -> str | None:
     if [m.line for m in program.moves] != [m.line for m in theirs]:
         return f"moves on lines {[m.line for m in program.moves]}, {[m.line for m in theirs]}"
     for ours, move in zip(program.moves, theirs, strict=True):
-        if problem := _move_difference(ours, move):
+        if problem := move_difference(ours, move):
             return f"line {move.line}: {problem}\n  {ours}\n  {move}"
     events = [(index - null_before[index], text) for index, text in canon.events]
     if list(program.events) != events:
@@ -39,7 +39,7 @@ def _without_null_moves(program: Any, canon: CanonProgram) -> tuple[list[CanonMo
     return kept, null_before
 
 
-def _move_difference(ours: Any, theirs: CanonMove) -> str | None:
+def move_difference(ours: Any, theirs: CanonMove) -> str | None:
     if (ours.kind, ours.plane) != (theirs.kind, theirs.plane):
         return "kind or plane"
     for axis, value in ours.end.items():
