@@ -54,14 +54,14 @@ def move_difference(ours: Any, theirs: CanonMove) -> str | None:
                 return "centre"
         if not 0 < ours.sweep - math.tau * ours.turns <= math.tau + 1e-5:
             return "sweep"
-    return _feed_difference(ours, theirs)
+    return feed_difference(ours, theirs)
 
 
 def _close(move: CanonMove, axis: str) -> float:
     return SLACK + PRINTED * (move.unit if axis in "XYZ" else 1.0)
 
 
-def _feed_difference(ours: Any, theirs: CanonMove) -> str | None:
+def feed_difference(ours: Any, theirs: CanonMove) -> str | None:
     """Compare feeds; LinuxCNC has turned that of G93 into a rate along the path."""
     if ours.feed is None or theirs.feed is None:
         return None if ours.feed is theirs.feed else "feed"
