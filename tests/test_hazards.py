@@ -1,4 +1,4 @@
-"""The table of hazards: every hazard is in it, every case it names is there and does what it says."""
+"""The table of hazards: each hazard is in it, each case it names is there and does what it says."""
 
 from __future__ import annotations
 
