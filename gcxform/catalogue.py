@@ -117,6 +117,12 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "does not tell. Give it in [control] of the machine file.",
     ),
     # --- 3xx: geometry ---
+    "GX219": (
+        "A line or a number beyond what the control takes",
+        "The block is longer than the control reads, or has a number that its word cannot have: a "
+        "negative speed, tool, time or feed, a sequence number too large. Controls stop here, or "
+        "drop the block and go on with the next. Shorten the block, or correct the number.",
+    ),
     "GX301": (
         "The end of an arc is off its circle",
         "The distances from the centre to the start and to the end of the arc differ by more "

@@ -139,6 +139,8 @@ class Dialect:
     """Whether words may be written in small letters."""
     number_first: ClassVar[bool] = False
     """A sequence number anywhere but at the head of its block is refused."""
+    largest_number: ClassVar[int] = 0
+    """The largest sequence number the control takes; 0: no limit."""
     line_length: ClassVar[int] = 0
     """The longest block the control takes, in characters; 0: no limit."""
     length_without_blanks: ClassVar[bool] = False

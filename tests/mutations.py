@@ -35,6 +35,8 @@ CORPUS = "tests/test_corpus.py::test_case"
 KIT = "tests/test_kit.py::test_registered_passes"
 LAWS = "tests/properties/test_laws.py"
 CYCLES = "tests/test_cycles.py"
+LIMITS = "gcxform/modal/limits.py"
+FACTS = "tests/test_dialect_facts.py::test_our_facts"
 READING = "tests/test_verify.py::test_the_proof_reads_as_the_control_does"
 
 
@@ -354,6 +356,35 @@ MUTATIONS = (
         "believed.position = np.array(held)",
         "del held",
         VERIFY,
+    ),
+    # what a control refuses
+    Mutation(
+        "limits: a line may be one character longer",
+        LIMITS,
+        "if long > limit:",
+        "if long > limit + 1:",
+        FACTS,
+    ),
+    Mutation(
+        "limits: blanks and comments count",
+        LIMITS,
+        "without_blanks(window.line(line)) if blanks else int(length[line])",
+        "int(length[line])",
+        FACTS,
+    ),
+    Mutation(
+        "limits: speeds and times may be negative",
+        LIMITS,
+        "any(value < 0 for",
+        "any(value < -10 for",
+        FACTS,
+    ),
+    Mutation(
+        "limits: turns belong to lines",
+        LIMITS,
+        "modes.motion < Kind.ARC_CW",
+        "modes.motion > Kind.ARC_CCW",
+        FACTS,
     ),
     # verification
     _verifier("the budget is ignored", "if not off.distance[worst] <= self.budget:"),

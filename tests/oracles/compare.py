@@ -20,7 +20,7 @@ def difference(program: Any, canon: CanonProgram) -> str | None:
     if [m.line for m in program.moves] != [m.line for m in theirs]:
         return f"moves on lines {[m.line for m in program.moves]}, {[m.line for m in theirs]}"
     for ours, move in zip(program.moves, theirs, strict=True):
-        if problem := _move_difference(ours, move):
+        if problem := move_difference(ours, move):
             return f"line {move.line}: {problem}\n  {ours}\n  {move}"
     events = [(index - null_before[index], text) for index, text in canon.events]
     if list(program.events) != events:
@@ -39,7 +39,7 @@ def _without_null_moves(program: Any, canon: CanonProgram) -> tuple[list[CanonMo
     return kept, null_before
 
 
-def _move_difference(ours: Any, theirs: CanonMove) -> str | None:
+def move_difference(ours: Any, theirs: CanonMove) -> str | None:
     if (ours.kind, ours.plane) != (theirs.kind, theirs.plane):
         return "kind or plane"
     for axis, value in ours.end.items():
@@ -54,14 +54,14 @@ def _move_difference(ours: Any, theirs: CanonMove) -> str | None:
                 return "centre"
         if not 0 < ours.sweep - math.tau * ours.turns <= math.tau + 1e-5:
             return "sweep"
-    return _feed_difference(ours, theirs)
+    return feed_difference(ours, theirs)
 
 
 def _close(move: CanonMove, axis: str) -> float:
     return SLACK + PRINTED * (move.unit if axis in "XYZ" else 1.0)
 
 
-def _feed_difference(ours: Any, theirs: CanonMove) -> str | None:
+def feed_difference(ours: Any, theirs: CanonMove) -> str | None:
     """Compare feeds; LinuxCNC has turned that of G93 into a rate along the path."""
     if ours.feed is None or theirs.feed is None:
         return None if ours.feed is theirs.feed else "feed"

@@ -23,11 +23,10 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from oracles.canon import CanonMove, CanonProgram, Reader
+from oracles.canon import CALL, CanonMove, CanonProgram, Reader
 
 __all__ = ["CanonMove", "CanonProgram", "Rejected", "available", "run", "run_many"]
 
-CALL = re.compile(r"\s*\d+\s+N\S*\s+([A-Z_0-9]+)\((.*)\)\s*$")
 MARK = re.compile(r'"gcx (\d+) (\d+)"')
 NOISE = ("executing", "link (updating")
 TIMEOUT = 10.0  # seconds

@@ -66,6 +66,7 @@ class Grbl(gx.Dialect):
         "feed-mode": "G94",
         "frame": "G54",
     }
+    largest_number = 10_000_000
     line_length = 79
     length_without_blanks = True
     comments = "(;"
