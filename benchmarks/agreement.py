@@ -27,7 +27,11 @@ from oracles.canon import parsed  # noqa: E402
 from oracles.toolpaths import difference, read  # noqa: E402
 
 import gcxform as gx  # noqa: E402
+from gcxform.dialect import INCH  # noqa: E402
+from gcxform.machine.machine import Tool  # noqa: E402
 
+TABLE = {number: Tool(radius=0.05 * INCH) for number in range(1, 60)}
+"""The tools of `rs274/tool.tbl`."""
 BESIDE = HERE.parents[1] / "shared" / "corpus"
 AGREE, REFUSED, BOTH = "agree", "refused by gcxform", "refused by both"
 ALONE, DISAGREE, HANG = "refused by rs274 alone", "DISAGREE", "rs274 did not end"
@@ -59,7 +63,7 @@ def outcome(corpus: Path, row: dict[str, str]) -> Outcome:
     if row["exit"] == "-9":
         return Outcome(name, HANG)
     try:
-        path = read(text)
+        path = read(text, TABLE) if row["mode"].startswith("tbl") else read(text)
     except gx.InputError as error:
         first = error.diagnostics[0]
         line = first.where.line if first.where else 0

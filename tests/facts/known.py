@@ -19,10 +19,6 @@ WAITING = {
     "cutter compensation": """
         cutters_arc_beside cutters_inner_corner cutters_left cutters_outer_corner cutters_right
     """,
-    "diameters": """
-        frames_diameter frames_diameter_arc frames_diameter_g53 frames_diameter_g92
-        frames_diameter_incremental lcnc_g10_l20_diameter lcnc_g7_x_diameter_i_radial
-    """,
     "motion tied to the spindle": """
         others_constant_speed others_thread
     """,
@@ -40,11 +36,6 @@ WAITING = {
     "polar words": """
         lexical_polar
     """,
-    "reference points": """
-        grbl_g28_through grbl_g28_z_only homes_g28_1 homes_g28_all homes_g28_incremental
-        homes_g28_plunges homes_g28_shifted homes_g28_through homes_g28_x_and_y homes_g30
-        lcnc_g28_incremental_z0 lcnc_g28_intermediate_then_home lcnc_g28_no_words_all_axes
-    """,
     "subprograms and loops": """
         flow_break flow_call flow_call_is_local flow_do_while flow_if_else flow_m98
         flow_m98_is_global flow_m98_no_time flow_m98_three_times flow_modes_leak
@@ -60,20 +51,11 @@ WAITING = {
     "the programs of user codes are not known": """
         blocks_m100_unknown
     """,
-    "tool lengths": """
-        grbl_g43_1 lengths_g43_1 lengths_g43_1_incremental lengths_g43_2 lengths_g43_h
-        lengths_g43_loaded lengths_g43_vector lengths_g49
-    """,
     "tool tables": """
         lengths_t_unknown
     """,
     "work offsets and shifts": """
-        frames_arc_in_a_shift frames_g10_l2 frames_g10_l20 frames_g10_l2_active
-        frames_g10_l2_rotated frames_g10_l2_twice frames_g52 frames_g52_replaces_g92 frames_g53
-        frames_g53_feed frames_g53_modal frames_g55 frames_g59_3 frames_g92 frames_g92_1
-        frames_g92_2 frames_g92_and_g55 frames_g92_incremental grbl_g10_l2 grbl_g10_without_p
-        grbl_g53_absolute_in_g91 grbl_g92 lcnc_g10_l2_ignores_g91 lcnc_g52_replaces_g92
-        lcnc_g92_survives_g55 lengths_g53_length
+        grbl_g10_without_p
     """,
 }
 KNOWN = {name: reason for reason, names in WAITING.items() for name in names.split()}

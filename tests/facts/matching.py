@@ -13,10 +13,12 @@ from typing import Any
 
 from oracles.canon import CanonMove
 from oracles.compare import PRINTED, SLACK, feed_difference
-from oracles.toolpaths import START, moves_of
+from oracles.toolpaths import HOMES, OFFSETS, START, moves_of
 from reference.model import Move
 
 import gcxform as gx
+from gcxform.dialect import INCH
+from gcxform.machine.machine import Tool
 from gcxform.registry import default_registry
 from gcxform.toolpath.path import Toolpath
 
@@ -88,7 +90,40 @@ def reading(fact: dict[str, Any]) -> dict[str, Any]:
     """Return what gcxform is told beside the program: what the control was told."""
     skips = "-b" in fact.get("rs274_args", ())
     by_switch = "skip" if skips else "execute"
-    return {"start": START, "block_delete": by_switch if fact["dialect"] == "linuxcnc" else ""}
+    told: dict[str, Any] = {"start": START, "work_offsets": OFFSETS, "homes": HOMES}
+    if fact["dialect"] == "linuxcnc":
+        told |= {"block_delete": by_switch, "homes": homes_of(fact), "tools": tools_of(fact)}
+    return told
+
+
+def homes_of(fact: dict[str, Any]) -> dict[str, dict[str, float]]:
+    """Return the stored points of the variables of `rs274`, which are in inches."""
+    values = {}
+    for line in fact.get("var_file", "").splitlines():
+        number, value = line.split()[:2]
+        values[int(number)] = float(value)
+    points = {"G28": 5161, "G30": 5181}
+    return {
+        code: {
+            a: values.get(first + k, 0.0) * (INCH if k < 3 else 1) for k, a in enumerate("XYZABC")
+        }
+        for code, first in points.items()
+    }
+
+
+def tools_of(fact: dict[str, Any]) -> dict[int, Tool]:
+    """Return the tools of the table of `rs274`, which is in inches; D is a diameter."""
+    found = {}
+    for line in fact.get("tool_table", "").splitlines():
+        word = {w[0]: float(w[1:]) * INCH for w in line.split()}
+        tool = Tool(
+            length=word.get("Z", 0.0),
+            radius=word.get("D", 0.0) / 2,
+            x=word.get("X", 0.0),
+            y=word.get("Y", 0.0),
+        )
+        found[round(word["T"] / INCH)] = tool
+    return found
 
 
 # --- what the fact says ---

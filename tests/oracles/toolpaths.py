@@ -8,8 +8,9 @@ pairs of moves that move something.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import zip_longest
+from typing import Any
 
 import numpy as np
 from oracles.canon import CanonMove, CanonProgram
@@ -17,22 +18,39 @@ from oracles.compare import move_difference
 from reference.model import Move
 
 import gcxform as gx
+from gcxform.dialect import INCH
+from gcxform.machine.machine import Tool
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 KINDS = {Kind.RAPID: "RAPID", Kind.LINE: "LINE", Kind.ARC_CW: "ARC_CW", Kind.ARC_CCW: "ARC_CCW"}
 COMPARED = {"M0", "M1", "M2", "M3", "M4", "M5", "M6", "M7", "M8", "M9", "M30", "M60", "S", "T"}
 STILL = 1.001e-4  # units of the program: a move that the print shows as none
 START = dict.fromkeys("XYZABCUVW", 0.0)
+OFFSETS = {f"G{n}": START for n in (54, 55, 56, 57, 58, 59)} | {
+    f"G59.{n}": START for n in (1, 2, 3)
+}
+HOMES = {"G28": START, "G30": START}
+OWN_TOOLS = {
+    number: Tool(length=length * INCH, radius=diameter * INCH / 2)
+    for number, length, diameter in ((1, 0.511, 0.125), (2, 0.1, 0.0625), (3, 1.273, 0.201))
+}
+"""The tools that `rs274` has when it is given no table."""
 
 
-def read(text: bytes) -> Toolpath:
-    """Read a program as `rs274` does: from zero, slashes without effect. Raises InputError."""
-    return gx.read(text, "linuxcnc", start=START, block_delete="execute").path
+def read(text: bytes, tools: Mapping[int, Tool] = OWN_TOOLS) -> Toolpath:
+    """Read a program as `rs274` does, with its tools. Raises InputError.
+
+    It starts from zero, with all offsets zero, and executes blocks with a slash.
+    """
+    told: dict[str, Any] = {"work_offsets": OFFSETS, "homes": HOMES, "tools": tools}
+    return gx.read(text, "linuxcnc", start=START, block_delete="execute", **told).path
 
 
 def programmed(path: Toolpath) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return start, end (n, axes) and centre (n, 3) in the active program coordinates."""
-    return path.start, path.end, path.centre
+    start, end = path.start.copy(), path.end.copy()
+    start[:, :3], end[:, :3] = path.local(path.start[:, :3]), path.local(path.end[:, :3])
+    return start, end, path.local(path.centre)
 
 
 def moves_of(path: Toolpath) -> Iterator[Move]:
