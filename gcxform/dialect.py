@@ -17,6 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
+from gcxform.modal.arithmetic import Arithmetic
 from gcxform.modal.codes import ISO, ISO_M, Code, MCode
 from gcxform.syntax.grammar import Grammar, load
 
@@ -110,6 +111,8 @@ class Dialect:
     has_program_number: ClassVar[bool] = True
     words: ClassVar[str] = "DEFHIJKLNPQRST"
     """Addresses the control knows, besides its axes and G, M, O."""
+    arithmetic: ClassVar[Arithmetic | None] = None
+    """How the control computes expressions; None: they are refused."""
     numbers: ClassVar[NumberFormat] = NumberFormat()
     arc_planes: ClassVar[frozenset[str]] = frozenset({"XY", "ZX", "YZ"})
     """Planes in which the control can cut arcs."""

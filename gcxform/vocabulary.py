@@ -1,5 +1,6 @@
 """The vocabulary for plugin authors who write a dialect's code tables."""
 
+from gcxform.modal.arithmetic import MACRO_B, RS274
 from gcxform.modal.codes import (
     CALL,
     COMP,
@@ -24,7 +25,9 @@ __all__ = [
     "ISO",
     "ISO_M",
     "LENGTH",
+    "MACRO_B",
     "PROBE",
+    "RS274",
     "SHIFT",
     "SYNCHRONISED",
     "TRANSFORM",

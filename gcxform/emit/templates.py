@@ -90,8 +90,7 @@ class TemplateWriter:
             lead = self.text[at : item.start].encode("latin-1") if whole else b""
             at = item.end
             self._item(item, lead, slot)
-            if isinstance(item, Word) and item.address not in CODES:
-                slot += isinstance(item.value, Number)
+            slot += isinstance(item, Word) and item.address not in CODES
         self._rest()
         if whole and at < len(self.text):
             self.fields.append(Literal(self.text[at:].encode("latin-1")))
@@ -116,7 +115,7 @@ class TemplateWriter:
                 self._literal(lead, self._comment(item))
         elif isinstance(item, Mark):
             self._mark(item, lead)
-        else:
+        elif self.key.role not in (Role.MIDDLE, Role.LAST):
             self._check_same(item, f"{item.kind.replace('_', ' ')}")
             self._literal(lead, self.text[item.start : item.end])
 

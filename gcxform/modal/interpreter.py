@@ -14,6 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, Dialect
+from gcxform.modal.arithmetic import Key
+from gcxform.modal.computing import compute
+from gcxform.modal.expressions import parameter_key
 from gcxform.modal.lines import Lines
 from gcxform.modal.moves import Moves
 from gcxform.modal.state import Modes, Reading, State
@@ -61,7 +64,13 @@ class Interpreter:
         feed = np.nan if self.reading.feed is None else self.reading.feed
         unit = INCH if groups["units"] else 1.0
         known = bool(start) or self.dialect.block_delete == "execute"
-        return State(groups, position, feed, unit, known)
+        return State(groups, position, feed, unit, known, parameters=self._given())
+
+    def _given(self) -> dict[Key, float]:
+        """Return the parameters whose values are given, but for those the control changes."""
+        arithmetic = self.dialect.arithmetic
+        given = {parameter_key(name): v for name, v in self.reading.parameters.items()}
+        return {k: v for k, v in given.items() if arithmetic is not None and arithmetic.owns(k)}
 
     def interpret(self, window: Window, table: MeaningTable) -> Interpreted:
         """Return the moves of a window. Raises InputError with all that speaks against it."""
@@ -69,6 +78,7 @@ class Interpreter:
         before = replace(self.state, position=self.state.position.copy())
         lines = Lines(self.dialect, self.reading, self.state, window, table, self.file)
         lines.refuse_statically()
+        compute(lines)
         modes = lines.modes()
         path = Moves(lines, modes, self.axes).path()
         lines.findings.raise_if_any()
@@ -79,6 +89,7 @@ class Interpreter:
         """Leave the state in which the window ends."""
         if not lines.live:
             return
+        self.state.parameters = lines.parameters
         last = {
             "motion": modes.motion,
             "plane": modes.plane,

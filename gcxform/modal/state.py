@@ -23,6 +23,7 @@ class Reading:
     feed          feed in effect before the first F word, in the program's unit
     block_delete  "execute", "skip", or "" to refuse blocks with a slash that do anything
     units         "mm" or "in" until the program says G20 or G21; "" for the dialect's default
+    parameters    values of parameters before the first block, by number ("100") or name ("<a>")
     """
 
     start: Mapping[str, float] = field(default_factory=dict)
@@ -30,6 +31,7 @@ class Reading:
     feed: float | None = None
     block_delete: str = ""
     units: str = ""
+    parameters: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -46,6 +48,7 @@ class State:
     first_frame: int = -1
     rapid: bool = False
     stated: set[str] = field(default_factory=set)
+    parameters: dict[int | str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

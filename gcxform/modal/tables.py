@@ -40,6 +40,7 @@ FLAGS = (
     "loses_position",
     "has_events",
     "percent",
+    "computes",
 )
 
 
@@ -86,6 +87,7 @@ class MeaningTable:
             meaning.loses_position,
             bool(meaning.events),
             meaning.percent,
+            bool(meaning.assignments or meaning.expressions),
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

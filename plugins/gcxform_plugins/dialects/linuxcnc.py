@@ -14,6 +14,11 @@
 | M5, M9 | act before the motion of their block |
 | after M2, M30 | nothing is executed |
 | tool change | the axes stay, as far as the interpreter knows |
+| assignments | take effect after their block: `#1=#2 #2=#1` swaps |
+| expressions | a sign binds to its number, `**` goes from the left, numbers within 1e-4 are EQ |
+| a parameter that nothing has set | refused unless given: the control may have a value left |
+| #5001 and above, `#<_x>` and its like | belong to the control: refused |
+| O-words | refused: code that would have to be run |
 """
 
 from __future__ import annotations
@@ -96,6 +101,7 @@ class LinuxCNC(gx.Dialect):
     comments = "(;"
     words = "DEFHIJKLNPQRST@^$"
     arc_rotary = True
+    arithmetic = v.RS274
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     arc_rule = gx.ArcRule(
         absolute=0.0282843, relative=0.001, largest=2.82843, smallest=0.00127, r_short=0.00127
