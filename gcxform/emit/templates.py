@@ -12,12 +12,23 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from gcxform.dialect import Dialect
-from gcxform.emit.fields import Axis, Centre, Copied, Feed, FeedWord, Field, Key, Literal, Role
+from gcxform.emit.fields import (
+    Axis,
+    Centre,
+    Computed,
+    Copied,
+    Feed,
+    FeedWord,
+    Field,
+    Key,
+    Literal,
+    Role,
+)
 from gcxform.emit.manner import Manner
 from gcxform.modal.codes import Code
 from gcxform.modal.meaning import Meaning
 from gcxform.syntax.shapes import CODES, Shape
-from gcxform.syntax.tree import BLANKS, Comment, Item, Mark, Number, Word
+from gcxform.syntax.tree import BLANKS, Comment, Expression, Item, Mark, Number, Statement, Word
 
 PLANE_AXES = ("XY", "ZX", "YZ")
 OFFSETS = {"X": "I", "Y": "J", "Z": "K"}
@@ -42,7 +53,9 @@ def gaps_between(text: str, words: list[Word]) -> Iterator[bool]:
 
 
 def is_foreign(item: Item, target: type[Dialect]) -> bool:
-    """Whether an item is a part of the program frame that the target has not."""
+    """Whether an item has no place in another dialect: assignments, frames that it has not."""
+    if isinstance(item, Statement):
+        return item.kind == "assignment"
     if not isinstance(item, Mark):
         return False
     if item.kind == "percent":
@@ -116,8 +129,14 @@ class TemplateWriter:
         elif isinstance(item, Mark):
             self._mark(item, lead)
         elif self.key.role not in (Role.MIDDLE, Role.LAST):
-            self._check_same(item, f"{item.kind.replace('_', ' ')}")
-            self._literal(lead, self.text[item.start : item.end])
+            self._statement(item, lead)
+
+    def _statement(self, item: Statement, lead: bytes) -> None:
+        """Write an assignment; another dialect needs none, for its blocks hold plain numbers."""
+        if self.source is not self.target and is_foreign(item, self.target):
+            return
+        self._check_same(item, f"{item.kind.replace('_', ' ')}")
+        self._literal(lead, self.text[item.start : item.end])
 
     def _literal(self, lead: bytes, text: str) -> None:
         if lead or text:
@@ -180,6 +199,10 @@ class TemplateWriter:
             raise CannotSayError(
                 word.start, word.end - word.start, f"{self.target.name} has no word {word.address}"
             )
+        if isinstance(word.value, Expression) and self.source is not self.target:
+            self._literal(lead, "")
+            self.fields.append(Computed(word.address, slot))
+            return
         if word.address in CODES or not isinstance(word.value, Number):
             self._literal(lead, self._said(word.start, word.end))
             return

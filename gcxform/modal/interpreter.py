@@ -29,7 +29,8 @@ from gcxform.toolpath.path import Toolpath
 class Interpreted:
     """A window's toolpath and the modes of its lines; `live` lines are those the control runs.
 
-    `shape` (live,) are their shapes: that of an empty line for blocks that are skipped.
+    `shape` (live,) are their shapes: that of an empty line for blocks that are skipped. `value`
+    are the window's numbers, those that were computed among them.
     """
 
     path: Toolpath
@@ -37,6 +38,7 @@ class Interpreted:
     live: int
     shape: NDArray[np.int64]
     before: State
+    value: NDArray[np.float64]
 
 
 class Interpreter:
@@ -83,7 +85,7 @@ class Interpreter:
         path = Moves(lines, modes, self.axes).path()
         lines.findings.raise_if_any()
         self._carry(lines, modes)
-        return Interpreted(path, modes, lines.live, lines.shape, before)
+        return Interpreted(path, modes, lines.live, lines.shape, before, lines.window.value)
 
     def _carry(self, lines: Lines, modes: Modes) -> None:
         """Leave the state in which the window ends."""

@@ -18,6 +18,7 @@ from oracles.canon import CanonProgram
 from properties.test_rs274 import chain, drawn
 
 import gcxform as gx
+from gcxform.registry import default_registry
 from gcxform.toolpath.path import COLUMNS
 
 COUNT = settings.default.max_examples
@@ -71,8 +72,8 @@ class Disguise:
         return self.choose.choice(ways)
 
 
-def pair(seed: int) -> tuple[bytes, bytes]:
-    plain = drawn(seed, max_blocks=12)
+def pair(seed: int, **options: bool) -> tuple[bytes, bytes]:
+    plain = drawn(seed, max_blocks=12, **options)
     text = Disguise(random.Random(seed)).program(plain.decode("latin-1"))
     return plain, text.encode("latin-1")
 
@@ -117,6 +118,24 @@ def test_the_same_is_made_of_it() -> None:
         assert one.source_map == other.source_map
         done += 1
     assert done > 0.8 * COUNT
+
+
+def test_another_dialect_needs_no_parameters() -> None:
+    """Across dialects the two are written in the same words."""
+    across = gx.Pipeline(*(default_registry().dialect(name) for name in ("linuxcnc", "grbl")))
+    done = 0
+    for seed in range(COUNT):
+        plain, disguised = pair(seed, rotary=False)
+        one, other = outcome(across, plain), outcome(across, disguised)
+        if isinstance(one, str) or isinstance(other, str):
+            assert one == other
+            continue
+        assert b"#" not in other.text
+        assert b"[" not in other.text
+        paths = [gx.read(each.text, "grbl").path for each in (one, other)]
+        assert not same_path(*paths), f"{one.text.decode()}\n{other.text.decode()}"
+        done += 1
+    assert done > 0.2 * COUNT
 
 
 def outcome(steps: gx.Pipeline, program: bytes) -> gx.Result | str:
