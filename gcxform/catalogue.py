@@ -58,10 +58,11 @@ CATALOGUE: dict[str, tuple[str, str]] = {
     ),
     "GX206": (
         "Code that would have to be run",
-        "The block has an expression, a variable, an assignment or a flow word. Its value "
-        "depends on what ran before, on the control too, and this version computes none. Let "
-        "the CAM system write plain blocks, or run the program through the control's own "
-        "simulation first; the empty pipeline and passes on text keep such blocks as they are.",
+        "The block has a flow word, a call, a code that is the value of an expression, or an "
+        "assignment to a parameter of the control. Assignments and expressions in programs that "
+        "run from top to bottom are computed; this is not. Let the CAM system write plain blocks, "
+        "or run the program through the control's own simulation first; the empty pipeline and "
+        "passes on text keep such blocks as they are.",
     ),
     "GX220": (
         "A parameter whose value is not known",

@@ -91,6 +91,20 @@ MUTATIONS = (
         "else:\n            self._check_same",
         "tests/test_corpus.py",
     ),
+    Mutation(
+        "what a macro may have set is still known",
+        "gcxform/modal/computing.py",
+        "if self.meaning.runs_macro:",
+        "if False:",
+        "tests/test_corpus.py",
+    ),
+    Mutation(
+        "computed distances are not rounded to the increment",
+        "gcxform/modal/lines.py",
+        "np.where(computed, rounded, np",
+        "np.where(computed, value, np",
+        "tests/test_expressions.py",
+    ),
     # the error model and the search for commands
     Mutation(
         "compensate: the sign of the error is swapped",

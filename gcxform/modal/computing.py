@@ -27,7 +27,7 @@ def compute(lines: Lines) -> None:
     Raises InputError for what has no value, or none that is known.
     """
     having = np.flatnonzero(lines.flag("computes"))
-    if not len(having):
+    if not len(having) or lines.dialect.arithmetic is None:
         return
     value = lines.window.value.copy()
     for line in having.tolist():
@@ -56,6 +56,8 @@ class _Block:
             self.value[first + slot] = self._word(word)
         changes = [self._assigned(statement) for statement in self.meaning.assignments]
         self.lines.parameters.update(change for change in changes if change is not None)
+        if self.meaning.runs_macro:
+            self.lines.parameters = dict.fromkeys(self.lines.parameters, UNKNOWN)
 
     def _word(self, word: Word) -> float:
         """Return the value of a word, nan after a finding."""

@@ -17,7 +17,7 @@ from gcxform.syntax.grammar import rule_of, span_of
 from gcxform.syntax.tree import BLANKS
 
 Parameters = Mapping[Key, float]
-"""Values by parameter; nan for one that a refused block would have set."""
+"""Values by parameter; nan for one that is no longer known."""
 
 HOW_TO_GIVE = "set it in the program, or say what it is worth: parameters in [input]"
 
@@ -122,7 +122,8 @@ class Evaluator:
             return value
         name = written(key)
         if value is not None:
-            raise NoValueError(f"{name} would be set by a block that is refused", code="GX220")
+            message = f"{name} is not known after a block that is refused, or that may run a macro"
+            raise NoValueError(message, HOW_TO_GIVE, "GX220")
         if not self.arithmetic.owns(key):
             raise NoValueError(f"{name} has a value that only the control knows", code="GX220")
         message = f"nothing in the program has set {name} before"

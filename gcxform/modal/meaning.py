@@ -55,6 +55,7 @@ class Meaning:
     ends: bool = False
     loses_position: bool = False
     percent: bool = False
+    runs_macro: bool = False
     assignments: list[Statement] = field(default_factory=list)
     expressions: list[tuple[int, Word]] = field(default_factory=list)
     events: list[EventShape] = field(default_factory=list)
@@ -228,6 +229,7 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
             yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.barrier}")
         meaning.ends |= code.ends
         meaning.loses_position |= code.loses_position
+        meaning.runs_macro |= code is dialect.unknown_m
         order = {"tool": 30, "spindle": 40, "coolant": 41, "override": 42}.get(code.group, 43)
         meaning.events.append(EventShape(order, name, _take(code, dialect, meaning), code.after))
 

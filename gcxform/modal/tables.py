@@ -87,7 +87,7 @@ class MeaningTable:
             meaning.loses_position,
             bool(meaning.events),
             meaning.percent,
-            bool(meaning.assignments or meaning.expressions),
+            bool(meaning.assignments or meaning.expressions or meaning.runs_macro),
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -13,7 +13,7 @@
 | another unit or feed mode | the feed is not known until it is programmed |
 | M0 M1 M2 M30 M98 M99 | act after the motion of their block |
 | M5, M9 with a motion | the machine's PLC decides, commonly after it: taken as after |
-| an M code not listed | may move axes: positions are unknown after it |
+| an M code not listed | may run a macro: positions and variables are unknown after it |
 | tool change | moves axes: positions are unknown after it |
 | a variable that nothing has set | is null: refused, unless given |
 | a computed distance | in mm, rounded to `[input] increment`, which must be given |
