@@ -87,8 +87,8 @@ MUTATIONS = (
     Mutation(
         "an assignment stands in every piece of its block",
         "gcxform/emit/templates.py",
-        "elif self.key.role not in (Role.MIDDLE, Role.LAST):\n            self._check_same",
-        "else:\n            self._check_same",
+        "elif self.key.role not in (Role.MIDDLE, Role.LAST):\n            self._statement",
+        "else:\n            self._statement",
         "tests/test_corpus.py",
     ),
     Mutation(
