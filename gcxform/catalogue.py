@@ -59,10 +59,25 @@ CATALOGUE: dict[str, tuple[str, str]] = {
     ),
     "GX206": (
         "Code that would have to be run",
-        "The block has an expression, a variable, an assignment or a flow word. Its value "
-        "depends on what ran before, on the control too, and this version computes none. Let "
-        "the CAM system write plain blocks, or run the program through the control's own "
-        "simulation first; the empty pipeline and passes on text keep such blocks as they are.",
+        "The block has a flow word, a call, a code that is the value of an expression, or an "
+        "assignment to a parameter of the control. Assignments and expressions in programs that "
+        "run from top to bottom are computed; this is not. Let the CAM system write plain blocks, "
+        "or run the program through the control's own simulation first; the empty pipeline and "
+        "passes on text keep such blocks as they are.",
+    ),
+    "GX220": (
+        "A parameter whose value is not known",
+        "An expression reads a parameter (a variable) that nothing in the program has set before. "
+        "It has what another program has left in it, or what the control keeps there; to take it "
+        "for zero could move a tool to the wrong place. Set it in the program, or say what it is "
+        'worth: `parameters = { "100" = 1.5 }` in [input], with a name as `"<depth>"`. What '
+        "the control itself changes (positions, offsets, probe results) cannot be given.",
+    ),
+    "GX221": (
+        "An expression without a value",
+        "The control would stop here: a division by zero, the root of a negative number, a number "
+        "that is not whole where one is asked for. Or controls are known to compute this in two "
+        "ways, such as the rounding of a half on Fanuc; then write it so that there is one.",
     ),
     "GX207": (
         "An incremental move from an unknown position",

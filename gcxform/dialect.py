@@ -17,6 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
+from gcxform.modal.arithmetic import Arithmetic
 from gcxform.modal.codes import ISO, ISO_M, Code, MCode
 from gcxform.modal.cyclerule import CycleRule
 from gcxform.syntax.grammar import Grammar, load
@@ -153,6 +154,8 @@ class Dialect:
     """How many digits a program number may have; 0: any number."""
     words: ClassVar[str] = "DEFHIJKLNPQRST"
     """Addresses the control knows, besides its axes and G, M, O."""
+    arithmetic: ClassVar[Arithmetic | None] = None
+    """How the control computes expressions; None: they are refused."""
     numbers: ClassVar[NumberFormat] = NumberFormat()
     arc_planes: ClassVar[frozenset[str]] = frozenset({"XY", "ZX", "YZ"})
     """Planes in which the control can cut arcs."""

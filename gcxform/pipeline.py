@@ -262,4 +262,5 @@ def _reading(source: type[Dialect], spec: PipelineSpec) -> Reading:
         given.block_delete,
         given.units,
         given.feed_increment,
+        dict(given.parameters),
     )

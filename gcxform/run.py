@@ -268,6 +268,8 @@ class Run:
                 certificate.assumed.append(f"{group} {code}, which the program does not state")
         for axis, value in self.interpreter.reading.start.items():
             certificate.assumed.append(f"{axis} stands at {value:g} before the first block")
+        for name, value in self.interpreter.reading.parameters.items():
+            certificate.assumed.append(f"#{name} is {value:g} before the first block")
 
 
 def _in_words_of(target: type[Dialect], path: Toolpath) -> Toolpath:

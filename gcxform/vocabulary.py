@@ -1,5 +1,6 @@
 """The vocabulary for plugin authors who write a dialect's code tables."""
 
+from gcxform.modal.arithmetic import MACRO_B, RS274
 from gcxform.modal.codes import (
     AXES,
     CALL,
@@ -51,10 +52,12 @@ __all__ = [
     "ISO",
     "ISO_M",
     "LENGTH",
+    "MACRO_B",
     "ORIENT",
     "PROBE",
     "RESUME",
     "REVERSE",
+    "RS274",
     "SHIFT",
     "STOP",
     "SYNCHRONISED",

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from gcxform.diagnostics import Diagnostic, InputError
 from gcxform.emit.arcs import ArcEnds, centre_words
 from gcxform.emit.copying import EXACT, Copying
-from gcxform.emit.fields import Axis, Centre, Copied, Feed, Field, Key, Literal, Role
+from gcxform.emit.fields import Axis, Centre, Computed, Copied, Feed, Field, Key, Literal, Role
 from gcxform.emit.manner import Believed, Manner, Task
 from gcxform.emit.numbers import MOST_DECIMALS, quantise
 from gcxform.emit.pieces import Pieces
@@ -310,6 +310,8 @@ class _Job:
             renderer.literal(field.text)
         elif isinstance(field, Copied):
             renderer.copied(self.pieces.line[members], field.slot)
+        elif isinstance(field, Computed):
+            self._computed(field, self.pieces.line[members], renderer)
         elif isinstance(field, Axis):
             column = self.path.axes.index(field.address)
             present = self.positions.write[rows, column]
@@ -330,6 +332,18 @@ class _Job:
             everywhere = np.ones(len(rows), np.bool_)
             point = manner.target.point_required
             renderer.number(field.gap, "F", whole, decimals, everywhere, point)
+
+    def _computed(self, field: Computed, lines: Ints, renderer: Renderer) -> None:
+        """Write what expressions are worth as plain numbers, to the last bit."""
+        value = self.task.read.value[self.task.window.first_number[lines] + field.slot]
+        decimals = _decimals_of(value)
+        whole = quantise(value, decimals)
+        inexact = whole / 10.0**decimals != value
+        if inexact.any():
+            where = self.task.location(int(lines[np.argmax(inexact)]))
+            message = f"{field.address} is computed, and has more decimals than can be written"
+            raise InputError.one("GX501", message, where)
+        renderer.number(b"", field.address, whole, decimals, np.ones(len(lines), np.bool_), False)
 
     # --- after ---
 
@@ -406,6 +420,13 @@ def _decimals_for(value: Floats, usual: int) -> int:
         if (error <= 1e-4 * np.abs(value)).all():
             return decimals
     return MOST_DECIMALS
+
+
+def _decimals_of(value: Floats) -> int:
+    """Return the least number of decimals with which values are written to the last bit."""
+    few = range(MOST_DECIMALS)
+    exact = (d for d in few if (quantise(value, d) / 10.0**d == value).all())
+    return next(exact, MOST_DECIMALS)
 
 
 def _without_blanks(text: bytes, lengths: Ints) -> Ints:

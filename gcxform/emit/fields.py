@@ -65,6 +65,14 @@ class Copied:
 
 
 @dataclass(frozen=True, slots=True)
+class Computed:
+    """A word with the number that an expression in a slot of the source line is worth."""
+
+    address: str
+    slot: int
+
+
+@dataclass(frozen=True, slots=True)
 class Axis:
     """An axis word: left out where it need not be written, its gap where nothing is before it."""
 
@@ -88,4 +96,4 @@ class FeedWord:
     gap: bytes
 
 
-Field = Literal | Copied | Axis | Centre | FeedWord
+Field = Literal | Copied | Computed | Axis | Centre | FeedWord

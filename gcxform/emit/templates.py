@@ -12,12 +12,23 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 from gcxform.dialect import Dialect
-from gcxform.emit.fields import Axis, Centre, Copied, Feed, FeedWord, Field, Key, Literal, Role
+from gcxform.emit.fields import (
+    Axis,
+    Centre,
+    Computed,
+    Copied,
+    Feed,
+    FeedWord,
+    Field,
+    Key,
+    Literal,
+    Role,
+)
 from gcxform.emit.manner import Manner
 from gcxform.modal.codes import Code
 from gcxform.modal.meaning import FRAMING, Meaning, program_number_fits
 from gcxform.syntax.shapes import CODES, Shape
-from gcxform.syntax.tree import BLANKS, Comment, Item, Mark, Number, Word
+from gcxform.syntax.tree import BLANKS, Comment, Expression, Item, Mark, Number, Statement, Word
 
 PLANE_AXES = ("XY", "ZX", "YZ")
 OFFSETS = {"X": "I", "Y": "J", "Z": "K"}
@@ -42,7 +53,9 @@ def gaps_between(text: str, words: list[Word]) -> Iterator[bool]:
 
 
 def is_foreign(item: Item, target: type[Dialect]) -> bool:
-    """Whether an item is a part of the program frame that the target has not."""
+    """Whether an item has no place in another dialect: assignments, frames that it has not."""
+    if isinstance(item, Statement):
+        return item.kind == "assignment"
     if not isinstance(item, Mark):
         return False
     if item.kind == "percent":
@@ -117,8 +130,7 @@ class TemplateWriter:
                 lead = b""  # what stood before is left out, and the blank after it
             at = item.end
             self._item(item, lead, slot)
-            if isinstance(item, Word) and item.address not in CODES:
-                slot += isinstance(item.value, Number)
+            slot += isinstance(item, Word) and item.address not in CODES
         self._rest()
         if whole and at < len(self.text):
             self.fields.append(Literal(self.text[at:].encode("latin-1")))
@@ -143,9 +155,15 @@ class TemplateWriter:
                 self._literal(lead, self._comment(item))
         elif isinstance(item, Mark):
             self._mark(item, lead)
-        else:
-            self._check_same(item, f"{item.kind.replace('_', ' ')}")
-            self._literal(lead, self.text[item.start : item.end])
+        elif self.key.role not in (Role.MIDDLE, Role.LAST):
+            self._statement(item, lead)
+
+    def _statement(self, item: Statement, lead: bytes) -> None:
+        """Write an assignment; another dialect needs none, for its blocks hold plain numbers."""
+        if self.source is not self.target and is_foreign(item, self.target):
+            return
+        self._check_same(item, f"{item.kind.replace('_', ' ')}")
+        self._literal(lead, self.text[item.start : item.end])
 
     def _literal(self, lead: bytes, text: str) -> None:
         if lead or text:
@@ -218,6 +236,10 @@ class TemplateWriter:
             )
         if word.address == "O" and not program_number_fits(word, self.target):
             self._refuse(word, "this program number")
+        if isinstance(word.value, Expression) and self.source is not self.target:
+            self._literal(lead, "")
+            self.fields.append(Computed(word.address, slot))
+            return
         if word.address in CODES or not isinstance(word.value, Number):
             self._literal(lead, self._said(word.start, word.end))
             return

@@ -14,6 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, Dialect
+from gcxform.modal.arithmetic import Key
+from gcxform.modal.computing import compute
+from gcxform.modal.expressions import parameter_key
 from gcxform.modal.frames import FrameState
 from gcxform.modal.limits import refuse_limits
 from gcxform.modal.lines import Lines
@@ -28,7 +31,8 @@ from gcxform.toolpath.path import Toolpath
 class Interpreted:
     """A window's toolpath and the modes of its lines; `live` lines are those the control runs.
 
-    `shape` (live,) are their shapes: that of an empty line for blocks that are skipped.
+    `shape` (live,) are their shapes: that of an empty line for blocks that are skipped. `value`
+    are the window's numbers, those that were computed among them.
     """
 
     path: Toolpath
@@ -36,6 +40,7 @@ class Interpreted:
     live: int
     shape: NDArray[np.int64]
     before: State
+    value: NDArray[np.float64]
 
 
 class Interpreter:
@@ -69,7 +74,13 @@ class Interpreter:
             self.reading.work_offsets,
             self.reading.homes,
         )
-        return State(groups, position, feed, unit, frames)
+        return State(groups, position, feed, unit, frames, parameters=self._given())
+
+    def _given(self) -> dict[Key, float]:
+        """Return the parameters whose values are given, but for those the control changes."""
+        arithmetic = self.dialect.arithmetic
+        given = {parameter_key(name): v for name, v in self.reading.parameters.items()}
+        return {k: v for k, v in given.items() if arithmetic is not None and arithmetic.owns(k)}
 
     def interpret(self, window: Window, table: MeaningTable) -> Interpreted:
         """Return the moves of a window. Raises InputError with all that speaks against it."""
@@ -77,17 +88,19 @@ class Interpreter:
         before = replace(self.state, position=self.state.position.copy())
         lines = Lines(self.dialect, self.reading, self.state, window, table, self.file)
         lines.refuse_statically()
+        compute(lines)
         modes = lines.modes()
         path = Moves(lines, modes, self.axes).path()
         refuse_limits(lines, modes, path.events)
         lines.findings.raise_if_any()
         self._carry(lines, modes)
-        return Interpreted(path, modes, lines.live, lines.shape, before)
+        return Interpreted(path, modes, lines.live, lines.shape, before, lines.window.value)
 
     def _carry(self, lines: Lines, modes: Modes) -> None:
         """Leave the state in which the window ends."""
         if not lines.live:
             return
+        self.state.parameters = lines.parameters
         last = {
             "motion": modes.motion,
             "plane": modes.plane,

@@ -12,6 +12,7 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.state import Modes, Reading, State
 from gcxform.modal.tables import GROUPS, NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
+from gcxform.syntax.tree import COMPUTED
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -42,6 +43,7 @@ class Lines:
     live     how many there are; those after the end of the program are not executed
     shape    (live,) their shapes; blocks that are skipped have that of an empty line
     first    (live,) index of the first number of each
+    parameters   what the program has set, before the window and, once computed, after it
     """
 
     def __init__(
@@ -59,6 +61,7 @@ class Lines:
         self.window = window
         self.table = table
         self.findings = Findings(file, window, table)
+        self.parameters = dict(state.parameters)
         self.live = self._live()
         self.shape = window.shape[: self.live]
         self.first = window.first_number[: self.live]
@@ -148,20 +151,26 @@ class Lines:
 
     def _with_increment(self, address: str, value: Floats, present: Flags, number: Ints) -> Floats:
         """Return distances with those that have no point scaled by the increment."""
-        pointless = present & (self.window.decimals[number] < 0) & (value != 0)
+        decimals, increment = self.window.decimals[number], self.reading.increment
+        pointless = present & (decimals < 0) & (value != 0)
         if not pointless.any():
             return value
-        if self.reading.increment is None:
+        computed = pointless & (decimals == COMPUTED)
+        if increment is None:
             for line in np.flatnonzero(pointless).tolist():
+                why = "has no decimal point: its unit"
+                if computed[line]:
+                    why = "is computed: to what it is rounded"
                 self.findings.add(
                     line,
                     "GX205",
-                    f"{address} has no decimal point: its unit depends on the control",
+                    f"{address} {why} depends on the control",
                     address,
                     'say what 1 is worth: increment = "0.001 mm" in [input]',
                 )
             return value
-        return np.where(pointless, value * self.reading.increment, value)
+        rounded = np.copysign(np.floor(np.abs(value) / increment + 0.5) * increment, value)
+        return np.where(computed, rounded, np.where(pointless, value * increment, value))
 
     def refuse_pointless(self, line: int, address: str, number: int) -> None:
         """Refuse a distance without a point in a word that a code takes for itself."""

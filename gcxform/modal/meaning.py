@@ -107,6 +107,9 @@ class Meaning:
     ends: bool = False
     loses_position: bool = False
     percent: bool = False
+    runs_macro: bool = False
+    assignments: list[Statement] = field(default_factory=list)
+    expressions: list[tuple[int, Word]] = field(default_factory=list)
     events: list[EventShape] = field(default_factory=list)
     acts: list[Act] = field(default_factory=list)
     refusal: Refusal | None = None
@@ -141,26 +144,16 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
     for item in shape.block.items:
         if isinstance(item, Word):
             if isinstance(item.value, Expression):
-                yield Refusal(
-                    "GX206",
-                    item.start,
-                    item.end - item.start,
-                    f"the value of {item.address} is an expression, which is not computed",
-                    "let the CAM write plain numbers, or use passes that keep positions",
-                )
-            elif item.address not in CODES:
+                yield from _expression(item, dialect)
+                meaning.expressions.append((slot, item))
+            if item.address not in CODES:
                 if item.address in meaning.slots and item.address != "N":
                     yield Refusal("GX203", item.start, 1, f"{item.address} stands here twice")
                 meaning.slots.setdefault(item.address, slot)
                 slot += 1
         elif isinstance(item, Statement):
-            yield Refusal(
-                "GX206",
-                item.start,
-                item.end - item.start,
-                f"{item.kind.replace('_', ' ')} is code that would have to be run",
-                "let the CAM write plain blocks, or use passes that keep positions",
-            )
+            yield from _statement(item, shape, dialect)
+            meaning.assignments.append(item)
         elif isinstance(item, Mark):
             meaning.deleted |= item.kind == "block_delete"
             meaning.percent |= item.kind == "percent"
@@ -168,6 +161,39 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
             text = shape.block.text[item.start : item.end]
             if text[0] not in dialect.comments:
                 yield Refusal("GX101", item.start, 1, f"{dialect.name} has no such comments")
+
+
+def _expression(word: Word, dialect: type[Dialect]) -> Iterator[Refusal]:
+    """Refuse a word whose value cannot be computed."""
+    if dialect.arithmetic is None:
+        message = f"the value of {word.address} is an expression, which is not computed"
+    elif word.address in CODES or word.address == "N":
+        message = f"{word.address} is followed by an expression: which one it is must be written"
+    else:
+        return
+    hint = "let the CAM write plain numbers, or use passes that keep positions"
+    yield Refusal("GX206", word.start, word.end - word.start, message, hint)
+
+
+def _statement(item: Statement, shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
+    """Refuse what is not an assignment, and one that takes effect at an uncertain time."""
+    arithmetic, message = dialect.arithmetic, ""
+    if arithmetic is None or item.kind != "assignment":
+        message = f"{item.kind.replace('_', ' ')} is code that would have to be run"
+    elif not arithmetic.beside_words and not _stands_alone(item, shape):
+        message = "whether this assignment acts before the rest of its block is not certain"
+    if message:
+        hint = "let the CAM write plain blocks, or use passes that keep positions"
+        yield Refusal("GX206", item.start, item.end - item.start, message, hint)
+
+
+def _stands_alone(item: Statement, shape: Shape) -> bool:
+    """Whether a statement is all that its block does."""
+    others = (other for other in shape.block.items if other is not item)
+    return all(
+        isinstance(other, Comment | Mark) or (isinstance(other, Word) and other.address == "N")
+        for other in others
+    )
 
 
 def _code_of(word: Word) -> str:
@@ -274,6 +300,7 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
             yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.barrier}")
         meaning.ends |= code.ends
         meaning.loses_position |= code.loses_position
+        meaning.runs_macro |= code is dialect.unknown_m
         order = {"tool": 30, "spindle": 40, "coolant": 41, "override": 42}.get(code.group, 43)
         taken = _take(code, dialect, meaning)
         if code.act:

@@ -32,6 +32,7 @@ class Reading:
     control       settings of the control on which the meaning of codes depends
     feed_increment   what 1 means in an F without a point, in units per minute; None: such an F is
                   refused where the dialect asks for a point
+    parameters    values of parameters before the first block, by number ("100") or name ("<a>")
     """
 
     start: Mapping[str, float] = field(default_factory=dict)
@@ -40,6 +41,7 @@ class Reading:
     block_delete: str = ""
     units: str = ""
     feed_increment: float | None = None
+    parameters: Mapping[str, float] = field(default_factory=dict)
     work_offsets: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     homes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     tools: Mapping[int, Tool] = field(default_factory=dict)
@@ -70,6 +72,7 @@ class State:
     percents: int = 0
     rapid: bool = False
     stated: set[str] = field(default_factory=set)
+    parameters: dict[int | str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

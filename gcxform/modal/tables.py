@@ -45,6 +45,7 @@ FLAGS = (
     "work_only",
     "framing",
     "presets",
+    "computes",
 )
 
 
@@ -96,6 +97,7 @@ class MeaningTable:
             [act.name for act in meaning.acts] == ["work"] and "frame" in meaning.groups,
             any(act.name in FRAMING for act in meaning.acts),
             any(act.name in PRESETS for act in meaning.acts),
+            bool(meaning.assignments or meaning.expressions or meaning.runs_macro),
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -13,11 +13,21 @@
 | another unit or feed mode | the feed is not known until it is programmed |
 | M0 M1 M2 M30 M98 M99 | act after the motion of their block |
 | M5, M9 with a motion | the machine's PLC decides, commonly after it: taken as after |
-| an M code not listed | may move axes: positions are unknown after it |
+| an M code not listed | may run a macro: positions and variables are unknown after it |
 | tool change | moves axes: positions are unknown after it |
 | canned cycles | R, Z, P, Q stay until the cycle mode ends; K0 stores them without drilling |
 | G73, G83 between pecks | parameters 5114 and 5115: must be given |
 | G76, G87, G88 | depend on parameters or on the operator: refused |
+| a variable that nothing has set | is null: refused, unless given |
+| a computed distance | in mm, rounded to `[input] increment`, which must be given |
+| an assignment beside words | when it acts is not certain: refused |
+| AND OR XOR | known in two ways: refused |
+| FIX, FUP, MOD of negative numbers, halves in ROUND | known in two ways: refused |
+| ATAN, ASIN below 0 | a parameter may add 360 degrees: refused |
+| ROUND in a word | rounds to the increment of the word: refused |
+| computed S T F D H L P | must be whole numbers |
+| #1000 and above | belong to the control: refused |
+| IF WHILE GOTO G65 | refused: code that would have to be run |
 """
 
 from __future__ import annotations
@@ -140,3 +150,4 @@ class Fanuc(gx.Dialect):
     dwell: ClassVar[Mapping[str, float]] = {"X": 1.0, "U": 1.0, "P": 0.001}
     arc_rule = gx.ArcRule(absolute=0.01)
     cycle_rule = CYCLE_RULE
+    arithmetic = v.MACRO_B

@@ -19,6 +19,11 @@
 | canned cycles | R, Z, P, Q stay within one cycle; from below R first up; 0.254 mm between pecks |
 | G74, G84 in G18, G19 | the axes of the feed moves are mixed up: refused |
 | G76 | a thread: refused |
+| assignments | take effect after their block: `#1=#2 #2=#1` swaps |
+| expressions | a sign binds to its number, `**` goes from the left, numbers within 1e-4 are EQ |
+| a parameter that nothing has set | refused unless given: the control may have a value left |
+| #5001 and above, `#<_x>` and its like | belong to the control: refused |
+| O-words | refused: code that would have to be run |
 """
 
 from __future__ import annotations
@@ -159,6 +164,7 @@ class LinuxCNC(gx.Dialect):
     arc_rotary = True
     feed_along_lines = True
     least_inverse_rate = 0.1
+    arithmetic = v.RS274
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     arc_rule = gx.ArcRule(
         absolute=0.0282843, relative=0.001, largest=2.82843, smallest=0.00127, r_short=0.00127
