@@ -68,11 +68,13 @@ if TYPE_CHECKING:
     from gcxform.toolpath.facts import KNOWN_POSITIONS as KNOWN_POSITIONS
     from gcxform.toolpath.facts import LINEAR_ONLY as LINEAR_ONLY
     from gcxform.toolpath.facts import METRIC as METRIC
+    from gcxform.toolpath.facts import NO_CYCLES as NO_CYCLES
     from gcxform.toolpath.facts import NOMINAL as NOMINAL
     from gcxform.toolpath.facts import WORKPIECE_FRAME as WORKPIECE_FRAME
     from gcxform.toolpath.facts import XY_ARCS as XY_ARCS
     from gcxform.toolpath.facts import Fact as Fact
     from gcxform.toolpath.frames import Frame as Frame
+    from gcxform.toolpath.path import OWN_DISTANCES as OWN_DISTANCES
     from gcxform.toolpath.path import Event as Event
     from gcxform.toolpath.path import FeedMode as FeedMode
     from gcxform.toolpath.path import Form as Form
@@ -101,10 +103,10 @@ _HOMES = {
     "swept_anew",
     "toolpath.crossings": "line_crossings",
     "toolpath.deviation": "deviation",
-    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NOMINAL "
+    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NO_CYCLES NOMINAL "
     "WORKPIECE_FRAME XY_ARCS Fact",
     "toolpath.frames": "Frame",
-    "toolpath.path": "Event FeedMode Form Kind Plane Toolpath column_major",
+    "toolpath.path": "Event FeedMode Form Kind OWN_DISTANCES Plane Toolpath column_major",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 

@@ -65,20 +65,6 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "or run the program through the control's own simulation first; the empty pipeline and "
         "passes on text keep such blocks as they are.",
     ),
-    "GX220": (
-        "A parameter whose value is not known",
-        "An expression reads a parameter (a variable) that nothing in the program has set before. "
-        "It has what another program has left in it, or what the control keeps there; to take it "
-        "for zero could move a tool to the wrong place. Set it in the program, or say what it is "
-        'worth: `parameters = { "100" = 1.5 }` in [input], with a name as `"<depth>"`. What '
-        "the control itself changes (positions, offsets, probe results) cannot be given.",
-    ),
-    "GX221": (
-        "An expression without a value",
-        "The control would stop here: a division by zero, the root of a negative number, a number "
-        "that is not whole where one is asked for. Or controls are known to compute this in two "
-        "ways, such as the rounding of a half on Fanuc; then write it so that there is one.",
-    ),
     "GX207": (
         "An incremental move from an unknown position",
         "In G91 a word adds to where the axis stands, and nothing has said where that is: at "
@@ -131,13 +117,34 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "What the code does depends on a parameter or setting of the control which the program "
         "does not tell. Give it in [control] of the machine file.",
     ),
-    # --- 3xx: geometry ---
+    "GX215": (
+        "A canned cycle is not expanded",
+        "What the cycle does cannot be told: a word is missing or cannot be, a level is not known, "
+        "the control refuses it, or a setting of the control decides. The message says which. "
+        "Settings go to [control] of the machine file: peck-return for G73, peck-clearance for "
+        "G83.",
+    ),
     "GX219": (
         "A line or a number beyond what the control takes",
         "The block is longer than the control reads, or has a number that its word cannot have: a "
         "negative speed, tool, time or feed, a sequence number too large. Controls stop here, or "
         "drop the block and go on with the next. Shorten the block, or correct the number.",
     ),
+    "GX220": (
+        "A parameter whose value is not known",
+        "An expression reads a parameter (a variable) that nothing in the program has set before. "
+        "It has what another program has left in it, or what the control keeps there; to take it "
+        "for zero could move a tool to the wrong place. Set it in the program, or say what it is "
+        'worth: `parameters = { "100" = 1.5 }` in [input], with a name as `"<depth>"`. What '
+        "the control itself changes (positions, offsets, probe results) cannot be given.",
+    ),
+    "GX221": (
+        "An expression without a value",
+        "The control would stop here: a division by zero, the root of a negative number, a number "
+        "that is not whole where one is asked for. Or controls are known to compute this in two "
+        "ways, such as the rounding of a half on Fanuc; then write it so that there is one.",
+    ),
+    # --- 3xx: geometry ---
     "GX301": (
         "The end of an arc is off its circle",
         "The distances from the centre to the start and to the end of the arc differ by more "

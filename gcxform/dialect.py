@@ -115,6 +115,9 @@ class Dialect:
     g10_offsets: ClassVar[tuple[str, ...]] = ("G54", "G55", "G56", "G57", "G58", "G59")
     """The work offsets that P1, P2 ... of G10 L2 name."""
     g10_p0_is_active: ClassVar[bool] = False
+    g10_needs_p: ClassVar[bool] = True
+    length_axes: ClassVar[str] = "XYZ"
+    """The axes along which G43.1 gives a length."""
     g10_sets_position: ClassVar[bool] = False
     """G10 L20 makes the present position read what is given."""
     g10_ignores_g91: ClassVar[bool] = False

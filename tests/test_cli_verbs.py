@@ -119,7 +119,7 @@ def test_info_of_meaning(here: Path) -> None:
     assert (tool["moves"], tool["feed"], tool["extents"]["Z"]) == (3, [100, 100], [0, 5])
     assert found["time_s"]["feed"] == pytest.approx((5 + 10 * math.pi) / 100 * 60, abs=1e-3)
     assert (found["time_s"]["dwell"], found["time_without"]) == (1.0, {"rapid moves": 1})
-    assert found["features"] == ["arcs", "full circles", "reference moves (G28)"]
+    assert found["features"] == ["arcs", "full circles", "probing (G38.2)"]
     assert found["refused"] == 1
     assert found["first_refused"]["6"].startswith("GX210")
     shown = call(*words).stdout

@@ -287,16 +287,16 @@ def test_modal_codes_that_no_preamble_states_are_unsafe() -> None:
     """A dialect may make any code modal: what is not in the tables is refused by name."""
 
     class Acme(default_registry().dialect("fanuc")):  # type: ignore[misc]
-        """A control whose G81 and G5 are read, whatever they do."""
+        """A control whose G19.1 and G5 are read, whatever they do."""
 
         name = "acme"
         codes = {  # noqa: RUF012
             **default_registry().dialect("fanuc").codes,
-            "G81": gx.Code("motion"),
+            "G19.1": gx.Code("plane"),
             "G5": gx.Code("thermal", v.inert("").effect),
         }
 
-    for block, code in (("G81 X3.", "G81"), ("G5", "G5")):
+    for block, code in (("G19.1", "G19.1"), ("G5", "G5")):
         text = f"{HEAD}{block}\nG1 X1.\nX2.\nM30\n".encode()
         with pytest.raises(gx.InputError, match=f"in line 4 {code} was in force"):
             Restart(Acme, Source.of_bytes(text), Reading(), 6)

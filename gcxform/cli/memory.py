@@ -17,6 +17,7 @@ import numpy as np
 from gcxform.dialect import Dialect
 from gcxform.modal.codes import Effect
 from gcxform.modal.meaning import Meaning
+from gcxform.modal.tables import CYCLES, NUMBER
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import Block, Number, Word
 from gcxform.toolpath.path import Event
@@ -107,7 +108,7 @@ class Memory:
                 code.effect is Effect.MODAL and name in RESTATED.get(code.group, ())
             ):
                 return ""
-            if code.act in ACTS_RESTATED:
+            if code.act in ACTS_RESTATED or NUMBER.get(name) in CYCLES:
                 return ""
             known = code.effect in (Effect.INERT, Effect.DWELL) and code.group in HANDLED
             return "" if known else f"{name} was in force, which is not restated"

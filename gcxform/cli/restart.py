@@ -15,7 +15,7 @@ from gcxform.dialect import INCH, Dialect
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading, State
-from gcxform.modal.tables import GROUPS, NUMBER
+from gcxform.modal.tables import CYCLES, GROUPS, NUMBER
 from gcxform.source import Source
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Kind, Toolpath
@@ -108,6 +108,9 @@ class Restart:
             raise self.refusal(f"no restart is safe here: in line {line} {reason}")
         if state.ended:
             raise self.refusal("the program has ended before this line")
+        if state.memory["cycle"] in CYCLES or state.groups["motion"] in CYCLES:
+            message = "no restart is safe here: a canned cycle is in force, whose words stay"
+            raise self.refusal(message, "begin at the block that calls the cycle")
         needed = self.placed | {axis for axis in "XYZ" if axis in self.used}
         unknown = [axis for axis in self.unknown() if axis in needed]
         if unknown:
@@ -178,7 +181,8 @@ class Restart:
         )
 
     def _approach(self, clearance: float, feed: float | None) -> Approach:
-        height = float(self.state.position[self.axes.index("Z")])
+        words = self.state.frames.frame().words(self.state.position[None, :])[0]
+        height = float(words[self.axes.index("Z")])
         if np.isnan(height):
             raise self.refusal("no restart is safe here: where Z stands is not known")
         if clearance < height:

@@ -24,7 +24,13 @@ from gcxform.emit.numbers import MOST_DECIMALS, quantise
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, motion_kinds
 from gcxform.emit.render import Renderer, interleave
-from gcxform.emit.templates import CannotSayError, TemplateWriter, gaps_between, nothing_left
+from gcxform.emit.templates import (
+    CannotSayError,
+    TemplateWriter,
+    event_text,
+    gaps_between,
+    nothing_left,
+)
 from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.tables import NUMBER, MeaningTable
@@ -239,7 +245,9 @@ class _Job:
         inch = self.path.blocks.inch[pieces.line]
         way = self.task.shape[pieces.line].astype(np.int64)
         parts = [
-            (pieces.role, 6),
+            (pieces.role, 7),
+            (pieces.event + 1, len(pieces.events) + 1),
+            (pieces.expanded_line[pieces.line], 2),
             (pieces.motion + 1, 128),
             (pieces.inch + 1, 3),
             (pieces.incremental + 1, 3),
@@ -271,6 +279,8 @@ class _Job:
     def _template(self, piece: int) -> tuple[Field, ...]:
         """Return the fields of a piece, which are those of all pieces written in its way."""
         pieces = self.pieces
+        if pieces.event[piece] >= 0:
+            return self._event_text(piece)
         line = int(pieces.line[piece])
         shape = int(self.task.shape[line])
         row = int(pieces.row[piece])
@@ -284,6 +294,7 @@ class _Job:
             int(pieces.feed_mode[piece]),
             bool(pieces.silent[piece]),
             Feed(int(pieces.feed[piece])),
+            bool(pieces.expanded_line[line]),
             arc,
             int(self.path.plane[row]) if arc else 0,
             int(self._turns()[row]) if arc else 0,
@@ -301,6 +312,16 @@ class _Job:
         except CannotSayError as error:
             where = self.task.location(line, error.column, error.width)
             raise InputError.one("GX501", error.message, where) from None
+
+    def _event_text(self, piece: int) -> tuple[Field, ...]:
+        """Return the block of something that a canned cycle does between its moves."""
+        event, target = self.pieces.events[int(self.pieces.event[piece])], self.task.manner.target
+        text = event_text(event, target, self.emitter.gap or b"")
+        if text is None:
+            where = self.task.location(int(self.pieces.line[piece]))
+            message = f"{target.name} cannot say the {event.what} of this cycle"
+            raise InputError.one("GX501", message, where)
+        return (Literal(text),)
 
     def _field(self, field: Field, members: Ints, renderer: Renderer) -> None:
         """Render one field of the pieces of a template."""

@@ -9,7 +9,8 @@ from enum import IntEnum
 class Role(IntEnum):
     """Which piece of its block a line is; NONE: the block does not move.
 
-    VERBATIM: the block moves in a way of its own, and its words stay as they are.
+    VERBATIM: the block moves in a way of its own, and its words stay as they are. EVENT: what a
+    canned cycle does between its moves, where it is written as plain moves.
     """
 
     NONE = 0
@@ -18,6 +19,7 @@ class Role(IntEnum):
     MIDDLE = 3
     LAST = 4
     VERBATIM = 5
+    EVENT = 6
 
 
 class Feed(IntEnum):
@@ -34,7 +36,8 @@ class Key:
 
     `motion`, `inch`, `incremental`, `absolute_centre`, `feed_mode`: what has to be stated; -1:
     nothing. `silent`: a motion code that moves nothing is left out.
-    `arc`: whether centre words are written, in `plane`; `turns`: full turns beyond the arc.
+    `expanded`: the block called a canned cycle, of which this is a move. `arc`: whether centre
+    words are written, in `plane`; `turns`: full turns beyond the arc.
     """
 
     role: Role
@@ -45,6 +48,7 @@ class Key:
     feed_mode: int
     silent: bool
     feed: Feed
+    expanded: bool
     arc: bool
     plane: int
     turns: int

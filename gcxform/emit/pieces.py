@@ -14,8 +14,9 @@ from gcxform.emit.fields import Feed, Role
 from gcxform.emit.manner import Believed, Task
 from gcxform.modal.lines import fill
 from gcxform.modal.moves import turns_only
+from gcxform.modal.state import CYCLE_OFF
 from gcxform.modal.tables import GROUPS, NUMBER
-from gcxform.toolpath.path import FeedMode, Form, Kind
+from gcxform.toolpath.path import Event, FeedMode, Form, Kind
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -37,6 +38,7 @@ class Pieces:
     silent    (pieces,) whether a motion code that moves nothing is left out
     feed      (pieces,) `Feed`; `feed_value` is the number to write
     special   (pieces,) whether it stands for all moves of a block that is written as it stands
+    event     (pieces,) index into `events`, -1 for none: what a cycle does between its moves
     repaired  (pieces,) whether something is stated that the source line did not state
     """
 
@@ -64,22 +66,42 @@ class Pieces:
         self.count = np.bincount(path.block, minlength=live)
         special = np.zeros(live, np.bool_)
         special[path.block[path.form != Form.PLAIN]] = True
+        self.expanded_line = (self.task.read.modes.cycle != CYCLE_OFF) & ~special
+        self.events = [e for e in path.events if e.within and self._is_expanded(e)]
         pieces = np.where(special, 1, np.maximum(self.count, 1))
         self.line = np.repeat(np.arange(live), pieces)
-        self.has_row = self.count[self.line] > 0
         nth = np.arange(len(self.line)) - (np.cumsum(pieces) - pieces)[self.line]
         self.row = (np.cumsum(self.count) - self.count)[self.line] + nth
-        self.leads = nth == 0
-        ends = nth == pieces[self.line] - 1
-        role = np.where(self.has_row, np.int8(Role.ONLY), np.int8(Role.NONE))
-        split = pieces[self.line] > 1
-        role[split] = Role.MIDDLE
-        role[split & self.leads] = Role.FIRST
-        role[split & ends] = Role.LAST
+        self.event = np.full(len(self.line), -1)
+        if self.events:
+            self._put_events_between()
+        self.has_row = (self.count[self.line] > 0) & (self.event < 0)
+        self._give_roles(special)
+
+    def _put_events_between(self) -> None:
+        """Give what cycles do between their moves pieces of their own."""
+        line = np.array([e.line - self.task.path.blocks.first for e in self.events], np.int64)
+        before = np.array([2 * e.row for e in self.events], np.int64)
+        all_lines = np.concatenate([self.line, line])
+        order = np.lexsort((np.concatenate([2 * self.row + 1, before]), all_lines))
+        nothing = np.zeros(len(line), np.int64)
+        self.line, self.row = all_lines[order], np.concatenate([self.row, nothing])[order]
+        self.event = np.concatenate([self.event, np.arange(len(line))])[order]
+
+    def _is_expanded(self, event: Event) -> bool:
+        return bool(self.expanded_line[event.line - self.task.path.blocks.first])
+
+    def _give_roles(self, special: Flags) -> None:
+        self.leads = np.append(True, self.line[1:] != self.line[:-1])[: len(self.line)]
+        self.ends = np.append(self.line[1:] != self.line[:-1], True)[: len(self.line)]
+        role = np.where(self.has_row, np.int8(Role.MIDDLE), np.int8(Role.NONE))
+        role[self.has_row & self.leads] = Role.FIRST
+        role[self.has_row & self.ends] = Role.LAST
+        role[self.has_row & self.leads & self.ends] = Role.ONLY
         self.special = special[self.line]
         role[self.special] = Role.VERBATIM
+        role[self.event >= 0] = Role.EVENT
         self.role = role
-        self.ends = ends
 
     def of_rows(self, values: NDArray, absent: object) -> NDArray:  # type: ignore[type-arg]
         """Return a column over the rows as one over the pieces."""
@@ -160,7 +182,7 @@ class Pieces:
         """
         modes, path = self.task.read.modes, self.task.path
         slot = self.task.table.slots[self.task.shape, ord("F") - 65]
-        word = (slot >= 0)[self.line] & self.leads
+        word = (slot >= 0)[self.line] & self.leads & ~self.expanded_line[self.line]
         feeding = self.feeding
         inverse = path.blocks.feed_mode == FeedMode.INVERSE_TIME
         unit_here = np.where(self._inch_for_feed(), INCH, 1.0)

@@ -26,9 +26,10 @@ from gcxform.emit.fields import (
 )
 from gcxform.emit.manner import Manner
 from gcxform.modal.codes import Code
-from gcxform.modal.meaning import FRAMING, Meaning, program_number_fits
+from gcxform.modal.meaning import DRILL_WORDS, FRAMING, Meaning, program_number_fits
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import BLANKS, Comment, Expression, Item, Mark, Number, Statement, Word
+from gcxform.toolpath.path import Event
 
 PLANE_AXES = ("XY", "ZX", "YZ")
 OFFSETS = {"X": "I", "Y": "J", "Z": "K"}
@@ -61,6 +62,22 @@ def is_foreign(item: Item, target: type[Dialect]) -> bool:
     if item.kind == "percent":
         return not target.has_percent
     return item.kind.startswith("program") and not target.has_program_number
+
+
+def event_text(event: Event, target: type[Dialect], gap: bytes) -> bytes | None:
+    """Return the block that does what a cycle does between its moves; None if there is none."""
+    if event.what != "DWELL":
+        known = event.what[0] == "M" and int(event.what[1:]) in target.m_codes
+        return event.what.encode() if known else None
+    seconds = event.values[0][1]
+    for address, unit in target.dwell.items():
+        count = seconds / unit
+        whole = abs(count - round(count)) < 1e-9
+        if unit != 1.0 and (not whole or (target.dwell_point_is_seconds and not whole)):
+            continue
+        number = f"{round(count)}" if unit != 1.0 else f"{seconds:.6f}".rstrip("0")
+        return b"G4" + gap + f"{address}{number}".encode()
+    return None
 
 
 def nothing_left(
@@ -196,6 +213,8 @@ class TemplateWriter:
 
     def _word(self, word: Word, lead: bytes, slot: int) -> None:
         address, verbatim = word.address, self.key.role is Role.VERBATIM
+        if self.key.expanded and address in self.meaning.slots and address in DRILL_WORDS + "IJR":
+            return
         if (address if address not in CODES else _name(word)) in self.folded:
             return
         if address not in "NO" and self._repairs_wait:
@@ -254,6 +273,8 @@ class TemplateWriter:
         text = self._said(word.start, word.end)
         if self.key.role in (Role.MIDDLE, Role.LAST):
             lead = self._gap(lead)
+        if group == "cycle" and self.key.expanded:
+            return
         if group in STATED and group not in self.stated:
             wanted = self._wanted(group)
             self.stated.add(group)
@@ -446,6 +467,6 @@ def _like(text: str, code: str) -> str:
     """Return a code written like another: `g01` for G3 gives `g03`."""
     letter, digits = text[0], text[1:].translate(BLANKS)
     number = code[1:]
-    if len(digits.split(".")[0]) == 2 and len(number.split(".")[0]) == 1:
+    if digits[:1] == "0" and len(digits.split(".")[0]) == 2 and len(number.split(".")[0]) == 1:
         number = "0" + number
     return letter + number

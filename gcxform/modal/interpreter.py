@@ -8,20 +8,23 @@ needs a fact that is not known is refused, with the line.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, Dialect
+from gcxform.machine.machine import LENGTH
 from gcxform.modal.arithmetic import Key
 from gcxform.modal.computing import compute
+from gcxform.modal.cycles import Cycles
 from gcxform.modal.expressions import parameter_key
 from gcxform.modal.frames import FrameState
 from gcxform.modal.limits import refuse_limits
 from gcxform.modal.lines import Lines
 from gcxform.modal.moves import Moves
-from gcxform.modal.state import Modes, Reading, State
+from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, State
 from gcxform.modal.tables import GROUPS, NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Toolpath
@@ -41,6 +44,16 @@ class Interpreted:
     shape: NDArray[np.int64]
     before: State
     value: NDArray[np.float64]
+
+
+PECKS = ("peck-return", "peck-clearance")
+"""Settings of the control that canned cycles need."""
+
+
+def _length(control: Mapping[str, str | float], name: str) -> float | None:
+    """Return a length (mm) among the settings of the control."""
+    value = control.get(name)
+    return LENGTH.parse(value) if isinstance(value, str) else value
 
 
 class Interpreter:
@@ -74,7 +87,14 @@ class Interpreter:
             self.reading.work_offsets,
             self.reading.homes,
         )
-        return State(groups, position, feed, unit, frames, parameters=self._given())
+        state = State(groups, position, feed, unit, frames, parameters=self._given())
+        rule = self.dialect.cycle_rule
+        if rule is not None:
+            control = self.reading.control
+            state.cycles = Cycles(rule, *(_length(control, name) for name in PECKS))
+        retract = int(rule is None or rule.initial_level)
+        state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": UNKNOWN_SPINDLE}
+        return state
 
     def _given(self) -> dict[Key, float]:
         """Return the parameters whose values are given, but for those the control changes."""

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, LINEAR, Dialect
 from gcxform.modal.findings import Findings
-from gcxform.modal.state import Modes, Reading, State
-from gcxform.modal.tables import GROUPS, NUMBER, MeaningTable
+from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
+from gcxform.modal.tables import COLUMNS, CYCLES, GROUPS, MEMORY, NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.syntax.tree import COMPUTED
 
@@ -65,7 +65,9 @@ class Lines:
         self.live = self._live()
         self.shape = window.shape[: self.live]
         self.first = window.first_number[: self.live]
-        self._used = table.slots[np.unique(self.shape)].max(axis=0, initial=-1) >= 0
+        used = np.unique(self.shape)
+        self._used = table.slots[used].max(axis=0, initial=-1) >= 0
+        self._stated = table.groups[used].max(axis=0, initial=-1) >= 0
 
     def flag(self, name: str) -> Flags:
         """Return a flag of the meaning of each line."""
@@ -73,7 +75,7 @@ class Lines:
 
     def stated(self, group: str) -> Flags:
         """Return which lines have a code of a group."""
-        return np.asarray(self.table.groups[self.shape, GROUPS.index(group)] >= 0)
+        return np.asarray(self.table.groups[self.shape, COLUMNS.index(group)] >= 0)
 
     def refuse_statically(self) -> None:
         """Raise InputError for what can be seen without numbers."""
@@ -134,18 +136,26 @@ class Lines:
                 hint="convert the line ends of the file to LF or CRLF",
             )
 
-    def word(self, address: str) -> tuple[Floats, Flags] | None:
-        """Return value and presence of a word on each line; None if no line has it."""
+    def word(
+        self, address: str, among: Flags | None = None, distance: bool | None = None
+    ) -> tuple[Floats, Flags] | None:
+        """Return value and presence of a word on each line; None if no line has it.
+
+        Only lines `among` count, where given. Whether it is a `distance`, for which a point
+        matters, goes by its address unless it is said.
+        """
         column = ord(address) - 65
         if not self._used[column]:
             return None
         slot = self.table.slots[self.shape, column]
-        present = slot >= 0
+        present = slot >= 0 if among is None else (slot >= 0) & among
         number = self.first + slot
         if not present.all():
             number = np.where(present, number, 0)
         value = self.window.value[number] if len(self.window.value) else np.zeros(self.live)
-        if self.dialect.point_required and address in DISTANCES:
+        if distance is None:
+            distance = address in DISTANCES
+        if self.dialect.point_required and distance:
             value = self._with_increment(address, value, present, number)
         return value, present
 
@@ -186,7 +196,11 @@ class Lines:
 
     def _group(self, name: str) -> Small:
         """Return the number of the code in force of a group, on each line."""
-        values = self.table.groups[self.shape, GROUPS.index(name)]
+        index = COLUMNS.index(name)
+        before = self.state.memory[name] if name in MEMORY else self.state.groups[name]
+        if not self._stated[index] and name not in self.dialect.resets_at_end:
+            return np.broadcast_to(np.int8(before), (self.live,))
+        values = self.table.groups[self.shape, index]
         present = values >= 0
         if present.any():
             self.state.stated.add(name)
@@ -196,7 +210,7 @@ class Lines:
             after = after[~present[after]]
             values[after] = NUMBER[self.dialect.resets_at_end[name]]
             present[after] = True
-        return fill(values, present, self.state.groups[name])
+        return fill(values, present, before)
 
     def modes(self) -> Modes:
         """Return what holds on each line after its words."""
@@ -214,7 +228,40 @@ class Lines:
             feed,
             feed_unit,
             self._tool(),
+            self._cycle(groups["motion"]),
+            self._remembered("retract"),
+            self._remembered("spindle"),
         )
+
+    def _remembered(self, name: str) -> Small:
+        """Return the number in force of a group that matters to cycles alone."""
+        values = self._group(name)
+        if name == "spindle" and self.flag("ends").any():
+            values = np.where(self.flag("ends"), 0, values).astype(np.int8)
+        if self.live:
+            self.state.memory[name] = int(values[-1])
+        return values
+
+    def _cycle(self, motion: Small) -> Small:
+        """Return the canned cycle in force on each line, `CYCLE_OFF` for none.
+
+        On some controls cycles are of the group of G0 to G3; on others a code of that group ends
+        the cycle, and is in force again after G80.
+        """
+        if self.dialect.cycle_rule is None:
+            return np.broadcast_to(np.int8(CYCLE_OFF), (self.live,))
+        if any(
+            code.group == "motion" for name, code in self.dialect.codes.items() if name == "G81"
+        ):
+            return np.where(np.isin(motion, CYCLES), motion, CYCLE_OFF).astype(np.int8)
+        if not (self._stated[COLUMNS.index("cycle")] or self.state.memory["cycle"] != CYCLE_OFF):
+            return np.broadcast_to(np.int8(CYCLE_OFF), (self.live,))
+        values = self.table.groups[self.shape, COLUMNS.index("cycle")]
+        values = np.where((values < 0) & self.stated("motion"), np.int8(CYCLE_OFF), values)
+        cycle = fill(values, values >= 0, self.state.memory["cycle"])
+        if self.live:
+            self.state.memory["cycle"] = int(cycle[-1])
+        return np.asarray(cycle)
 
     def _tool(self) -> Floats:
         """Return the tool number last programmed on or before each line, -1 for none."""

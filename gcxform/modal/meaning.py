@@ -15,6 +15,8 @@ from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Mark, Number, Statement, Word
 
 CENTRE = "IJK"
+DRILL_WORDS = "PQLK"
+"""Words that only a canned cycle in force may want."""
 UNTOUCHED_STATEMENTS: frozenset[str] = frozenset()
 
 
@@ -112,6 +114,7 @@ class Meaning:
     expressions: list[tuple[int, Word]] = field(default_factory=list)
     events: list[EventShape] = field(default_factory=list)
     acts: list[Act] = field(default_factory=list)
+    drill_words: str = ""
     refusal: Refusal | None = None
 
 
@@ -230,6 +233,10 @@ def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         meaning.groups[code.group] = name
         if code.effect is Effect.BARRIER:
             yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.reason}")
+    if meaning.groups.get("cycle", "G80") != "G80" and "motion" in meaning.groups:
+        word = owners["cycle"]
+        message = f"{meaning.groups['cycle']} beside {meaning.groups['motion']}"
+        yield Refusal("GX202", word.start, word.end - word.start, message)
     yield from _g_effects(dialect, meaning, owners)
 
 
@@ -296,6 +303,8 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
             message = f"{name} and {groups[code.group]} are of one modal group"
             yield Refusal("GX202", word.start, width, message)
         groups[code.group] = name
+        if code.group == "spindle":
+            meaning.groups["spindle"] = name
         if code.barrier:
             yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.barrier}")
         meaning.ends |= code.ends
@@ -354,6 +363,8 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
         address = word.address
         if (lacking := _lacking(word, dialect)) is not None:
             yield lacking
+        elif address in slots and address in DRILL_WORDS and dialect.cycle_rule is not None:
+            meaning.drill_words += "" if address in motion else address
         elif address in slots and address not in motion:
             message = f"{address} belongs to no code of this block"
             yield Refusal("GX203", word.start, word.end - word.start, message)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +12,15 @@ from numpy.typing import NDArray
 from gcxform.machine.machine import Machine, Tool
 from gcxform.modal.frames import FrameState
 
+if TYPE_CHECKING:
+    from gcxform.modal.cycles import Cycles
+
 Floats = NDArray[np.float64]
 Small = NDArray[np.int8]
 Flags = NDArray[np.bool_]
+
+CYCLE_OFF = 80
+UNKNOWN_SPINDLE = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +80,8 @@ class State:
     rapid: bool = False
     stated: set[str] = field(default_factory=set)
     parameters: dict[int | str, float] = field(default_factory=dict)
+    cycles: Cycles | None = None
+    memory: dict[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +89,8 @@ class Modes:
     """Per line of a window, after its words: the number of the code in force of each group.
 
     `feed` is the number last programmed and `feed_unit` what 1 of it is worth in mm; `tool` is the
-    number of the last T word, -1 for none.
+    number of the last T word, -1 for none; `cycle` is that of the canned cycle in force, or
+    `CYCLE_OFF`; `retract` is 1 in G98; `spindle` is 0 for M5, 1 for M3, 2 for M4.
     """
 
     motion: Small
@@ -93,3 +103,6 @@ class Modes:
     feed: Floats
     feed_unit: Floats
     tool: Floats
+    cycle: Small
+    retract: Small
+    spindle: Small

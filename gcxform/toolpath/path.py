@@ -62,6 +62,10 @@ class Form(IntEnum):
     SYNCHRONISED = 5
 
 
+OWN_DISTANCES = (Form.CYCLE, Form.HOME, Form.SYNCHRONISED)
+"""Forms whose blocks may stay in G91 where all others are written in G90."""
+
+
 class FeedMode(IntEnum):
     """What a feed means: 1/min (G93), mm/min (G94) or mm per turn of the spindle (G95)."""
 
@@ -98,13 +102,15 @@ BLOCK_MODES = ("inch", "incremental", "absolute_centre", "feed_mode", "leaves")
 class Event:
     """Something done between moves: `row` is the move it stands before, `what` names it.
 
-    `values` are its numbers, in seconds for a dwell. `line` counts source lines from 0.
+    `values` are its numbers, in seconds for a dwell. `line` counts source lines from 0. `within`:
+    it is a part of a canned cycle, and no word of its block.
     """
 
     row: int
     what: str
     values: tuple[tuple[str, float], ...] = ()
     line: int = 0
+    within: bool = False
 
 
 COLUMNS = (

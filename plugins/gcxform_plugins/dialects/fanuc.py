@@ -118,7 +118,7 @@ class Fanuc(gx.Dialect):
             code: v.barrier("transform", v.TRANSFORM, "PRIJKQ")
             for code in ("G7.1", "G12.1", "G107", "G112")
         },
-        **{code: v.barrier("cycle", v.CYCLE, "IJKLPQR") for code in CYCLES},
+        **{code: gx.Code("cycle") for code in CYCLES},
         **{code: v.barrier("motion", v.SYNCHRONISED, "PQR") for code in ("G33", "G34")},
         **{code: v.barrier("motion", "it cuts a spline", "PRK") for code in ("G6.2",)},
         **{code: v.barrier("motion", "it cuts a spiral", "IJKRLPQ") for code in ("G2.2", "G3.2")},

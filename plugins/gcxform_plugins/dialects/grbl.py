@@ -34,13 +34,13 @@ class Grbl(gx.Dialect):
         **v.ISO,
         "G61": v.inert("path"),
         "G91.1": gx.Code("arc-distance"),
-        "G10": v.frame("non-modal", "set-work", "XYZLPR"),
+        "G10": v.frame("non-modal", "set-work", "XYZLP"),
         "G92": v.frame("non-modal", "preset", "XYZ"),
         "G92.1": v.frame("non-modal", "preset-clear"),
         **{code: v.frame("non-modal", "home") for code in ("G28", "G30")},
         **{code: v.frame("non-modal", "store-home") for code in ("G28.1", "G30.1")},
         "G53": v.frame("non-modal", "machine"),
-        "G43.1": v.frame("tool-length", "length-vector", "Z"),
+        "G43.1": v.frame("tool-length", "length-vector", "XYZ"),
         **{code: v.barrier("motion", v.PROBE) for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
@@ -52,6 +52,8 @@ class Grbl(gx.Dialect):
     axis_words_once = True
     starts_in_frame = True
     g10_p0_is_active = True
+    g10_needs_p = False
+    length_axes = "Z"
     g10_sets_position = True
     g10_ignores_g91 = True
     g53_in_g91 = "absolute"

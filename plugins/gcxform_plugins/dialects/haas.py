@@ -68,7 +68,7 @@ class Haas(Fanuc):
         "G154": Fanuc.codes["G54.1"],
         **{code: v.frame("frame", "work") for code in MORE_OFFSETS},
         **{code: v.barrier("cycle", v.CYCLE, "DIJKLPQR") for code in POCKETS},
-        "G77": Fanuc.codes["G76"],
+        "G77": v.barrier("cycle", v.CYCLE, "IJKLPQR"),
         "G47": v.barrier("non-modal", v.CYCLE, "EDIJKPRQ"),
         **{code: v.barrier("cycle", v.CYCLE, "EIJKLPQR") for code in FIVE_AXIS_CYCLES},
         **{code: v.barrier("cycle", v.SYNCHRONISED, "EIJKLPQR") for code in ("G174", "G184")},

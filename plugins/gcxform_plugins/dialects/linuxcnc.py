@@ -110,7 +110,8 @@ class LinuxCNC(gx.Dialect):
         "G43": v.frame("tool-length", "length", "H"),
         "G43.1": v.frame("tool-length", "length-vector", v.AXES),
         "G43.2": v.frame("tool-length", "length-add", "H"),
-        **{code: v.barrier("motion", v.CYCLE, "EHIJKLPQR") for code in CYCLES},
+        **{code: gx.Code("motion") for code in CYCLES if code != "G76"},
+        "G76": v.barrier("motion", v.SYNCHRONISED, "EHIJKLPQR"),
         **{
             code: v.barrier("motion", "it cuts a spline", "IJKPQL")
             for code in ("G5", "G5.1", "G5.2", "G5.3")
