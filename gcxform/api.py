@@ -94,7 +94,13 @@ def joined(parts: Sequence[Toolpath]) -> Toolpath:
     )
     names = ("inch", "incremental", "absolute_centre")
     flags = [np.concatenate([getattr(p.blocks, name) for p in parts]) for name in names]
-    blocks = Blocks(parts[0].blocks.first, *flags)
+    apart = [p.blocks.apart for p in parts]
+    every = [
+        np.zeros(len(p.blocks.inch), np.bool_) if a is None else a
+        for p, a in zip(parts, apart, strict=True)
+    ]
+    marked = np.concatenate(every) if any(a is not None for a in apart) else None
+    blocks = Blocks(parts[0].blocks.first, *flags, marked)
     return parts[0].replace(**columns, events=events, blocks=blocks)
 
 

@@ -20,14 +20,11 @@ from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
-from gcxform.toolpath.deviation import deviation
 from gcxform.toolpath.path import Event, FeedMode, Kind, Toolpath
+from gcxform.toolpath.runs import SAME_FEED, Runs, deviation_of_runs, runs_of
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
-
-
-FEED_ERROR = 2e-4  # relative: what the rounding of a feed may change
 
 
 @dataclass(slots=True)
@@ -105,15 +102,16 @@ class Verifier:
         found.lines_after_end += len(window) - read.live
 
     def _compare(self, trace: _Trace) -> None:
-        """Compare moves; every row of the output must belong to a row of the input."""
+        """Compare moves; each of the output must belong to one of the input, or to a run of them."""
         before, after = trace.before, trace.after
         if len(trace.owner) and int(trace.owner.min()) < 0:
             row = int(np.argmin(trace.owner))
             self._fail("a move that the source does not have", trace, row)
-        self._missing(trace)
+        runs = trace.find_runs()
+        self._missing(trace, runs)
         if not len(trace.owner):
             return
-        off = deviation(before, after, trace.owner, self.budget)
+        off = deviation_of_runs(before, after, runs, self.budget)
         self.findings.unknown_starts += int(off.unknown_start.sum())
         self._start(trace)
         worst = int(np.argmax(off.distance))
@@ -152,11 +150,9 @@ class Verifier:
             )
             self._fail(message, trace, int(rows[worst]))
 
-    def _missing(self, trace: _Trace) -> None:
-        """Check that rows without any move in the output were too short to write."""
-        has = np.zeros(len(trace.before), np.bool_)
-        has[trace.owner] = True
-        for row in np.flatnonzero(~has).tolist():
+    def _missing(self, trace: _Trace, runs: Runs) -> None:
+        """Check that rows which no move in the output stands for were too short to write."""
+        for row in runs.left.tolist():
             way = np.nan_to_num(trace.before.end[row] - trace.before.start[row])
             length = float(np.sqrt((way**2).sum()))
             if trace.before.is_arc[row] or not length <= self.budget:
@@ -178,7 +174,7 @@ class Verifier:
             self._fail("the feed mode has changed", trace, int(np.argmax(mode & moving)))
         inverse = after.feed_mode == FeedMode.INVERSE_TIME
         plain = moving & ~inverse
-        off = np.abs(after.feed - before.feed[owner]) > FEED_ERROR * np.abs(after.feed)
+        off = np.abs(after.feed - before.feed[owner]) > SAME_FEED * np.abs(after.feed)
         if (off & plain).any():
             self._fail("the feed has changed", trace, int(np.argmax(off & plain)))
         if (moving & inverse).any():
@@ -251,6 +247,14 @@ class _Trace:
         self._window_first = window.first_line
         self.owner = self._owners(after)
         self.written_owner = self.owner if after is written else self._owners(written)
+        self.through = self.written_owner
+
+    def find_runs(self) -> Runs:
+        """Find which moves of the input each move stands for."""
+        runs = runs_of(self.before, self.owner)
+        same = self.written_owner is self.owner
+        self.through = (runs if same else runs_of(self.before, self.written_owner)).through
+        return runs
 
     def _owners(self, path: Toolpath) -> Ints:
         lines = self.source[path.source - self.first] - self._window_first
@@ -264,6 +268,6 @@ class _Trace:
     def stands_before(self, written_row: int, row: int) -> bool:
         """Whether what stands before a written move stands before that row of the input."""
         owner = self.written_owner
-        earlier = written_row == 0 or int(owner[written_row - 1]) < row
+        earlier = written_row == 0 or int(self.through[written_row - 1]) < row
         later = written_row >= len(owner) or int(owner[written_row]) >= row
         return earlier and later

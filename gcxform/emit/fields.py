@@ -7,13 +7,17 @@ from enum import IntEnum
 
 
 class Role(IntEnum):
-    """Which piece of its block a line is; NONE: the block does not move."""
+    """Which piece of its block a line is.
+
+    NONE: the block does not move. GONE: its move is part of one that another block makes.
+    """
 
     NONE = 0
     ONLY = 1
     FIRST = 2
     MIDDLE = 3
     LAST = 4
+    GONE = 5
 
 
 class Feed(IntEnum):

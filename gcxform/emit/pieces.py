@@ -70,6 +70,9 @@ class Pieces:
         role[split] = Role.MIDDLE
         role[split & self.leads] = Role.FIRST
         role[split & ends] = Role.LAST
+        moved = np.zeros(live, np.bool_)
+        moved[task.read.path.block] = True
+        role[~self.has_row & moved[self.line]] = Role.GONE
         self.role = role
         self.ends = ends
 
@@ -107,7 +110,7 @@ class Pieces:
     def _motions(self) -> None:
         """State a motion code where the source stated one, and where the motion changes."""
         group = self.task.table.groups[self.task.shape, GROUPS.index("motion")]
-        sets = np.where(self.leads, group[self.line], NOTHING)
+        sets = np.where(self.leads & (self.role != Role.GONE), group[self.line], NOTHING)
         sets[self.has_row] = self.kind
         self.motion_after = fill(sets, sets >= 0, self.believed.motion)
         before = self._held(sets, "motion", self.believed.motion)

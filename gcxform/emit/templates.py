@@ -83,6 +83,8 @@ class TemplateWriter:
         self.axes_written = key.role is Role.NONE
         self.centre_written = not key.arc
         self.stated: set[str] = set()
+        if key.role is Role.GONE:
+            return self._comments()
         at = slot = 0
         whole = key.role in (Role.NONE, Role.ONLY, Role.FIRST)
         self._repairs_wait = True
@@ -95,6 +97,18 @@ class TemplateWriter:
         self._rest()
         if whole and at < len(self.text):
             self.fields.append(Literal(self.text[at:].encode("latin-1")))
+        return tuple(self.fields)
+
+    def _comments(self) -> tuple[Field, ...]:
+        """Write the sequence number and the comments of a block whose move another makes."""
+        slot = 0
+        for item in self.shape.block.items:
+            if isinstance(item, Comment):
+                self._literal(self.gap if self.fields else b"", self._comment(item))
+            elif isinstance(item, Word) and item.address not in CODES:
+                if item.address == "N":
+                    self._copy(item, b"", slot)
+                slot += isinstance(item.value, Number)
         return tuple(self.fields)
 
     def _rest(self) -> None:

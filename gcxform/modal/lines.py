@@ -68,6 +68,11 @@ class Lines:
         """Return a flag of the meaning of each line."""
         return self.table.flag(name, self.shape)
 
+    def apart(self) -> Flags | None:
+        """Return the lines with a slash or a name; None if there is none."""
+        marked = self.flag("marked")
+        return marked if marked.any() else None
+
     def stated(self, group: str) -> Flags:
         """Return which lines have a code of a group."""
         return np.asarray(self.table.groups[self.shape, GROUPS.index(group)] >= 0)

@@ -55,6 +55,7 @@ class Meaning:
     ends: bool = False
     loses_position: bool = False
     percent: bool = False
+    marked: bool = False
     events: list[EventShape] = field(default_factory=list)
     refusal: Refusal | None = None
 
@@ -108,6 +109,7 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
                 "let the CAM write plain blocks, or use passes that keep positions",
             )
         elif isinstance(item, Mark):
+            meaning.marked = True
             meaning.deleted |= item.kind == "block_delete"
             meaning.percent |= item.kind == "percent"
         elif isinstance(item, Comment):

@@ -164,6 +164,7 @@ class Moves:
                 self.modes.inch,
                 self.modes.incremental,
                 self.modes.absolute_centre,
+                self.lines.apart(),
             ),
             events_of(self.lines, rows),
         )

@@ -40,6 +40,7 @@ FLAGS = (
     "loses_position",
     "has_events",
     "percent",
+    "marked",
 )
 
 
@@ -86,6 +87,7 @@ class MeaningTable:
             meaning.loses_position,
             bool(meaning.events),
             meaning.percent,
+            meaning.marked,
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

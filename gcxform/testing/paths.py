@@ -66,7 +66,8 @@ def locked(path: Toolpath) -> Toolpath:
 
     was = path.blocks
     modes = copy(was.inch), copy(was.incremental), copy(was.absolute_centre)
-    blocks = Blocks(was.first, *modes)
+    apart = None if was.apart is None else copy(was.apart)
+    blocks = Blocks(was.first, *modes, apart)
     columns = {name: copy(getattr(path, name)) for name in (*COLUMNS, "entry")}
     return path.replace(blocks=blocks, **columns)
 

@@ -76,12 +76,14 @@ class Blocks:
     inch            lengths are written in inches (G20)
     incremental     axis words are distances from where the axis stands (G91)
     absolute_centre I, J, K are the centre itself (G90.1)
+    apart           the block has a slash or a name and is joined with no other; None: no block has
     """
 
     first: int
     inch: Flags
     incremental: Flags
     absolute_centre: Flags
+    apart: Flags | None = None
 
 
 @dataclass(frozen=True, slots=True)
