@@ -71,7 +71,7 @@ class Pieces:
         role[split & self.leads] = Role.FIRST
         role[split & ends] = Role.LAST
         moved = np.zeros(live, np.bool_)
-        moved[task.read.path.block] = True
+        moved[self.task.read.path.block] = True
         role[~self.has_row & moved[self.line]] = Role.GONE
         self.role = role
         self.ends = ends
