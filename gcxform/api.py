@@ -93,14 +93,12 @@ def joined(parts: Sequence[Toolpath]) -> Toolpath:
         for event in part.events
     )
     names = ("inch", "incremental", "absolute_centre")
-    flags = [np.concatenate([getattr(p.blocks, name) for p in parts]) for name in names]
-    apart = [p.blocks.apart for p in parts]
-    every = [
-        np.zeros(len(p.blocks.inch), np.bool_) if a is None else a
-        for p, a in zip(parts, apart, strict=True)
-    ]
-    marked = np.concatenate(every) if any(a is not None for a in apart) else None
-    blocks = Blocks(parts[0].blocks.first, *flags, marked)
+    every = [part.blocks for part in parts]
+    flags = [np.concatenate([getattr(blocks, name) for blocks in every]) for name in names]
+    apart = np.concatenate(
+        [np.zeros(len(b.inch), np.bool_) if b.apart is None else b.apart for b in every]
+    )
+    blocks = Blocks(every[0].first, *flags, *([apart] if apart.any() else []))
     return parts[0].replace(**columns, events=events, blocks=blocks)
 
 

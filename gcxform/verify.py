@@ -102,7 +102,7 @@ class Verifier:
         found.lines_after_end += len(window) - read.live
 
     def _compare(self, trace: _Trace) -> None:
-        """Compare moves; each of the output must belong to one of the input, or to a run of them."""
+        """Compare moves; each of the output must belong to one of the input, or a run of them."""
         before, after = trace.before, trace.after
         if len(trace.owner) and int(trace.owner.min()) < 0:
             row = int(np.argmin(trace.owner))

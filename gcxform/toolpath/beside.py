@@ -44,7 +44,7 @@ class Chain:
 
 
 def along_chains(one: Chain, other: Chain) -> Floats:
-    """Return, per row of `other`, how far (mm, X Y Z) it is from its group of `one`, and that from it.
+    """Return how far (mm) each row of `other` and its group of `one` are from one another in X Y Z.
 
     Both have the same groups; where their places are not known, the distance is inf.
     """
@@ -91,7 +91,8 @@ class _Side:
         total = np.cumsum(along)
         before = (total - along)[self.first][self.group]
         whole = total[self.last][self.group] - before
-        self.key = self.group + np.where(whole > 0, (total - before) / whole, 1.0)
+        self.key: Floats = self.group.astype(np.float64)
+        self.key += np.where(whole > 0, (total - before) / whole, 1.0)
         earlier = np.append(0.0, self.key[:-1])
         self.began = np.where(self.first, self.group, earlier)
 

@@ -27,7 +27,7 @@ Flags = NDArray[np.bool_]
 
 INCH = 25.4
 STEPS = 200
-"""Least radius, in steps of the last decimal: rounded, a smaller arc would turn by another angle."""
+"""Least radius, in steps of the last decimal: rounded, a smaller arc could turn otherwise."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,8 @@ class Arcs(gx.Pass):
     joins = True
 
     tolerance: Annotated[
-        gx.Length, gx.Option("largest distance of an arc from its lines, and of them from it", above=0.0)
+        gx.Length,
+        gx.Option("largest distance of an arc from its lines, and of them from it", above=0.0),
     ]
     min_lines: Annotated[int, gx.Option("fewest lines that become an arc", at_least=2)] = 4
     max_radius: Annotated[gx.Length, gx.Option("largest radius", above=0.0)] = 1000.0
