@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from oracles import rs274
 from properties.test_laws import at, point_of
 from reference.interpreter import Move, interpret
-from test_verify import Change, dropped, inserted, said
+from test_verify import Change, dropped, inserted, said, swapped
 
 import gcxform as gx
 from gcxform.emit.emitter import Emitted
@@ -267,19 +267,21 @@ def test_what_the_lddm_compensation_made_gets_small_again() -> None:
 # --- the proof, fed with texts that somebody tampered with ---
 
 BEND = [f"X{10 * math.sin(a / 10):.3f} Y{10 - 10 * math.cos(a / 10):.3f}" for a in range(1, 11)]
-ROUND = ended(["G21 G90 G94 G17", "G0 X0 Y0 Z0", "G1 F100 X0", *BEND, "M8", "X20", "Y20", "X0"])
-ARC = "G3 X8.415 Y4.597 I0. J10."
+ROUND = ended(
+    ["G21 G90 G94 G17", "G0 X0 Y0 Z0 F100", f"G1 {BEND[0]}", *BEND[1:], "M8", "X20", "Y20", "X0"]
+)
+ARC = "G3 X8.415 Y4.597 I-0.0008 J10.002"
 
 TAMPERED: dict[str, tuple[Change, str]] = {
     "the sense": (said("G3 X8", "G2 X8"), "off"),
     "a line in the place of the arc": (said(ARC, "G1 X8.415 Y4.597"), "off"),
-    "another circle": (said(ARC, "G3 X8.415 Y4.597 R9.9"), "off"),
-    "the arc ends early": (said(ARC, "G3 X7.833 Y3.784 I0. J10."), "."),
-    "the arc is missing": (dropped(3), "."),
+    "another circle": (said(ARC, "G3 X8.415 Y4.597 R9.8"), "off"),
+    "the arc ends early": (said(ARC, "G3 X7.833 Y3.784 I-0.0008 J10.002"), "."),
+    "the arc is missing": (dropped(2), "."),
     "there and back": (said(ARC, ARC + "\nG2 X0 Y0 I-8.415 J5.403\n" + ARC), "."),
-    "a line behind the arc is missing": (dropped(14), "."),
-    "M8 before the arc": (inserted("M8", 2), "M8"),
-    "M8 behind a line more": (said("M8\nG1 X20.\n", "G1 X20.\nM8\n"), "."),
+    "a line behind the arc is missing": (dropped(13), "."),
+    "M8 before the arc": (inserted("M8", 1), "M8"),
+    "M8 behind a line more": (swapped(3), "."),
     "another feed": (said(ARC, ARC + " F101"), "feed"),
 }
 
@@ -313,9 +315,20 @@ def test_a_text_tampered_with_is_refused(name: str) -> None:
         tampered(change, ROUND)
 
 
+def test_an_event_inside_a_run_does_not_go_behind_it() -> None:
+    bends = [f"G1 {BEND[0]}", *BEND[1:5], "M8", *BEND[5:], "X20"]
+
+    def one_arc(lines: list[tuple[bytes, int]]) -> list[tuple[bytes, int]]:
+        new = [(ARC.encode() + b"\n", 2), (b"M8\n", 7), (b"G1 X20.\n", 13), (b"M2\n", 14)]
+        return lines[:2] + new
+
+    with pytest.raises(gx.VerificationError, match="M8"):
+        tampered(one_arc, ended(["G21 G90 G94 G17", "G0 X0 Y0 Z0 F100", *bends]))
+
+
 @pytest.mark.parametrize(
     "line",
-    ["X3 F200", "G0 X3", "G93 X3 F2", "G55 X3", "A5 X3", "/X3"],
+    ["X3 F200", "G0 X3", "G93 X3 F2\nG94 F100", "G55 X3", "A5 X3", "/X3"],
 )
 def test_what_is_not_alike_is_in_no_run(line: str) -> None:
     """A row is taken for a part of a run only if all along the run the same holds."""

@@ -348,6 +348,8 @@ class TemplateWriter:
             self._literal(self._gap(b""), f"{self.target.turns_address}{self.key.turns + 1}")
 
     def _feed(self, word: Word, lead: bytes, slot: int) -> None:
+        if self.axes_written and not set("IJKR") & set(self.meaning.slots):
+            self._centre(b"")
         if self.key.feed is Feed.KEEP:
             self._copy(word, self._gap(lead) if self.fields else lead, slot)
         elif self.key.feed is Feed.WRITE:

@@ -154,12 +154,13 @@ class _Runs:
         cross = x[:-1] * y[1:] - y[:-1] * x[1:]
         angle = np.arctan2(cross * sense, x[:-1] * x[1:] + y[:-1] * y[1:])
         good = (angle > 0) & (angle <= WIDEST) & self._points_along(x, y, size, wx, wy, length)
+        good |= length == 0
         angle = self._lines(angle, 0.0)
         turned = np.cumsum(angle)
         turned -= turned[self.begin][self.run]
         sweep = turned[self.final]
         foot = (x[:-1] * wx + y[:-1] * wy <= 0) & (x[1:] * wx + y[1:] * wy >= 0)
-        nearest = np.where(foot, np.abs(cross) / length, np.inf)
+        nearest = np.where(foot & (length > 0), np.abs(cross) / length, np.inf)
         sagitta = np.maximum(inside - self._lines(nearest, np.inf), 0.0)
         flat = np.maximum(np.abs(size - inside), sagitta)
         rise = self._lines(np.abs(np.diff(self.w)), 0.0)

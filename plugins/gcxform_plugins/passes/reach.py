@@ -129,6 +129,10 @@ def _begun_earlier(
     run = np.maximum.accumulate(np.where(follows, 0, rows))
     low = np.maximum(low, run[first])
     begun = _backwards(fit, ends, first, last, low)
+    shorter = np.flatnonzero(begun[1:] < last[:-1])
+    rest = begun[shorter + 1] - first[shorter] >= fewest
+    rest[rest] = fit.arcs(first[shorter[rest]], begun[shorter[rest] + 1]).curved
+    begun[shorter[rest] + 1] = first[shorter[rest] + 1]  # two arcs before and after: no better
     stop = np.minimum(last, np.append(begun[1:], len(follows)))
     changed = (begun != first) | (stop != last)
     enough = (stop - begun >= fewest) & ends.good(begun, stop)
