@@ -28,7 +28,7 @@ import gcxform as gx
 from gcxform.emit.emitter import Emitted
 from gcxform.run import Output, Run
 from gcxform.source import Source
-from gcxform.toolpath.runs import runs_of
+from gcxform.toolpath.runs import Runs, deviation_of_runs, runs_of
 
 Points = NDArray[np.float64]
 
@@ -242,6 +242,39 @@ def test_what_is_certified_is_near(seed: int, count: int) -> None:
     arc = Move(kind, ends[0], ends[-1], 1, centre=centre, sweep=float(found.sweep[0]))
     assert math.dist(at(arc, 1.0), corners[-1]) < 1e-9
     assert follows(points(lines), points([arc]), tolerance + SPACING / 2)
+
+
+def test_no_distance_of_a_run_is_larger_than_its_bound() -> None:
+    """Ways that have more or less to do with one another: the bound is above their distance."""
+    finite = 0
+    for seed in range(120):
+        choose = np.random.default_rng(seed)
+        programs = [ended(_wandering(choose, wobble)) for wobble in choose.choice([0.02, 0.5], 2)]
+        if seed % 2:
+            programs[1] = run("segment arcs=split arc-step=40", programs[1]).text
+        one, other = (gx.read(program, "linuxcnc").path for program in programs)
+        owner = np.minimum(np.arange(len(other)), 1)
+        runs = Runs(owner, owner * (len(one) - 1), np.empty(0, np.int64))
+        bound = float(deviation_of_runs(one, other, runs).distance[1:].max())
+        finite += math.isfinite(bound)
+        ways = [points(interpret(program, "linuxcnc").moves[1:]) for program in programs]
+        assert not math.isfinite(bound) or follows(ways[0], ways[1], bound + SPACING), seed
+    assert finite > 60
+
+
+def _wandering(choose: np.random.Generator, wobble: float) -> list[str]:
+    """Return lines and arcs from the origin to about X9, the way there more or less straight."""
+    lines, place = ["G21 G90 G94 G17", "G0 X0 Y0 Z0", "F100"], np.zeros(3)
+    for x in range(1, 4):
+        end = np.round([3.0 * x, *choose.normal(0, wobble, 2)], 3)
+        code = choose.choice(["G1", "G1", "G2", "G3"])
+        words = "X{:.3f} Y{:.3f} Z{:.3f}".format(*end)
+        if code != "G1":
+            chord = math.dist(place[:2], end[:2])
+            words += f" R{chord * choose.uniform(0.8, 4.0):.3f}"
+        lines.append(f"{code} {words}")
+        place = end
+    return lines
 
 
 def test_a_straight_line_is_no_arc() -> None:
