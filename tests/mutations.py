@@ -376,7 +376,7 @@ MUTATIONS = (
     _verifier(
         "the place of events is ignored", "or not trace.stands_before(after.row, before.row)", ""
     ),
-    _verifier("missing moves are ignored", "self._missing(trace)\n        if not", "if not"),
+    _verifier("missing moves are ignored", "self._missing(trace, runs)\n        if not", "if not"),
     _verifier("moves of nobody are ignored", "if len(trace.owner) and int(trace.owner.min()) < 0:"),
     _verifier("nothing is undone", "path = step.undo(path, self.context)", "pass"),
     Mutation(
