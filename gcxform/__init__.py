@@ -66,8 +66,10 @@ if TYPE_CHECKING:
     from gcxform.toolpath.facts import LINEAR_ONLY as LINEAR_ONLY
     from gcxform.toolpath.facts import METRIC as METRIC
     from gcxform.toolpath.facts import NOMINAL as NOMINAL
+    from gcxform.toolpath.facts import WORKPIECE_FRAME as WORKPIECE_FRAME
     from gcxform.toolpath.facts import XY_ARCS as XY_ARCS
     from gcxform.toolpath.facts import Fact as Fact
+    from gcxform.toolpath.frames import Frame as Frame
     from gcxform.toolpath.path import Event as Event
     from gcxform.toolpath.path import FeedMode as FeedMode
     from gcxform.toolpath.path import Form as Form
@@ -95,8 +97,9 @@ _HOMES = {
     "swept_anew",
     "toolpath.crossings": "line_crossings",
     "toolpath.deviation": "deviation",
-    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NOMINAL XY_ARCS "
-    "Fact",
+    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NOMINAL "
+    "WORKPIECE_FRAME XY_ARCS Fact",
+    "toolpath.frames": "Frame",
     "toolpath.path": "Event FeedMode Form Kind Plane Toolpath column_major",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}

@@ -18,9 +18,9 @@ from gcxform.files import write_atomically
 from gcxform.machine.machine import Machine
 from gcxform.modal.codes import Effect
 from gcxform.modal.interpreter import Interpreter
+from gcxform.modal.meaning import FRAMING
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
-from gcxform.modal.tables import frame_name
 from gcxform.pipeline import Result
 from gcxform.registry import default_registry
 from gcxform.source import Source
@@ -93,13 +93,18 @@ def joined(parts: Sequence[Toolpath]) -> Toolpath:
         for event in part.events
     )
     names = ("inch", "incremental", "absolute_centre")
+    before = np.cumsum([0, *(len(part.frames) for part in parts)])
+    columns["frame"] = np.concatenate(
+        [part.frame + int(first) for part, first in zip(parts, before[:-1], strict=True)]
+    )
+    frames = tuple(frame for part in parts for frame in part.frames)
     every = [part.blocks for part in parts]
     flags = [np.concatenate([getattr(blocks, name) for blocks in every]) for name in names]
     apart = np.concatenate(
         [np.zeros(len(b.inch), np.bool_) if b.apart is None else b.apart for b in every]
     )
     blocks = Blocks(every[0].first, *flags, *([apart] if apart.any() else []))
-    return parts[0].replace(**columns, events=events, blocks=blocks)
+    return parts[0].replace(**columns, events=events, blocks=blocks, frames=frames)
 
 
 # --- comparison ---
@@ -217,7 +222,7 @@ class _Manner:
 
     feed: NDArray[np.float64]
     mode: NDArray[np.int8]
-    frame: NDArray[np.int8]
+    origin: NDArray[np.str_]
     rapid: NDArray[np.bool_]
     line: NDArray[np.int64]
 
@@ -227,7 +232,8 @@ class _Manner:
         mode, rapid = path.feed_mode[row], path.kind[row] == Kind.RAPID
         part = np.where(mode == FeedMode.INVERSE_TIME, pieces.high - pieces.low, 1.0)
         feed = np.divide(path.feed[row], part, out=np.full(len(row), np.inf), where=part > 0)
-        return cls(feed, mode, path.frame[row], rapid, path.source[row] + 1)
+        origins = np.array([", ".join(dict.fromkeys(frame.origin)) for frame in path.frames])
+        return cls(feed, mode, origins[path.frame[row]], rapid, path.source[row] + 1)
 
     def alike(self, other: _Manner, at: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Return whether pieces `at` are travelled as the pieces of the other path."""
@@ -235,7 +241,7 @@ class _Manner:
         with np.errstate(invalid="ignore"):
             near = (feed == other.feed) | (np.abs(feed - other.feed) <= FEED_SLIP * np.abs(feed))
         same = self.rapid[at] | (near & (mode == other.mode))
-        return np.asarray(same & (self.frame[at] == other.frame))
+        return np.asarray(same & (self.origin[at] == other.origin))
 
 
 def _feeds(a: Toolpath, b: Toolpath, matching: Matching, tolerance: float) -> list[Difference]:
@@ -258,8 +264,8 @@ def _feeds(a: Toolpath, b: Toolpath, matching: Matching, tolerance: float) -> li
 
 def _changed(one: _Manner, other: _Manner, k: int) -> str:
     """Return in what a piece is travelled otherwise."""
-    if one.frame[k] != other.frame[k]:
-        return f"{frame_name(int(one.frame[k]))} became {frame_name(int(other.frame[k]))}"
+    if one.origin[k] != other.origin[k]:
+        return f"{one.origin[k]} became {other.origin[k]}"
     if one.mode[k] != other.mode[k]:
         return f"feed mode G{one.mode[k]} became G{other.mode[k]}"
     return f"feed {one.feed[k]:g} became {other.feed[k]:g}"
@@ -287,13 +293,16 @@ def _events(a: Side, b: Side, matching: Matching, tolerance: float) -> list[Diff
 
 
 def _told(side: Side, other: type[Dialect]) -> list[Event]:
-    """Return the events, without those that the other dialect reads as modes."""
-    path, _ = side
-    return [
-        event
-        for event in path.events
-        if event.what not in other.codes or other.codes[event.what].effect is not Effect.MODAL
-    ]
+    """Return the events, without those that the other dialect reads as modes.
+
+    What shifts coordinates by known amounts is seen in the positions, and needs no telling.
+    """
+    path, own = side
+    plainly = all(set(frame.origin) == {path.first} for frame in path.frames)
+    silent = {code for code, what in other.codes.items() if what.effect is Effect.MODAL}
+    if plainly:
+        silent |= {code for code, what in own.codes.items() if what.act in FRAMING}
+    return [event for event in path.events if event.what not in silent]
 
 
 def _difference(one: Event | None, other: Event | None) -> str:

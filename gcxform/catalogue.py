@@ -104,6 +104,17 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "does: renumbering a program whose jumps name block numbers, for instance. Leave the "
         "pass out for such programs.",
     ),
+    "GX213": (
+        "Something in this block is not followed",
+        "The code is known, but not in this form or not in this state: a word is missing, controls "
+        "differ in what they do here, or the position it counts from is not known. The message "
+        "says which.",
+    ),
+    "GX214": (
+        "A setting of the control decides",
+        "What the code does depends on a parameter or setting of the control which the program "
+        "does not tell. Give it in [control] of the machine file.",
+    ),
     # --- 3xx: geometry ---
     "GX301": (
         "The end of an arc is off its circle",
@@ -354,6 +365,13 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "A block with a NUL byte would have to be written anew",
         "NUL bytes are the leader and trailer of punched tape; within a block that changes "
         "there is no telling what they were for. Remove them from the file.",
+    ),
+    "GX506": (
+        "A block that can only stay as it is would have to change",
+        "Canned cycles, returns to reference, moves in machine coordinates and blocks that set "
+        "coordinates from where the axes stand are copied as they are, or not at all: what a pass "
+        'asks for cannot be said in such a block. Resolve it first: the pass "cycles" writes '
+        'cycles as plain moves, the pass "offsets" folds shifts into coordinates.',
     ),
     # --- 6xx: verification ---
     "GX601": (

@@ -74,6 +74,8 @@ class Dialect:
         "frame": "G54",
     }
     """The modal state a program is taken to start in; the certificate says what was taken."""
+    axis_words_once: ClassVar[bool] = False
+    """A motion code beside a code that takes the axis words for itself (G92, G28) is refused."""
     last_code_wins: ClassVar[bool] = False
     """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
     point_required: ClassVar[bool] = False
@@ -92,6 +94,28 @@ class Dialect:
     """Where M2 and M30 do not stop the control: the modes they leave behind."""
     dwell: ClassVar[Mapping[str, float]] = {"P": 1.0}
     """Seconds for one unit of each word that G4 takes; a value with a point is in seconds."""
+    starts_in_frame: ClassVar[bool] = False
+    """Whether the work offset of `initial` is in force for certain when a program starts."""
+    g10_offsets: ClassVar[tuple[str, ...]] = ("G54", "G55", "G56", "G57", "G58", "G59")
+    """The work offsets that P1, P2 ... of G10 L2 name."""
+    g10_p0_is_active: ClassVar[bool] = False
+    g10_sets_position: ClassVar[bool] = False
+    """G10 L20 makes the present position read what is given."""
+    g10_ignores_g91: ClassVar[bool] = False
+    g52_is_g92: ClassVar[bool] = False
+    """G52 and G92 set one and the same shift."""
+    g52_known: ClassVar[bool] = True
+    """Whether G52 and G92 mean what they mean on most controls; otherwise a setting decides."""
+    g43_takes_spindle_tool: ClassVar[bool] = False
+    """G43 without H takes the length of the tool in the spindle."""
+    length_may_move: ClassVar[bool] = False
+    """Another tool length may move the axis by itself; where it stands is then not known."""
+    g53_in_g91: ClassVar[str] = "refused"
+    """What G53 does under G91: "absolute", or "refused" by the control or by us."""
+    g53_is_rapid: ClassVar[bool] = False
+    """G53 moves in rapid whatever motion code is in force."""
+    g28_without_axes: ClassVar[bool] = False
+    """G28 without an axis word sends all axes home."""
     block_delete: ClassVar[str] = ""
     """What the control does with `/` blocks: "execute", "skip", or "" when a switch decides."""
     stops_at_end: ClassVar[bool] = True

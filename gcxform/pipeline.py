@@ -141,6 +141,11 @@ class Pipeline:
         return Manner(self.source, self.target, numbers, self.words, self.decimals)
 
     @property
+    def machine_reading(self) -> Reading:
+        """What is known of programs before they are read, with what the machine file says."""
+        return self.reading if self.machine is None else self.reading.on(self.machine)
+
+    @property
     def context(self) -> PassContext:
         """What the passes are told."""
         return PassContext(

@@ -137,7 +137,12 @@ class Run:
                     proof.result()
                 if self.verifier is not None:
                     proof = pool.submit(
-                        self.verifier.check, read, window, emitted.text, emitted.source
+                        self.verifier.check,
+                        read,
+                        window,
+                        emitted.text,
+                        emitted.source,
+                        emitted.nth,
                     )
                 self._hand_on(window, emitted, out)
                 progress(len(window.text))
@@ -264,7 +269,7 @@ def _in_words_of(target: type[Dialect], path: Toolpath) -> Toolpath:
 
 def _with_assumed_start(pipeline: Pipeline, axes: str) -> Reading:
     """Return what is known at the start; where only programmed words are written, the rest is 0."""
-    reading = pipeline.reading
+    reading = pipeline.machine_reading
     if pipeline.words != "programmed":
         return reading
     zeros = {axis: 0.0 for axis in axes if axis in LINEAR}

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from gcxform.contract import Pass, PassContext
 from gcxform.diagnostics import Diagnostic, GcxformError, Location, VerificationError
 from gcxform.modal.interpreter import Interpreted, Interpreter
+from gcxform.modal.meaning import FRAMING
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
@@ -75,9 +76,12 @@ class Verifier:
         """What the path may deviate (mm): more once a block in inches has been written."""
         return self.budgets[self.inch]
 
-    def check(self, read: Interpreted, window: Window, text: bytes, source: Ints) -> None:
+    def check(
+        self, read: Interpreted, window: Window, text: bytes, source: Ints, nth: Ints
+    ) -> None:
         """Check the text written for a window; `source` is the input line of each output line.
 
+        `nth` says which of the moves of its input line the first move of an output line is.
         Raises VerificationError.
         """
         first = self.reader.lines
@@ -90,10 +94,10 @@ class Verifier:
         self.inch |= bool(path.blocks.inch[path.block].any())
         for step in reversed(self.passes):
             path = step.undo(path, self.context)
-        trace = _Trace(read.path, window, back.path, path, source, first)
+        trace = _Trace(read.path, window, back.path, path, source, nth, first)
         self._count(read, window, trace)
         self._compare(trace)
-        self._events(read.path.events, back.path.events, trace)
+        self._events(self._told(read.path.events), self._told(back.path.events), trace)
 
     def _count(self, read: Interpreted, window: Window, trace: _Trace) -> None:
         found = self.findings
@@ -194,6 +198,13 @@ class Verifier:
             line = int(trace.before.source[wrong[0]])
             self._raise("the time of a move in G93 has changed", line, 0)
 
+    def _told(self, events: tuple[Event, ...]) -> tuple[Event, ...]:
+        """Return the events that have to be in the output too: not those that are folded away."""
+        if not any(step.folds for step in self.passes):
+            return events
+        codes = self.context.source.codes
+        return tuple(e for e in events if e.what not in codes or codes[e.what].act not in FRAMING)
+
     def _events(self, old: tuple[Event, ...], new: tuple[Event, ...], trace: _Trace) -> None:
         """Check that events are the same, in order, at the same place between the moves."""
         self.findings.events += len(old)
@@ -234,6 +245,7 @@ class _Trace:
         written: Toolpath,
         after: Toolpath,
         source: Ints,
+        nth: Ints,
         first: int,
     ) -> None:
         self.before = before
@@ -241,9 +253,10 @@ class _Trace:
         self.after = after
         self.source = source
         self.first = first
-        row_of_line = np.full(len(window), -1, np.int64)
-        row_of_line[before.source - window.first_line] = np.arange(len(before))
-        self._row_of_line = row_of_line
+        self._nth = nth
+        line = before.source - window.first_line
+        self._count = np.bincount(line, minlength=len(window))
+        self._row_of_line = np.where(self._count > 0, np.cumsum(self._count) - self._count, -1)
         self._window_first = window.first_line
         self.owner = self._owners(after)
         self.written_owner = self.owner if after is written else self._owners(written)
@@ -257,8 +270,11 @@ class _Trace:
         return runs
 
     def _owners(self, path: Toolpath) -> Ints:
-        lines = self.source[path.source - self.first] - self._window_first
-        return np.asarray(self._row_of_line[lines])
+        written = path.source - self.first
+        lines = self.source[written] - self._window_first
+        first = self._row_of_line[lines]
+        nth = path.nth + self._nth[written]
+        return np.where((first >= 0) & (nth < self._count[lines]), first + nth, -1)
 
     def line_of(self, output_line: int) -> int:
         """Return the input line of an output line, both from 0."""

@@ -1,6 +1,7 @@
 """The vocabulary for plugin authors who write a dialect's code tables."""
 
 from gcxform.modal.codes import (
+    AXES,
     CALL,
     COMP,
     CYCLE,
@@ -13,10 +14,12 @@ from gcxform.modal.codes import (
     SYNCHRONISED,
     TRANSFORM,
     barrier,
+    frame,
     inert,
 )
 
 __all__ = [
+    "AXES",
     "CALL",
     "COMP",
     "CYCLE",
@@ -29,5 +32,6 @@ __all__ = [
     "SYNCHRONISED",
     "TRANSFORM",
     "barrier",
+    "frame",
     "inert",
 ]

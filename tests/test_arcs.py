@@ -330,7 +330,8 @@ def tampered(change: Change, program: bytes) -> None:
         changed = list(change(list(zip(lines, emitted.source.tolist(), strict=True))))
         several = [(t, n) for text, n in changed for t in text.splitlines(keepends=True)]
         text = b"".join(line for line, _ in several)
-        return Emitted(text, np.array([number for _, number in several], np.int64))
+        source = np.array([number for _, number in several], np.int64)
+        return Emitted(text, source, np.zeros(len(source), np.int64))
 
     job.emitter.emit = lying  # type: ignore[method-assign]
     job.over(source.windows(), Output(texts.append, None), lambda _: None)

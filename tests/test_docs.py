@@ -108,7 +108,7 @@ def codes_table():
         codes = sorted(dialect.codes.items(), key=lambda item: float(item[0][1:]))
         m_codes = sorted(dialect.m_codes.items())
         effects = {
-            "read": (Effect.MODAL, Effect.DWELL),
+            "read": (Effect.MODAL, Effect.DWELL, Effect.FRAME),
             "kept": (Effect.INERT,),
             "refused": (Effect.BARRIER,),
         }

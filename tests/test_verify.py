@@ -54,7 +54,8 @@ def run(
         lines = emitted.text.splitlines(keepends=True)
         changed = list(change(list(zip(lines, emitted.source.tolist(), strict=True))))
         text = b"".join(line for line, _ in changed)
-        return Emitted(text, np.array([number for _, number in changed], np.int64))
+        source = np.array([number for _, number in changed], np.int64)
+        return Emitted(text, source, np.zeros(len(source), np.int64))
 
     job.emitter.emit = lying  # type: ignore[method-assign]
     job.over(source.windows(size), Output(texts.append, None), lambda _: None)

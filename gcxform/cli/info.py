@@ -16,7 +16,6 @@ from gcxform.cli.programs import opened
 from gcxform.cli.tolerant import Tolerant
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.modal.reader import WindowReader
-from gcxform.modal.tables import frame_name
 from gcxform.registry import default_registry
 from gcxform.source import Source
 from gcxform.syntax.scan import Window
@@ -186,7 +185,7 @@ def _modes(path: Toolpath) -> Counter[str]:
         count = int(flags[block].sum())
         found.update({yes: count, no: len(path) - count})
     tables: tuple[tuple[Any, Callable[[int], str]], ...] = (
-        (path.frame, frame_name),
+        (path.frame, lambda frame: path.frames[frame].work),
         (path.feed_mode[path.kind != Kind.RAPID], lambda mode: f"G{FeedMode(mode):d}"),
         (path.plane[path.is_arc], lambda plane: f"G{17 + Plane(plane):d}"),
     )

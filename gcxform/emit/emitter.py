@@ -24,7 +24,7 @@ from gcxform.emit.numbers import MOST_DECIMALS, quantise
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, motion_kinds
 from gcxform.emit.render import Renderer, interleave
-from gcxform.emit.templates import CannotSayError, TemplateWriter, gaps_between, is_foreign
+from gcxform.emit.templates import CannotSayError, TemplateWriter, gaps_between, nothing_left
 from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.tables import NUMBER, MeaningTable
@@ -42,10 +42,14 @@ PEELED_AT_MOST = 16
 
 @dataclass(frozen=True, slots=True)
 class Emitted:
-    """Text of a window, and for each of its lines the line of the program it came from."""
+    """Text of a window, and for each of its lines the line of the program it came from.
+
+    `nth` says which of the moves of that line its first move is.
+    """
 
     text: bytes
     source: Ints
+    nth: Ints
 
 
 class Emitter:
@@ -100,16 +104,16 @@ class _Job:
         self._render(chosen, renderer)
         text, lengths = renderer.text(len(chosen))
         self._check_lengths(text, lengths, chosen)
-        whole, source = interleave(self.task, copied, self.pieces.line[chosen], text, lengths)
+        line, nth = self.pieces.line[chosen], self.pieces.of_rows(self.path.nth, 0)[chosen]
+        whole, source, nth = interleave(self.task, copied, line, nth, text, lengths)
         self._carry()
-        return Emitted(whole, source + self.task.window.first_line)
+        return Emitted(whole, source + self.task.window.first_line, nth)
 
     def _without_words(self) -> Flags:
         """Return the inner pieces of split blocks that would have no word: nothing moves."""
         still: Flags = ~self.positions.write.any(axis=1) & (self.kind < Kind.ARC_CW)
         inner: Flags = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row
-        inner[self.pieces.has_row] &= still
-        return inner
+        return np.asarray(inner & self.pieces.of_rows(still, False))
 
     def _gone(self) -> Flags:
         """Return the pieces of lines of whose move and text nothing is left: no comment either."""
@@ -121,15 +125,21 @@ class _Job:
         return np.asarray(gone & silent[self.task.shape][self.pieces.line])
 
     def _foreign(self) -> Flags:
-        """Return the pieces of lines that hold nothing the target dialect has."""
-        if not self.task.manner.crossing:
+        """Return the pieces of lines of which nothing is left to write in the target dialect."""
+        task = self.task
+        if not task.manner.crossing and not self.path.folded:
             return np.zeros(len(self.pieces.line), np.bool_)
-        target = self.task.manner.target
-        items = [shape.block.items for shape in self.task.table.shapes.shapes]
-        foreign = np.array(
-            [bool(i) and all(is_foreign(item, target) for item in i) for i in items], np.bool_
+        work = self.path.frames[0].work if self.path.folded else ""
+        gone = np.array(
+            [
+                nothing_left(shape.block.items, meaning, task.manner.target, work)
+                for shape, meaning in zip(
+                    task.table.shapes.shapes, task.table.meanings, strict=False
+                )
+            ],
+            np.bool_,
         )
-        return np.asarray(foreign[self.task.shape][self.pieces.line])
+        return np.asarray(gone[task.shape][self.pieces.line] & ~self.pieces.has_row)
 
     # --- arcs ---
 
@@ -138,16 +148,23 @@ class _Job:
         anew = ~self.copying.lines[self.path.block] & (self.kind >= Kind.ARC_CW)
         if not anew.any():
             return
-        start = self.path.start if not self.path.refit_centres else self._exact_starts()
+        start = self._starts()
         for plane in Plane:
             rows = np.flatnonzero(anew & (self.path.plane == plane))
             if len(rows):
                 self._arcs_in_plane(plane, rows, start)
 
-    def _exact_starts(self) -> Floats:
-        """Return where rows start in the control: off the grid after blocks that were copied."""
+    def _starts(self) -> Floats:
+        """Return where rows start in the control (n, 3): off the grid after copied blocks.
+
+        Like all geometry of arcs, in coordinates of the frames of the rows.
+        """
+        start = self.path.local(self.path.start[:, :3])
+        if not self.path.refit_centres:
+            return start
         exact = np.append(self.copying.believed_exact, self.copying.exact[:-1])
-        return np.where(exact[:, None], self.path.start, self.positions.before)
+        before = self.positions.local(self.positions.before[:, :3])
+        return np.where(exact[:, None], start, before)
 
     def _arcs_in_plane(self, plane: Plane, rows: Ints, start: Floats) -> None:
         manner = self.task.manner
@@ -162,12 +179,12 @@ class _Job:
         letter = "IJK"[plane.axes[0]]
         arcs = ArcEnds(
             begin,
-            (self.positions.held if refit else self.path.end)[np.ix_(rows, axes)],
-            self.path.centre[np.ix_(rows, axes)],
+            self._ends(refit)[np.ix_(rows, axes)],
+            self.path.local(self.path.centre)[np.ix_(rows, axes)],
             np.where(absolute[:, None], 0.0, begin),
             np.where(inch, manner.step(letter, True), manner.step(letter, False)),
             self.path.sweep[rows],
-            self.path.sense[rows],
+            np.where(self.path.mirrored[rows], -1.0, 1.0) * self.path.sense[rows],
             self._spiral(rows, axes),
         )
         self.centre[rows], good = centre_words(arcs, manner.target.arc_rule, refit)
@@ -177,6 +194,12 @@ class _Job:
             hint = 'give more decimals, or turn arcs into lines with the pass "segment"'
             self._refuse(rows[~good], "GX504", message, hint)
 
+    def _ends(self, refit: bool) -> Floats:
+        """Return where rows end (n, 3): as formatted, or exactly."""
+        if refit:
+            return self.positions.local(self.positions.held[:, :3])
+        return self.path.local(self.path.end[:, :3])
+
     def _full_circles(self, rows: Ints, axes: Ints, begin: Floats, refit: bool) -> Flags:
         """Settle the end words of full circles; return which of them are good for that.
 
@@ -184,7 +207,10 @@ class _Job:
         off the grid, in a block that was copied, cannot be written: the words are left out.
         """
         full = np.mod(self.path.sweep[rows] + 1e-9, TURN) < 2e-9
-        said = np.stack([self.positions.said(axis, rows) for axis in axes.tolist()], axis=1)
+        said = np.full((len(self.path), 3), np.nan)
+        for axis in axes.tolist():
+            said[rows, axis] = self.positions.said(axis, rows)
+        said = self.positions.local(said)[np.ix_(rows, axes)]
         on_grid = (np.abs(said - begin) < EXACT).all(axis=1)
         silent = full & ~on_grid & refit
         if self.task.manner.target.circle_needs_axis_word:
@@ -216,8 +242,7 @@ class _Job:
     def _ways(self, chosen: Ints) -> Ints:
         """Return, per piece, one number for the way in which it has to be written."""
         pieces = self.pieces
-        arc = np.zeros(len(pieces.line), np.int64)
-        arc[pieces.has_row] = self.kind >= Kind.ARC_CW
+        arc = pieces.of_rows((self.kind >= Kind.ARC_CW).astype(np.int64), 0)
         inch = self.path.blocks.inch[pieces.line]
         way = self.task.shape[pieces.line].astype(np.int64)
         parts = [
@@ -230,8 +255,8 @@ class _Job:
             (inch, 2),
         ]
         if arc.any():
-            plane, turns = np.zeros((2, len(arc)), np.int64)
-            plane[pieces.has_row], turns[pieces.has_row] = self.path.plane, self._turns()
+            plane = pieces.of_rows(self.path.plane.astype(np.int64), 0)
+            turns = pieces.of_rows(self._turns(), 0)
             parts += [(arc, 2), (plane * arc, 3), (turns * arc, int(turns.max()) + 1)]
         for part, size in parts:
             way = way * size + part
@@ -272,6 +297,7 @@ class _Job:
             self.task.manner,
             self.path.axes,
             b" " if self.emitter.gap is None else self.emitter.gap,
+            self.path.frames[0].work if self.path.folded else "",
         )
         try:
             return writer.write(key)
@@ -337,7 +363,7 @@ class _Job:
         believed, pieces = self.emitter.believed, self.pieces
         if len(self.path):
             exact = bool(self.copying.exact[-1])
-            held = self.path.end[-1] if exact else self.positions.held[-1]
+            held = self.path.end[-1] if exact else self.positions.after[-1]
             believed.position = np.array(held)
             believed.exact = exact
         if len(pieces.line):

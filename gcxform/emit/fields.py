@@ -7,9 +7,10 @@ from enum import IntEnum
 
 
 class Role(IntEnum):
-    """Which piece of its block a line is.
+    """Which piece of its block a line is; NONE: the block does not move.
 
-    NONE: the block does not move. GONE: its move is part of one that another block makes.
+    VERBATIM: the block moves in a way of its own, and its words stay as they are. GONE: its move
+    is a part of one that another block makes.
     """
 
     NONE = 0
@@ -17,7 +18,8 @@ class Role(IntEnum):
     FIRST = 2
     MIDDLE = 3
     LAST = 4
-    GONE = 5
+    VERBATIM = 5
+    GONE = 6
 
 
 class Feed(IntEnum):

@@ -15,7 +15,7 @@ from gcxform.emit.manner import Believed, Task
 from gcxform.modal.lines import fill
 from gcxform.modal.moves import turns_only
 from gcxform.modal.tables import GROUPS, NUMBER
-from gcxform.toolpath.path import FeedMode, Kind
+from gcxform.toolpath.path import FeedMode, Form, Kind
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -34,6 +34,7 @@ class Pieces:
     leads     (pieces,) whether it is the first piece of its line
     motion, inch, incremental, absolute_centre   (pieces,) code to be stated, -1 for none
     feed      (pieces,) `Feed`; `feed_value` is the number to write
+    special   (pieces,) whether it stands for all moves of a block that is written as it stands
     repaired  (pieces,) whether something is stated that the source line did not state
     """
 
@@ -48,7 +49,7 @@ class Pieces:
         self.incremental = self._mode(
             "distance", blocks.incremental, believed.incremental, self.has_row
         )
-        arcs = self._of_rows(kind >= Kind.ARC_CW, False)
+        arcs = self.of_rows(kind >= Kind.ARC_CW, False)
         self.absolute_centre = self._mode(
             "arc-distance", blocks.absolute_centre, believed.absolute_centre, arcs
         )
@@ -58,29 +59,39 @@ class Pieces:
     def _lay_out(self) -> None:
         path, live = self.task.path, self.task.read.live
         self.count = np.bincount(path.block, minlength=live)
-        pieces = np.maximum(self.count, 1)
+        special = np.zeros(live, np.bool_)
+        special[path.block[path.form != Form.PLAIN]] = True
+        pieces = np.where(special, 1, np.maximum(self.count, 1))
         self.line = np.repeat(np.arange(live), pieces)
         self.has_row = self.count[self.line] > 0
-        self.row = np.cumsum(self.has_row) - 1
         nth = np.arange(len(self.line)) - (np.cumsum(pieces) - pieces)[self.line]
+        self.row = (np.cumsum(self.count) - self.count)[self.line] + nth
         self.leads = nth == 0
         ends = nth == pieces[self.line] - 1
         role = np.where(self.has_row, np.int8(Role.ONLY), np.int8(Role.NONE))
-        split = self.count[self.line] > 1
+        split = pieces[self.line] > 1
         role[split] = Role.MIDDLE
         role[split & self.leads] = Role.FIRST
         role[split & ends] = Role.LAST
+        self.special = special[self.line]
         moved = np.zeros(live, np.bool_)
         moved[self.task.read.path.block] = True
         role[~self.has_row & moved[self.line]] = Role.GONE
+        role[self.special] = Role.VERBATIM
         self.role = role
         self.ends = ends
 
-    def _of_rows(self, values: NDArray, absent: object) -> NDArray:  # type: ignore[type-arg]
+    def of_rows(self, values: NDArray, absent: object) -> NDArray:  # type: ignore[type-arg]
         """Return a column over the rows as one over the pieces."""
         column = np.full(len(self.line), absent, values.dtype)
-        column[self.has_row] = values
+        column[self.has_row] = values[self.row[self.has_row]]
         return column
+
+    def repaired_in(self, lines: Ints) -> Flags:
+        """Return which lines have something to be stated that the source does not state there."""
+        repaired = np.zeros(len(self.count), np.bool_)
+        repaired[self.line[self.repaired]] = True
+        return np.asarray(repaired[lines])
 
     def _stated_in(self, group: str) -> Flags:
         """Return, per piece, whether its line has a code of a group and it is the piece for it."""
@@ -111,13 +122,15 @@ class Pieces:
         """State a motion code where the source stated one, and where the motion changes."""
         group = self.task.table.groups[self.task.shape, GROUPS.index("motion")]
         sets = np.where(self.leads & (self.role != Role.GONE), group[self.line], NOTHING)
-        sets[self.has_row] = self.kind
+        form = self.of_rows(self.task.path.form, Form.PLAIN)
+        moves = self.has_row & np.isin(form, (Form.PLAIN, Form.MACHINE))
+        sets[moves] = self.of_rows(self.kind, NOTHING)[moves]
         self.motion_after = fill(sets, sets >= 0, self.believed.motion)
         before = self._held(sets, "motion", self.believed.motion)
         explicit = self._stated_in("motion")
-        changes = self.has_row & (before != self.motion_after)
+        changes = moves & (before != self.motion_after)
         self.repaired |= changes & ~explicit
-        self.motion = np.where(self.has_row & (explicit | changes), self.motion_after, NOTHING)
+        self.motion = np.where(moves & (explicit | changes), self.motion_after, NOTHING)
 
     def _feeds(self) -> None:
         """State a feed where the source stated one, where it changes, and always in G93.
@@ -128,16 +141,16 @@ class Pieces:
         modes, path = self.task.read.modes, self.task.path
         slot = self.task.table.slots[self.task.shape, ord("F") - 65]
         word = (slot >= 0)[self.line] & self.leads
-        feeding = self._of_rows(self.kind != Kind.RAPID, False)
+        feeding = self.of_rows(self.kind != Kind.RAPID, False)
         inverse = modes.feed_mode == FeedMode.INVERSE_TIME
         unit_here = np.where(self._inch_for_feed(), INCH, 1.0)
         plain = turns_only(path.axes, path.entry, path.end) & (self.kind < Kind.ARC_CW)
-        has_unit = self._of_rows(~plain, True) & ~inverse[self.line]
+        has_unit = self.of_rows(~plain, True) & ~inverse[self.line]
         unit = np.where(has_unit, unit_here, 1.0)
         given = modes.feed * np.where(inverse, 1.0, modes.feed_unit)
         given = given[self.line] / np.where(inverse[self.line], 1.0, unit_here)
         need = np.where(word, given, np.nan)
-        need = np.where(feeding, self._of_rows(path.feed, np.nan) / unit, need)
+        need = np.where(feeding, self.of_rows(path.feed, np.nan) / unit, need)
         sets = ~np.isnan(need) | self._feed_lost()
         self.feed_after = fill(need, sets, self.believed.feed)
         self.unit_after = fill(unit_here, sets, self.believed.feed_unit)

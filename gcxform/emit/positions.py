@@ -10,7 +10,7 @@ from gcxform.emit.manner import Believed, Task
 from gcxform.emit.numbers import quantise
 from gcxform.modal.lines import fill
 from gcxform.modal.moves import SAME_PLACE
-from gcxform.toolpath.path import Small, column_major
+from gcxform.toolpath.path import Kind, Small, Toolpath, column_major
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -19,8 +19,10 @@ Flags = NDArray[np.bool_]
 class Positions:
     """What is formatted, per row and axis, in column-major arrays (rows, axes).
 
-    held        what the control believes after the row, mm or degrees
-    before      what it believes before it
+    end         where the row shall end, in the frame of the row
+    held        what the control believes after the row, mm or degrees, in the frame of the row
+    before      what it believes before it, in the frame of the row
+    after       what it believes after it, as a position
     step        (rows,) per axis: the last decimal, mm or degrees
     programmed  whether the source line names the axis
     write       whether the axis word is written
@@ -31,6 +33,10 @@ class Positions:
         self.believed = believed
         path = task.path
         rows, axes = len(path), len(path.axes)
+        self.end = path.words
+        self.entry = believed.position
+        if rows and not path.plainly_framed:
+            self.entry = path.frames[int(path.frame[0])].words(believed.position[None, :])[0]
         self.inch = path.blocks.inch[path.block]
         self.held = column_major(rows, axes)
         self.before = column_major(rows, axes)
@@ -45,12 +51,14 @@ class Positions:
             slot = task.table.slots[task.shape, ord(axis) - 65]
             self.programmed[:, column] = (slot >= 0)[path.block]
             self._round(column, axis)
+        self._look_back()
+        for column in range(axes):
             self._choose(column)
 
     def _round(self, column: int, axis: str) -> None:
         """Find what the control believes of one axis before and after each row."""
         manner = self.task.manner
-        end = self.task.path.end[:, column]
+        end = self.end[:, column]
         decimals = manner.decimals_of(axis, False)
         if axis in LINEAR and self.inch.any():
             step = np.where(self.inch, manner.step(axis, True), manner.step(axis, False))
@@ -60,15 +68,22 @@ class Positions:
             held = quantise(end, decimals) / 10.0**decimals
             self.step.append(manner.step(axis, False))
         if manner.words == "programmed":
-            held = fill(held, self.programmed[:, column], self.believed.position[column])
+            held = fill(held, self.programmed[:, column], self.entry[column])
         stays = self._stays(column, held)
         self.stays[:, column] = stays
         if stays.any():
-            held = fill(held, ~stays, self.believed.position[column])
+            held = fill(held, ~stays, self.entry[column])
         self.held[:, column] = held
-        self.before[1:, column] = held[:-1]
-        self.before[:1, column] = self.believed.position[column]
-        self.before[self.task.path.lost, column] = np.nan
+
+    def _look_back(self) -> None:
+        """Find what the control believes before each row, in the frame of that row."""
+        path = self.task.path
+        self.after = path.from_frames(self.held)
+        self.before[1:] = self.after[:-1]
+        self.before[:1] = self.believed.position
+        path.with_lost(self.before)
+        if not path.plainly_framed:
+            self.before = path.in_frames(self.before)
 
     def _choose(self, column: int) -> None:
         """Decide which words of an axis are needed: those that change or were programmed."""
@@ -86,7 +101,7 @@ class Positions:
     def _off_grid(self) -> bool:
         """Whether the control stands at a place that cannot be written in the present unit."""
         inch = bool(self.inch.any())
-        for axis, place in zip(self.task.path.axes, self.believed.position, strict=True):
+        for axis, place in zip(self.task.path.axes, self.entry, strict=True):
             step = self.task.manner.step(axis, inch)
             if abs(np.rint(place / step) * step - place) > SAME_PLACE:
                 return True
@@ -99,13 +114,21 @@ class Positions:
         before; it stays there, because to write it would make it move.
         """
         path, manner = self.task.path, self.task.manner
-        if not self._mixed or not len(path):
+        if not self._mixed or not len(path) or not path.plainly_framed:
             return np.zeros(len(path), np.bool_)
         axis = path.axes[column]
         still = np.abs(path.end[:, column] - path.start[:, column]) < SAME_PLACE
         both = 0.505 * (manner.step(axis, False) + manner.step(axis, True))
-        still[0] &= abs(held[0] - self.believed.position[column]) < both
+        still[0] &= abs(held[0] - self.entry[column]) < both
         return np.asarray(still & ~self.programmed[:, column])
+
+    def local(self, words: Floats) -> Floats:
+        """Return words (rows, 3) as coordinates: half of what is written as a diameter."""
+        path = self.task.path
+        halved = np.array([frame.diameter for frame in path.frames], np.bool_)
+        if not halved.any():
+            return words
+        return np.where(halved[path.frame][:, None], words * (0.5, 1.0, 1.0), words)
 
     @property
     def _last(self) -> Flags:
@@ -152,4 +175,11 @@ def motion_kinds(task: Task, positions: Positions) -> Small:
     step = first_step[arcs] if isinstance(first_step, np.ndarray) else first_step
     same = np.nan_to_num(chord).max(axis=1) < 1e-9
     kind[arcs[same & (length < 4 * step) & (path.sweep[arcs] < np.pi)]] = 1
-    return kind
+    return as_written(path, kind)
+
+
+def as_written(path: Toolpath, kind: Small) -> Small:
+    """Return the kinds of rows as a program says them: in a mirrored frame G2 cuts what G3 does."""
+    if path.plainly_framed:
+        return kind
+    return np.where(path.mirrored & (kind >= Kind.ARC_CW), 5 - kind, kind).astype(np.int8)

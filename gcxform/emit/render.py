@@ -119,23 +119,25 @@ class Renderer:
 
 
 def interleave(
-    task: Task, copied: Flags, written: Ints, text: bytes, lengths: Ints
-) -> tuple[bytes, Ints]:
+    task: Task, copied: Flags, written: Ints, nth: Ints, text: bytes, lengths: Ints
+) -> tuple[bytes, Ints, Ints]:
     """Return a window's new text and, for each of its lines, the line it came from.
 
     `copied` (live,) says which lines are copied; `written` (k,) are the lines of the pieces whose
-    texts, of these lengths, follow one another in `text`. Lines the control does not reach are
-    copied.
+    texts, of these lengths, follow one another in `text`. `nth` (k,) says which move of its line
+    each piece is, and the same is returned for all lines of the text. Lines the control does not
+    reach are copied.
     """
     window = task.window
     whole = np.concatenate([copied, _unreached(task)])
     keep = np.flatnonzero(whole)
     order = np.argsort(np.concatenate([keep, written]), kind="stable")
     source = np.concatenate([keep, written])[order]
+    which = np.concatenate([np.zeros(len(keep), np.int64), nth])[order]
     if not len(written) and whole.all():
-        return window.text, source
+        return window.text, source, which
     if not len(order):
-        return b"", source
+        return b"", source, which
     is_copy = order < len(keep)
     edges = np.flatnonzero(np.append(True, is_copy[1:] != is_copy[:-1]))
     ends = np.append(edges[1:], len(order))
@@ -148,7 +150,7 @@ def interleave(
         else:
             parts.append(text[int(at[done]) : int(at[done + last - first])])
             done += last - first
-    return b"".join(parts), source
+    return b"".join(parts), source, which
 
 
 def _unreached(task: Task) -> Flags:

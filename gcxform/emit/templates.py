@@ -15,7 +15,7 @@ from gcxform.dialect import Dialect
 from gcxform.emit.fields import Axis, Centre, Copied, Feed, FeedWord, Field, Key, Literal, Role
 from gcxform.emit.manner import Manner
 from gcxform.modal.codes import Code
-from gcxform.modal.meaning import Meaning
+from gcxform.modal.meaning import FRAMING, Meaning
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import BLANKS, Comment, Item, Mark, Number, Word
 
@@ -50,6 +50,28 @@ def is_foreign(item: Item, target: type[Dialect]) -> bool:
     return item.kind.startswith("program") and not target.has_program_number
 
 
+def nothing_left(
+    items: tuple[Item, ...], meaning: Meaning, target: type[Dialect], work: str
+) -> bool:
+    """Whether of a block that has items nothing but its number would be written.
+
+    That is so for parts of the program frame that the target has not, and for codes that are folded
+    into the words of moves (`work`, if it is not "", is where the program then stays).
+    """
+    folded = folded_words(meaning, work) if work else frozenset()
+
+    def goes(item: Item) -> bool:
+        if isinstance(item, Word):
+            return (
+                item.address == "N"
+                or (_name(item) if item.address in CODES else item.address) in folded
+            )
+        return is_foreign(item, target)
+
+    kept = [item for item in items if not (isinstance(item, Word) and item.address == "N")]
+    return bool(kept) and all(goes(item) for item in items)
+
+
 class TemplateWriter:
     """Makes the templates of one shape."""
 
@@ -60,6 +82,7 @@ class TemplateWriter:
         manner: Manner,
         axes: str,
         gap: bytes,
+        folded_to: str = "",
     ) -> None:
         self.shape = shape
         self.text = shape.block.text
@@ -67,6 +90,7 @@ class TemplateWriter:
         self.source = manner.source
         self.target = manner.target
         self.axes = axes
+        self.folded = folded_words(meaning, folded_to) if folded_to else frozenset()
         self.gap = self._own_gap(gap)
 
     def _own_gap(self, usual: bytes) -> bytes:
@@ -80,13 +104,14 @@ class TemplateWriter:
         """Return the fields of a piece of the block. Raises CannotSayError."""
         self.fields: list[Field] = []
         self.key = key
-        self.axes_written = key.role is Role.NONE
+        self.as_it_stands = key.role in (Role.NONE, Role.VERBATIM)
+        self.axes_written = self.as_it_stands
         self.centre_written = not key.arc
         self.stated: set[str] = set()
         if key.role is Role.GONE:
             return self._comments()
         at = slot = 0
-        whole = key.role in (Role.NONE, Role.ONLY, Role.FIRST)
+        whole = key.role not in (Role.MIDDLE, Role.LAST)
         self._repairs_wait = True
         for item in self.shape.block.items:
             lead = self.text[at : item.start].encode("latin-1") if whole else b""
@@ -165,17 +190,15 @@ class TemplateWriter:
 
     def _word(self, word: Word, lead: bytes, slot: int) -> None:
         address = word.address
+        if (address if address not in CODES else _name(word)) in self.folded:
+            return
         if address not in "NO" and self._repairs_wait:
             lead = self._repair_before(word, lead)
         if address == "G":
             self._g_word(word, lead)
         elif address == "M":
             self._m_word(word, lead)
-        elif address in self.meaning.slots and address in self.axes:
-            self._axes(lead)
-        elif address in self.meaning.slots and address in "IJKR":
-            self._centre(lead)
-        elif address in self.meaning.slots and address == self.source.turns_address:
+        elif address in self.meaning.slots and not self.as_it_stands and self._motion(word, lead):
             return
         elif address == "F" and "F" in self.meaning.slots:
             self._feed(word, lead, slot)
@@ -183,6 +206,16 @@ class TemplateWriter:
             return
         elif self.key.role not in (Role.MIDDLE, Role.LAST):
             self._copy(word, lead, slot)
+
+    def _motion(self, word: Word, lead: bytes) -> bool:
+        """Write what a word of the motion stands for; return whether it is one."""
+        if word.address in self.axes:
+            self._axes(lead)
+        elif word.address in "IJKR":
+            self._centre(lead)
+        else:
+            return word.address == self.source.turns_address
+        return True
 
     def _said(self, start: int, end: int) -> str:
         """Return a piece of a word, in capitals where the target knows nothing else."""
@@ -216,7 +249,7 @@ class TemplateWriter:
                 if not self._goes_without_saying(word, wanted):
                     self._literal(lead, text if wanted == name else _like(text, wanted))
                 return
-            if group == "motion" and self.key.role is not Role.NONE:
+            if group == "motion" and not self.as_it_stands:
                 return
         elif group in self.stated:
             return  # of several codes of a group one has been written
@@ -230,7 +263,11 @@ class TemplateWriter:
         if self.source is self.target or code is None:
             return
         other = self.target.codes.get(name)
-        same = other is not None and (other.group, other.effect) == (code.group, code.effect)
+        same = other is not None and (other.group, other.effect, other.act) == (
+            code.group,
+            code.effect,
+            code.act,
+        )
         if not same or (code.takes != other.takes if other else True):
             self._refuse(word, name)
         if (
@@ -254,7 +291,7 @@ class TemplateWriter:
             if other is None or code is None or other.after != code.after:
                 self._refuse(word, f"M{number}")
         after = code is not None and code.after
-        whole = self.key.role in (Role.NONE, Role.ONLY)
+        whole = self.key.role is Role.ONLY or self.as_it_stands
         if whole or self.key.role is (Role.LAST if after else Role.FIRST):
             self._literal(self._gap(lead), self._said(word.start, word.end))
 
@@ -360,6 +397,24 @@ class TemplateWriter:
         if self.key.feed is Feed.WRITE and "feed" not in self.stated:
             self.stated.add("feed")
             self.fields.append(FeedWord(self._gap(b"")))
+
+
+def _name(word: Word) -> str:
+    """Return the code of a G, M or O word."""
+    assert isinstance(word.value, Number)
+    return f"{word.address}{round(word.value.value, 6):g}"
+
+
+def folded_words(meaning: Meaning, work: str) -> frozenset[str]:
+    """Return codes and addresses that are not written where frames are folded into the words.
+
+    The code of the work offset in which the program stays is written as it was.
+    """
+    gone: set[str] = set()
+    for act in meaning.acts:
+        if act.name in FRAMING and act.code != work:
+            gone |= {act.code, *(address for address, _ in act.slots)}
+    return frozenset(gone)
 
 
 STATED = {

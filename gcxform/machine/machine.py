@@ -24,11 +24,11 @@ from gcxform.tomltext import TomlText, convert, did_you_mean, read_toml
 LINEAR_AXES = tuple("XYZUVW")
 ROTARY_AXES = tuple("ABC")
 AXIS_LETTERS = LINEAR_AXES + ROTARY_AXES
-EXAMPLES = {"axis": "X", "work-offset": "G54", "tool": "1"}
+EXAMPLES = {"axis": "X", "work-offset": "G54", "home": "G28", "tool": "1"}
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*")
 _DEGREES = Decimal("57.29577951308232087679815481410517033240547246656")  # of a radian
-_WORK_OFFSET = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?")
+_WORK_OFFSET = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?|G154 P[0-9]+")
 
 
 @dataclass(frozen=True)
@@ -110,10 +110,17 @@ class Axis(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="keba
 
 
 class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="kebab", kw_only=True):
-    """A tool: length from the gauge point to the tip, and radius, in mm."""
+    """A tool, in mm: length from gauge point to tip, radius, offset of the tip in X and Y."""
 
     length: Value = 0.0
     radius: Value = 0.0
+    x: Value = 0.0
+    y: Value = 0.0
+
+    @property
+    def vector(self) -> tuple[float, float, float]:
+        """From the tip to the gauge point, mm."""
+        return float(self.x), float(self.y), float(self.length)
 
 
 class Offset(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -141,14 +148,17 @@ class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
     errors: str | None = None
     axis: dict[str, Axis] = {}
     work_offset: dict[str, Offset] = {}
+    home: dict[str, Offset] = {}
     tool: dict[str, Tool] = {}
+    control: dict[str, str | float] = {}
 
 
 class Machine(msgspec.Struct, frozen=True, kw_only=True):
     """A machine: its axes by letter, work offsets by code (mm, degrees) and tools by number.
 
     `table` and `head` name the rotary axes from the base to the workpiece and to the spindle;
-    `gauge_point` (mm) is that of the spindle with all axes at 0; `errors` is a file.
+    `gauge_point` (mm) is that of the spindle with all axes at 0; `errors` is a file. `homes` are
+    the machine positions of G28 and G30; `control` has settings that codes depend on.
     """
 
     file: Path
@@ -159,7 +169,9 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True):
     errors: Path | None = None
     axes: dict[str, Axis] = {}
     work_offsets: dict[str, dict[str, float]] = {}
+    homes: dict[str, dict[str, float]] = {}
     tools: dict[int, Tool] = {}
+    control: dict[str, str | float] = {}
 
 
 def load_machine(path: Path) -> Machine:
@@ -181,7 +193,9 @@ def load_machine(path: Path) -> Machine:
         errors=None if file.errors is None else path.parent / file.errors,
         axes={letter: _normalised(axis) for letter, axis in file.axis.items()},
         work_offsets={code: _given(offset) for code, offset in file.work_offset.items()},
+        homes={code: _given(place) for code, place in file.home.items()},
         tools={int(number): tool for number, tool in file.tool.items()},
+        control=dict(file.control),
     )
 
 
@@ -233,7 +247,12 @@ class _Part(TomlText):
 
 def _converted(document: TomlText) -> MachineFile:
     """Return the file with its types checked, each table that has a name of its own by itself."""
-    tables: dict[str, type[msgspec.Struct]] = {"axis": Axis, "work-offset": Offset, "tool": Tool}
+    tables: dict[str, type[msgspec.Struct]] = {
+        "axis": Axis,
+        "work-offset": Offset,
+        "home": Offset,
+        "tool": Tool,
+    }
     values = {**document.values, **{key: {} for key in tables if key in document.values}}
     read: dict[str, dict[str, Any]] = {}
     found: list[Diagnostic] = []
@@ -257,11 +276,11 @@ def _converted(document: TomlText) -> MachineFile:
 def _quantity_at(keys: Keys) -> Quantity | None:
     """Return what the value at a path of a machine file is, None if it has no unit."""
     match keys:
-        case ("gauge-point", int()) | ("tool", _, "length" | "radius"):
+        case ("gauge-point", int()) | ("tool", _, "length" | "radius" | "x" | "y"):
             return LENGTH
         case ("axis", _, "point", int()):
             return LENGTH
-        case ("axis", str(letter), "limits", int()) | ("work-offset", _, str(letter)):
+        case ("axis", str(letter), "limits", int()) | ("work-offset" | "home", _, str(letter)):
             return quantity_of(letter)
         case ("axis", _, "wrap"):
             return ANGLE

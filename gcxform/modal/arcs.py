@@ -45,18 +45,37 @@ def resolve_arcs(
 ) -> Toolpath:
     """Return the path with centres and sweeps of its arcs."""
     rows = np.flatnonzero(path.is_arc)
-    start, end = path.start[rows, :3], path.end[rows, :3]
+    start, end = path.local(path.start[:, :3])[rows], path.local(path.end[:, :3])[rows]
     centre = np.full((len(path), 3), np.nan)
     sweep = np.zeros(len(path))
+    known = path.starts_known
     for plane in Plane:
         here = path.plane[rows] == plane
         if here.any():
-            unknown = ~path.starts_known[rows[here]]
+            unknown = ~known[rows[here]]
             chosen = _select(words, here)
             part = _Part(plane, chosen, start[here], end[here], unknown, dialect, findings)
             middle, angle = part.resolve(path.sense[rows[here]])
             centre[rows[here]], sweep[rows[here]] = middle, angle
-    return path.replace(centre=centre, sweep=sweep)
+    return _as_positions(path.replace(centre=centre, sweep=sweep), findings)
+
+
+def _as_positions(path: Toolpath, findings: Findings) -> Toolpath:
+    """Return arcs of turned frames as they lie between positions; a mirror changes their sense."""
+    if path.plainly_framed:
+        return path
+    kind = np.where(path.is_arc & path.mirrored, 5 - path.kind, path.kind).astype(np.int8)
+    for row in np.flatnonzero(path.is_arc).tolist() if _turned(path) else ():
+        matrix = path.frames[int(path.frame[row])].matrix
+        normal = Plane(int(path.plane[row])).axes[2]
+        if matrix is not None and abs(abs(matrix[normal][normal]) - 1.0) > 1e-12:
+            line = int(path.source[row]) - path.blocks.first
+            findings.add(line, "GX213", "an arc in a plane that is turned out of the axes")
+    return path.replace(centre=path.placed(path.centre), kind=kind)
+
+
+def _turned(path: Toolpath) -> bool:
+    return any(frame.matrix is not None for frame in path.frames)
 
 
 def _select(words: ArcWords, here: Flags) -> ArcWords:

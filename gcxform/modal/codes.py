@@ -17,17 +17,22 @@ class Effect(Enum):
     MODAL = "sets its modal group"
     DWELL = "waits"
     INERT = "is kept as it is: it changes no position"
+    FRAME = "changes how words become positions, or moves in a way of its own"
     BARRIER = "is refused wherever a pass needs positions"
 
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """One G code. `takes` are the address letters of the words that are parameters to it."""
+    """One G code. `takes` are the address letters of the words that are parameters to it.
+
+    `act` names what a code with Effect.FRAME does (`gcxform/modal/acts.py`).
+    """
 
     group: str
     effect: Effect = Effect.MODAL
     takes: str = ""
     reason: str = ""
+    act: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,11 +45,17 @@ class MCode:
     barrier: str = ""
     loses_position: bool = False
     takes: str = ""
+    act: str = ""
 
 
 def inert(group: str, takes: str = "") -> Code:
     """Return a code that changes no position."""
     return Code(group, Effect.INERT, takes)
+
+
+def frame(group: str, act: str, takes: str = "") -> Code:
+    """Return a code that changes how words become positions, or moves in a way of its own."""
+    return Code(group, Effect.FRAME, takes, "", act)
 
 
 def barrier(group: str, reason: str, takes: str = "") -> Code:
@@ -60,8 +71,8 @@ ISO: Mapping[str, Code] = {
     **{code: Code("feed-mode") for code in ("G93", "G94")},
     **{code: Code("units") for code in ("G20", "G21")},
     "G40": inert("cutter-comp"),
-    "G49": inert("tool-length"),
-    **{code: Code("frame") for code in ("G54", "G55", "G56", "G57", "G58", "G59")},
+    "G49": frame("tool-length", "no-length"),
+    **{code: frame("frame", "work") for code in ("G54", "G55", "G56", "G57", "G58", "G59")},
     "G80": Code("motion"),
 }
 
@@ -80,6 +91,9 @@ ISO_M: Mapping[int, MCode] = {
 }
 
 CYCLE = "a canned cycle moves axes in a way of its own; this version does not expand cycles"
+AXES = "XYZABCUVW"
+"""The axis words, where a code takes them as its own."""
+
 HOME = "it moves axes to a point that only the control knows"
 SHIFT = "it shifts the coordinates by values that only the control knows"
 LENGTH = "it shifts the tool by a length that only the control knows"

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, Dialect
+from gcxform.modal.frames import FrameState
 from gcxform.modal.lines import Lines
 from gcxform.modal.moves import Moves
 from gcxform.modal.state import Modes, Reading, State
@@ -60,8 +61,14 @@ class Interpreter:
         position = np.array([start.get(axis, np.nan) for axis in self.axes])
         feed = np.nan if self.reading.feed is None else self.reading.feed
         unit = INCH if groups["units"] else 1.0
-        known = bool(start) or self.dialect.block_delete == "execute"
-        return State(groups, position, feed, unit, known)
+        frames = FrameState.at_start(
+            self.axes,
+            self.dialect.initial["frame"],
+            bool(start) or self.dialect.starts_in_frame,
+            self.reading.work_offsets,
+            self.reading.homes,
+        )
+        return State(groups, position, feed, unit, frames)
 
     def interpret(self, window: Window, table: MeaningTable) -> Interpreted:
         """Return the moves of a window. Raises InputError with all that speaks against it."""
@@ -86,7 +93,7 @@ class Interpreter:
             "arc-distance": modes.absolute_centre,
             "feed-mode": modes.feed_mode,
             "units": modes.inch,
-            "frame": modes.frame,
+            "frame": modes.work,
         }
         self.state.groups = {name: int(column[-1]) for name, column in last.items()}
         self.state.feed = float(modes.feed[-1])

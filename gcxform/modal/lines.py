@@ -168,6 +168,18 @@ class Lines:
             return value
         return np.where(pointless, value * self.reading.increment, value)
 
+    def refuse_pointless(self, line: int, address: str, number: int) -> None:
+        """Refuse a distance without a point in a word that a code takes for itself."""
+        pointless = self.dialect.point_required and address in DISTANCES
+        if pointless and self.window.decimals[number] < 0 and self.window.value[number]:
+            self.findings.add(
+                line,
+                "GX205",
+                f"{address} has no decimal point: its unit depends on the control",
+                address,
+                "write it with a point",
+            )
+
     def _group(self, name: str) -> Small:
         """Return the number of the code in force of a group, on each line."""
         values = self.table.groups[self.shape, GROUPS.index(name)]
@@ -197,7 +209,18 @@ class Lines:
             groups["frame"],
             feed,
             feed_unit,
+            self._tool(),
         )
+
+    def _tool(self) -> Floats:
+        """Return the tool number last programmed on or before each line, -1 for none."""
+        word = self.word("T")
+        if word is None:
+            return np.broadcast_to(self.state.tool_word, (self.live,))
+        tool = fill(word[0], word[1], self.state.tool_word)
+        if self.live:
+            self.state.tool_word = float(tool[-1])
+        return tool
 
     def _feed(self, feed_mode: Small, inch: Flags) -> tuple[Floats, Floats]:
         """Return the feed number in force after each line's words, and its unit in mm."""

@@ -42,6 +42,58 @@ class EventShape:
     after: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class Act:
+    """Something that a block does to the frame, or a move of its own: see `gcxform/modal/acts.py`.
+
+    `slots` are those of the words it takes; `column` and `width` where its code stands.
+    """
+
+    name: str
+    code: str
+    slots: tuple[tuple[str, int], ...]
+    column: int
+    width: int
+
+
+ACT_ORDER = (
+    "change-tool",
+    "set-tool",
+    "length",
+    "length-negative",
+    "length-vector",
+    "length-add",
+    "no-length",
+    "work",
+    "diameter",
+    "polar",
+    "no-polar",
+    "rotate",
+    "no-rotate",
+    "scale",
+    "no-scale",
+    "mirror",
+    "no-mirror",
+    "set-work",
+    "local",
+    "preset",
+    "preset-clear",
+    "preset-suspend",
+    "preset-restore",
+    "store-home",
+    "home",
+    "machine",
+)
+"""The order in which a block's acts are done; those with the name of a move are its motion."""
+OWN_MOVES = frozenset({"home", "machine"})
+FRAMING = frozenset(ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")])
+"""Acts that folding takes into the words of moves, so that their codes are not written."""
+PRESETS = frozenset({"preset", "set-work", "store-home"})
+"""Acts whose effect may depend on where the axes stand."""
+TAKES_MOTION = frozenset({"home", "store-home", "set-work", "local", "preset"})
+"""Acts whose axis words are theirs, so that the block can have no other motion."""
+
+
 @dataclass(slots=True)
 class Meaning:
     """What a block of a shape does, but for its numbers."""
@@ -57,6 +109,7 @@ class Meaning:
     percent: bool = False
     marked: bool = False
     events: list[EventShape] = field(default_factory=list)
+    acts: list[Act] = field(default_factory=list)
     refusal: Refusal | None = None
 
 
@@ -80,6 +133,7 @@ def _read(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Re
     yield from _number_first(shape, dialect)
     yield from _words(shape, dialect, meaning)
     meaning.events.sort(key=lambda event: (event.after, event.order))
+    meaning.acts.sort(key=lambda act: ACT_ORDER.index(act.name))
 
 
 def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
@@ -171,6 +225,23 @@ def _g_effects(
             meaning.events.append(EventShape(50, "DWELL", taken))
         else:
             meaning.events.append(EventShape(60, name, taken))
+            if code.effect is Effect.FRAME:
+                yield from _g_act(dialect, meaning, code, owners[group], taken)
+
+
+def _g_act(
+    dialect: type[Dialect],
+    meaning: Meaning,
+    code: Code,
+    word: Word,
+    taken: tuple[tuple[str, int], ...],
+) -> Iterator[Refusal]:
+    """Note what a code does to the frame; refuse it beside a motion that wants its words."""
+    name, width = _code_of(word), word.end - word.start
+    meaning.acts.append(Act(code.act, name, taken, word.start, width))
+    if code.act in TAKES_MOTION and dialect.axis_words_once and "motion" in meaning.groups:
+        message = f"{name} and {meaning.groups['motion']} both want the axis words"
+        yield Refusal("GX202", word.start, width, message)
 
 
 def _take(
@@ -206,7 +277,10 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         meaning.ends |= code.ends
         meaning.loses_position |= code.loses_position
         order = {"tool": 30, "spindle": 40, "coolant": 41, "override": 42}.get(code.group, 43)
-        meaning.events.append(EventShape(order, name, _take(code, dialect, meaning), code.after))
+        taken = _take(code, dialect, meaning)
+        if code.act:
+            meaning.acts.append(Act(code.act, name, taken, word.start, width))
+        meaning.events.append(EventShape(order, name, taken, code.after))
 
 
 def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
@@ -223,13 +297,13 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
     slots = meaning.slots
     for address, order in (("S", 10), ("T", 20)):
         if address in slots:
-            event = EventShape(order, address, ((address, slots.pop(address)),))
+            event = EventShape(order, address, ((address, slots[address]),))
             meaning.events.append(event)
     meaning.axes = "".join(a for a in dialect.axes if a in slots)
     meaning.centres = "".join(a for a in CENTRE if a in slots)
     if meaning.dwell and meaning.axes and set(dialect.dwell) & set(dialect.axes):
         yield Refusal("GX203", 0, len(shape.block.text), "a dwell and axis words in one block")
-    motion = set(meaning.axes) | set(meaning.centres) | {"F", "N", "R", dialect.turns_address}
+    motion = {*meaning.axes, *meaning.centres, *"FNRST", dialect.turns_address}
     if "D" in slots and "D" in dialect.words and dialect.last_code_wins:
         meaning.events.append(EventShape(45, "D", (("D", slots.pop("D")),)))
     for word in shape.block.words:

@@ -1,6 +1,13 @@
-"""Moves of a window: which lines move, from where to where, and at what feed."""
+"""Moves of a window: which lines move, from where to where, and at what feed.
+
+Lines become rows in stretches of one frame (`gcxform/modal/track.py`). A plain line is one row; G28
+and G53 move in a way of their own (`gcxform/modal/home.py`).
+"""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,10 +16,13 @@ from gcxform.dialect import INCH, LINEAR
 from gcxform.modal.arcs import ArcWords, resolve_arcs
 from gcxform.modal.events import events_of
 from gcxform.modal.findings import Findings
-from gcxform.modal.lines import LENGTHS, Lines, fill
+from gcxform.modal.home import own_moves
+from gcxform.modal.lines import Lines
+from gcxform.modal.rows import Rows
 from gcxform.modal.state import Modes
 from gcxform.modal.tables import NUMBER
-from gcxform.toolpath.path import Blocks, Form, Kind, Toolpath, column_major, constant
+from gcxform.modal.track import Track
+from gcxform.toolpath.path import Blocks, Kind, Toolpath, constant
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -23,7 +33,7 @@ SAME_PLACE = 1e-7  # mm, deg; an axis that moves by less stands still
 
 
 class Moves:
-    """Turns the lines of a window into rows; `state.position` is left where the window ends."""
+    """Turns the lines of a window into rows; the state's position is left where the window ends."""
 
     def __init__(self, lines: Lines, modes: Modes, axes: str) -> None:
         self.lines = lines
@@ -32,16 +42,24 @@ class Moves:
         self.dialect = lines.dialect
         self.state = lines.state
         self.findings = lines.findings
-        self.entry = lines.state.position.copy()
+        self.track = Track(lines, modes, axes)
 
     def path(self) -> Toolpath:
         """Return the moves as a toolpath."""
-        rows = self._rows()
-        return self._path(rows, self._positions(rows))
+        moving = self._moving()
+        lost = self.lines.flag("loses_position")
+        parts = [
+            self._stretch(first, last, moving, lost if lost.any() else None)
+            for first, last in self._stretches()
+        ]
+        return self._path(Rows.joined(parts, len(self.axes)))
 
-    def _rows(self) -> Ints:
-        """Return the lines that move, after looking at what they may not be."""
-        moves = self.lines.flag("moves")
+    # --- which lines move ---
+
+    def _moving(self) -> Flags:
+        """Return the lines that are one plain move, after looking at what they may not be."""
+        own = self.lines.flag("own_moves")
+        moves = self.lines.flag("moves") & ~own
         centre = self.lines.flag("has_centre")
         arc = (self.modes.motion == 2) | (self.modes.motion == 3)
         for line in np.flatnonzero(moves & (self.modes.motion == NUMBER["G80"])).tolist():
@@ -51,15 +69,16 @@ class Moves:
                 "axis words, but no motion code is in force",
                 hint="write G0 or G1 in this block",
             )
-        for line in np.flatnonzero(centre & ~arc).tolist():
+        for line in np.flatnonzero(centre & ~(arc & ~own)).tolist():
             self.findings.add(line, "GX203", "I, J, K and R belong to arcs, and this is none")
         for line in np.flatnonzero(centre & arc & self._dwells()).tolist():
             message = "a dwell and an arc: the control takes some words for both"
             self.findings.add(line, "GX203", message, hint="write the dwell in a block of its own")
         moves &= self.modes.motion != NUMBER["G80"]
-        rows = np.flatnonzero(moves | (centre & arc))
-        self._check_feed(rows)
-        return rows
+        moves |= centre & arc & ~own
+        in_machine = own & (self.modes.motion == Kind.LINE)
+        self._check_feed(np.flatnonzero(moves | in_machine))
+        return moves
 
     def _dwells(self) -> Flags:
         """Return the lines with a dwell that takes a word which arcs take as well."""
@@ -86,79 +105,64 @@ class Moves:
                 hint="write an F word; in G93 every feed block needs one",
             )
 
-    def _positions(self, rows: Ints) -> Floats:
-        """Return the ends of the moves; the state's position becomes that after the window."""
-        lost = self.lines.flag("loses_position")
-        self.lost = lost = lost | self._other_frame()
-        any_lost = bool(lost.any())
-        ends = column_major(len(rows), len(self.axes))
-        for column, axis in enumerate(self.axes):
-            position = self._axis(axis, column, lost if any_lost else None)
-            ends[:, column] = position[rows] if isinstance(position, np.ndarray) else position
-            if self.lines.live:
-                last = position[-1] if isinstance(position, np.ndarray) else position
-                self.state.position[column] = last
-        return ends
+    # --- stretches ---
 
-    def _other_frame(self) -> Flags:
-        """Return the lines from which on positions count from another, unknown origin."""
-        frame = np.append(self.state.groups["frame"], self.modes.frame)
-        other = frame[1:] != frame[:-1]
-        stated = self.lines.stated("frame")
-        if not self.state.frame_known and stated.any():
-            other[int(np.argmax(stated))] = True
-            self.state.frame_known = True
-        return np.asarray(other)
+    def _acting(self) -> Ints:
+        """Return the lines that act on the frame or move in a way of their own."""
+        acts = self.lines.flag("acts")
+        if not acts.any():
+            return np.empty(0, np.int64)
+        work = np.append(np.int8(self.state.groups["frame"]), self.modes.work)
+        again = self.lines.flag("work_only") & (work[1:] == work[:-1])
+        if not self.state.frames.known and again.any():
+            again[int(np.argmax(again))] = False
+        return np.flatnonzero(acts & ~again)
 
-    def _axis(self, axis: str, column: int, lost: Flags | None) -> Floats | float:
-        """Return the position of an axis after each line; one number if it never changes."""
-        word = self.lines.word(axis)
-        before = float(self.state.position[column])
-        if word is None:
-            if lost is None:
-                return before
-            return fill(np.full(self.lines.live, np.nan), lost, before)
-        value, present = word
-        if axis in LENGTHS and self.modes.inch.any():
-            value = np.where(self.modes.inch, value * INCH, value)
-        incremental = self.modes.incremental & present
-        placed = present & ~incremental
-        if lost is not None:
-            value = np.where(lost & ~present, np.nan, value)
-            placed = placed | (lost & ~incremental)
-        if not incremental.any():
-            return fill(value, placed, before)
-        position = _with_increments(value, placed, incremental, before)
-        for line in np.flatnonzero(incremental & np.isnan(position))[: Findings.enough].tolist():
-            self.findings.add(
-                line,
-                "GX207",
-                f"{axis} is incremental, but where {axis} stands is not known",
-                axis,
-                f"begin with an absolute {axis}, or say start = {{ {axis} = ... }} in [input]",
-            )
-        return position
+    def _stretches(self) -> Iterator[tuple[int, int]]:
+        """Yield first and last line + 1 of the stretches."""
+        acting = self._acting()
+        own = self.lines.flag("own_moves")[acting]
+        borders = np.concatenate([[0], acting, acting[own] + 1, [self.lines.live]])
+        borders = np.unique(borders).tolist()
+        self._acts = set(acting.tolist())
+        if len(borders) == 1:
+            yield 0, 0
+        yield from pairwise(borders)
 
-    def _path(self, rows: Ints, ends: Floats) -> Toolpath:
+    def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows:
+        """Return the rows of a stretch."""
+        if first in self._acts:
+            self.track.act(first)
+            own = own_moves(self.track, first)
+            if own is not None:
+                return own
+        rows = np.flatnonzero(moving[first:last]) + first
+        ends = self.track.along(first, last, rows, lost)
+        return Rows.plain(rows, self.modes.motion[rows], ends, len(self.track.frames) - 1)
+
+    # --- the path ---
+
+    def _path(self, rows: Rows) -> Toolpath:
         """Return the rows as a toolpath; arcs get their centres."""
-        count = len(rows)
+        count, line = len(rows.line), rows.line
         path = Toolpath(
             self.axes,
-            self.modes.motion[rows],
-            ends,
+            rows.kind,
+            rows.end,
             np.broadcast_to(np.nan, (count, 3)),
             constant(0.0, count),
-            self.modes.plane[rows],
-            self._feed_of_rows(rows, ends),
-            self.modes.feed_mode[rows],
-            self.modes.frame[rows],
-            rows + self.lines.window.first_line,
-            constant(0, count, np.int64),
-            constant(Form.PLAIN, count, np.int8),
+            self.modes.plane[line],
+            self._feed_of_rows(rows),
+            self.modes.feed_mode[line],
+            rows.frame,
+            line + self.lines.window.first_line,
+            rows.nth,
+            rows.form,
             constant(0, count, np.int8),
             constant(np.nan, count),
-            self._lost_before(rows),
-            self.entry,
+            self._lost_before(line, rows.nth),
+            self.track.entry,
+            tuple(self.track.frames),
             Blocks(
                 self.lines.window.first_line,
                 self.modes.inch,
@@ -166,35 +170,35 @@ class Moves:
                 self.modes.absolute_centre,
                 self.lines.apart(),
             ),
-            events_of(self.lines, rows),
+            events_of(self.lines, line),
+            first=self.state.frames.first,
+            after_rapid=self.state.rapid,
         )
-        path = self._with_history(path)
+        if count:
+            self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
         if not path.has_arcs:
             return path
         arcs = np.flatnonzero(path.is_arc)
-        return resolve_arcs(path, self._arc_words(rows[arcs]), self.dialect, self.findings)
+        return resolve_arcs(path, self._arc_words(line[arcs]), self.dialect, self.findings)
 
-    def _with_history(self, path: Toolpath) -> Toolpath:
-        """Return the path with what passes may want to know of the moves before it."""
-        state, after_rapid = self.state, self.state.rapid
-        if len(path):
-            if state.first_frame < 0:
-                state.first_frame = int(path.frame[0])
-            state.rapid = bool(path.kind[-1] == Kind.RAPID)
-        return path.replace(first_frame=max(state.first_frame, 0), after_rapid=after_rapid)
+    def _lost_before(self, line: Ints, nth: Ints) -> Ints:
+        """Return of which axes the position was lost between each row and the row before."""
+        if not self.track.breaks:
+            return constant(0, len(line), np.int64)
+        lost = np.zeros(len(line) + 1, np.int64)
+        at = np.searchsorted(line, [found.line for found in self.track.breaks])
+        for place, found in zip(at.tolist(), self.track.breaks, strict=True):
+            lost[place] |= found.axes
+        return lost[:-1]
 
-    def _lost_before(self, rows: Ints) -> Flags:
-        """Return the moves before which the position was lost since the move before."""
-        lost = np.cumsum(self.lost)[rows] if self.lost.any() else np.zeros(len(rows), np.int64)
-        return np.diff(lost, prepend=0) > 0
-
-    def _feed_of_rows(self, rows: Ints, ends: Floats) -> Floats:
+    def _feed_of_rows(self, rows: Rows) -> Floats:
         """Return feeds in mm/min, 1/min, mm/turn, or deg/min where only rotary axes turn."""
-        feed, unit = self.modes.feed[rows], self.modes.feed_unit[rows]
+        line = rows.line
+        feed, unit = self.modes.feed[line], self.modes.feed_unit[line]
         if (unit == 1.0).all():
             return feed
-        plain = self.modes.feed_mode[rows] == NUMBER["G93"]
-        plain |= turns_only(self.axes, self.entry, ends) & (self.modes.motion[rows] < 2)
+        plain = self.modes.feed_mode[line] == NUMBER["G93"]
+        plain |= turns_only(self.axes, self.track.entry, rows.end) & (rows.kind < 2)
         return np.where(plain, feed, feed * unit)
 
     def _arc_words(self, lines: Ints) -> ArcWords:
@@ -226,10 +230,3 @@ def turns_only(axes: str, entry: Floats, ends: Floats) -> Flags:
     start = np.vstack([entry, ends[:-1]])
     still = (np.abs(start - ends) < SAME_PLACE) | (np.isnan(start) & np.isnan(ends))
     return np.asarray(still[:, linear].all(axis=1) & ~still[:, rotary].all(axis=1))
-
-
-def _with_increments(value: Floats, placed: Flags, incremental: Flags, before: float) -> Floats:
-    """Return positions where some lines place the axis and others add to where it stands."""
-    steps = np.cumsum(np.where(incremental, value, 0.0))
-    base = fill(np.where(placed, value - steps, 0.0), placed, before)
-    return np.asarray(base + steps)

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
+
+from gcxform.machine.machine import Machine, Tool
+from gcxform.modal.frames import FrameState
 
 Floats = NDArray[np.float64]
 Small = NDArray[np.int8]
@@ -23,6 +26,10 @@ class Reading:
     feed          feed in effect before the first F word, in the program's unit
     block_delete  "execute", "skip", or "" to refuse blocks with a slash that do anything
     units         "mm" or "in" until the program says G20 or G21; "" for the dialect's default
+    work_offsets  machine positions of work offsets, by code
+    homes         machine positions of G28 and G30
+    tools         the tool table
+    control       settings of the control on which the meaning of codes depends
     """
 
     start: Mapping[str, float] = field(default_factory=dict)
@@ -30,6 +37,20 @@ class Reading:
     feed: float | None = None
     block_delete: str = ""
     units: str = ""
+    work_offsets: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    homes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    tools: Mapping[int, Tool] = field(default_factory=dict)
+    control: Mapping[str, str | float] = field(default_factory=dict)
+
+    def on(self, machine: Machine) -> Reading:
+        """Return what is known when the program runs on a machine."""
+        return replace(
+            self,
+            work_offsets=machine.work_offsets,
+            homes=machine.homes,
+            tools=machine.tools,
+            control=machine.control,
+        )
 
 
 @dataclass(slots=True)
@@ -40,10 +61,10 @@ class State:
     position: Floats
     feed: float
     feed_unit: float
-    frame_known: bool
+    frames: FrameState
+    tool_word: float = -1.0
     ended: bool = False
     percents: int = 0
-    first_frame: int = -1
     rapid: bool = False
     stated: set[str] = field(default_factory=set)
 
@@ -52,7 +73,8 @@ class State:
 class Modes:
     """Per line of a window, after its words: the number of the code in force of each group.
 
-    `feed` is the number last programmed and `feed_unit` what 1 of it is worth in mm.
+    `feed` is the number last programmed and `feed_unit` what 1 of it is worth in mm; `tool` is the
+    number of the last T word, -1 for none.
     """
 
     motion: Small
@@ -61,6 +83,7 @@ class Modes:
     absolute_centre: Flags
     feed_mode: Small
     inch: Flags
-    frame: Small
+    work: Small
     feed: Floats
     feed_unit: Floats
+    tool: Floats

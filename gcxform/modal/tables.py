@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import Dialect
-from gcxform.modal.meaning import Meaning, meaning_of
+from gcxform.modal.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning, meaning_of
 from gcxform.syntax.shapes import ShapeTable
 
 GROUPS = ("motion", "plane", "distance", "arc-distance", "feed-mode", "units", "frame")
@@ -41,6 +41,11 @@ FLAGS = (
     "has_events",
     "percent",
     "marked",
+    "acts",
+    "own_moves",
+    "work_only",
+    "framing",
+    "presets",
 )
 
 
@@ -88,6 +93,11 @@ class MeaningTable:
             bool(meaning.events),
             meaning.percent,
             meaning.marked,
+            bool(meaning.acts),
+            any(act.name in OWN_MOVES for act in meaning.acts),
+            [act.name for act in meaning.acts] == ["work"] and "frame" in meaning.groups,
+            any(act.name in FRAMING for act in meaning.acts),
+            any(act.name in PRESETS for act in meaning.acts),
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

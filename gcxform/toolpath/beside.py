@@ -143,7 +143,7 @@ def _bare(path: Toolpath, end: Floats) -> Toolpath:
         axes="XYZ",
         end=end,
         kind=kind,
-        lost=constant(0, count, np.bool_),
+        lost=constant(0, count, np.int64),
         entry=np.zeros(3),
         slack=0.0,
         events=(),

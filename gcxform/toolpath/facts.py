@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gcxform.toolpath.path import Plane, Toolpath
+from gcxform.toolpath.path import Form, Plane, Toolpath
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,12 @@ def _always(path: Toolpath) -> bool:
     return True
 
 
-ABSOLUTE = Fact("ABSOLUTE", "every block is in G90", lambda path: not path.blocks.incremental.any())
+def _absolute(path: Toolpath) -> bool:
+    plain = path.block[path.form != Form.HOME]
+    return not path.blocks.incremental[plain].any()
+
+
+ABSOLUTE = Fact("ABSOLUTE", "every block but returns to reference is in G90", _absolute)
 METRIC = Fact("METRIC", "every block is in millimetres", lambda path: not path.blocks.inch.any())
 LINEAR_ONLY = Fact("LINEAR_ONLY", "there is no arc", lambda path: not path.has_arcs)
 XY_ARCS = Fact(
@@ -53,5 +58,23 @@ COMPENSATED = Fact(
     "COMPENSATED", "positions are commands compensated for a machine's errors", _always
 )
 
+WORKPIECE_FRAME = Fact(
+    "WORKPIECE_FRAME",
+    "words count from the work offset of the start, but for tool lengths",
+    lambda path: all(
+        frame.matrix is None and frame.work == path.first and not frame.diameter
+        for frame in path.frames
+    ),
+)
+
 AT_READING = frozenset({NOMINAL})
-FACTS = (ABSOLUTE, METRIC, LINEAR_ONLY, XY_ARCS, KNOWN_POSITIONS, NOMINAL, COMPENSATED)
+FACTS = (
+    ABSOLUTE,
+    METRIC,
+    LINEAR_ONLY,
+    XY_ARCS,
+    KNOWN_POSITIONS,
+    NOMINAL,
+    COMPENSATED,
+    WORKPIECE_FRAME,
+)

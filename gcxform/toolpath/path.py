@@ -7,6 +7,7 @@ return new paths made with `replace`, `take` and `with_rows`, which carry `sourc
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from dataclasses import replace as dataclass_replace
 from enum import IntEnum
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.toolpath.frames import Frame
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -123,24 +125,27 @@ class Toolpath:
 
     axes            letters of the columns of `end`, X Y Z first
     kind            (n,) `Kind`
-    end             (n, axes) mm and degrees, nan where unknown
+    end             (n, axes) mm and degrees, positions as in `frames`; nan where unknown
     centre          (n, 3) mm, in the plane of the arc; nan for other moves
     sweep           (n,) rad, positive, full turns included; 0 for other moves
     plane           (n,) `Plane`
     feed, feed_mode (n,) mm/min, 1/min or mm/turn; nan where none is known; `FeedMode`
-    frame           (n,) index of the work offset: 0 is G54
+    frame           (n,) index into `frames`
     source          (n,) line of the program, from 0, that the move came from
     nth             (n,) which of the moves of its line it is, from 0
     form            (n,) `Form`
     side            (n,) cutter compensation: +1 left (G41), -1 right (G42), 0 none; `end` is then
                     the contour as programmed
     radius          (n,) mm, of the tool that is compensated; nan where it is not known
-    lost            (n,) whether the position was lost before the move, by a tool change for example
+    lost            (n,) of which axes the position was lost before the move, by a tool change for
+                    example: bit k stands for axis k
     entry           (axes,) position before the first row
+    frames          the frames of the rows
     blocks          how the blocks the rows came from are to be written
     events          what happens between the moves
     slack           mm; how far a row may be from the curve it stands for
-    first_frame     the work offset in which the program's first move was
+    first           the work offset from whose zero positions count
+    folded          whether frames are folded into the words: codes that set them are not written
     after_rapid     whether the move before the first row was a rapid
     refit_centres   whether centres may be moved so that both ends are on the circle as formatted
     """
@@ -153,18 +158,20 @@ class Toolpath:
     plane: Small
     feed: Floats
     feed_mode: Small
-    frame: Small
+    frame: Ints
     source: Ints
     nth: Ints
     form: Small
     side: Small
     radius: Floats
-    lost: Flags
+    lost: Ints
     entry: Floats
+    frames: tuple[Frame, ...]
     blocks: Blocks
     events: tuple[Event, ...] = ()
     slack: float = 0.0
-    first_frame: int = 0
+    first: str = "G54"
+    folded: bool = False
     after_rapid: bool = False
     refit_centres: bool = True
 
@@ -181,9 +188,56 @@ class Toolpath:
         start = np.empty_like(self.end)
         start[1:] = self.end[:-1]
         start[:1] = self.entry
+        return self.with_lost(start)
+
+    def with_lost(self, start: Floats) -> Floats:
+        """Return positions (n, axes) before the rows, nan where the position was lost there."""
         if self.lost.any():
-            start[self.lost] = np.nan
+            for axis in range(len(self.axes)):
+                start[(self.lost >> axis & 1) == 1, axis] = np.nan
         return start
+
+    @property
+    def plainly_framed(self) -> bool:
+        """Whether the words of all rows are positions."""
+        return all(frame.plain for frame in self.frames)
+
+    @property
+    def words(self) -> Floats:
+        """(n, axes) the ends of the moves as the program says them, in the frame of each."""
+        return self.in_frames(self.end)
+
+    def in_frames(self, positions: Floats) -> Floats:
+        """Return positions (n, axes), one a row, as words in the frames of the rows."""
+        return self._by_frame(Frame.words, positions)
+
+    def from_frames(self, words: Floats) -> Floats:
+        """Return words (n, axes), one a row in its frame, as positions."""
+        return self._by_frame(Frame.positions, words)
+
+    def local(self, positions: Floats) -> Floats:
+        """Return positions (n, 3), one a row, as coordinates in the frames of the rows."""
+        return self._by_frame(Frame.local, positions)
+
+    def placed(self, local: Floats) -> Floats:
+        """Return coordinates (n, 3), one a row in its frame, as positions."""
+        return self._by_frame(Frame.placed, local)
+
+    def _by_frame(self, change: Callable[[Frame, Floats], Floats], values: Floats) -> Floats:
+        if self.plainly_framed:
+            return values
+        if len(self.frames) == 1:
+            return change(self.frames[0], values)
+        changed = np.array(values, order="F")
+        for number in np.unique(self.frame).tolist():
+            rows = self.frame == number
+            changed[rows] = change(self.frames[number], values[rows])
+        return changed
+
+    @property
+    def mirrored(self) -> Flags:
+        """(n,) whether left becomes right in the frame of the row."""
+        return np.array([frame.mirrors for frame in self.frames], np.bool_)[self.frame]
 
     @property
     def starts_known(self) -> Flags:
@@ -235,7 +289,8 @@ class Toolpath:
         events = tuple(dataclass_replace(e, row=int(first[e.row])) for e in self.events)
         row = np.repeat(np.arange(len(self)), counts)
         kept = {n: _picked(getattr(self, n), row) for n in COLUMNS if n not in columns}
-        kept["lost"] = kept["lost"] & (np.arange(len(row)) == first[row])
+        if kept["lost"].any():
+            kept["lost"] = np.where(np.arange(len(row)) == first[row], kept["lost"], 0)
         return self.replace(**kept, **columns, events=events)
 
 

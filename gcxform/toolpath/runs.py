@@ -75,7 +75,7 @@ def _joinable(path: Toolpath) -> Flags:
     start, end = path.start, path.end
     free = (path.kind != Kind.RAPID) & (path.form == Form.PLAIN) & (path.side == 0)
     free &= np.isfinite(start[:, :3]).all(axis=1) & np.isfinite(end[:, :3]).all(axis=1)
-    free &= (path.feed_mode != FeedMode.INVERSE_TIME) & ~path.lost
+    free &= (path.feed_mode != FeedMode.INVERSE_TIME) & (path.lost == 0)
     for k in range(3, len(path.axes)):
         a, b = start[:, k], end[:, k]
         free &= (np.abs(a - b) < STILL) | (np.isnan(a) & np.isnan(b))

@@ -21,13 +21,14 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
     from gcxform_plugins.passes.absolute import Absolute
     from gcxform_plugins.passes.arcs import Arcs
     from gcxform_plugins.passes.metric import Metric
+    from gcxform_plugins.passes.offsets import Offsets
     from gcxform_plugins.passes.plane import PlanePass
     from gcxform_plugins.passes.renumber import Renumber
     from gcxform_plugins.passes.segment import Segment
     from gcxform_plugins.passes.strip import Strip
     from gcxform_plugins.passes.volumetric import Volumetric
 
-    return [Absolute, Metric, PlanePass, Segment, Volumetric, Arcs, Renumber, Strip]
+    return [Absolute, Metric, Offsets, PlanePass, Segment, Volumetric, Arcs, Renumber, Strip]
 
 
 @gx.hookimpl

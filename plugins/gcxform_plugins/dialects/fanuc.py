@@ -47,28 +47,34 @@ class Fanuc(gx.Dialect):
         **{code: v.inert("retract") for code in ("G98", "G99")},
         "G97": v.inert("spindle-mode", "S"),
         "G96": v.barrier("spindle-mode", v.SYNCHRONISED, "SP"),
-        **{
-            code: v.inert("cancel")
-            for code in ("G15", "G50", "G50.1", "G67", "G69", "G13.1", "G23")
-        },
+        **{code: v.inert("cancel") for code in ("G67", "G13.1", "G23")},
         "G22": v.inert("stroke", "XYZIJK"),
-        **{
-            code: v.barrier("non-modal", v.SHIFT, "LPRQ")
-            for code in ("G10", "G10.6", "G11", "G52", "G92", "G92.1")
-        },
-        **{
-            code: v.barrier("non-modal", v.HOME, "PR")
-            for code in ("G27", "G28", "G29", "G30", "G53", "G60")
-        },
-        **{code: v.barrier("frame", v.SHIFT, "P") for code in ("G54.1", "G54.2", "G54.4")},
+        "G10": v.frame("non-modal", "set-work", v.AXES + "LPRQIJK"),
+        "G52": v.frame("non-modal", "local", v.AXES),
+        "G92": v.frame("non-modal", "preset", v.AXES),
+        **{code: v.barrier("non-modal", v.SHIFT, "LPRQ") for code in ("G10.6", "G11", "G92.1")},
+        "G28": v.frame("non-modal", "home"),
+        "G53": v.frame("non-modal", "machine"),
+        **{code: v.barrier("non-modal", v.HOME, "PR") for code in ("G27", "G29", "G30", "G60")},
+        "G54.1": v.frame("frame", "work", "P"),
+        **{code: v.barrier("frame", v.SHIFT, "P") for code in ("G54.2", "G54.4")},
         **{code: v.barrier("cutter-comp", v.COMP, "DHIJK") for code in ("G41", "G42")},
+        "G43": v.frame("tool-length", "length", "H"),
+        "G44": v.frame("tool-length", "length-negative", "H"),
         **{
-            code: v.barrier("tool-length", v.LENGTH, "HIJK")
-            for code in ("G43", "G44", "G43.1", "G43.4", "G43.5")
+            code: v.barrier("tool-length", v.LENGTH, "HIJK") for code in ("G43.1", "G43.4", "G43.5")
         },
+        "G15": v.frame("polar", "no-polar"),
+        "G16": v.frame("polar", "polar"),
+        "G50": v.frame("scaling", "no-scale"),
+        "G51": v.frame("scaling", "scale", v.AXES + "PIJK"),
+        "G50.1": v.frame("mirror", "no-mirror", v.AXES),
+        "G51.1": v.frame("mirror", "mirror", v.AXES),
+        "G68": v.frame("rotation", "rotate", v.AXES + "RIJK"),
+        "G69": v.frame("rotation", "no-rotate"),
         **{
             code: v.barrier("transform", v.TRANSFORM, "PRIJKQ")
-            for code in ("G16", "G51", "G51.1", "G68", "G68.2", "G68.3", "G68.4", "G53.1")
+            for code in ("G68.2", "G68.3", "G68.4", "G53.1")
         },
         **{
             code: v.barrier("transform", v.TRANSFORM, "PRIJKQ")
@@ -97,6 +103,8 @@ class Fanuc(gx.Dialect):
         99: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL"),
     }
     unknown_m = gx.MCode("user", loses_position=True)
+    length_may_move = True
+    g53_is_rapid = True
     last_code_wins = True
     point_required = True
     change_clears_feed = True

@@ -32,11 +32,13 @@ class Grbl(gx.Dialect):
         **v.ISO,
         "G61": v.inert("path"),
         "G91.1": gx.Code("arc-distance"),
-        **{code: v.barrier("non-modal", v.SHIFT, "LP") for code in ("G10", "G92", "G92.1")},
-        **{
-            code: v.barrier("non-modal", v.HOME) for code in ("G28", "G28.1", "G30", "G30.1", "G53")
-        },
-        "G43.1": v.barrier("tool-length", v.LENGTH),
+        "G10": v.frame("non-modal", "set-work", "XYZLPR"),
+        "G92": v.frame("non-modal", "preset", "XYZ"),
+        "G92.1": v.frame("non-modal", "preset-clear"),
+        **{code: v.frame("non-modal", "home") for code in ("G28", "G30")},
+        **{code: v.frame("non-modal", "store-home") for code in ("G28.1", "G30.1")},
+        "G53": v.frame("non-modal", "machine"),
+        "G43.1": v.frame("tool-length", "length-vector", "Z"),
         **{code: v.barrier("motion", v.PROBE) for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
@@ -45,6 +47,13 @@ class Grbl(gx.Dialect):
         if code not in (6,)  # M6 is error 20
     }
     initial: ClassVar[Mapping[str, str]] = {**gx.Dialect.initial, "motion": "G0"}
+    axis_words_once = True
+    starts_in_frame = True
+    g10_p0_is_active = True
+    g10_sets_position = True
+    g10_ignores_g91 = True
+    g53_in_g91 = "absolute"
+    g28_without_axes = True
     circle_needs_axis_word = True
     block_delete = "execute"
     stops_at_end = False

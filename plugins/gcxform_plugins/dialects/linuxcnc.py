@@ -37,24 +37,27 @@ class LinuxCNC(gx.Dialect):
         **v.ISO,
         "G95": gx.Code("feed-mode"),
         **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
-        **{code: gx.Code("frame") for code in ("G59.1", "G59.2", "G59.3")},
+        **{code: v.frame("frame", "work") for code in ("G59.1", "G59.2", "G59.3")},
         **{code: v.inert("path", "PQ") for code in ("G61", "G61.1", "G64")},
         **{code: v.inert("retract") for code in ("G98", "G99")},
-        "G8": v.inert("diameter"),
+        "G7": v.frame("diameter", "diameter"),
+        "G8": v.frame("diameter", "diameter"),
         "G97": v.inert("spindle-mode", "S"),
         "G96": v.barrier("spindle-mode", v.SYNCHRONISED, "DS"),
-        "G7": v.barrier("diameter", v.TRANSFORM),
-        **{
-            code: v.barrier("non-modal", v.SHIFT, "LPR")
-            for code in ("G10", "G52", "G92", "G92.1", "G92.2", "G92.3")
-        },
-        **{
-            code: v.barrier("non-modal", v.HOME) for code in ("G28", "G28.1", "G30", "G30.1", "G53")
-        },
+        "G10": v.frame("non-modal", "set-work", v.AXES + "LPRIJQ"),
+        "G52": v.frame("non-modal", "local", v.AXES),
+        "G92": v.frame("non-modal", "preset", v.AXES),
+        "G92.1": v.frame("non-modal", "preset-clear"),
+        "G92.2": v.frame("non-modal", "preset-suspend"),
+        "G92.3": v.frame("non-modal", "preset-restore"),
+        **{code: v.frame("non-modal", "home") for code in ("G28", "G30")},
+        **{code: v.frame("non-modal", "store-home") for code in ("G28.1", "G30.1")},
+        "G53": v.frame("non-modal", "machine"),
         **{code: v.barrier("cutter-comp", v.COMP, "DL") for code in ("G41", "G42")},
         **{code: v.barrier("cutter-comp", v.COMP, "DL") for code in ("G41.1", "G42.1")},
-        **{code: v.barrier("tool-length", v.LENGTH, "H") for code in ("G43", "G43.2")},
-        "G43.1": v.barrier("tool-length", v.LENGTH),
+        "G43": v.frame("tool-length", "length", "H"),
+        "G43.1": v.frame("tool-length", "length-vector", v.AXES),
+        "G43.2": v.frame("tool-length", "length-add", "H"),
         **{code: v.barrier("motion", v.CYCLE, "EHIJKLPQR") for code in CYCLES},
         **{
             code: v.barrier("motion", "it cuts a spline", "IJKPQL")
@@ -73,9 +76,10 @@ class LinuxCNC(gx.Dialect):
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
         **v.ISO_M,
+        6: gx.MCode("tool", act="change-tool"),
         60: gx.MCode("stop", after=True),
         19: gx.MCode("spindle", takes="RPQ"),
-        61: gx.MCode("tool", takes="Q"),
+        61: gx.MCode("tool", takes="Q", act="set-tool"),
         **{code: gx.MCode("override", takes="P") for code in (48, 49, 50, 51, 52, 53)},
         **{code: gx.MCode("output", takes="PQELR") for code in (62, 63, 64, 65, 66, 67, 68)},
         **{code: gx.MCode("modal-store") for code in (71,)},
@@ -87,6 +91,15 @@ class LinuxCNC(gx.Dialect):
         99: gx.MCode("stop", barrier=v.CALL),
         **{code: gx.MCode("user", takes="PQ") for code in range(100, 200)},
     }
+    axis_words_once = True
+    starts_in_frame = True
+    g10_offsets = (*gx.Dialect.g10_offsets, "G59.1", "G59.2", "G59.3")
+    g10_p0_is_active = True
+    g10_sets_position = True
+    g10_ignores_g91 = True
+    g52_is_g92 = True
+    g43_takes_spindle_tool = True
+    g28_without_axes = True
     feed_mode_clears_feed = True
     feed_before_units = True
     lone_cr_is_blank = True

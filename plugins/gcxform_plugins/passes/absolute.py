@@ -13,13 +13,16 @@ import gcxform as gx
 class Absolute(gx.Pass):
     """Write positions instead of distances: G91 becomes G90.
 
-    Positions are summed exactly as the control does and rounded once, so nothing drifts.
+    Positions are summed exactly as the control does and rounded once, so nothing drifts. Returns to
+    reference (`G91 G28 Z0`) stay as they are.
     """
 
     name = "absolute"
     ensures = frozenset({gx.ABSOLUTE})
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
-        """Return the path with every block in absolute distance mode."""
-        never = np.zeros(len(path.blocks.incremental), np.bool_)
-        return path.replace(blocks=replace(path.blocks, incremental=never))
+        """Return the path with every plain block in absolute distance mode."""
+        own = np.zeros(len(path.blocks.incremental), np.bool_)
+        own[path.block[path.form == gx.Form.HOME]] = True
+        incremental = path.blocks.incremental & own
+        return path.replace(blocks=replace(path.blocks, incremental=incremental))

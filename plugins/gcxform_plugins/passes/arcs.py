@@ -96,10 +96,12 @@ def _plain_lines(path: gx.Toolpath) -> Flags:
     """Return the lines of X, Y and Z, and of nothing else, from one known place to another."""
     start, end = path.start, path.end
     may = (path.kind == gx.Kind.LINE) & (path.form == gx.Form.PLAIN) & (path.side == 0)
-    may &= (path.feed_mode != gx.FeedMode.INVERSE_TIME) & ~path.lost & (path.nth == 0)
+    may &= (path.feed_mode != gx.FeedMode.INVERSE_TIME) & (path.lost == 0) & (path.nth == 0)
     may &= np.isfinite(start[:, :3]).all(axis=1) & np.isfinite(end[:, :3]).all(axis=1)
     for k in range(3, len(path.axes)):
         may &= (start[:, k] == end[:, k]) | (np.isnan(start[:, k]) & np.isnan(end[:, k]))
+    turned = [frame.matrix is not None or frame.polar for frame in path.frames]
+    may &= ~np.array(turned, np.bool_)[path.frame]
     if path.blocks.apart is not None:
         may &= ~path.blocks.apart[path.block]
     return np.asarray(may)

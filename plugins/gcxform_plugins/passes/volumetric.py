@@ -110,30 +110,35 @@ class Volumetric(gx.Pass):
         return Machine(self, path, offset).run()
 
     def _offset(self, path: gx.Toolpath, context: gx.PassContext) -> Floats:
-        """Return table position minus program position of each row (n, 3), or of all (1, 3)."""
+        """Return table position minus position of each row (n, 3), or of all (1, 3)."""
         origin = np.array(self.table_origin)
         if self.part_origin is not None:
-            others = path.frame != path.first_frame
-            if others.any():
-                row = int(np.argmax(others))
-                raise path.refuse(
-                    "GX314",
-                    np.array([row]),
-                    "a second work offset, but only one part-origin",
-                    "give a machine file with [work-offset.*] instead of part-origin",
-                )
-            return np.asarray((np.array(self.part_origin) - origin)[None, :])
+            self._check_frames(path, "a second work offset, but only one part-origin", False)
+            tools = np.nan_to_num(np.array([frame.tool for frame in path.frames]))
+            place = np.array(self.part_origin) - origin - tools
+            return np.asarray(place if len(place) == 1 else place[path.frame])
         assert context.machine is not None
         table = context.machine.work_offsets
-        names = [gx.frame_name(frame) for frame in range(9)]
-        rows = np.flatnonzero([names[f] not in table for f in path.frame])
-        if len(rows):
-            name = names[int(path.frame[rows[0]])]
-            raise path.refuse(
-                "GX314", rows[:1], f"the machine file has no work offset {name}", "add it there"
-            )
-        known = np.array([[table.get(n, {}).get(a, 0.0) for a in "XYZ"] for n in names])
-        return np.asarray(known[path.frame] - origin)
+        self._check_frames(path, "the machine file has not all offsets of this block", True)
+        if path.first not in table:
+            message = f"the machine file has no work offset {path.first}"
+            raise path.refuse("GX314", np.array([0]), message, "add it there")
+        zero = [table[path.first].get(axis, 0.0) for axis in "XYZ"]
+        return np.asarray(np.array([zero]) - origin)
+
+    def _check_frames(self, path: gx.Toolpath, message: str, tools: bool) -> None:
+        """Refuse rows whose X, Y, Z count from elsewhere; `tools`: tool lengths matter."""
+        for number in np.unique(path.frame).tolist():
+            origins = path.frames[number].origin[:3]
+            named = [name if tools else name.split(" + ")[0] for name in origins]
+            if any(name != path.first for name in named):
+                rows = np.flatnonzero(path.frame == number)[:1]
+                known = " and ".join(dict.fromkeys(n for n in named if n != path.first))
+                hint = (
+                    f"not known: {known}; give a machine file with [work-offset.*] and [tool.*]"
+                    + ("" if tools else " instead of part-origin")
+                )
+                raise path.refuse("GX314", rows, message, hint)
 
     def nodes(self) -> tuple[Floats, Floats, Floats]:
         """Return the planes on which the error bends, under the policy for outside."""

@@ -1,0 +1,83 @@
+"""Blocks that move in a way of their own: G28 and G30 over a point to home, G53 in the machine."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.modal.rows import Rows
+from gcxform.modal.track import Track
+from gcxform.toolpath.path import Form, Kind
+
+Floats = NDArray[np.float64]
+
+
+def own_moves(track: Track, line: int) -> Rows | None:
+    """Return the moves of a line that has such a code, None if it has none."""
+    meaning = track.lines.table.meanings[int(track.lines.shape[line])]
+    for act in meaning.acts:
+        if act.name == "home":
+            return _home(track, line, act.code)
+        if act.name == "machine":
+            return _in_machine(track, line)
+    return None
+
+
+def _rows(track: Track, line: int, form: Form, moves: list[tuple[int, Floats]]) -> Rows:
+    if moves:
+        track.state.position = moves[-1][1].copy()
+    return Rows.of_line(line, form, moves, len(track.frames) - 1)
+
+
+def _home(track: Track, line: int, code: str) -> Rows:
+    """G28: rapid over the point given, then with the axes named to the reference point."""
+    words = track.words_on(line)
+    moves: list[tuple[int, Floats]] = []
+    if words:
+        moves.append((Kind.RAPID, _reached(track, line, words)))
+    elif not track.dialect.g28_without_axes:
+        track.findings.add(
+            line,
+            "GX213",
+            f"{code} names no axis: all axes may move at once, or none",
+            hint="name the axes, one after another",
+        )
+        return _rows(track, line, Form.HOME, moves)
+    home = (moves[-1][1] if moves else track.state.position).copy()
+    place = track.state.frames.homes.get(code, {})
+    for k, axis in enumerate(track.axes):
+        if axis in words or not words:
+            home[k] = track.state.frames.machine[k] + place.get(axis, np.nan)
+    return _rows(track, line, Form.HOME, [*moves, (Kind.RAPID, home)])
+
+
+def _reached(track: Track, line: int, words: dict[str, float]) -> Floats:
+    """Return the position that the words of a line lead to."""
+    place = track.frame.words(track.state.position[None, :])[0].copy()
+    for axis, value in words.items():
+        k = track.axes.index(axis)
+        place[k] = place[k] + value if track.modes.incremental[line] else value
+    return np.array(track.frame.positions(place[None, :])[0])
+
+
+def _in_machine(track: Track, line: int) -> Rows:
+    """G53: to a point in the coordinates of the machine, without any offset."""
+    if track.modes.incremental[line] and track.dialect.g53_in_g91 != "absolute":
+        message = "G53 under G91: controls refuse it, ignore it, or take it as absolute"
+        track.findings.add(line, "GX213", message, hint="write it under G90")
+    kind = int(track.modes.motion[line])
+    if kind not in (Kind.RAPID, Kind.LINE):
+        track.findings.add(line, "GX213", "G53 needs G0 or G1", hint="write G0 in this block")
+        kind = Kind.RAPID
+    if kind == Kind.LINE and track.dialect.g53_is_rapid:
+        message = "G53 under G1: this control moves in rapid whatever is in force"
+        track.findings.add(line, "GX213", message, hint="write G0 in this block")
+    words = track.words_on(line)
+    if not words:
+        return _rows(track, line, Form.MACHINE, [])
+    end = track.state.position.copy()
+    for axis, value in words.items():
+        k = track.axes.index(axis)
+        value = value / 2 if axis == "X" and track.state.frames.diameter else value
+        end[k] = track.state.frames.machine[k] + value
+    return _rows(track, line, Form.MACHINE, [(kind, end)])

@@ -1,0 +1,227 @@
+"""Where the axes stand, and in which frame, from stretch to stretch of a window.
+
+A stretch is a run of lines in one frame. Within it every axis is one column, filled forward; the
+block that begins a stretch may act on the frame first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.dialect import INCH
+from gcxform.modal.acts import ACTS, ActError, Asked, is_length
+from gcxform.modal.findings import Findings
+from gcxform.modal.lines import LENGTHS, Lines, fill
+from gcxform.modal.meaning import Act
+from gcxform.modal.state import Modes
+from gcxform.toolpath.frames import Frame
+from gcxform.toolpath.path import Plane
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+LOST_BY_TURN = frozenset({"rotate", "no-rotate", "scale", "no-scale", "mirror", "no-mirror"})
+LOST_BY_POLAR = frozenset({"polar", "no-polar"})
+LENGTHENED = frozenset({"length", "length-negative", "length-vector", "length-add", "no-length"})
+
+
+@dataclass(frozen=True, slots=True)
+class Break:
+    """From a line on the position of some axes is not known: bit k of `axes` stands for axis k."""
+
+    line: int
+    axes: int
+
+
+class Track:
+    """Follows position and frame; `state.position` and `state.frames` are left up to date."""
+
+    def __init__(self, lines: Lines, modes: Modes, axes: str) -> None:
+        self.lines = lines
+        self.modes = modes
+        self.axes = axes
+        self.state = lines.state
+        self.dialect = lines.dialect
+        self.findings = lines.findings
+        self.entry = lines.state.position.copy()
+        self.frames: list[Frame] = [self.state.frames.frame()]
+        self.breaks: list[Break] = []
+        self._columns: dict[str, tuple[Floats, Flags] | None] = {}
+
+    @property
+    def frame(self) -> Frame:
+        """The frame in force."""
+        return self.frames[-1]
+
+    def column(self, axis: str) -> tuple[Floats, Flags] | None:
+        """Return value (mm, deg) and presence of an axis word by line; None if no line has it."""
+        if axis not in self._columns:
+            word = self.lines.word(axis)
+            if word is not None and axis in LENGTHS and self.modes.inch.any():
+                word = np.where(self.modes.inch, word[0] * INCH, word[0]), word[1]
+            self._columns[axis] = word
+        return self._columns[axis]
+
+    def words_on(self, line: int) -> dict[str, float]:
+        """Return the axis words of a line, mm and degrees."""
+        found = {}
+        for axis in self.axes:
+            word = self.column(axis)
+            if word is not None and word[1][line]:
+                found[axis] = float(word[0][line])
+        return found
+
+    # --- acts ---
+
+    def act(self, line: int) -> None:
+        """Do what a line does to the frame."""
+        meaning = self.lines.table.meanings[int(self.lines.shape[line])]
+        for act in meaning.acts:
+            if act.name in ACTS:
+                try:
+                    self._one_act(act, line)
+                except ActError as error:
+                    self.findings.add(line, error.code, error.message, act.code[0], error.hint)
+
+    def _one_act(self, act: Act, line: int) -> None:
+        before, old = self.state.frames, self.frame
+        asked = self._asked(act, line)
+        self.state.frames = frames = ACTS[act.name](before, asked)
+        if act.name == "work" and not before.known:
+            self._lose(line, (1 << len(self.axes)) - 1)
+        new = frames.frame()
+        if new == old:
+            return
+        if act.name in LENGTHENED and self.dialect.length_may_move:
+            self._lose(line, 4)
+        if act.name in LOST_BY_TURN and self.dialect.length_may_move:
+            self._lose(line, 7)
+        if act.name in LOST_BY_POLAR:
+            self._lose(line, 7)
+        pairs = enumerate(zip(old.origin, new.origin, strict=True))
+        self._lose(line, sum(1 << k for k, (was, now) in pairs if was != now))
+        self.frames.append(new)
+
+    def _asked(self, act: Act, line: int) -> Asked:
+        window, first = self.lines.window, int(self.lines.first[line])
+        written = {a: float(window.value[first + slot]) for a, slot in act.slots}
+        scale = INCH if self.modes.inch[line] else 1.0
+        words = {a: v * scale if is_length(a) else v for a, v in written.items()}
+        for address, slot in act.slots:
+            self.lines.refuse_pointless(line, address, first + slot)
+        return Asked(
+            act.code,
+            words,
+            written,
+            {a: v for a, v in words.items() if a in self.axes},
+            self.state.position,
+            bool(self.modes.incremental[line]),
+            Plane(int(self.modes.plane[line])),
+            float(self.modes.tool[line]),
+            self.dialect,
+            self.lines.reading,
+        )
+
+    def _lose(self, line: int, axes: int) -> None:
+        if not axes:
+            return
+        for k in range(len(self.axes)):
+            if axes >> k & 1:
+                self.state.position[k] = np.nan
+        self.breaks.append(Break(line, axes))
+
+    # --- stretches ---
+
+    def along(self, first: int, last: int, rows: Ints, lost: Flags | None) -> Floats:
+        """Return the positions (n, axes) after lines `rows` of the stretch from first to last.
+
+        `lost` (lines,) are the lines of the window at which all positions are lost.
+        """
+        here = slice(first, last)
+        before = self.frame.words(self.state.position[None, :])[0]
+        lost_here = None if lost is None or not lost[here].any() else lost[here]
+        words = np.empty((len(self.axes), len(rows))).T
+        end = np.array(before)
+        polar = self._polar(here) if self.frame.polar else {}
+        moved = lost_here is not None
+        for k, axis in enumerate(self.axes):
+            position = self._axis(axis, float(before[k]), here, lost_here, polar.get(axis))
+            if isinstance(position, np.ndarray):
+                moved = True
+                words[:, k] = position[rows - first]
+                end[k] = position[-1] if len(position) else before[k]
+            else:
+                words[:, k] = position
+        if moved:
+            self.state.position = np.array(self.frame.positions(end[None, :])[0])
+        if lost_here is not None:
+            axes = (1 << len(self.axes)) - 1
+            self.breaks += [Break(first + int(n), axes) for n in np.flatnonzero(lost_here)]
+        return self.frame.positions(words)
+
+    def _axis(
+        self,
+        axis: str,
+        before: float,
+        here: slice,
+        lost: Flags | None,
+        instead: tuple[Floats, Flags] | None,
+    ) -> Floats | float:
+        """Return where an axis is after each line of a stretch; one number if it never changes."""
+        word = instead or self.column(axis)
+        if word is None:
+            if lost is None:
+                return before
+            return fill(np.full(len(lost), np.nan), lost, before)
+        value, present = word if instead else (word[0][here], word[1][here])
+        incremental = self.modes.incremental[here] & present
+        placed = present & ~incremental
+        if lost is not None:
+            value = np.where(lost & ~present, np.nan, value)
+            placed = placed | (lost & ~incremental)
+        if not incremental.any():
+            return fill(value, placed, before)
+        position = _with_increments(value, placed, incremental, before)
+        for line in np.flatnonzero(incremental & np.isnan(position))[: Findings.enough].tolist():
+            self.findings.add(
+                line + here.start,
+                "GX207",
+                f"{axis} is incremental, but where {axis} stands is not known",
+                axis,
+                f"begin with an absolute {axis}, or say start = {{ {axis} = ... }} in [input]",
+            )
+        return position
+
+    def _polar(self, here: slice) -> dict[str, tuple[Floats, Flags]]:
+        """Return the words of the plane's axes where radius and angle are programmed."""
+        planes = np.unique(self.modes.plane[here])
+        first, second, _ = Plane(int(planes[0])).axes
+        names = "XYZ"[first], "XYZ"[second]
+        columns = []
+        count = self.modes.plane[here].shape[0]
+        any_word = np.zeros(count, np.bool_)
+        for axis in names:
+            word = self.column(axis)
+            value = np.full(count, np.nan) if word is None else word[0][here]
+            present = np.zeros(count, np.bool_) if word is None else word[1][here]
+            columns.append(fill(np.where(present, value, np.nan), present, np.nan))
+            any_word |= present
+        radius, angle = columns[0], np.deg2rad(columns[1])
+        bad = any_word & (np.isnan(radius + angle) | self.modes.incremental[here])
+        bad |= len(planes) > 1
+        for line in np.flatnonzero(bad)[: Findings.enough].tolist():
+            message = "in polar words radius and angle must be known, in one plane and in G90"
+            self.findings.add(line + here.start, "GX213", message)
+        place = radius * np.cos(angle), radius * np.sin(angle)
+        return {name: (value, any_word) for name, value in zip(names, place, strict=True)}
+
+
+def _with_increments(value: Floats, placed: Flags, incremental: Flags, before: float) -> Floats:
+    """Return positions where some lines place the axis and others add to where it stands."""
+    steps = np.cumsum(np.where(incremental, value, 0.0))
+    base = fill(np.where(placed, value - steps, 0.0), placed, before)
+    return np.asarray(base + steps)

@@ -1,0 +1,106 @@
+"""Frames: how the numbers of a program become positions.
+
+A position is where the spindle's reference point stands, counted from the zero of the work offset
+in which the program starts. It does not change when a program shifts its coordinates: G55, G92,
+G52, G68 or a tool length change the frame, and no axis moves. So geometry is compared and changed
+in positions, and frames matter only where words are read and written:
+
+    position = matrix @ word + shift
+
+Where the shift between two frames is not known, the axis counts from another origin, and its
+position is lost until it is programmed again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Vector = tuple[float, ...]
+Matrix = tuple[tuple[float, float, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """How the words of a block become positions.
+
+    work     the work offset in force, "G54"
+    shift    per axis, mm or degrees: the position of a word 0
+    origin   per axis: the zero from which positions count, by name
+    matrix   3 x 3 for X, Y, Z, where the words are turned, scaled or mirrored
+    diameter whether X words are diameters (G7)
+    polar    whether the first two words of the plane are radius and angle (G16)
+    tool     mm, from the tool's tip to the spindle's reference point, as the control adds it;
+             nan where it adds a length that is not known
+    """
+
+    work: str
+    shift: Vector
+    origin: tuple[str, ...]
+    matrix: Matrix | None = None
+    diameter: bool = False
+    polar: bool = False
+    tool: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    @classmethod
+    def at_zero(cls, axes: str, work: str = "G54") -> Frame:
+        """Return the frame in which words are positions."""
+        return cls(work, (0.0,) * len(axes), (work,) * len(axes))
+
+    @property
+    def plain(self) -> bool:
+        """Whether words are positions."""
+        return self.matrix is None and not self.diameter and not any(self.shift)
+
+    def positions(self, words: Floats) -> Floats:
+        """Return the positions (n, axes) of words (n, axes)."""
+        return self.placed(_scaled(words, 0.5) if self.diameter else words)
+
+    def words(self, positions: Floats) -> Floats:
+        """Return the words (n, axes) of positions (n, axes)."""
+        local = self.local(positions)
+        return _scaled(local, 2.0) if self.diameter else local
+
+    def placed(self, local: Floats) -> Floats:
+        """Return positions (n, k) of coordinates (n, k) in this frame; k is 3 or all axes."""
+        if self.plain:
+            return local
+        return np.asarray(self.turned(local) + np.array(self.shift[: local.shape[1]]))
+
+    def local(self, positions: Floats) -> Floats:
+        """Return coordinates (n, k) in this frame of positions (n, k); k is 3 or all axes."""
+        if self.plain:
+            return positions
+        return self.unturned(positions - np.array(self.shift[: positions.shape[1]]))
+
+    def turned(self, vectors: Floats) -> Floats:
+        """Return vectors (n, 3 or more) of the program as vectors between positions."""
+        return vectors if self.matrix is None else _product(np.array(self.matrix), vectors)
+
+    def unturned(self, vectors: Floats) -> Floats:
+        """Return vectors between positions (n, 3 or more) as vectors of the program."""
+        if self.matrix is None:
+            return vectors
+        return _product(np.linalg.inv(np.array(self.matrix)), vectors)
+
+    @property
+    def mirrors(self) -> bool:
+        """Whether left becomes right."""
+        return self.matrix is not None and bool(np.linalg.det(self.matrix) < 0)
+
+
+def _scaled(words: Floats, factor: float) -> Floats:
+    """Return words (n, axes) with X multiplied."""
+    return np.asarray(words * np.append(factor, np.ones(words.shape[1] - 1)))
+
+
+def _product(matrix: Floats, vectors: Floats) -> Floats:
+    """Return vectors with X, Y, Z multiplied; what is not known spreads only where it counts."""
+    result = np.array(vectors, order="F")
+    for row in range(3):
+        used = np.flatnonzero(np.abs(matrix[row]) > 1e-15)
+        result[:, row] = sum(matrix[row, k] * vectors[:, k] for k in used)
+    return result

@@ -1,0 +1,47 @@
+"""`offsets`: shifted, turned and mirrored coordinates become plain ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+import gcxform as gx
+
+
+@dataclass(frozen=True)
+class Offsets(gx.Pass):
+    """Fold G52, G92, G10, G68, G51.1, G16, G7 and other work offsets into the words of moves.
+
+    The program then stays in the work offset in which it starts, and the codes that shifted or
+    turned its coordinates are not written. What they would leave behind in the control is lost.
+    Tool lengths, G28 and G53 stay as they are. How far two work offsets are apart has to be known,
+    from the machine file or from the program.
+    """
+
+    name = "offsets"
+    ensures = frozenset({gx.WORKPIECE_FRAME})
+    folds = True
+
+    def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
+        """Return the path with every row in the work offset in which the program starts."""
+        self._check_known(path)
+        frames = tuple(self._unshifted(frame, path) for frame in path.frames)
+        return path.replace(frames=frames, folded=True)
+
+    def _unshifted(self, frame: gx.Frame, path: gx.Toolpath) -> gx.Frame:
+        """Return the frame in which only the tool length is left."""
+        tool = np.zeros(len(frame.shift))
+        tool[:3] = np.nan_to_num(np.array(frame.tool))
+        return gx.Frame(path.first, tuple(tool.tolist()), frame.origin, tool=frame.tool)
+
+    def _check_known(self, path: gx.Toolpath) -> None:
+        """Refuse moves in coordinates of which it is not known where they are."""
+        for number in np.unique(path.frame).tolist():
+            origin = (name.split(" + ")[0] for name in path.frames[number].origin)
+            unknown = [name for name in origin if name != path.first]
+            if unknown:
+                rows = np.flatnonzero(path.frame == number)[:1]
+                message = f"how far {unknown[0]} is from {path.first} is not known"
+                hint = "give a machine file with [work-offset.*]"
+                raise path.refuse("GX314", rows, message, hint)
