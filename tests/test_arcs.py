@@ -282,6 +282,20 @@ def test_a_straight_line_is_no_arc() -> None:
     assert run("arcs tolerance=0.1", program).text == program
 
 
+def test_a_zigzag_along_an_arc_stays() -> None:
+    """Each line breaks by 17 degrees to one side and the other: near an arc, and yet none."""
+    size = [20, *[20 + 0.22 * (-1) ** k for k in range(1, 9)], 20]
+    bend = [(r * math.cos(0.15 * k), r * math.sin(0.15 * k)) for k, r in enumerate(size)]
+    lines = ["G1 X{:.3f} Y{:.3f}".format(*point) for point in bend]
+    program = ended(["G21 G90 G94 G17", "G0 X20 Y0 Z0 F100", *lines])
+    assert run("arcs tolerance=0.3 min-lines=6", program).text == program
+    smooth = [
+        f"G1 X{20 * math.cos(0.15 * k):.3f} Y{20 * math.sin(0.15 * k):.3f}" for k in range(10)
+    ]
+    program = ended(["G21 G90 G94 G17", "G0 X20 Y0 Z0 F100", *smooth])
+    assert b"G3" in run("arcs tolerance=0.3 min-lines=6", program).text
+
+
 def test_what_the_lddm_compensation_made_gets_small_again() -> None:
     program = (EXAMPLES / "arc_in.nc").read_bytes()
     model = f"volumetric model={EXAMPLES / 'model.toml'} part-origin=0,0,0 outside=extrapolate"
