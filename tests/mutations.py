@@ -297,8 +297,8 @@ MUTATIONS = (
     Mutation(
         "arcs: they end inside blocks",
         f"{PASSES}/reach.py",
-        "return np.asarray(self._own(first, stop) | (self.before[stop] == stop))",
-        "return np.ones(len(first), np.bool_)",
+        "return np.where(self._own(first, stop), stop, self.before[stop])",
+        "return stop",
         ARCS,
     ),
     Mutation(

@@ -296,6 +296,15 @@ def test_a_zigzag_along_an_arc_stays() -> None:
     assert b"G3" in run("arcs tolerance=0.3 min-lines=6", program).text
 
 
+def test_an_arc_does_not_end_inside_another_block() -> None:
+    """Three blocks go round one circle, more than once: each stays the block that it was."""
+    turns = ["G3 X0 Y-10 I-10 J0 F100", "G3 X-10 Y0 I0 J10", "G3 X0 Y-10 I10 J0"]
+    program = ended(["G21 G90 G94 G17", "G0 X10 Y0 Z0", *turns, "G1 Y-12 X5"])
+    result = run("segment chord-error=0.01 | arcs tolerance=0.02", program)
+    ends = [point_of(move.end)[:2] for move in interpret(result.text, "linuxcnc").moves]
+    assert ends == [(10, 0), (0, -10), (-10, 0), (0, -10), (5, -12)]
+
+
 def test_what_the_lddm_compensation_made_gets_small_again() -> None:
     program = (EXAMPLES / "arc_in.nc").read_bytes()
     model = f"volumetric model={EXAMPLES / 'model.toml'} part-origin=0,0,0 outside=extrapolate"
