@@ -282,6 +282,14 @@ def test_a_straight_line_is_no_arc() -> None:
     assert run("arcs tolerance=0.1", program).text == program
 
 
+def test_what_a_line_could_stand_for_is_no_arc() -> None:
+    """Six lines on a radius of 100 mm: 0.045 mm between arc and chord, less than the tolerance."""
+    bend = [f"X{100 * math.sin(k / 100):.3f} Y{k * k / 200:.3f}" for k in range(1, 7)]
+    program = ended(["G21 G90 G94 G17", "G0 X0 Y0 Z0 F100", f"G1 {bend[0]}", *bend[1:]])
+    assert run("arcs tolerance=0.1", program).text == program
+    assert b"G3" in run("arcs tolerance=0.03", program).text
+
+
 def test_a_zigzag_along_an_arc_stays() -> None:
     """Each line breaks by 17 degrees to one side and the other: near an arc, and yet none."""
     size = [20, *[20 + 0.22 * (-1) ** k for k in range(1, 9)], 20]
