@@ -290,6 +290,12 @@ def test_what_a_line_could_stand_for_is_no_arc() -> None:
     assert b"G3" in run("arcs tolerance=0.03", program).text
 
 
+def test_the_motion_code_is_stated_again_behind_an_arc() -> None:
+    lines = ["G21 G90 G94 G17", "G0 X0 Y0 Z0 F100", *(f"G1 {bend}" for bend in BEND), "X20"]
+    result = run("arcs tolerance=0.02", ended(lines))
+    assert result.text.splitlines()[-3:] == [ARC.encode(), b"G1 X20.", b"M2"]
+
+
 def test_a_zigzag_along_an_arc_stays() -> None:
     """Each line breaks by 17 degrees to one side and the other: near an arc, and yet none."""
     size = [20, *[20 + 0.22 * (-1) ** k for k in range(1, 9)], 20]
@@ -393,7 +399,7 @@ def test_an_event_inside_a_run_does_not_go_behind_it() -> None:
 
 @pytest.mark.parametrize(
     "line",
-    ["X3 F200", "G0 X3", "G93 X3 F2\nG94 F100", "G55 X3", "A5 X3", "/X3"],
+    ["X3 F200", "G0 X3", "G93 X3 F2\nG94 F100", "G55 X3", "G52 X1\nG1 X2", "A5 X3", "/X3"],
 )
 def test_what_is_not_alike_is_in_no_run(line: str) -> None:
     """A row is taken for a part of a run only if all along the run the same holds."""
