@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from gcxform.dialect import ArcRule as ArcRule
     from gcxform.dialect import Dialect as Dialect
     from gcxform.dialect import NumberFormat as NumberFormat
+    from gcxform.guess import Evidence as Evidence
+    from gcxform.guess import Guess as Guess
+    from gcxform.guess import guess_dialect as guess_dialect
     from gcxform.hookspecs import hookimpl as hookimpl
     from gcxform.machine.errors import AxisFunction as AxisFunction
     from gcxform.machine.errors import AxisFunctions as AxisFunctions
@@ -84,6 +87,7 @@ _HOMES = {
     "diagnostics": "Diagnostic FileError GcxformError InputError Location UsageError "
     "VerificationError",
     "dialect": "ArcRule Dialect NumberFormat",
+    "guess": "Evidence Guess guess_dialect",
     "hookspecs": "hookimpl",
     "machine.errors": "AxisFunction AxisFunctions ErrorModel Outside check_contraction compensate",
     "machine.formats": "ErrorFormat",

@@ -54,7 +54,8 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "On this control a distance without a point counts in its least increment, so that X10 "
         "may be 10 mm or 10 micrometres. The program does not say which, and a guess is wrong "
         'by a factor of a thousand. Say `increment = "0.001 mm"` in [input], or --increment; 0 '
-        "needs neither.",
+        "needs neither. A feed without a point is refused where settings of the control decide "
+        "on its unit: write the point, or on a Haas say `feed-increment` in [input].",
     ),
     "GX206": (
         "Code that would have to be run",
@@ -116,6 +117,12 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "does not tell. Give it in [control] of the machine file.",
     ),
     # --- 3xx: geometry ---
+    "GX219": (
+        "A line or a number beyond what the control takes",
+        "The block is longer than the control reads, or has a number that its word cannot have: a "
+        "negative speed, tool, time or feed, a sequence number too large. Controls stop here, or "
+        "drop the block and go on with the next. Shorten the block, or correct the number.",
+    ),
     "GX301": (
         "The end of an arc is off its circle",
         "The distances from the centre to the start and to the end of the arc differ by more "
@@ -181,6 +188,19 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "machine file lacks the offset. The error depends on where the part is in the machine. "
         "Give a machine file with [work-offset.G54] and the others that are used, in place of "
         "part-origin.",
+    ),
+    "GX320": (
+        "A feed that cannot be converted",
+        "Between G93 and G94 a feed is converted by the length of its move, as the control "
+        "measures it. Here that length is not known, or controls do not agree about it, or the "
+        "speed is not the program's: G95 depends on the spindle. Let the CAM write this part in "
+        "the feed mode that is wanted, or leave the pass out.",
+    ),
+    "GX321": (
+        "The program has no end at which its feed mode could be restored",
+        "The pass feed leaves the control in the feed mode in which the source program leaves it, "
+        "and states that mode in the block with M2 or M30. This program has none, and what runs "
+        "after it would find another feed mode. End the program with M2 or M30.",
     ),
     # --- 4xx: machine and error-model files ---
     "GX401": (
@@ -352,7 +372,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "A number with too many digits",
         "The number has more digits than controls take for a word, because a position is far "
         "away or the decimals are many. Check the units of the program and `decimals` in "
-        "[output].",
+        "[output]. In inverse time (G93) the feed of a long and slow move is very small: cut it.",
     ),
     "GX504": (
         "An arc cannot be written as this control accepts it",
@@ -529,6 +549,13 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "The program has no such line",
         "Lines count from 1, as in an editor and in messages. `gcxform info FILE` says how many "
         "there are.",
+    ),
+    "GX732": (
+        "No safe restart at this line",
+        "A restart must bring the control into the state in which the program is at that line: "
+        "modes, tool, spindle, coolant, and where the axes stand. Something of that is not known, "
+        "or cannot be said by blocks. Begin at an earlier line: at the tool change, at the block "
+        "that states the arc, before the code that is named.",
     ),
     # --- 8xx: plugins ---
     "GX801": (

@@ -51,6 +51,9 @@ class InputSpec:
     feed: Annotated[
         float | None, Option("feed before the first F word, in units per minute", above=0.0)
     ] = None
+    feed_increment: Annotated[
+        float | None, Option("what 1 means in an F without a point, per minute", above=0.0)
+    ] = None
     block_delete: Annotated[
         Literal["execute", "skip", ""], Option("what the control does with / blocks")
     ] = ""

@@ -52,6 +52,8 @@ def instances(name: str) -> list[gx.Pass | gx.TextPass]:
             made(tolerance=0.4, min_lines=2, max_sweep=100.0),
             made(tolerance=0.0001),
         ]
+    if name == "feed":
+        return [made(mode="inverse-time"), made(mode="per-minute")]
     if name == "strip":
         return [made(), made(blanks=False), made(comments=False, empty=False)]
     return [made()]

@@ -30,7 +30,7 @@ from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.syntax.tree import Comment
-from gcxform.toolpath.path import Kind, Plane, Toolpath
+from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -38,6 +38,7 @@ Flags = NDArray[np.bool_]
 
 
 PEELED_AT_MOST = 16
+FEED_SLIP = 1.5e-4  # relative; a feed that would be written farther off is refused
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,6 +214,8 @@ class _Job:
         said = self.positions.local(said)[np.ix_(rows, axes)]
         on_grid = (np.abs(said - begin) < EXACT).all(axis=1)
         silent = full & ~on_grid & refit
+        # LinuxCNC counts a circle that closes but for the last bit as no way at all in G93.
+        silent |= full & (self.path.feed_mode[rows] == FeedMode.INVERSE_TIME)
         if self.task.manner.target.circle_needs_axis_word:
             silent[:] = False
         for axis in axes.tolist():
@@ -251,6 +254,8 @@ class _Job:
             (pieces.inch + 1, 3),
             (pieces.incremental + 1, 3),
             (pieces.absolute_centre + 1, 3),
+            (pieces.feed_mode + 1, 128),
+            (pieces.silent, 2),
             (pieces.feed, 3),
             (inch, 2),
         ]
@@ -286,6 +291,8 @@ class _Job:
             int(pieces.inch[piece]),
             int(pieces.incremental[piece]),
             int(pieces.absolute_centre[piece]),
+            int(pieces.feed_mode[piece]),
+            bool(pieces.silent[piece]),
             Feed(int(pieces.feed[piece])),
             arc,
             int(self.path.plane[row]) if arc else 0,
@@ -329,11 +336,20 @@ class _Job:
             feed = self.pieces.feed_value[members]
             decimals = _decimals_for(feed, manner.decimals_of("F", inch))
             whole = quantise(feed, decimals)
+            self._check_feed(feed, whole / 10.0**decimals, members)
             everywhere = np.ones(len(rows), np.bool_)
             point = manner.target.point_required
             renderer.number(field.gap, "F", whole, decimals, everywhere, point)
 
     # --- after ---
+
+    def _check_feed(self, feed: Floats, written: Floats, members: Ints) -> None:
+        """Refuse feeds that are too small to be written."""
+        lost = np.flatnonzero(~(np.abs(written - feed) <= FEED_SLIP * feed))
+        for piece in members[lost[:1]].tolist():
+            where = self.task.location(int(self.pieces.line[piece]))
+            message = f"a feed this small has more than {MOST_DECIMALS} decimals"
+            raise InputError.one("GX503", message, where, 'cut the move with "segment"')
 
     def _check_lengths(self, text: bytes, lengths: Ints, chosen: Ints) -> None:
         target = self.task.manner.target
@@ -357,6 +373,7 @@ class _Job:
         if self.task.table.flag("ends", self.task.shape[-1:])[0] and resets:
             believed.motion = NUMBER[resets["motion"]]
             believed.incremental = NUMBER[resets["distance"]]
+            believed.feed_mode = NUMBER[resets.get("feed-mode", "G94")]
 
     def _carry(self) -> None:
         """Leave what the control believes after the window."""
@@ -370,7 +387,7 @@ class _Job:
             believed.motion = int(pieces.motion_after[-1])
             believed.feed = float(pieces.feed_after[-1])
             believed.feed_unit = float(pieces.unit_after[-1])
-            for name in ("inch", "incremental", "absolute_centre"):
+            for name in ("inch", "incremental", "absolute_centre", "feed_mode"):
                 stated = getattr(pieces, name)
                 last = np.flatnonzero(stated >= 0)
                 if len(last):

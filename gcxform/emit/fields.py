@@ -34,7 +34,8 @@ class Feed(IntEnum):
 class Key:
     """All that decides how a piece of a block is written, but for its numbers.
 
-    `motion`, `inch`, `incremental`, `absolute_centre`: what has to be stated; -1: nothing.
+    `motion`, `inch`, `incremental`, `absolute_centre`, `feed_mode`: what has to be stated; -1:
+    nothing. `silent`: a motion code that moves nothing is left out.
     `arc`: whether centre words are written, in `plane`; `turns`: full turns beyond the arc.
     """
 
@@ -43,6 +44,8 @@ class Key:
     inch: int
     incremental: int
     absolute_centre: int
+    feed_mode: int
+    silent: bool
     feed: Feed
     arc: bool
     plane: int

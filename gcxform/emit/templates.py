@@ -8,14 +8,14 @@ then a matter of whole arrays.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 from gcxform.dialect import Dialect
 from gcxform.emit.fields import Axis, Centre, Copied, Feed, FeedWord, Field, Key, Literal, Role
 from gcxform.emit.manner import Manner
 from gcxform.modal.codes import Code
-from gcxform.modal.meaning import FRAMING, Meaning
+from gcxform.modal.meaning import FRAMING, Meaning, program_number_fits
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import BLANKS, Comment, Item, Mark, Number, Word
 
@@ -115,6 +115,8 @@ class TemplateWriter:
         self._repairs_wait = True
         for item in self.shape.block.items:
             lead = self.text[at : item.start].encode("latin-1") if whole else b""
+            if at and not self.fields:
+                lead = b""  # what stood before is left out, and the blank after it
             at = item.end
             self._item(item, lead, slot)
             if isinstance(item, Word) and item.address not in CODES:
@@ -189,7 +191,7 @@ class TemplateWriter:
     # --- words ---
 
     def _word(self, word: Word, lead: bytes, slot: int) -> None:
-        address = word.address
+        address, verbatim = word.address, self.key.role is Role.VERBATIM
         if (address if address not in CODES else _name(word)) in self.folded:
             return
         if address not in "NO" and self._repairs_wait:
@@ -198,7 +200,7 @@ class TemplateWriter:
             self._g_word(word, lead)
         elif address == "M":
             self._m_word(word, lead)
-        elif address in self.meaning.slots and not self.as_it_stands and self._motion(word, lead):
+        elif address in self.meaning.slots and not verbatim and self._motion(word, lead):
             return
         elif address == "F" and "F" in self.meaning.slots:
             self._feed(word, lead, slot)
@@ -228,6 +230,8 @@ class TemplateWriter:
             raise CannotSayError(
                 word.start, word.end - word.start, f"{self.target.name} has no word {word.address}"
             )
+        if word.address == "O" and not program_number_fits(word, self.target):
+            self._refuse(word, "this program number")
         if word.address in CODES or not isinstance(word.value, Number):
             self._literal(lead, self._said(word.start, word.end))
             return
@@ -249,7 +253,7 @@ class TemplateWriter:
                 if not self._goes_without_saying(word, wanted):
                     self._literal(lead, text if wanted == name else _like(text, wanted))
                 return
-            if group == "motion" and not self.as_it_stands:
+            if group == "motion" and (not self.as_it_stands or self.key.silent):
                 return
         elif group in self.stated:
             return  # of several codes of a group one has been written
@@ -273,7 +277,7 @@ class TemplateWriter:
         if (
             self.meaning.dwell
             and code.group == "non-modal"
-            and self.source.dwell != self.target.dwell
+            and not _same_dwell(self.source, self.target)
         ):
             self._refuse(word, "this dwell")
 
@@ -417,13 +421,19 @@ def folded_words(meaning: Meaning, work: str) -> frozenset[str]:
     return frozenset(gone)
 
 
-STATED = {
+STATED: Mapping[str, tuple[str, Mapping[int, str] | tuple[str, ...]]] = {
     "units": ("inch", ("G21", "G20")),
     "distance": ("incremental", ("G90", "G91")),
     "arc-distance": ("absolute_centre", ("G91.1", "G90.1")),
+    "feed-mode": ("feed_mode", {93: "G93", 94: "G94", 95: "G95"}),
     "motion": ("motion", ("G0", "G1", "G2", "G3")),
 }
 """Groups whose code may have to be stated: field of the key, and codes by value."""
+
+
+def _same_dwell(one: type[Dialect], other: type[Dialect]) -> bool:
+    """Whether a dwell of one dialect is as long in the other, however it is written."""
+    return one.dwell == other.dwell and one.dwell_point_is_seconds == other.dwell_point_is_seconds
 
 
 def _like(text: str, code: str) -> str:

@@ -73,7 +73,7 @@ def moved_to_names(state: FrameState, asked: Asked, values: Vector) -> Vector:
 
 def work(state: FrameState, asked: Asked) -> FrameState:
     """G54 and its like: another work offset."""
-    name = asked.code
+    name = asked.dialect.work_names.get(asked.code, asked.code)
     if "P" in asked.words:
         number = asked.words["P"]
         if number < 1 or number % 1:

@@ -35,4 +35,6 @@ def _value(lines: Lines, what: str, address: str, number: int) -> tuple[str, flo
     pointless = lines.window.decimals[number] < 0 and address in LENGTHS
     if pointless and value and lines.dialect.point_required:
         return "increments", value
+    if lines.dialect.dwell_point_is_seconds and lines.window.decimals[number] >= 0:
+        return "seconds", value
     return "seconds", value * lines.dialect.dwell[address]

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, Dialect
 from gcxform.modal.frames import FrameState
+from gcxform.modal.limits import refuse_limits
 from gcxform.modal.lines import Lines
 from gcxform.modal.moves import Moves
 from gcxform.modal.state import Modes, Reading, State
@@ -78,6 +79,7 @@ class Interpreter:
         lines.refuse_statically()
         modes = lines.modes()
         path = Moves(lines, modes, self.axes).path()
+        refuse_limits(lines, modes, path.events)
         lines.findings.raise_if_any()
         self._carry(lines, modes)
         return Interpreted(path, modes, lines.live, lines.shape, before)
@@ -100,4 +102,6 @@ class Interpreter:
         self.state.feed_unit = float(modes.feed_unit[-1])
         if lines.flag("ends")[-1]:
             for name, code in self.dialect.resets_at_end.items():
+                if name == "feed-mode" and self.state.groups[name] != NUMBER[code]:
+                    self.state.feed = np.nan
                 self.state.groups[name] = NUMBER[code]

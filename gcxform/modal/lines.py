@@ -68,11 +68,6 @@ class Lines:
         """Return a flag of the meaning of each line."""
         return self.table.flag(name, self.shape)
 
-    def apart(self) -> Flags | None:
-        """Return the lines with a slash or a name; None if there is none."""
-        marked = self.flag("marked")
-        return marked if marked.any() else None
-
     def stated(self, group: str) -> Flags:
         """Return which lines have a code of a group."""
         return np.asarray(self.table.groups[self.shape, GROUPS.index(group)] >= 0)
@@ -229,7 +224,7 @@ class Lines:
         present = np.zeros(self.live, np.bool_)
         if word is not None:
             value, present = np.where(word[1], word[0], np.nan), word[1]
-            self._refuse_pointless_feed(present, feed_mode, inch)
+            value = self._with_feed_increment(value, present, feed_mode, inch)
         present = present | self._cleared(feed_mode, inch)
         if self.dialect.feed_before_units:
             inch = np.append(self.state.groups["units"] == 1, inch[:-1])[: self.live]
@@ -244,20 +239,37 @@ class Lines:
         cleared = np.zeros(self.live, np.bool_)
         if self.dialect.feed_mode_clears_feed:
             cleared |= self.stated("feed-mode")
-        if self.dialect.change_clears_feed and self.live:
-            mode = np.append(np.int8(self.state.groups["feed-mode"]), feed_mode)
+        mode = np.append(np.int8(self.state.groups["feed-mode"]), feed_mode)
+        cleared |= mode[1:] != mode[:-1]
+        if self.dialect.change_clears_feed:
             unit = np.append(self.state.groups["units"] == 1, inch)
-            cleared |= (mode[1:] != mode[:-1]) | (unit[1:] != unit[:-1])
+            cleared |= unit[1:] != unit[:-1]
         return cleared
 
-    def _refuse_pointless_feed(self, present: Flags, feed_mode: Small, inch: Flags) -> None:
-        """Refuse feeds without a point where their unit depends on the control."""
+    def _with_feed_increment(
+        self, value: Floats, present: Flags, feed_mode: Small, inch: Flags
+    ) -> Floats:
+        """Return feeds with those that have no point scaled, or refuse them.
+
+        Their unit depends on the control: of every F where the dialect says so, else in inches and
+        in feed per turn.
+        """
         if not self.dialect.point_required:
-            return
+            return value
         slot = self.table.slots[self.shape, ord("F") - 65]
         number = np.where(present, self.first + slot, 0)
         odd = present & (self.window.decimals[number] < 0)
-        odd &= inch | (feed_mode == NUMBER["G95"])
+        per_minute = feed_mode == NUMBER["G94"]
+        increment = self.reading.feed_increment
+        if not self.dialect.feed_point_required:
+            odd &= inch | (feed_mode == NUMBER["G95"])
+        elif increment is not None:
+            value = np.where(odd & per_minute, value * increment, value)
+            odd &= ~per_minute
+        hint = "write the feed with a point"
+        if self.dialect.feed_point_required:
+            hint += ", or say what 1 is worth in G94: feed-increment = 1.0 in [input]"
         for line in np.flatnonzero(odd)[: Findings.enough].tolist():
             message = "F has no decimal point: its unit depends on the control"
-            self.findings.add(line, "GX205", message, "F", "write the feed with a point")
+            self.findings.add(line, "GX205", message, "F", hint)
+        return value

@@ -283,6 +283,25 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         meaning.events.append(EventShape(order, name, taken, code.after))
 
 
+def program_number_fits(word: Word, dialect: type[Dialect]) -> bool:
+    """Whether the control can hold a program number."""
+    digits = dialect.program_number_digits
+    return not digits or not isinstance(word.value, Number) or word.value.value < 10**digits
+
+
+def _lacking(word: Word, dialect: type[Dialect]) -> Refusal | None:
+    """Return why the control does not have a word, None if it does."""
+    address, width = word.address, word.end - word.start
+    known = address in dialect.axes or address in dialect.words or address in CODES
+    if not known or (address == "O" and not dialect.has_program_number):
+        return Refusal("GX201", word.start, width, f"{dialect.name} has no word {address}")
+    if address == "O" and not program_number_fits(word, dialect):
+        digits = dialect.program_number_digits
+        message = f"{dialect.name} has program numbers of at most {digits} digits"
+        return Refusal("GX201", word.start, width, message)
+    return None
+
+
 def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
     """Refuse a sequence number behind something else where the control wants it first."""
     items = [item for item in shape.block.items if not isinstance(item, Mark)]
@@ -308,12 +327,8 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
         meaning.events.append(EventShape(45, "D", (("D", slots.pop("D")),)))
     for word in shape.block.words:
         address = word.address
-        known = address in dialect.axes or address in dialect.words or address in CODES
-        if address == "O" and not dialect.has_program_number:
-            known = False
-        if not known:
-            message = f"{dialect.name} has no word {address}"
-            yield Refusal("GX201", word.start, word.end - word.start, message)
+        if (lacking := _lacking(word, dialect)) is not None:
+            yield lacking
         elif address in slots and address not in motion:
             message = f"{address} belongs to no code of this block"
             yield Refusal("GX203", word.start, word.end - word.start, message)

@@ -30,6 +30,8 @@ class Reading:
     homes         machine positions of G28 and G30
     tools         the tool table
     control       settings of the control on which the meaning of codes depends
+    feed_increment   what 1 means in an F without a point, in units per minute; None: such an F is
+                  refused where the dialect asks for a point
     """
 
     start: Mapping[str, float] = field(default_factory=dict)
@@ -37,6 +39,7 @@ class Reading:
     feed: float | None = None
     block_delete: str = ""
     units: str = ""
+    feed_increment: float | None = None
     work_offsets: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     homes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     tools: Mapping[int, Tool] = field(default_factory=dict)

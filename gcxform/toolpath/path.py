@@ -78,14 +78,22 @@ class Blocks:
     inch            lengths are written in inches (G20)
     incremental     axis words are distances from where the axis stands (G91)
     absolute_centre I, J, K are the centre itself (G90.1)
-    apart           the block has a slash or a name and is joined with no other; None: no block has
+    feed_mode       `FeedMode` in which the block is read
+    leaves          whether after the block something else than this program may run: it ends, or
+                    calls what may move axes
+    apart           whether the block has a slash or a name and is joined with no other
     """
 
     first: int
     inch: Flags
     incremental: Flags
     absolute_centre: Flags
-    apart: Flags | None = None
+    feed_mode: Small
+    leaves: Flags
+    apart: Flags
+
+
+BLOCK_MODES = ("inch", "incremental", "absolute_centre", "feed_mode", "leaves", "apart")
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,6 +154,7 @@ class Toolpath:
     slack           mm; how far a row may be from the curve it stands for
     first           the work offset from whose zero positions count
     folded          whether frames are folded into the words: codes that set them are not written
+    joined          whether rows may stand for several: blocks left without one are not written
     after_rapid     whether the move before the first row was a rapid
     refit_centres   whether centres may be moved so that both ends are on the circle as formatted
     """
@@ -172,6 +181,7 @@ class Toolpath:
     slack: float = 0.0
     first: str = "G54"
     folded: bool = False
+    joined: bool = False
     after_rapid: bool = False
     refit_centres: bool = True
 

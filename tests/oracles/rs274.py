@@ -23,20 +23,20 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from oracles.canon import CanonMove, CanonProgram, Reader
+from oracles.canon import CALL, CanonMove, CanonProgram, Reader
 
 __all__ = ["CanonMove", "CanonProgram", "Rejected", "available", "run", "run_many"]
 
-CALL = re.compile(r"\s*\d+\s+N\S*\s+([A-Z_0-9]+)\((.*)\)\s*$")
 MARK = re.compile(r'"gcx (\d+) (\d+)"')
 NOISE = ("executing", "link (updating")
 TIMEOUT = 10.0  # seconds
 BATCH = 250  # programs in one file
-RESET = b"G80 G21 G17 G90 G91.1 G94 G40 G49 G54 M5 M9\nS0 T0\nG0 X0 Y0 Z0 A0 B0 C0\nG80\n"
+RESET = b"G80 G21 G17 G90 G91.1 G94 G40 G49 G54 G99 M5 M9\nS0 T0\nG0 X0 Y0 Z0 A0 B0 C0\n"
+RESET += b"G82 X0 Z0 R0 P0 F1\nG80 G94\n"  # a dwell of a cycle would stay
 PLAIN_G = {0, 1, 2, 3, 4, 17, 18, 19, 20, 21, 40, 49, 80, 90, 91, 90.1, 91.1, 93, 94, 95}
-PLAIN_G |= set(range(54, 60))
+PLAIN_G |= set(range(54, 60)) | {73, 74, 98, 99} | set(range(81, 90))
 PLAIN_M = {0, 1, 3, 4, 5, 6, 7, 8, 9, 60}
-BLOCK = re.compile(r"/?(N\d+)?(?:[ABCFGIJKMPRSTXYZ][+-]?[\d.]+)*")
+BLOCK = re.compile(r"/?(N\d+)?(?:[ABCFGIJKLMPQRSTXYZ][+-]?[\d.]+)*")
 END = re.compile(rb"[ \t]*([nN]\d+)?[ \t]*[mM]0*2[ \t]*")  # not taken apart by a comment
 WORD = re.compile(r"([A-Z])([+-]?[\d.]+)")
 

@@ -15,6 +15,9 @@
 | M5, M9 with a motion | the machine's PLC decides, commonly after it: taken as after |
 | an M code not listed | may move axes: positions are unknown after it |
 | tool change | moves axes: positions are unknown after it |
+| canned cycles | R, Z, P, Q stay until the cycle mode ends; K0 stores them without drilling |
+| G73, G83 between pecks | parameters 5114 and 5115: must be given |
+| G76, G87, G88 | depend on parameters or on the operator: refused |
 """
 
 from __future__ import annotations
@@ -25,7 +28,32 @@ from typing import ClassVar
 import gcxform as gx
 from gcxform import vocabulary as v
 
+BOTTOM, _, CLEARANCE, RETRACT = v.Level
+
 CYCLES = ("G73", "G74", "G76", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89")
+SHIFTS = "the direction in which its tool is shifted is a parameter of the machine"
+CYCLE_RULE = v.CycleRule(
+    steps={
+        73: v.DRILL,
+        74: (*v.tap(v.REVERSE, v.FORWARD, CLEARANCE), v.rapid(RETRACT)),
+        81: v.DRILL,
+        82: v.DRILL_DWELL,
+        83: v.DRILL,
+        84: (*v.tap(v.FORWARD, v.REVERSE, CLEARANCE), v.rapid(RETRACT)),
+        85: (v.feed(BOTTOM), v.feed(CLEARANCE), v.rapid(RETRACT)),
+        86: v.BORE_STOP,
+        89: (v.feed(BOTTOM, v.DWELL), v.feed(CLEARANCE), v.rapid(RETRACT)),
+    },
+    pecks={73: "break", 83: "clear"},
+    needs={73: "Q", 82: "P", 83: "Q", 89: "P"},
+    takes={int(code[1:]): "PQK" for code in CYCLES},
+    spindle={86: (1, -1)},
+    open_words={74: "Q", 84: "Q"},
+    refused={76: SHIFTS, 87: SHIFTS, 88: "the operator takes the tool out of the hole by hand"},
+    keeps_words=True,
+    stores=True,
+    repeats="K",
+)
 
 
 class Fanuc(gx.Dialect):
@@ -111,3 +139,4 @@ class Fanuc(gx.Dialect):
     lower_case = False
     dwell: ClassVar[Mapping[str, float]] = {"X": 1.0, "U": 1.0, "P": 0.001}
     arc_rule = gx.ArcRule(absolute=0.01)
+    cycle_rule = CYCLE_RULE

@@ -10,6 +10,8 @@
 | start and end radius | refused beyond 0.5 mm, or beyond 0.005 mm and 0.1 % |
 | `%`, O numbers | refused |
 | after M2, M30 | modes are G1 G17 G90 G94 G54 and execution goes on |
+| G93 on an arc | its source takes F as mm/min there: refused where feeds are converted |
+| another feed mode | the feed is not known until it is programmed |
 | block | at most 79 characters after comments and blanks |
 """
 
@@ -64,10 +66,12 @@ class Grbl(gx.Dialect):
         "feed-mode": "G94",
         "frame": "G54",
     }
+    largest_number = 10_000_000
     line_length = 79
     length_without_blanks = True
     comments = "(;"
     has_percent = False
     has_program_number = False
     words = "FIJKLNPRST"
+    inverse_time_arcs = False
     arc_rule = gx.ArcRule(absolute=0.005, relative=0.001, largest=0.5)

@@ -86,7 +86,7 @@ class Arcs(gx.Pass):
         for column in (path.plane, path.feed, path.feed_mode, path.frame):
             follows[1:] &= column[1:] == column[:-1]
         blocks, block = path.blocks, path.block
-        for mode in (blocks.inch, blocks.incremental, blocks.absolute_centre):
+        for mode in (blocks.inch, blocks.incremental, blocks.absolute_centre, blocks.feed_mode):
             follows[1:] &= mode[block[1:]] == mode[block[:-1]]
         follows[[e.row for e in path.events if e.row < len(path)]] = False
         return follows
@@ -102,8 +102,7 @@ def _plain_lines(path: gx.Toolpath) -> Flags:
         may &= (start[:, k] == end[:, k]) | (np.isnan(start[:, k]) & np.isnan(end[:, k]))
     turned = [frame.matrix is not None or frame.polar for frame in path.frames]
     may &= ~np.array(turned, np.bool_)[path.frame]
-    if path.blocks.apart is not None:
-        may &= ~path.blocks.apart[path.block]
+    may &= ~path.blocks.apart[path.block]
     return np.asarray(may)
 
 
@@ -136,5 +135,5 @@ def _joined(
     events = tuple(
         gx.Event(int(np.searchsorted(kept, e.row)), e.what, e.values, e.line) for e in path.events
     )
-    new = path.replace(kind=kind, end=end, centre=centre, sweep=sweep, events=events)
+    new = path.replace(kind=kind, end=end, centre=centre, sweep=sweep, events=events, joined=True)
     return new.take(kept), follows[kept]
