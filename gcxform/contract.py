@@ -45,6 +45,9 @@ class Pass:
     requires: ClassVar[frozenset[Fact]] = frozenset()
     ensures: ClassVar[frozenset[Fact]] = frozenset()
     clears: ClassVar[frozenset[Fact]] = frozenset()
+    joins: ClassVar[bool] = False
+    """Whether a row may come to stand for several that follow one another: it is the first one's
+    line that it keeps. Where a window ends decides then what can be joined."""
     folds: ClassVar[bool] = False
     """Whether the codes that shift coordinates are folded into the words of moves."""
 

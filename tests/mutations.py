@@ -34,6 +34,7 @@ FOUND = "tests/properties/test_found.py"
 CORPUS = "tests/test_corpus.py::test_case"
 KIT = "tests/test_kit.py::test_registered_passes"
 LAWS = "tests/properties/test_laws.py"
+ARCS = "tests/test_arcs.py"
 CYCLES = "tests/test_cycles.py"
 LIMITS = "gcxform/modal/limits.py"
 FACTS = "tests/test_dialect_facts.py::test_our_facts"
@@ -412,6 +413,133 @@ MUTATIONS = (
         "del held",
         VERIFY,
     ),
+    # arcs for lines
+    Mutation(
+        "arcs: the sense is swapped",
+        f"{PASSES}/fit.py",
+        "np.where(self._sum(y) < 0, 1.0, -1.0)",
+        "np.where(self._sum(y) < 0, -1.0, 1.0)",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: the sagitta of the lines is not looked at",
+        f"{PASSES}/fit.py",
+        "flat = np.maximum(np.abs(size - inside), sagitta)",
+        "flat = np.abs(size - inside)",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: corners are not looked at",
+        f"{PASSES}/fit.py",
+        "flat = np.maximum(np.abs(size - inside), sagitta)",
+        "flat = sagitta",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: lines may go back",
+        f"{PASSES}/fit.py",
+        "good = (angle > 0) & (angle <= WIDEST) & self._points_along(x, y, size, wx, wy, length)",
+        "good = angle <= WIDEST",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: a break between lines is explained away",
+        f"{PASSES}/fit.py",
+        "(angle <= WIDEST) & self._points_along(x, y, size, wx, wy, length)",
+        "(angle <= WIDEST)",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: the axis of a helix is not looked at",
+        f"{PASSES}/fit.py",
+        "axial = self._off_axis(turned / sweep[self.run])",
+        "axial = np.zeros(len(turned))",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: what happens between lines is ignored",
+        f"{PASSES}/arcs.py",
+        "follows[[e.row for e in path.events if e.row < len(path)]] = False",
+        "pass",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: another feed is ignored",
+        f"{PASSES}/arcs.py",
+        "(path.plane, path.feed, path.feed_mode, path.frame)",
+        "(path.plane, path.feed_mode, path.frame)",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: they end inside blocks",
+        f"{PASSES}/reach.py",
+        "return np.where(self._own(first, stop), stop, self.before[stop])",
+        "return stop",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: a way straight ahead is an arc",
+        f"{PASSES}/fit.py",
+        "curved = near & (rises > self.limits.tolerance + self.limits.step)",
+        "curved = near.copy()",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: the motion code of a block that is gone counts",
+        "gcxform/emit/pieces.py",
+        "self.leads & ~self.silent & (self.role != Role.GONE)",
+        "self.leads & ~self.silent",
+        ARCS,
+    ),
+    Mutation(
+        "runs: events may stand inside",
+        "gcxform/verify.py",
+        "through = int(self.through[written_row])",
+        "through = int(self.written_owner[written_row])",
+        ARCS,
+    ),
+    Mutation(
+        "runs: another feed is ignored",
+        "gcxform/toolpath/runs.py",
+        "return np.asarray(same & (np.abs(path.feed - path.feed[base]) <= SAME_FEED * path.feed))",
+        "return np.asarray(same)",
+        ARCS,
+    ),
+    Mutation(
+        "runs: another work offset is ignored",
+        "gcxform/toolpath/runs.py",
+        "same = free & free[base] & (path.frame == path.frame[base])",
+        "same = free & free[base]",
+        ARCS,
+    ),
+    Mutation(
+        "runs: rapids are joined",
+        "gcxform/toolpath/runs.py",
+        "free = (path.kind != Kind.RAPID) & (path.form",
+        "free = (path.kind >= Kind.RAPID) & (path.form",
+        ARCS,
+    ),
+    Mutation(
+        "runs: what lies behind a row that is not alike is joined",
+        "gcxform/toolpath/runs.py",
+        "covered = alike & (stop < base)",
+        "covered = alike",
+        ARCS,
+    ),
+    Mutation(
+        "runs: arcs are compared at their ends alone",
+        "gcxform/toolpath/beside.py",
+        "bound[pieces] = np.maximum(bound[pieces], off)",
+        "pass",
+        ARCS,
+    ),
+    Mutation(
+        "runs: lines are not compared at their ends",
+        "gcxform/toolpath/beside.py",
+        "bound = np.maximum(_apart(one.start, other.start), _apart(one.end, other.end))",
+        "bound = np.zeros(len(one.row))",
+        ARCS,
+    ),
     # what a control refuses
     Mutation(
         "limits: a line may be one character longer",
@@ -456,9 +584,11 @@ MUTATIONS = (
     _verifier("events are ignored", "self._events(read.path.events, back.path.events, trace)", ""),
     _verifier("missing events are ignored", "if len(old) != len(new):"),
     _verifier(
-        "the place of events is ignored", "or not trace.stands_before(after.row, before.row)", ""
+        "the place of events is ignored",
+        "or not trace.stands_before(after.row, before.row, self.budget)",
+        "",
     ),
-    _verifier("missing moves are ignored", "self._missing(trace)\n        if not", "if not"),
+    _verifier("missing moves are ignored", "self._missing(trace, runs)\n        if not", "if not"),
     _verifier("moves of nobody are ignored", "if len(trace.owner) and int(trace.owner.min()) < 0:"),
     _verifier("nothing is undone", "path = step.undo(path, self.context)", "pass"),
     Mutation(

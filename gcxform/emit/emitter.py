@@ -35,6 +35,7 @@ from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
+from gcxform.syntax.tree import Comment
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 Floats = NDArray[np.float64]
@@ -104,7 +105,7 @@ class _Job:
     def run(self) -> Emitted:
         copied = self.copying.lines
         self._arcs()
-        empty = self._without_words() | self._foreign()
+        empty = self._without_words() | self._foreign() | self._gone()
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
         renderer = Renderer(self.task)
         self._render(chosen, renderer)
@@ -120,6 +121,15 @@ class _Job:
         still: Flags = ~self.positions.write.any(axis=1) & (self.kind < Kind.ARC_CW)
         inner: Flags = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row
         return np.asarray(inner & self.pieces.of_rows(still, False))
+
+    def _gone(self) -> Flags:
+        """Return the pieces of lines of whose move and text nothing is left: no comment either."""
+        gone: Flags = self.pieces.role == Role.GONE
+        if not gone.any():
+            return gone
+        items = [shape.block.items for shape in self.task.table.shapes.shapes]
+        silent = np.array([not any(isinstance(i, Comment) for i in some) for some in items])
+        return np.asarray(gone & silent[self.task.shape][self.pieces.line])
 
     def _foreign(self) -> Flags:
         """Return the pieces of lines of which nothing is left to write in the target dialect."""
@@ -245,7 +255,7 @@ class _Job:
         inch = self.path.blocks.inch[pieces.line]
         way = self.task.shape[pieces.line].astype(np.int64)
         parts = [
-            (pieces.role, 7),
+            (pieces.role, len(Role)),
             (pieces.event + 1, len(pieces.events) + 1),
             (pieces.expanded_line[pieces.line], 2),
             (pieces.motion + 1, 128),

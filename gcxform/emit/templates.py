@@ -138,6 +138,8 @@ class TemplateWriter:
         self.axes_written = self.as_it_stands
         self.centre_written = not key.arc
         self.stated: set[str] = set()
+        if key.role is Role.GONE:
+            return self._comments()
         at = slot = 0
         whole = key.role not in (Role.MIDDLE, Role.LAST)
         self._repairs_wait = True
@@ -151,6 +153,18 @@ class TemplateWriter:
         self._rest()
         if whole and at < len(self.text):
             self.fields.append(Literal(self.text[at:].encode("latin-1")))
+        return tuple(self.fields)
+
+    def _comments(self) -> tuple[Field, ...]:
+        """Write the sequence number and the comments of a block whose move another makes."""
+        slot = 0
+        for item in self.shape.block.items:
+            if isinstance(item, Comment):
+                self._literal(self.gap if self.fields else b"", self._comment(item))
+            elif isinstance(item, Word) and item.address not in CODES:
+                if item.address == "N":
+                    self._copy(item, b"", slot)
+                slot += isinstance(item.value, Number)
         return tuple(self.fields)
 
     def _rest(self) -> None:
@@ -418,6 +432,8 @@ class TemplateWriter:
             self._literal(self._gap(b""), f"{self.target.turns_address}{self.key.turns + 1}")
 
     def _feed(self, word: Word, lead: bytes, slot: int) -> None:
+        if self.axes_written and not set("IJKR") & set(self.meaning.slots):
+            self._centre(b"")
         if self.key.feed is Feed.KEEP:
             self._copy(word, self._gap(lead) if self.fields else lead, slot)
         elif self.key.feed is Feed.WRITE:

@@ -112,6 +112,7 @@ class Meaning:
     runs_macro: bool = False
     assignments: list[Statement] = field(default_factory=list)
     expressions: list[tuple[int, Word]] = field(default_factory=list)
+    marked: bool = False
     events: list[EventShape] = field(default_factory=list)
     acts: list[Act] = field(default_factory=list)
     drill_words: str = ""
@@ -158,6 +159,7 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
             yield from _statement(item, shape, dialect)
             meaning.assignments.append(item)
         elif isinstance(item, Mark):
+            meaning.marked = True
             meaning.deleted |= item.kind == "block_delete"
             meaning.percent |= item.kind == "percent"
         elif isinstance(item, Comment):

@@ -184,6 +184,7 @@ class Moves:
                 self.modes.absolute_centre,
                 self.modes.feed_mode,
                 self.lines.flag("ends") | self.lines.flag("loses_position"),
+                self.lines.flag("marked"),
             ),
             events_of(self.lines, line, self.drilling.events),
             first=self.state.frames.first,

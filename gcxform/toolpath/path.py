@@ -85,6 +85,7 @@ class Blocks:
     feed_mode       `FeedMode` in which the block is read
     leaves          whether after the block something else than this program may run: it ends, or
                     calls what may move axes
+    apart           whether the block has a slash or a name and is joined with no other
     """
 
     first: int
@@ -93,9 +94,10 @@ class Blocks:
     absolute_centre: Flags
     feed_mode: Small
     leaves: Flags
+    apart: Flags
 
 
-BLOCK_MODES = ("inch", "incremental", "absolute_centre", "feed_mode", "leaves")
+BLOCK_MODES = ("inch", "incremental", "absolute_centre", "feed_mode", "leaves", "apart")
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,6 +160,7 @@ class Toolpath:
     slack           mm; how far a row may be from the curve it stands for
     first           the work offset from whose zero positions count
     folded          whether frames are folded into the words: codes that set them are not written
+    joined          whether rows may stand for several: blocks left without one are not written
     after_rapid     whether the move before the first row was a rapid
     refit_centres   whether centres may be moved so that both ends are on the circle as formatted
     """
@@ -184,6 +187,7 @@ class Toolpath:
     slack: float = 0.0
     first: str = "G54"
     folded: bool = False
+    joined: bool = False
     after_rapid: bool = False
     refit_centres: bool = True
 

@@ -20,6 +20,7 @@ def gcxform_dialects() -> list[type[gx.Dialect]]:
 def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
     """Return the passes on toolpaths, then those on text."""
     from gcxform_plugins.passes.absolute import Absolute
+    from gcxform_plugins.passes.arcs import Arcs
     from gcxform_plugins.passes.cycles import ExpandCycles
     from gcxform_plugins.passes.feed import FeedPass
     from gcxform_plugins.passes.metric import Metric
@@ -39,6 +40,7 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
         PlanePass,
         Segment,
         Volumetric,
+        Arcs,
         Renumber,
         Strip,
     ]
