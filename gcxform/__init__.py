@@ -73,6 +73,7 @@ if TYPE_CHECKING:
     from gcxform.toolpath.facts import WORKPIECE_FRAME as WORKPIECE_FRAME
     from gcxform.toolpath.facts import XY_ARCS as XY_ARCS
     from gcxform.toolpath.facts import Fact as Fact
+    from gcxform.toolpath.facts import inseparable_cycles as inseparable_cycles
     from gcxform.toolpath.frames import Frame as Frame
     from gcxform.toolpath.path import OWN_DISTANCES as OWN_DISTANCES
     from gcxform.toolpath.path import Event as Event
@@ -104,7 +105,8 @@ _HOMES = {
     "toolpath.crossings": "line_crossings",
     "toolpath.deviation": "deviation",
     "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NO_CYCLES NOMINAL "
-    "WORKPIECE_FRAME XY_ARCS Fact",
+    "WORKPIECE_FRAME XY_ARCS Fact "
+    "inseparable_cycles",
     "toolpath.frames": "Frame",
     "toolpath.path": "Event FeedMode Form Kind OWN_DISTANCES Plane Toolpath column_major",
 }

@@ -120,6 +120,7 @@ class _Job:
         """Return the inner pieces of split blocks that would have no word: nothing moves."""
         still: Flags = ~self.positions.write.any(axis=1) & (self.kind < Kind.ARC_CW)
         inner: Flags = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row
+        inner &= ~self.pieces.expanded_line[self.pieces.line] | (self.pieces.motion < 0)
         return np.asarray(inner & self.pieces.of_rows(still, False))
 
     def _gone(self) -> Flags:
@@ -348,6 +349,7 @@ class _Job:
             present = self.positions.write[rows, column]
             if present.any():
                 whole = self.positions.words_of(column, rows)
+                self._check_known(np.isnan(whole) & present, rows, field.address)
                 decimals = manner.decimals_of(field.address, inch)
                 renderer.number(field.gap, field.address, whole, decimals, present)
         elif isinstance(field, Centre):
@@ -375,6 +377,13 @@ class _Job:
             message = f"{field.address} is computed, and has more decimals than can be written"
             raise InputError.one("GX501", message, where)
         renderer.number(b"", field.address, whole, decimals, np.ones(len(lines), np.bool_), False)
+
+    def _check_known(self, unknown: Flags, rows: Ints, axis: str) -> None:
+        """Refuse distances from a place that is not known."""
+        if unknown.any():
+            message = f"{axis} would be a distance from a place that is not known here"
+            hint = 'put the pass "absolute" before'
+            self._refuse(rows[unknown], "GX506", message, hint)
 
     # --- after ---
 
