@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from gcxform.machine.errors import compensate as compensate
     from gcxform.machine.formats import ErrorFormat as ErrorFormat
     from gcxform.modal.codes import Code as Code
+    from gcxform.modal.codes import CutterComp as CutterComp
     from gcxform.modal.codes import MCode as MCode
     from gcxform.modal.tables import frame_name as frame_name
     from gcxform.options import Angle as Angle
@@ -85,7 +86,7 @@ _HOMES = {
     "hookspecs": "hookimpl",
     "machine.errors": "AxisFunction AxisFunctions ErrorModel Outside check_contraction compensate",
     "machine.formats": "ErrorFormat",
-    "modal.codes": "Code MCode",
+    "modal.codes": "Code CutterComp MCode",
     "modal.tables": "frame_name",
     "options": "Angle Length ModelFile Option Vector",
     "pipeline": "Pipeline Result",

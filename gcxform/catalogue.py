@@ -104,6 +104,13 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "does: renumbering a program whose jumps name block numbers, for instance. Leave the "
         "pass out for such programs.",
     ),
+    "GX230": (
+        "Cutter compensation that the control refuses",
+        "G41, G42 or G40 stands where the control stops with an alarm, or a code stands between "
+        "them that it does not take there: another plane, work offset or tool, for instance; or "
+        "D says nothing. Cancel compensation with G40 before such blocks, and begin and end it "
+        "with a straight move.",
+    ),
     # --- 3xx: geometry ---
     "GX301": (
         "The end of an arc is off its circle",

@@ -17,7 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from gcxform.modal.codes import ISO, ISO_M, Code, MCode
+from gcxform.modal.codes import ISO, ISO_M, Code, CutterComp, MCode
 from gcxform.syntax.grammar import Grammar, load
 
 INCH = 25.4  # mm, exact by definition
@@ -72,10 +72,13 @@ class Dialect:
         "feed-mode": "G94",
         "units": "G21",
         "frame": "G54",
+        "cutter-comp": "G40",
     }
     """The modal state a program is taken to start in; the certificate says what was taken."""
     last_code_wins: ClassVar[bool] = False
     """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
+    cutter_comp: ClassVar[CutterComp] = CutterComp()
+    """How G41 and G42 are read, where the dialect has them."""
     point_required: ClassVar[bool] = False
     """A distance without a point counts in increments of the control, which must be configured."""
     circle_needs_axis_word: ClassVar[bool] = False

@@ -62,10 +62,17 @@ class Pipeline:
     decimals: Mapping[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self._take_tools()
         check_chain(self.path_passes)
         for step in self.path_passes:
             step.begin(self.context)
         self._check_budget()
+
+    def _take_tools(self) -> None:
+        """Let the reader know the tools of the machine: cutter compensation names them."""
+        if self.machine is not None and not self.reading.tools:
+            tools = {number: tool.radius for number, tool in self.machine.tools.items()}
+            object.__setattr__(self, "reading", replace(self.reading, tools=tools))
 
     # --- ways to build one ---
 

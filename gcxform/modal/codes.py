@@ -42,6 +42,27 @@ class MCode:
     takes: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class CutterComp:
+    """How a control reads cutter compensation.
+
+    stored     D is the number of a stored offset that stays in force; otherwise it belongs to its
+               block, and without it G41 takes the tool in the spindle
+    planes     in which it may be on
+    changes    whether a side may be programmed while compensation is on
+    arc_entry  whether the move that begins it may be an arc
+    before     modal groups of codes that are refused while it is on before their block
+    after      those that are refused while it is on after the codes of their block
+    """
+
+    stored: bool = False
+    planes: frozenset[str] = frozenset({"XY", "ZX", "YZ"})
+    changes: bool = True
+    arc_entry: bool = False
+    before: frozenset[str] = frozenset()
+    after: frozenset[str] = frozenset()
+
+
 def inert(group: str, takes: str = "") -> Code:
     """Return a code that changes no position."""
     return Code(group, Effect.INERT, takes)
@@ -59,7 +80,7 @@ ISO: Mapping[str, Code] = {
     **{code: Code("distance") for code in ("G90", "G91")},
     **{code: Code("feed-mode") for code in ("G93", "G94")},
     **{code: Code("units") for code in ("G20", "G21")},
-    "G40": inert("cutter-comp"),
+    "G40": Code("cutter-comp"),
     "G49": inert("tool-length"),
     **{code: Code("frame") for code in ("G54", "G55", "G56", "G57", "G58", "G59")},
     "G80": Code("motion"),

@@ -190,6 +190,7 @@ class Lines:
             groups["feed-mode"],
             inch,
             groups["frame"],
+            groups["cutter-comp"],
             feed,
             feed_unit,
         )

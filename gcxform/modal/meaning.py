@@ -55,6 +55,8 @@ class Meaning:
     ends: bool = False
     loses_position: bool = False
     percent: bool = False
+    changes_tool: bool = False
+    bars_comp: tuple[str, str] = ("", "")
     events: list[EventShape] = field(default_factory=list)
     refusal: Refusal | None = None
 
@@ -78,6 +80,7 @@ def _read(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Re
     yield from _m_codes(shape, dialect, meaning)
     yield from _number_first(shape, dialect)
     yield from _words(shape, dialect, meaning)
+    meaning.bars_comp = _bars_comp(shape, dialect, meaning)
     meaning.events.sort(key=lambda event: (event.after, event.order))
 
 
@@ -203,8 +206,22 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
             yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.barrier}")
         meaning.ends |= code.ends
         meaning.loses_position |= code.loses_position
+        meaning.changes_tool |= code.group == "tool"
         order = {"tool": 30, "spindle": 40, "coolant": 41, "override": 42}.get(code.group, 43)
         meaning.events.append(EventShape(order, name, _take(code, dialect, meaning), code.after))
+
+
+def _bars_comp(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> tuple[str, str]:
+    """Return a code that is refused while compensation is on before the block, and after it."""
+    sorted_codes = [(name, group) for group, name in meaning.groups.items()]
+    for word in shape.block.words:
+        if word.address == "M" and isinstance(word.value, Number):
+            code = dialect.m_codes.get(int(word.value.value), dialect.unknown_m)
+            sorted_codes += [(_code_of(word), code.group)] if code else []
+    rule = dialect.cutter_comp
+    before = [name for name, group in sorted_codes if group in rule.before]
+    after = [name for name, group in sorted_codes if group in rule.after and name != "G4"]
+    return "".join(before[:1]), "".join(after[:1])
 
 
 def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
@@ -216,20 +233,28 @@ def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
             yield Refusal("GX203", item.start, item.end - item.start, message)
 
 
+def _offset_word(dialect: type[Dialect], meaning: Meaning) -> set[str]:
+    """Return D if it belongs to cutter compensation; where it stays in force it is an event."""
+    code = meaning.groups.get("cutter-comp", "G40")
+    if dialect.cutter_comp.stored and "D" in meaning.slots and code == "G40":
+        meaning.events.append(EventShape(45, "D", (("D", meaning.slots["D"]),)))
+    takes = dialect.codes[code].takes if code in dialect.codes else ""
+    return set("D") if dialect.cutter_comp.stored or "D" in takes else set()
+
+
 def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
     """Give the remaining words to motion, feed, spindle and tool; what is left over is refused."""
     slots = meaning.slots
     for address, order in (("S", 10), ("T", 20)):
         if address in slots:
-            event = EventShape(order, address, ((address, slots.pop(address)),))
+            event = EventShape(order, address, ((address, slots[address]),))
             meaning.events.append(event)
     meaning.axes = "".join(a for a in dialect.axes if a in slots)
     meaning.centres = "".join(a for a in CENTRE if a in slots)
     if meaning.dwell and meaning.axes and set(dialect.dwell) & set(dialect.axes):
         yield Refusal("GX203", 0, len(shape.block.text), "a dwell and axis words in one block")
-    motion = set(meaning.axes) | set(meaning.centres) | {"F", "N", "R", dialect.turns_address}
-    if "D" in slots and "D" in dialect.words and dialect.last_code_wins:
-        meaning.events.append(EventShape(45, "D", (("D", slots.pop("D")),)))
+    motion = set(meaning.axes) | set(meaning.centres) | set("FNRST") | {dialect.turns_address}
+    motion |= _offset_word(dialect, meaning)
     for word in shape.block.words:
         address = word.address
         known = address in dialect.axes or address in dialect.words or address in CODES

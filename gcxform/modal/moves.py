@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, LINEAR
 from gcxform.modal.arcs import ArcWords, resolve_arcs
+from gcxform.modal.cutter import compensation, refuse_ends
 from gcxform.modal.events import events_of
 from gcxform.modal.findings import Findings
 from gcxform.modal.lines import LENGTHS, Lines, fill
@@ -33,6 +36,7 @@ class Moves:
         self.state = lines.state
         self.findings = lines.findings
         self.entry = lines.state.position.copy()
+        self.side, self.radius = compensation(lines, modes)
 
     def path(self) -> Toolpath:
         """Return the moves as a toolpath."""
@@ -155,8 +159,8 @@ class Moves:
             rows + self.lines.window.first_line,
             constant(0, count, np.int64),
             constant(Form.PLAIN, count, np.int8),
-            constant(0, count, np.int8),
-            constant(np.nan, count),
+            _at(self.side, rows),
+            _at(self.radius, rows),
             self._lost_before(rows),
             self.entry,
             Blocks(
@@ -168,6 +172,7 @@ class Moves:
             events_of(self.lines, rows),
         )
         path = self._with_history(path)
+        refuse_ends(self.lines, path.side, path.kind, rows)
         if not path.has_arcs:
             return path
         arcs = np.flatnonzero(path.is_arc)
@@ -225,6 +230,13 @@ def turns_only(axes: str, entry: Floats, ends: Floats) -> Flags:
     start = np.vstack([entry, ends[:-1]])
     still = (np.abs(start - ends) < SAME_PLACE) | (np.isnan(start) & np.isnan(ends))
     return np.asarray(still[:, linear].all(axis=1) & ~still[:, rotary].all(axis=1))
+
+
+def _at(column: NDArray[Any], rows: Ints) -> NDArray[Any]:
+    """Return a column of the lines at rows; one that holds one value keeps taking no memory."""
+    if column.strides != (0,) or not len(column):
+        return column[rows]
+    return np.broadcast_to(column[0], (len(rows),))
 
 
 def _with_increments(value: Floats, placed: Flags, incremental: Flags, before: float) -> Floats:

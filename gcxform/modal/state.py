@@ -23,6 +23,7 @@ class Reading:
     feed          feed in effect before the first F word, in the program's unit
     block_delete  "execute", "skip", or "" to refuse blocks with a slash that do anything
     units         "mm" or "in" until the program says G20 or G21; "" for the dialect's default
+    tools         radius of tools by their number, mm: what G41 and G42 leave to a table
     """
 
     start: Mapping[str, float] = field(default_factory=dict)
@@ -30,11 +31,16 @@ class Reading:
     feed: float | None = None
     block_delete: str = ""
     units: str = ""
+    tools: Mapping[int, float] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
 class State:
-    """What one window hands to the next."""
+    """What one window hands to the next.
+
+    side, radius  cutter compensation in force; `at_side`: that of the last move
+    selected      the T word; `tool`: the tool in the spindle; `stored`: the D word; nan: not known
+    """
 
     groups: dict[str, int]
     position: Floats
@@ -45,6 +51,12 @@ class State:
     percents: int = 0
     first_frame: int = -1
     rapid: bool = False
+    side: int = 0
+    radius: float = np.nan
+    selected: float = np.nan
+    tool: float = np.nan
+    stored: float = np.nan
+    at_side: int = 0
     stated: set[str] = field(default_factory=set)
 
 
@@ -62,5 +74,6 @@ class Modes:
     feed_mode: Small
     inch: Flags
     frame: Small
+    comp: Small
     feed: Floats
     feed_unit: Floats

@@ -9,7 +9,16 @@ from gcxform.dialect import Dialect
 from gcxform.modal.meaning import Meaning, meaning_of
 from gcxform.syntax.shapes import ShapeTable
 
-GROUPS = ("motion", "plane", "distance", "arc-distance", "feed-mode", "units", "frame")
+GROUPS = (
+    "motion",
+    "plane",
+    "distance",
+    "arc-distance",
+    "feed-mode",
+    "units",
+    "frame",
+    "cutter-comp",
+)
 NUMBER = {
     **{f"G{n}": n for n in (0, 1, 2, 3, 80)},
     **{f"G{17 + n}": n for n in range(3)},
@@ -22,6 +31,11 @@ NUMBER = {
     "G20": 1,
     **{f"G{54 + n}": n for n in range(6)},
     **{f"G59.{n}": 5 + n for n in (1, 2, 3)},
+    "G40": 0,
+    "G41": 1,
+    "G42": 2,
+    "G41.1": 3,
+    "G42.1": 4,
 }
 """The number that stands for a code within its group."""
 
@@ -40,6 +54,9 @@ FLAGS = (
     "loses_position",
     "has_events",
     "percent",
+    "changes_tool",
+    "bars_comp_before",
+    "bars_comp_after",
 )
 
 
@@ -86,6 +103,9 @@ class MeaningTable:
             meaning.loses_position,
             bool(meaning.events),
             meaning.percent,
+            meaning.changes_tool,
+            bool(meaning.bars_comp[0]),
+            bool(meaning.bars_comp[1]),
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -14,6 +14,8 @@
 | M0 M1 M2 M30 M98 M99 | act after the motion of their block |
 | M5, M9 with a motion | the machine's PLC decides, commonly after it: taken as after |
 | an M code not listed | may move axes: positions are unknown after it |
+| G41, G42 | D stays in force; its radius is the machine file's, D0 is none |
+| G41, G42, G40 with an arc | refused: alarm 34 |
 | tool change | moves axes: positions are unknown after it |
 """
 
@@ -61,7 +63,7 @@ class Fanuc(gx.Dialect):
             for code in ("G27", "G28", "G29", "G30", "G53", "G60")
         },
         **{code: v.barrier("frame", v.SHIFT, "P") for code in ("G54.1", "G54.2", "G54.4")},
-        **{code: v.barrier("cutter-comp", v.COMP, "DHIJK") for code in ("G41", "G42")},
+        **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
         **{
             code: v.barrier("tool-length", v.LENGTH, "HIJK")
             for code in ("G43", "G44", "G43.1", "G43.4", "G43.5")
@@ -98,6 +100,7 @@ class Fanuc(gx.Dialect):
     }
     unknown_m = gx.MCode("user", loses_position=True)
     last_code_wins = True
+    cutter_comp = gx.CutterComp(stored=True)
     point_required = True
     change_clears_feed = True
     lower_case = False

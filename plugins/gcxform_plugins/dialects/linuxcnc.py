@@ -13,6 +13,10 @@
 | CR without LF | is a blank |
 | M5, M9 | act before the motion of their block |
 | after M2, M30 | nothing is executed |
+| G41 D, G42 D | tool D of the table, or the tool in the spindle; the table is the machine file's |
+| G41.1 D, G42.1 D | the diameter itself; a negative one swaps the side |
+| G41, G42 | refused when on already, and in YZ; on, many codes are refused |
+| G40 | the next move is no arc |
 | tool change | the axes stay, as far as the interpreter knows |
 """
 
@@ -51,8 +55,7 @@ class LinuxCNC(gx.Dialect):
         **{
             code: v.barrier("non-modal", v.HOME) for code in ("G28", "G28.1", "G30", "G30.1", "G53")
         },
-        **{code: v.barrier("cutter-comp", v.COMP, "DL") for code in ("G41", "G42")},
-        **{code: v.barrier("cutter-comp", v.COMP, "DL") for code in ("G41.1", "G42.1")},
+        **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42", "G41.1", "G42.1")},
         **{code: v.barrier("tool-length", v.LENGTH, "H") for code in ("G43", "G43.2")},
         "G43.1": v.barrier("tool-length", v.LENGTH),
         **{code: v.barrier("motion", v.CYCLE, "EHIJKLPQR") for code in CYCLES},
@@ -87,6 +90,13 @@ class LinuxCNC(gx.Dialect):
         99: gx.MCode("stop", barrier=v.CALL),
         **{code: gx.MCode("user", takes="PQ") for code in range(100, 200)},
     }
+    cutter_comp = gx.CutterComp(
+        planes=frozenset({"XY", "ZX"}),
+        changes=False,
+        arc_entry=True,
+        before=frozenset({"tool", "override", "output"}),
+        after=frozenset({"non-modal", "tool-length", "frame", "path", "retract"}),
+    )
     feed_mode_clears_feed = True
     feed_before_units = True
     lone_cr_is_blank = True
