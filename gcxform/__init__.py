@@ -66,6 +66,7 @@ if TYPE_CHECKING:
     from gcxform.toolpath.facts import KNOWN_POSITIONS as KNOWN_POSITIONS
     from gcxform.toolpath.facts import LINEAR_ONLY as LINEAR_ONLY
     from gcxform.toolpath.facts import METRIC as METRIC
+    from gcxform.toolpath.facts import NO_CUTTER_COMP as NO_CUTTER_COMP
     from gcxform.toolpath.facts import NOMINAL as NOMINAL
     from gcxform.toolpath.facts import XY_ARCS as XY_ARCS
     from gcxform.toolpath.facts import Fact as Fact
@@ -96,8 +97,8 @@ _HOMES = {
     "swept_anew",
     "toolpath.crossings": "line_crossings",
     "toolpath.deviation": "deviation",
-    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NOMINAL XY_ARCS "
-    "Fact",
+    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC "
+    "NO_CUTTER_COMP NOMINAL XY_ARCS Fact",
     "toolpath.path": "Event FeedMode Form Kind Plane Toolpath column_major",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}

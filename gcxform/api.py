@@ -94,7 +94,7 @@ def joined(parts: Sequence[Toolpath]) -> Toolpath:
     )
     names = ("inch", "incremental", "absolute_centre")
     flags = [np.concatenate([getattr(p.blocks, name) for p in parts]) for name in names]
-    blocks = Blocks(parts[0].blocks.first, *flags)
+    blocks = Blocks(parts[0].blocks.first, flags[0], flags[1], flags[2])
     return parts[0].replace(**columns, events=events, blocks=blocks)
 
 

@@ -78,8 +78,13 @@ class Verifier:
         """What the path may deviate (mm): more once a block in inches has been written."""
         return self.budgets[self.inch]
 
-    def check(self, read: Interpreted, window: Window, text: bytes, source: Ints) -> None:
-        """Check the text written for a window; `source` is the input line of each output line.
+    def check(
+        self, read: Interpreted, window: Window, text: bytes, source: Ints, nth: Ints
+    ) -> None:
+        """Check the text written for a window.
+
+        `source` is the input line of each output line, `nth` which of the moves of that line it is
+        a part of.
 
         Raises VerificationError.
         """
@@ -93,7 +98,7 @@ class Verifier:
         self.inch |= bool(path.blocks.inch[path.block].any())
         for step in reversed(self.passes):
             path = step.undo(path, self.context)
-        trace = _Trace(read.path, window, back.path, path, source, first)
+        trace = _Trace(read.path, window, back.path, path, source, nth, first)
         self._count(read, window, trace)
         self._compare(trace)
         self._events(read.path.events, back.path.events, trace)
@@ -127,6 +132,7 @@ class Verifier:
         if not off.angle[turned] <= self.angle_budget:
             self._fail(f"a rotary axis is {off.angle[turned]:.5f} degrees off", trace, turned)
         self._kinds(trace)
+        self._sides(trace)
         self._feeds(trace)
 
     def _note_worst(self, distance: float, trace: _Trace, row: int) -> None:
@@ -168,6 +174,14 @@ class Verifier:
         wrong = rapid_before != (trace.after.kind == Kind.RAPID)
         if wrong.any():
             self._fail("a rapid became a feed move, or the reverse", trace, int(np.argmax(wrong)))
+
+    def _sides(self, trace: _Trace) -> None:
+        """Check that cutter compensation is on where it was, on the same side and as far."""
+        before, after, owner = trace.before, trace.after, trace.owner
+        radius, old = after.radius, before.radius[owner]
+        wrong = (after.side != before.side[owner]) | ~((radius == old) | np.isnan(radius + old))
+        if wrong.any():
+            self._fail("cutter compensation has changed", trace, int(np.argmax(wrong)))
 
     def _feeds(self, trace: _Trace) -> None:
         """Check that feeds are those of the source; in inverse time, the times must add up."""
@@ -238,15 +252,19 @@ class _Trace:
         written: Toolpath,
         after: Toolpath,
         source: Ints,
+        nth: Ints,
         first: int,
     ) -> None:
         self.before = before
         self.written = written
         self.after = after
         self.source = source
+        self.nth = nth
         self.first = first
+        line = before.source - window.first_line
+        self._rows_of_line = np.bincount(line, minlength=len(window))
         row_of_line = np.full(len(window), -1, np.int64)
-        row_of_line[before.source - window.first_line] = np.arange(len(before))
+        row_of_line[line[::-1]] = np.arange(len(before))[::-1]
         self._row_of_line = row_of_line
         self._window_first = window.first_line
         self.owner = self._owners(after)
@@ -254,7 +272,8 @@ class _Trace:
 
     def _owners(self, path: Toolpath) -> Ints:
         lines = self.source[path.source - self.first] - self._window_first
-        return np.asarray(self._row_of_line[lines])
+        nth = np.minimum(self.nth[path.source - self.first], self._rows_of_line[lines] - 1)
+        return np.asarray(self._row_of_line[lines] + np.maximum(nth, 0))
 
     def line_of(self, output_line: int) -> int:
         """Return the input line of an output line, both from 0."""

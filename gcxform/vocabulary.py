@@ -2,7 +2,6 @@
 
 from gcxform.modal.codes import (
     CALL,
-    COMP,
     CYCLE,
     HOME,
     ISO,
@@ -18,7 +17,6 @@ from gcxform.modal.codes import (
 
 __all__ = [
     "CALL",
-    "COMP",
     "CYCLE",
     "HOME",
     "ISO",

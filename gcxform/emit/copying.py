@@ -44,6 +44,8 @@ class Copying:
             may[pieces.line[pieces.repaired]] = False
             self.lines &= may
             self._rows(old_count, pieces, may)
+        if self.path.blocks.uncompensated:
+            self.lines &= ~self.task.table.flag("compensates", self.task.shape)
         self._skipped()
 
     def _skipped(self) -> None:

@@ -24,7 +24,13 @@ from gcxform.emit.numbers import MOST_DECIMALS, quantise
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, motion_kinds
 from gcxform.emit.render import Renderer, interleave
-from gcxform.emit.templates import CannotSayError, TemplateWriter, gaps_between, is_foreign
+from gcxform.emit.templates import (
+    CannotSayError,
+    TemplateWriter,
+    gaps_between,
+    is_foreign,
+    left_out,
+)
 from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.tables import NUMBER, MeaningTable
@@ -41,10 +47,14 @@ PEELED_AT_MOST = 16
 
 @dataclass(frozen=True, slots=True)
 class Emitted:
-    """Text of a window, and for each of its lines the line of the program it came from."""
+    """Text of a window, and for each of its lines the line of the program it came from.
+
+    `nth` (lines,): which of the moves of that line it is a part of.
+    """
 
     text: bytes
     source: Ints
+    nth: Ints
 
 
 class Emitter:
@@ -93,15 +103,20 @@ class _Job:
     def run(self) -> Emitted:
         copied = self.copying.lines
         self._arcs()
-        empty = self._without_words() | self._foreign()
+        empty = self._without_words() | self._foreign() | self._only_compensates()
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
         renderer = Renderer(self.task)
         self._render(chosen, renderer)
         text, lengths = renderer.text(len(chosen))
         self._check_lengths(text, lengths, chosen)
-        whole, source = interleave(self.task, copied, self.pieces.line[chosen], text, lengths)
+        whole, source, order = interleave(
+            self.task, copied, self.pieces.line[chosen], text, lengths
+        )
         self._carry()
-        return Emitted(whole, source + self.task.window.first_line)
+        nth = np.where(self.pieces.has_row, 0, 0)
+        nth[self.pieces.has_row] = self.path.nth
+        nth = np.append(np.zeros(len(source) - len(chosen), np.int64), nth[chosen])[order]
+        return Emitted(whole, source + self.task.window.first_line, nth)
 
     def _without_words(self) -> Flags:
         """Return the inner pieces of split blocks that would have no word: nothing moves."""
@@ -120,6 +135,18 @@ class _Job:
             [bool(i) and all(is_foreign(item, target) for item in i) for i in items], np.bool_
         )
         return np.asarray(foreign[self.task.shape][self.pieces.line])
+
+    def _only_compensates(self) -> Flags:
+        """Return the pieces of lines that hold nothing but what is left out of them."""
+        if not self.path.blocks.uncompensated:
+            return np.zeros(len(self.pieces.line), np.bool_)
+        table = self.task.table
+        shapes = zip(table.shapes.shapes, table.meanings, strict=True)
+        only = np.array(
+            [m.compensates and all(left_out(item, m) for item in s.block.items) for s, m in shapes],
+            np.bool_,
+        )
+        return np.asarray(only[self.task.shape][self.pieces.line] & ~self.pieces.has_row)
 
     # --- arcs ---
 
@@ -262,6 +289,7 @@ class _Job:
             self.task.manner,
             self.path.axes,
             b" " if self.emitter.gap is None else self.emitter.gap,
+            self.path.blocks.uncompensated,
         )
         try:
             return writer.write(key)

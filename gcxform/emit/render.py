@@ -120,8 +120,10 @@ class Renderer:
 
 def interleave(
     task: Task, copied: Flags, written: Ints, text: bytes, lengths: Ints
-) -> tuple[bytes, Ints]:
+) -> tuple[bytes, Ints, Ints]:
     """Return a window's new text and, for each of its lines, the line it came from.
+
+    The third value is the order in which the copied lines and then the written ones stand.
 
     `copied` (live,) says which lines are copied; `written` (k,) are the lines of the pieces whose
     texts, of these lengths, follow one another in `text`. Lines the control does not reach are
@@ -133,9 +135,9 @@ def interleave(
     order = np.argsort(np.concatenate([keep, written]), kind="stable")
     source = np.concatenate([keep, written])[order]
     if not len(written) and whole.all():
-        return window.text, source
+        return window.text, source, order
     if not len(order):
-        return b"", source
+        return b"", source, order
     is_copy = order < len(keep)
     edges = np.flatnonzero(np.append(True, is_copy[1:] != is_copy[:-1]))
     ends = np.append(edges[1:], len(order))
@@ -148,7 +150,7 @@ def interleave(
         else:
             parts.append(text[int(at[done]) : int(at[done + last - first])])
             done += last - first
-    return b"".join(parts), source
+    return b"".join(parts), source, order
 
 
 def _unreached(task: Task) -> Flags:

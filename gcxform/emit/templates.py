@@ -50,6 +50,15 @@ def is_foreign(item: Item, target: type[Dialect]) -> bool:
     return item.kind.startswith("program") and not target.has_program_number
 
 
+def left_out(item: Item, meaning: Meaning) -> bool:
+    """Whether an item turns cutter compensation on, and is left out once that is resolved."""
+    if not isinstance(item, Word) or not meaning.compensates:
+        return False
+    if item.address == "G" and isinstance(item.value, Number):
+        return f"G{round(item.value.value, 6):g}" == meaning.groups["cutter-comp"]
+    return item.address == "D"
+
+
 class TemplateWriter:
     """Makes the templates of one shape."""
 
@@ -60,6 +69,7 @@ class TemplateWriter:
         manner: Manner,
         axes: str,
         gap: bytes,
+        uncompensated: bool = False,
     ) -> None:
         self.shape = shape
         self.text = shape.block.text
@@ -68,6 +78,7 @@ class TemplateWriter:
         self.target = manner.target
         self.axes = axes
         self.gap = self._own_gap(gap)
+        self.uncompensated = uncompensated
 
     def _own_gap(self, usual: bytes) -> bytes:
         """Return what stands between the words of this block, or what is usual in the program."""
@@ -84,12 +95,16 @@ class TemplateWriter:
         self.centre_written = not key.arc
         self.stated: set[str] = set()
         at = slot = 0
+        first: bytes | None = None  # what stands before the words left out at the head
         whole = key.role in (Role.NONE, Role.ONLY, Role.FIRST)
         self._repairs_wait = True
         for item in self.shape.block.items:
             lead = self.text[at : item.start].encode("latin-1") if whole else b""
             at = item.end
-            self._item(item, lead, slot)
+            if self.uncompensated and left_out(item, self.meaning):
+                first = lead if first is None and not self.fields else first
+            else:
+                self._item(item, lead if first is None or self.fields else first, slot)
             if isinstance(item, Word) and item.address not in CODES:
                 slot += isinstance(item.value, Number)
         self._rest()

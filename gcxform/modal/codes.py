@@ -51,6 +51,9 @@ class CutterComp:
     planes     in which it may be on
     changes    whether a side may be programmed while compensation is on
     arc_entry  whether the move that begins it may be an arc
+    corners    what joins moves outside: "arc", "linear", or "" where a parameter decides
+    entry      where the move that begins it ends: beside its "own" end, the "next" move, or ""
+    straight   rad; turns below are taken for none; 0 where that is not known
     before     modal groups of codes that are refused while it is on before their block
     after      those that are refused while it is on after the codes of their block
     """
@@ -59,6 +62,9 @@ class CutterComp:
     planes: frozenset[str] = frozenset({"XY", "ZX", "YZ"})
     changes: bool = True
     arc_entry: bool = False
+    corners: str = ""
+    entry: str = ""
+    straight: float = 0.0
     before: frozenset[str] = frozenset()
     after: frozenset[str] = frozenset()
 
@@ -104,7 +110,6 @@ CYCLE = "a canned cycle moves axes in a way of its own; this version does not ex
 HOME = "it moves axes to a point that only the control knows"
 SHIFT = "it shifts the coordinates by values that only the control knows"
 LENGTH = "it shifts the tool by a length that only the control knows"
-COMP = "cutter compensation moves the path beside the programmed contour"
 TRANSFORM = "it turns, scales or mirrors the coordinates"
 CALL = "it runs a program that is not in this file"
 SYNCHRONISED = "its motion is tied to the spindle"

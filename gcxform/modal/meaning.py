@@ -60,6 +60,11 @@ class Meaning:
     events: list[EventShape] = field(default_factory=list)
     refusal: Refusal | None = None
 
+    @property
+    def compensates(self) -> bool:
+        """Whether the block turns cutter compensation on."""
+        return self.groups.get("cutter-comp", "G40") != "G40"
+
 
 def meaning_of(shape: Shape, dialect: type[Dialect]) -> Meaning:
     """Return what the blocks of a shape mean in a dialect."""

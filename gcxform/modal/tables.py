@@ -57,6 +57,7 @@ FLAGS = (
     "changes_tool",
     "bars_comp_before",
     "bars_comp_after",
+    "compensates",
 )
 
 
@@ -106,6 +107,7 @@ class MeaningTable:
             meaning.changes_tool,
             bool(meaning.bars_comp[0]),
             bool(meaning.bars_comp[1]),
+            meaning.compensates,
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -46,6 +46,11 @@ KNOWN_POSITIONS = Fact(
     "X, Y and Z are known at the end of every move",
     lambda path: not bool(np.isnan(path.end[:, :3]).any()),
 )
+NO_CUTTER_COMP = Fact(
+    "NO_CUTTER_COMP",
+    "positions are those of the tool's centre: G41 and G42 are resolved",
+    lambda path: not bool(path.side.any()),
+)
 NOMINAL = Fact(
     "NOMINAL", "positions are where the tool shall be, not yet compensated commands", _always
 )
@@ -54,4 +59,13 @@ COMPENSATED = Fact(
 )
 
 AT_READING = frozenset({NOMINAL})
-FACTS = (ABSOLUTE, METRIC, LINEAR_ONLY, XY_ARCS, KNOWN_POSITIONS, NOMINAL, COMPENSATED)
+FACTS = (
+    ABSOLUTE,
+    METRIC,
+    LINEAR_ONLY,
+    XY_ARCS,
+    KNOWN_POSITIONS,
+    NO_CUTTER_COMP,
+    NOMINAL,
+    COMPENSATED,
+)

@@ -76,12 +76,14 @@ class Blocks:
     inch            lengths are written in inches (G20)
     incremental     axis words are distances from where the axis stands (G91)
     absolute_centre I, J, K are the centre itself (G90.1)
+    uncompensated   cutter compensation has been resolved: G41, G42 and their D are left out
     """
 
     first: int
     inch: Flags
     incremental: Flags
     absolute_centre: Flags
+    uncompensated: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,6 +19,7 @@ def gcxform_dialects() -> list[type[gx.Dialect]]:
 def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
     """Return the passes on toolpaths, then those on text."""
     from gcxform_plugins.passes.absolute import Absolute
+    from gcxform_plugins.passes.cutter_comp import CutterComp
     from gcxform_plugins.passes.metric import Metric
     from gcxform_plugins.passes.plane import PlanePass
     from gcxform_plugins.passes.renumber import Renumber
@@ -26,7 +27,7 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
     from gcxform_plugins.passes.strip import Strip
     from gcxform_plugins.passes.volumetric import Volumetric
 
-    return [Absolute, Metric, PlanePass, Segment, Volumetric, Renumber, Strip]
+    return [Absolute, CutterComp, Metric, PlanePass, Segment, Volumetric, Renumber, Strip]
 
 
 @gx.hookimpl

@@ -17,6 +17,7 @@
 | G41.1 D, G42.1 D | the diameter itself; a negative one swaps the side |
 | G41, G42 | refused when on already, and in YZ; on, many codes are refused |
 | G40 | the next move is no arc |
+| outside corners | are joined by arcs; turns below 0.05 rad are taken for none |
 | tool change | the axes stay, as far as the interpreter knows |
 """
 
@@ -94,6 +95,9 @@ class LinuxCNC(gx.Dialect):
         planes=frozenset({"XY", "ZX"}),
         changes=False,
         arc_entry=True,
+        corners="arc",
+        entry="own",
+        straight=0.05,
         before=frozenset({"tool", "override", "output"}),
         after=frozenset({"non-modal", "tool-length", "frame", "path", "retract"}),
     )

@@ -14,7 +14,7 @@ the contour and -1 where it is right. What is computed is what LinuxCNC's interp
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
+from enum import StrEnum
 from math import atan2, hypot, pi, sqrt
 
 Point = tuple[float, float]
@@ -24,14 +24,14 @@ LONGER = 0.025  # rad; so much may an arc gain where it begins off its own norma
 BACK = 1e-6  # rad; a line that goes back the way it came
 
 
-class Corners(Enum):
+class Corners(StrEnum):
     """What joins two moves at an outside corner."""
 
     ARC = "arc"
     LINEAR = "linear"
 
 
-class Entry(Enum):
+class Entry(StrEnum):
     """Where the move that begins compensation ends: beside its own end, or beside the next move."""
 
     OWN = "own"
