@@ -3,7 +3,6 @@
 It shares no code with the search for the centre path. Each move of the contour has one move of the
 centre, and an outside corner has one before it. At both ends the centre has to be at the tool's
 radius from its own contour, on its side; lines are then right all along, and arcs by their centre.
-Points along the centre moves have to keep the radius from the contour's neighbouring moves.
 """
 
 from __future__ import annotations
@@ -22,22 +21,23 @@ Flags = NDArray[np.bool_]
 CLOSE = 1e-6  # mm
 ANGLE = 1e-6  # rad
 GAINED = 0.026  # rad; what an arc may gain where a turn below `straight` begins it
-SAMPLES = np.linspace(0.0, 1.0, 9)
-NEIGHBOURS = (-2, -1, 1, 2)
 SAME = ("kind", "plane", "feed_mode", "frame", "source", "form", "lost")
 
 
-def prove_beside(before: gx.Toolpath, after: gx.Toolpath, straight: float, linear: bool) -> None:
-    """Check a centre path. Raises VerificationError, and InputError where the tool would gouge.
+def prove_beside(
+    before: gx.Toolpath, after: gx.Toolpath, straight: float, linear: bool, beside_next: bool
+) -> None:
+    """Check a centre path. Raises VerificationError.
 
     `straight` (rad): turns up to this may be taken for none. `linear`: moves may meet outside.
+    `beside_next`: the move that begins compensation ends beside the next one.
     """
     main, corner = _paired(before, after)
     _check_same(before, after, main, corner)
     on = np.flatnonzero(before.side != 0)
     on = on[before.radius[on] > 0]
     if len(on):
-        _Proof(before, after, main, corner, straight, linear).check(on)
+        _Proof(before, after, main, corner, straight, linear, beside_next).check(on)
 
 
 def _paired(before: gx.Toolpath, after: gx.Toolpath) -> tuple[Ints, Ints]:
@@ -82,6 +82,7 @@ class _Proof:
     corner: Ints
     straight: float
     linear: bool
+    beside_next: bool
 
     def check(self, on: Ints) -> None:
         """Check the rows that are under compensation."""
@@ -90,7 +91,7 @@ class _Proof:
         self._check_ends()
         self._check_order()
         self._check_corners()
-        self._check_gouges()
+        self._check_meetings()
 
     def _look(self, on: Ints) -> None:
         """Keep the rows that move in the plane, in the coordinates of the plane."""
@@ -157,10 +158,10 @@ class _Proof:
         wrong = (begins > less + uneven) | (begins < -less - uneven)
         self._fail(wrong & ~self.entry, "the centre is not at the tool's radius where it begins")
         ends = self._offset(self.b, at_end) - self.radius
-        followed = np.append(~self.entry[1:], False)
-        beside_next = followed & self.entry  # where it ends beside the next move is checked there
-        wrong = (np.abs(ends) > uneven) & ~(beside_next & ~self.arc)
-        self._fail(wrong & ~(self.entry & self.arc), "the centre is not at the tool's radius")
+        wrong = np.abs(ends) > uneven
+        if self.beside_next:  # where the next move begins is checked above
+            wrong &= ~(self.entry & np.append(~self.entry[1:], False))
+        self._fail(wrong, "the centre is not at the tool's radius where it ends")
         self._fail(self.entry & (_size(self.a - self.p) > CLOSE), "it begins elsewhere")
 
     def _check_order(self) -> None:
@@ -215,42 +216,25 @@ class _Proof:
         """Return the kind that the arc about a corner must not have."""
         return np.where(self.side[k] > 0, int(gx.Kind.ARC_CCW), int(gx.Kind.ARC_CW))
 
-    def _check_gouges(self) -> None:
-        """Check that the centre keeps the radius from the moves before and after its own."""
-        centre = np.stack([self._along(part) for part in SAMPLES], axis=1)
-        allowed = self.radius * (1 - 2 * (1 - np.cos(self.straight))) - 2 * CLOSE
-        stretch = np.cumsum(self.entry)
-        tool = ~self.entry & (self.before.kind[self.row] != gx.Kind.RAPID)
-        for step in NEIGHBOURS:
-            other = np.arange(len(self.row)) + step
-            good = tool & (other >= 0) & (other < len(self.row))
-            k = np.flatnonzero(good)
-            k = k[(stretch[other[k]] == stretch[k]) & ~self.entry[other[k]]]
-            near = self._distance(centre[k], other[k]).min(axis=1, initial=np.inf) < allowed[k]
-            if near.any():
-                message = "the tool would cut into the contour beside this move"
-                hint = "use a smaller tool, or change the contour"
-                raise self.before.refuse("GX320", self.row[k[near]], message, hint)
+    def _check_meetings(self) -> None:
+        """Check that at inside corners the centre turns as the contour does.
 
-    def _along(self, part: float) -> Floats:
-        """Return points (n, 2) of the centre moves at a part of the way."""
-        line = self.a + part * (self.b - self.a)
-        out = self.a - self.c
-        turned = self.sense * self.after.sweep[self.main[self.row]] * part
-        cos, sin = np.cos(turned)[:, None], np.sin(turned)[:, None]
-        arc = self.c + out * cos + np.stack([-out[:, 1], out[:, 0]], axis=1) * sin
-        return np.asarray(np.where(self.arc[:, None], arc, line))
+        Two offset curves of which one is a circle cross twice: at the other crossing, the tool
+        would have cut into the contour before.
+        """
+        inside = (self.turn > self.straight) & (self.turn < np.pi - ANGLE) & ~self.entry
+        k = np.flatnonzero(inside)
+        k = k[~self.entry[k - 1] | ~self.beside_next]
+        u, v = self._heading(k - 1, self.b[k - 1]), self._heading(k, self.a[k])
+        back = self.side[k] * _cross(u, v) < -ANGLE
+        _fail_if(self.before, self.row[k][back], "an inside corner is not where the moves meet")
 
-    def _distance(self, points: Floats, of: Ints) -> Floats:
-        """Return the distances (k, samples) of points (k, samples, 2) from moves of the contour."""
-        p, q, c = self.p[of][:, None], self.q[of][:, None], self.c[of][:, None]
-        line = _distance_to_line(points, p, q)
-        out, begin = points - c, p - c
-        ahead = np.arctan2(_cross(begin, out), _dot(begin, out)) * self.sense[of][:, None]
-        inside = np.mod(ahead, 2 * np.pi) <= self.before.sweep[self.row[of]][:, None]
-        ends = np.minimum(_size(points - p), _size(points - q))
-        arc = np.where(inside, np.abs(_size(out) - _size(begin)), ends)
-        return np.where(self.arc[of][:, None], arc, line)
+    def _heading(self, k: Ints, at: Floats) -> Floats:
+        """Return the direction (n, 2) of centre moves at points of them."""
+        out = at - self.c[k]
+        turned = self.sense[k][:, None] * np.stack([-out[:, 1], out[:, 0]], axis=1)
+        way = np.where(self.arc[k][:, None], turned, self.first[k])
+        return np.asarray(way / _size(way)[:, None])
 
     def _fail(self, wrong: Flags, message: str) -> None:
         _fail_if(self.before, self.row[wrong], message)

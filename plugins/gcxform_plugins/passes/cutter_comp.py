@@ -82,7 +82,8 @@ class CutterComp(gx.Pass):
         """Check that the centre is beside the contour all along, and everything else as it was."""
         manner = self._manner(context)
         straight = manner.straight * (1 + 1e-9)
-        prove_beside(before, after, straight, manner.corners is Corners.LINEAR)
+        linear, beside_next = manner.corners is Corners.LINEAR, manner.entry is Entry.NEXT
+        prove_beside(before, after, straight, linear, beside_next)
 
     def _manner(self, context: gx.PassContext) -> Manner:
         rule = context.source.cutter_comp

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from math import atan2, hypot, pi, sqrt
+from math import atan2, ceil, hypot, pi, sqrt, tau
 
 Point = tuple[float, float]
 
@@ -246,6 +246,8 @@ def _check_direction(edge: Edge, index: int) -> None:
     if edge.centre is not None:
         if not 0 <= swept(edge) <= edge.sweep + LONGER:
             raise CannotOffsetError(index, "the tool cannot reach the arc between inside corners")
+        if ceil(swept(edge) / tau - 1e-9) > ceil(edge.sweep / tau - 1e-9):
+            raise CannotOffsetError(index, "the circle would be cut by more than a turn")
         return
     way = (edge.finish[0] - edge.begin[0]) * edge.first[0]
     way += (edge.finish[1] - edge.begin[1]) * edge.first[1]
