@@ -51,13 +51,13 @@ def check_compensated(step: Pass, before: Toolpath, after: Toolpath) -> None:
     begin and end compensation have to stay whole.
     """
     on = before.side != 0
-    if not on.any():
+    if not on.any() and not before.after_side:
         return
     rows = np.flatnonzero(on)
-    if type(step).undo is not Pass.undo:
+    if type(step).undo is not Pass.undo and len(rows):
         message = f"{step.name} moves a contour that the control offsets by the tool's radius"
         raise before.refuse("GX233", rows[:1], message, MENDED)
-    ends = np.flatnonzero(on != np.append(False, on[:-1]))
+    ends = np.flatnonzero(on != np.append(before.after_side != 0, on[:-1]))
     lines = before.source[ends]
     if len(lines) and (_pieces(after, lines) != _pieces(before, lines)).any():
         wrong = ends[_pieces(after, lines) != _pieces(before, lines)]

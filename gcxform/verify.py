@@ -79,16 +79,22 @@ class Verifier:
         return self.budgets[self.inch]
 
     def check(
-        self, read: Interpreted, window: Window, text: bytes, source: Ints, nth: Ints
+        self,
+        read: Interpreted,
+        window: Window,
+        text: bytes,
+        source: Ints,
+        nth: Ints | None = None,
     ) -> None:
         """Check the text written for a window.
 
         `source` is the input line of each output line, `nth` which of the moves of that line it is
-        a part of.
+        a part of; absent: no line has more than one.
 
         Raises VerificationError.
         """
         first = self.reader.lines
+        nth = np.zeros(len(source), np.int64) if nth is None else nth
         again = self.reader.read(text)
         try:
             back = self.interpreter.interpret(again, self.reader.table)
@@ -179,9 +185,9 @@ class Verifier:
         """Check that cutter compensation is on where it was, on the same side and as far."""
         before, after, owner = trace.before, trace.after, trace.owner
         radius, old = after.radius, before.radius[owner]
-        wrong = (after.side != before.side[owner]) | ~((radius == old) | np.isnan(radius + old))
-        if wrong.any():
-            self._fail("cutter compensation has changed", trace, int(np.argmax(wrong)))
+        changed = (after.side != before.side[owner]) | ~((radius == old) | np.isnan(radius + old))
+        if changed.any():
+            self._fail("cutter compensation has changed", trace, int(np.argmax(changed)))
 
     def _feeds(self, trace: _Trace) -> None:
         """Check that feeds are those of the source; in inverse time, the times must add up."""

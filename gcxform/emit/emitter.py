@@ -54,7 +54,7 @@ class Emitted:
 
     text: bytes
     source: Ints
-    nth: Ints
+    nth: Ints | None = None
 
 
 class Emitter:
@@ -113,7 +113,7 @@ class _Job:
             self.task, copied, self.pieces.line[chosen], text, lengths
         )
         self._carry()
-        nth = np.where(self.pieces.has_row, 0, 0)
+        nth = np.zeros(len(self.pieces.line), np.int64)
         nth[self.pieces.has_row] = self.path.nth
         nth = np.append(np.zeros(len(source) - len(chosen), np.int64), nth[chosen])[order]
         return Emitted(whole, source + self.task.window.first_line, nth)
@@ -141,7 +141,7 @@ class _Job:
         if not self.path.blocks.uncompensated:
             return np.zeros(len(self.pieces.line), np.bool_)
         table = self.task.table
-        shapes = zip(table.shapes.shapes, table.meanings, strict=True)
+        shapes = zip(table.shapes.shapes, table.meanings, strict=False)  # others are read ahead
         only = np.array(
             [m.compensates and all(left_out(item, m) for item in s.block.items) for s, m in shapes],
             np.bool_,

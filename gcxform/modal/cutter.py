@@ -135,10 +135,23 @@ def _stop(lines: Lines, line: int, message: str, hint: str = "cancel it with G40
     lines.findings.add(line, "GX230", message, hint=hint)
 
 
-def refuse_ends(lines: Lines, side: Small, kind: Small, rows: NDArray[np.int64]) -> None:
-    """Refuse arcs that begin compensation, or come next after it, where the control stops."""
+def refuse_ends(
+    lines: Lines, modes: Modes, side: Small, kind: Small, rows: NDArray[np.int64]
+) -> None:
+    """Refuse arcs that begin compensation, or come next after it, where the control stops.
+
+    Nor may compensation begin again before a move has ended it.
+    """
     state = lines.state
     before = np.append(np.int8(state.at_side), side[:-1])
+    off = np.cumsum(modes.comp == 0) + int(state.cancelled)
+    again = (before != 0) & (side != 0) & (np.diff(off[rows], prepend=0) > 0)
+    for row in np.flatnonzero(again)[: Findings.enough].tolist():
+        message = "cutter compensation begins again, and no move has ended it"
+        _stop(lines, int(rows[row]), message, "move after G40")
+    if lines.live:
+        last = off[rows[-1]] if len(rows) else 0
+        state.cancelled = bool(off[-1] > last)
     if len(rows):
         state.at_side = int(side[-1])
     arc = kind >= Kind.ARC_CW

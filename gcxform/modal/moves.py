@@ -172,7 +172,7 @@ class Moves:
             events_of(self.lines, rows),
         )
         path = self._with_history(path)
-        refuse_ends(self.lines, path.side, path.kind, rows)
+        refuse_ends(self.lines, self.modes, path.side, path.kind, rows)
         if not path.has_arcs:
             return path
         arcs = np.flatnonzero(path.is_arc)
@@ -180,12 +180,16 @@ class Moves:
 
     def _with_history(self, path: Toolpath) -> Toolpath:
         """Return the path with what passes may want to know of the moves before it."""
-        state, after_rapid = self.state, self.state.rapid
+        state, after_rapid, after_side = self.state, self.state.rapid, self.state.at_side
         if len(path):
             if state.first_frame < 0:
                 state.first_frame = int(path.frame[0])
             state.rapid = bool(path.kind[-1] == Kind.RAPID)
-        return path.replace(first_frame=max(state.first_frame, 0), after_rapid=after_rapid)
+        return path.replace(
+            first_frame=max(state.first_frame, 0),
+            after_rapid=after_rapid,
+            after_side=after_side,
+        )
 
     def _lost_before(self, rows: Ints) -> Flags:
         """Return the moves before which the position was lost since the move before."""

@@ -38,7 +38,8 @@ class Reading:
 class State:
     """What one window hands to the next.
 
-    side, radius  cutter compensation in force; `at_side`: that of the last move
+    side, radius  cutter compensation in force; `at_side`: that of the last move;
+                  `cancelled`: G40 has been in force since
     selected      the T word; `tool`: the tool in the spindle; `stored`: the D word; nan: not known
     """
 
@@ -57,6 +58,7 @@ class State:
     tool: float = np.nan
     stored: float = np.nan
     at_side: int = 0
+    cancelled: bool = False
     stated: set[str] = field(default_factory=set)
 
 

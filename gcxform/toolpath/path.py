@@ -142,6 +142,7 @@ class Toolpath:
     slack           mm; how far a row may be from the curve it stands for
     first_frame     the work offset in which the program's first move was
     after_rapid     whether the move before the first row was a rapid
+    after_side      side of cutter compensation of the move before the first row
     refit_centres   whether centres may be moved so that both ends are on the circle as formatted
     """
 
@@ -166,6 +167,7 @@ class Toolpath:
     slack: float = 0.0
     first_frame: int = 0
     after_rapid: bool = False
+    after_side: int = 0
     refit_centres: bool = True
 
     def __post_init__(self) -> None:

@@ -122,6 +122,8 @@ class _Proof:
         self.turn = self.side * np.arctan2(
             _cross(before_it, self.first), _dot(before_it, self.first)
         )
+        leaves = self.arc & (self.side * self.sense < 0)
+        self.valley = leaves & (np.abs(self.turn) > np.pi - ANGLE)
         self.none = (np.abs(self.turn) <= self.straight) & ~self.entry
 
     def _tangents(self, at: Floats) -> Floats:
@@ -182,13 +184,16 @@ class _Proof:
         """Check the moves around outside corners, and that there are some."""
         has = self.corner[self.row] >= 0
         outside = (self.turn < -self.straight) | (self.turn > np.pi - ANGLE)
+        outside &= ~self.valley
         self._fail(has & (~outside | self.entry), "a corner where there is none")
-        joined = (
-            has | np.zeros(len(has), np.bool_) if not self.linear else np.ones(len(has), np.bool_)
-        )
-        next_to_entry = np.append(False, self.entry[:-1])
-        self._fail(outside & ~joined & ~self.entry & ~next_to_entry, "a corner is missing")
-        k = np.flatnonzero(has)
+        missing = outside & ~has & ~self.entry & (not self.linear)
+        if self.beside_next:
+            missing &= ~np.append(False, self.entry[:-1])
+        self._fail(missing, "a corner is missing")
+        self._check_round(np.flatnonzero(has))
+
+    def _check_round(self, k: Ints) -> None:
+        """Check the moves that lead around corners, before moves by index."""
         rows = self.corner[self.row[k]]
         kind = self.after.kind[rows]
         begin = np.take_along_axis(self.after.start[rows][:, :3], self.axes[k, :2], axis=1)
@@ -222,8 +227,8 @@ class _Proof:
         Two offset curves of which one is a circle cross twice: at the other crossing, the tool
         would have cut into the contour before.
         """
-        inside = (self.turn > self.straight) & (self.turn < np.pi - ANGLE) & ~self.entry
-        k = np.flatnonzero(inside)
+        inside = (self.turn > self.straight) & (self.turn < np.pi - ANGLE)
+        k = np.flatnonzero((inside | self.valley) & ~self.entry)
         k = k[~self.entry[k - 1] | ~self.beside_next]
         u, v = self._heading(k - 1, self.b[k - 1]), self._heading(k, self.a[k])
         back = self.side[k] * _cross(u, v) < -ANGLE

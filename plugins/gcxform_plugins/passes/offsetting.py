@@ -153,6 +153,8 @@ def _join(edges: list[Edge], index: int, side: int, radius: float, manner: Manne
     turn = side * atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1])
     if abs(turn) <= manner.straight:
         other.begin = one.finish
+    elif _closes(other, turn, side):
+        one.finish = other.begin = _meeting(one, other, index, side, radius)
     elif _turns_back(one, other, turn):
         raise CannotOffsetError(index, "the contour turns back on itself")
     elif turn < 0 or turn > pi - BACK:
@@ -229,6 +231,16 @@ def _either_side(centre: Point, axis: Point, along: float, size: float) -> list[
         (x - across * axis[1], y + across * axis[0]),
         (x + across * axis[1], y - across * axis[0]),
     ]
+
+
+def _closes(other: Edge, turn: float, side: int) -> bool:
+    """Whether a corner that turns back is the inside of a valley, because the arc after it leaves.
+
+    The tool then comes to rest on both sides of it.
+    """
+    if other.centre is None or side * other.sense > 0:
+        return False
+    return turn > pi - SHARP or turn < BACK - pi
 
 
 def _turns_back(one: Edge, other: Edge, turn: float) -> bool:
