@@ -184,6 +184,8 @@ class Verifier:
     def _sides(self, trace: _Trace) -> None:
         """Check that cutter compensation is on where it was, on the same side and as far."""
         before, after, owner = trace.before, trace.after, trace.owner
+        if not before.side.any() and not after.side.any():
+            return
         radius, old = after.radius, before.radius[owner]
         changed = (after.side != before.side[owner]) | ~((radius == old) | np.isnan(radius + old))
         if changed.any():
@@ -269,6 +271,7 @@ class _Trace:
         self.first = first
         line = before.source - window.first_line
         self._rows_of_line = np.bincount(line, minlength=len(window))
+        self._several = bool((self._rows_of_line > 1).any())
         row_of_line = np.full(len(window), -1, np.int64)
         row_of_line[line[::-1]] = np.arange(len(before))[::-1]
         self._row_of_line = row_of_line
@@ -278,6 +281,8 @@ class _Trace:
 
     def _owners(self, path: Toolpath) -> Ints:
         lines = self.source[path.source - self.first] - self._window_first
+        if not self._several:
+            return np.asarray(self._row_of_line[lines])
         nth = np.minimum(self.nth[path.source - self.first], self._rows_of_line[lines] - 1)
         return np.asarray(self._row_of_line[lines] + np.maximum(nth, 0))
 

@@ -217,6 +217,13 @@ def mirrored(path: Toolpath) -> Toolpath:
     return path.replace(end=end)
 
 
+def pointed(path: Toolpath) -> Toolpath:
+    """Let the moves at the first outside corner meet, in place of the arc."""
+    end = np.array(path.end)
+    end[2:4, 1] = 22.0
+    return without(4)(path.replace(end=end))
+
+
 # Rows: 0 rapid, 1 entry, 2 Y20, 3 Z-1, 4 corner, 5 X8.29, 6 arc, 7 X30, 8 corner, 9 Y12, 10 nearly
 # straight, 11 X48, 12 Y30, 13 exit, 14 free
 TAMPERED = {
@@ -232,6 +239,8 @@ TAMPERED = {
     "the arc sweeps too far": column("sweep", 6, 6.0),
     "the arc sweeps a turn more": column("sweep", 6, 2.4614 + 6.2831853),
     "a corner is missing": without(4),
+    "a corner is a point": pointed,
+    "the last move ends aside": moved(12, 0, 0.01),
     "a corner goes the wrong way": column("kind", 4, 3),
     "a corner has another centre": column("centre", 4, (0.0, 20.01, -1.0)),
     "a corner is cut": column("kind", 4, 1),
@@ -249,11 +258,14 @@ TAMPERED = {
 }
 
 
+def proving() -> tuple[gx.Pass, PassContext]:
+    kind = default_registry().dialect("linuxcnc")
+    return pipeline().path_passes[0], PassContext(kind, kind, kind.numbers)
+
+
 @pytest.mark.parametrize("name", TAMPERED)
 def test_the_proof_sees(name: str) -> None:
-    kind = default_registry().dialect("linuxcnc")
-    step = pipeline().path_passes[0]
-    context = PassContext(kind, kind, kind.numbers)
+    step, context = proving()
     before = path_of(CONTOUR)
     after = step.apply(before, context)
     step.prove(before, after, context)
@@ -262,11 +274,17 @@ def test_the_proof_sees(name: str) -> None:
     assert error.value.diagnostics[0].code == "GX604"
 
 
+def test_a_still_move_along_the_contour_is_seen() -> None:
+    step, context = proving()
+    before = path_of("F100\nG41 D1 G1 X10 Y0\nX20\nZ-1\nX30\nG40 X40\nM2\n")
+    after = step.apply(before, context)
+    with pytest.raises(gx.VerificationError, match="aside"):
+        step.prove(before, moved(2, 0, 0.1)(after), context)
+
+
 def test_a_line_that_goes_backwards_is_seen() -> None:
     """The centre of an entry may go anywhere forwards, but that of a contour not back."""
-    kind = default_registry().dialect("linuxcnc")
-    step = pipeline().path_passes[0]
-    context = PassContext(kind, kind, kind.numbers)
+    step, context = proving()
     before = path_of("F100\nG41 D1 G1 X10 Y0\nX20\nY0.5\nY10\nG40 X0\nM2\n")
     good = path_of("F100\nG41 D1 G1 X10 Y0\nX20\nY5\nY10\nG40 X0\nM2\n")
     after = step.apply(good, context)
