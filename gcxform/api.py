@@ -215,6 +215,8 @@ class _Manner:
     mode: NDArray[np.int8]
     frame: NDArray[np.int8]
     rapid: NDArray[np.bool_]
+    side: NDArray[np.int8]
+    radius: NDArray[np.float64]
     line: NDArray[np.int64]
 
     @classmethod
@@ -223,7 +225,8 @@ class _Manner:
         mode, rapid = path.feed_mode[row], path.kind[row] == Kind.RAPID
         part = np.where(mode == FeedMode.INVERSE_TIME, pieces.high - pieces.low, 1.0)
         feed = np.divide(path.feed[row], part, out=np.full(len(row), np.inf), where=part > 0)
-        return cls(feed, mode, path.frame[row], rapid, path.source[row] + 1)
+        side, radius = path.side[row], np.nan_to_num(path.radius[row])
+        return cls(feed, mode, path.frame[row], rapid, side, radius, path.source[row] + 1)
 
     def alike(self, other: _Manner, at: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Return whether pieces `at` are travelled as the pieces of the other path."""
@@ -231,6 +234,7 @@ class _Manner:
         with np.errstate(invalid="ignore"):
             near = (feed == other.feed) | (np.abs(feed - other.feed) <= FEED_SLIP * np.abs(feed))
         same = self.rapid[at] | (near & (mode == other.mode))
+        same &= (self.side[at] == other.side) & (self.radius[at] == other.radius)
         return np.asarray(same & (self.frame[at] == other.frame))
 
 
@@ -256,6 +260,8 @@ def _changed(one: _Manner, other: _Manner, k: int) -> str:
     """Return in what a piece is travelled otherwise."""
     if one.frame[k] != other.frame[k]:
         return f"{frame_name(int(one.frame[k]))} became {frame_name(int(other.frame[k]))}"
+    if (one.side[k], one.radius[k]) != (other.side[k], other.radius[k]):
+        return "cutter compensation is another"
     if one.mode[k] != other.mode[k]:
         return f"feed mode G{one.mode[k]} became G{other.mode[k]}"
     return f"feed {one.feed[k]:g} became {other.feed[k]:g}"
@@ -288,7 +294,9 @@ def _told(side: Side, other: type[Dialect]) -> list[Event]:
     return [
         event
         for event in path.events
-        if event.what not in other.codes or other.codes[event.what].effect is not Effect.MODAL
+        if event.what not in other.codes
+        or other.codes[event.what].effect is not Effect.MODAL
+        or other.codes[event.what].takes
     ]
 
 

@@ -254,6 +254,7 @@ TAMPERED = {
     "a free move is moved": moved(14, 0, 0.01),
     "the exit ends elsewhere": moved(13, 0, 0.01),
     "a move is dropped": without(7),
+    "an event is dropped": lambda path: path.replace(events=()),
     "a small turn is a large one": moved(9, 1, 0.3),
 }
 
@@ -293,3 +294,18 @@ def test_a_line_that_goes_backwards_is_seen() -> None:
     end[2, 1] = 0.5
     with pytest.raises(gx.VerificationError, match="backwards"):
         step.prove(before, after.replace(end=end), context)
+
+
+def test_programs_differ_in_their_compensation() -> None:
+    def program(text: str) -> gx.Program:
+        return gx.read(text.encode(), "linuxcnc", start=START, tools={1: 2.0, 2: 0.5})
+
+    for other in ("G42 D1", "G41 D2", "G41 D7", "G41.1 D4", "G40"):
+        changed = CONTOUR.replace("G41 D1", other)
+        if other == "G41 D7":
+            changed = changed.replace("D7", "D6")
+            one = program(CONTOUR.replace("D1", "D7"))
+        else:
+            one = program(CONTOUR)
+        assert not gx.compare(one, program(changed)).same, other
+    assert gx.compare(program(CONTOUR), program(CONTOUR)).same

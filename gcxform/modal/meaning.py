@@ -239,10 +239,13 @@ def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
 
 
 def _offset_word(dialect: type[Dialect], meaning: Meaning) -> set[str]:
-    """Return D if it belongs to cutter compensation; where it stays in force it is an event."""
+    """Return D if it belongs to cutter compensation; it is told as an event, like G41 and G42."""
     code = meaning.groups.get("cutter-comp", "G40")
-    if dialect.cutter_comp.stored and "D" in meaning.slots and code == "G40":
-        meaning.events.append(EventShape(45, "D", (("D", meaning.slots["D"]),)))
+    named = (("D", meaning.slots["D"]),) if "D" in meaning.slots else ()
+    if code != "G40":
+        meaning.events.append(EventShape(45, code, named))
+    elif dialect.cutter_comp.stored and named:
+        meaning.events.append(EventShape(45, "D", named))
     takes = dialect.codes[code].takes if code in dialect.codes else ""
     return set("D") if dialect.cutter_comp.stored or "D" in takes else set()
 

@@ -34,6 +34,7 @@ def prove_beside(
     """
     main, corner = _paired(before, after)
     _check_same(before, after, main, corner)
+    _check_events(before, after, np.where(corner >= 0, corner, main))
     on = np.flatnonzero(before.side != 0)
     on = on[before.radius[on] > 0]
     if len(on):
@@ -70,6 +71,15 @@ def _check_same(before: gx.Toolpath, after: gx.Toolpath, main: Ints, corner: Int
     mode = before.feed_mode != gx.FeedMode.INVERSE_TIME
     feed = (after.feed[main] == before.feed) | np.isnan(before.feed)
     _fail_if(before, mode & ~feed, "the feed has changed")
+
+
+def _check_events(before: gx.Toolpath, after: gx.Toolpath, first: Ints) -> None:
+    """Check that all events but those of compensation stand before the moves they stood before."""
+    first = np.append(first, len(after))
+    kept = [e for e in before.events if not e.what.startswith(("G41", "G42"))]
+    wanted = [(e.what, e.values, e.line, int(first[e.row])) for e in kept]
+    if wanted != [(e.what, e.values, e.line, e.row) for e in after.events]:
+        _fail(before, 0, "an event is missing, or stands elsewhere")
 
 
 @dataclass

@@ -24,6 +24,7 @@ from gcxform_plugins.passes.offsetting import (
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+CODES = ("G41", "G42", "G41.1", "G42.1")
 STILL = 1e-9  # mm; a row that moves by less in the plane stands still there
 STRAIGHT = 1e-4  # rad; smaller turns are none, on controls of which nothing else is known
 
@@ -70,6 +71,7 @@ class CutterComp(gx.Pass):
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the centre path, in G40."""
         blocks = replace(path.blocks, uncompensated=True)
+        path = path.replace(events=tuple(e for e in path.events if e.what not in CODES))
         if not path.side.any():
             return path.replace(blocks=blocks)
         _refuse(path, context)
