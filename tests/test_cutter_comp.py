@@ -309,3 +309,32 @@ def test_programs_differ_in_their_compensation() -> None:
             one = program(CONTOUR)
         assert not gx.compare(one, program(changed)).same, other
     assert gx.compare(program(CONTOUR), program(CONTOUR)).same
+
+
+REFUSED = {
+    "G41.1 D4": "Cannot turn cutter radius comp on when on",
+    "G42 D1": "Cannot turn cutter radius comp on when on",
+    "G18": "Cannot change planes with cutter radius compensation on",
+    "G55 G1 X20": "Cannot change coordinate systems with cutter radius compensation on",
+    "G49": "Cannot change tool offset with cutter radius compensation on",
+    "G64": "Cannot change control mode with cutter radius compensation on",
+    "G98": "Cannot change retract mode with cutter radius compensation on",
+    "M6": "Cannot change tools with cutter radius compensation on",
+    "M48": "Cannot enable overrides with cutter radius compensation on",
+    "M62 P1": "Cannot set motion output with cutter radius compensation on",
+    "G40\nG2 X30 I5": "The move just after exiting cutter compensation mode must be straight, not",
+    "G3 X10 Y1.9 J0.95": "Tool radius not less than arc radius with comp",
+    "G40\nG1 X20\nG19 G41 D1": "Cutter radius compensation allowed only in XY, XZ planes",
+    "G40\nG1 X20\nG41 D1.5": "G41 requires D word to be a whole number",
+    "G40\nG1 X20\nG41.1": "G41.1 with no D word",
+}
+
+
+@pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
+@pytest.mark.parametrize("blocks", REFUSED)
+def test_linuxcnc_refuses_it_too(blocks: str) -> None:
+    program = f"G21 G90 G17 G94 F200\nG0 X0 Y0 Z0\nG41.1 D4 G1 X10\n{blocks}\nG40 G1 X50\nM2\n"
+    with pytest.raises(rs274.Rejected) as refusal:
+        rs274.run(program.encode())
+    assert refusal.value.message.startswith(REFUSED[blocks])
+    assert refused(program) in ("GX230", "GX320")
