@@ -207,7 +207,11 @@ def column(name: str, row: int, value: object) -> Callable[[Toolpath], Toolpath]
 
 
 def without(row: int) -> Callable[[Toolpath], Toolpath]:
-    return lambda path: path.take(np.arange(len(path)) != row)
+    def change(path: Toolpath) -> Toolpath:
+        events = tuple(replace(e, row=e.row - (e.row > row)) for e in path.events)
+        return path.take(np.arange(len(path)) != row).replace(events=events)
+
+    return change
 
 
 def mirrored(path: Toolpath) -> Toolpath:
