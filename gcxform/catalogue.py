@@ -197,7 +197,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "Give a machine file with [work-offset.G54] and the others that are used, in place of "
         "part-origin.",
     ),
-    "GX320": (
+    "GX350": (
         "A contour that the tool cannot follow",
         "The tool is too large for an inside corner, a concave arc or a move between two inside "
         "corners, so that it would cut into the contour; or the move that begins compensation is "

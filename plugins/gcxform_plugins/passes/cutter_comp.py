@@ -181,7 +181,7 @@ class _CentrePath:
         except CannotOffsetError as error:
             where = np.array([rows[error.index]])
             hint = "use a smaller tool, or change the contour"
-            raise path.refuse("GX320", where, error.message, hint) from None
+            raise path.refuse("GX350", where, error.message, hint) from None
         self._place(rows, edges, axes)
         self._still(first, last, rows, axes)
 
@@ -205,7 +205,7 @@ class _CentrePath:
             rows.append(first + index)
         if not rows or rows[0] != first:
             message = "the move that begins compensation does not move in the plane"
-            raise path.refuse("GX320", np.array([first]), message, "program X or Y in that block")
+            raise path.refuse("GX350", np.array([first]), message, "program X or Y in that block")
         return rows, edges
 
     def _place(self, rows: list[int], edges: list[Edge], axes: list[int]) -> None:
