@@ -301,7 +301,9 @@ def test_a_line_that_goes_backwards_is_seen() -> None:
 
 def test_programs_differ_in_their_compensation() -> None:
     def program(text: str) -> gx.Program:
-        return gx.read(text.encode(), "linuxcnc", start=START, tools={1: Tool(radius=2.0), 2: Tool(radius=0.5)})
+        return gx.read(
+            text.encode(), "linuxcnc", start=START, tools={1: Tool(radius=2.0), 2: Tool(radius=0.5)}
+        )
 
     for other in ("G42 D1", "G41 D2", "G41 D7", "G41.1 D4", "G40"):
         changed = CONTOUR.replace("G41 D1", other)

@@ -15,7 +15,7 @@ from gcxform.cli.tolerant import Tolerant
 from gcxform.diagnostics import UsageError
 from gcxform.dialect import INCH
 from gcxform.modal.state import State
-from gcxform.modal.tables import GROUPS, NUMBER, frame_name
+from gcxform.modal.tables import CYCLES, GROUPS, NUMBER
 from gcxform.registry import default_registry
 from gcxform.source import Source
 from gcxform.syntax.tree import Block, Comment, Mark, Number, Word
@@ -29,7 +29,7 @@ _MOVES = {
     Kind.ARC_CCW: "counter-clockwise arc",
 }
 _FAMILIES = {
-    "motion": ("G0", "G1", "G2", "G3", "G80"),
+    "motion": ("G0", "G1", "G2", "G3", "G80", *(f"G{number}" for number in CYCLES)),
     "plane": ("G17", "G18", "G19"),
     "distance": ("G90", "G91"),
     "arc-distance": ("G91.1", "G90.1"),
@@ -110,7 +110,10 @@ def _items(block: Block) -> Iterator[str]:
 
 def _state(state: State, axes: str) -> Iterator[str]:
     """Yield the codes in force and the position."""
-    codes = [_code(group, state.groups[group]) for group in GROUPS]
+    codes = [
+        state.frames.work if group == "frame" else _code(group, state.groups[group])
+        for group in GROUPS
+    ]
     feed = "none" if math.isnan(state.feed) else f"{state.feed:g}"
     unit = " inch" if state.feed_unit == INCH else ""
     yield f"  modal {' '.join(codes)}, F {feed}{unit if feed != 'none' else ''}"
@@ -119,8 +122,6 @@ def _state(state: State, axes: str) -> Iterator[str]:
 
 def _code(group: str, number: int) -> str:
     """Return the code of a modal group by its number."""
-    if group == "frame":
-        return frame_name(number)
     return next(code for code in _FAMILIES[group] if NUMBER[code] == number)
 
 

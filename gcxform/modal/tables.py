@@ -49,11 +49,6 @@ NUMBER = {
 """The number that stands for a code within its group."""
 
 
-def frame_name(frame: int) -> str:
-    """Return the code of a work offset by its number: 0 is G54."""
-    return f"G{54 + frame}" if frame < 6 else f"G59.{frame - 5}"
-
-
 FLAGS = (
     "moves",
     "has_centre",
