@@ -117,7 +117,8 @@ def _state(state: State, axes: str) -> Iterator[str]:
     feed = "none" if math.isnan(state.feed) else f"{state.feed:g}"
     unit = " inch" if state.feed_unit == INCH else ""
     yield f"  modal {' '.join(codes)}, F {feed}{unit if feed != 'none' else ''}"
-    yield f"  at    {_point(axes, state.position)}"
+    words = state.frames.frame().words(state.position[None, :])[0]
+    yield f"  at    {_point(axes, words)}"
 
 
 def _code(group: str, number: int) -> str:
@@ -157,12 +158,13 @@ def _move(path: Toolpath, row: int) -> Iterator[str]:
     unit = _UNITS[FeedMode(int(path.feed_mode[row]))]
     feed = "" if kind == Kind.RAPID else f" at {path.feed[row]:g} {unit}"
     yield f"  {_MOVES[kind]}{feed}"
-    yield f"    from {_point(path.axes, path.start[row])}"
-    yield f"    to   {_point(path.axes, path.end[row])}"
+    yield f"    from {_point(path.axes, path.in_frames(path.start)[row])}"
+    yield f"    to   {_point(path.axes, path.words[row])}"
     if path.is_arc[row]:
         plane = Plane(int(path.plane[row]))
         u, v, _ = plane.axes
         first, _, _ = radius_and_angle(path, np.array([row]))
-        centre = f"{'XYZ'[u]}{path.centre[row, u]:.6g} {'XYZ'[v]}{path.centre[row, v]:.6g}"
+        middle = path.local(path.centre)[row]
+        centre = f"{'XYZ'[u]}{middle[u]:.6g} {'XYZ'[v]}{middle[v]:.6g}"
         yield f"    about {centre}, radius {first[0]:.6g} mm, in the plane {plane.name}"
         yield f"    through {math.degrees(path.sweep[row]):.6g} degrees"
