@@ -111,6 +111,8 @@ class Dialect:
     """Seconds for one unit of each word that G4 takes."""
     dwell_point_is_seconds: ClassVar[bool] = False
     """A dwell that is written with a point is in seconds."""
+    spindle_stands: ClassVar[bool] = False
+    """Whether the spindle stands still, as far as the control knows, when a program starts."""
     starts_in_frame: ClassVar[bool] = False
     """Whether the work offset of `initial` is in force for certain when a program starts."""
     work_names: ClassVar[Mapping[str, str]] = {}

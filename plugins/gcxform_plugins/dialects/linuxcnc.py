@@ -149,6 +149,7 @@ class LinuxCNC(gx.Dialect):
         **{code: gx.MCode("user", takes="PQ") for code in range(100, 200)},
     }
     axis_words_once = True
+    spindle_stands = True
     starts_in_frame = True
     g10_offsets = (*gx.Dialect.g10_offsets, "G59.1", "G59.2", "G59.3")
     g10_p0_is_active = True
