@@ -59,13 +59,13 @@ class Act:
 ACT_ORDER = (
     "change-tool",
     "set-tool",
+    "diameter",
     "length",
     "length-negative",
     "length-vector",
     "length-add",
     "no-length",
     "work",
-    "diameter",
     "polar",
     "no-polar",
     "rotate",
@@ -86,11 +86,11 @@ ACT_ORDER = (
 )
 """The order in which a block's acts are done; those with the name of a move are its motion."""
 OWN_MOVES = frozenset({"home", "machine"})
-FRAMING = frozenset(ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")])
+FRAMING = frozenset({"diameter", *ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")]})
 """Acts that folding takes into the words of moves, so that their codes are not written."""
 PRESETS = frozenset({"preset", "set-work", "store-home"})
 """Acts whose effect may depend on where the axes stand."""
-TAKES_MOTION = frozenset({"home", "store-home", "set-work", "local", "preset"})
+TAKES_MOTION = frozenset({"home", "store-home", "set-work", "local", "preset", "length-vector"})
 """Acts whose axis words are theirs, so that the block can have no other motion."""
 
 
@@ -237,6 +237,8 @@ def _g_act(
     """Note what a code does to the frame; refuse it beside a motion that wants its words."""
     name, width = _code_of(word), word.end - word.start
     meaning.acts.append(Act(code.act, name, taken, word.start, width))
+    if code.act == "length-add" and any(axis in meaning.slots for axis in dialect.axes):
+        yield Refusal("GX202", word.start, width, f"{name} takes H or axis words, not both")
     if code.act in TAKES_MOTION and dialect.axis_words_once and "motion" in meaning.groups:
         message = f"{name} and {meaning.groups['motion']} both want the axis words"
         yield Refusal("GX202", word.start, width, message)

@@ -76,7 +76,7 @@ class Moves:
             self.findings.add(line, "GX203", message, hint="write the dwell in a block of its own")
         moves &= self.modes.motion != NUMBER["G80"]
         moves |= centre & arc & ~own
-        in_machine = own & (self.modes.motion == Kind.LINE)
+        in_machine = self.lines.flag("in_machine") & (self.modes.motion == Kind.LINE)
         self._check_feed(np.flatnonzero(moves | in_machine))
         return moves
 
@@ -131,14 +131,25 @@ class Moves:
 
     def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows:
         """Return the rows of a stretch."""
+        self._refuse_other_units(first, first + 1)
         if first in self._acts:
             self.track.act(first)
             own = own_moves(self.track, first)
             if own is not None:
                 return own
+        self._refuse_other_units(first + 1, last)
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
         return Rows.plain(rows, self.modes.motion[rows], ends, len(self.track.frames) - 1)
+
+    def _refuse_other_units(self, first: int, last: int) -> None:
+        """Refuse a change of units under a tool length that would become another one by it."""
+        if not self.dialect.units_spoil_length or not any(self.state.frames.tool):
+            return
+        before = np.append(self.state.groups["units"] == 1, self.modes.inch)
+        for line in (np.flatnonzero(np.diff(before[first : last + 1])) + first).tolist():
+            message = "another unit under a tool length, whose number this control then keeps"
+            self.findings.add(line, "GX213", message, hint="write G49 before, and G43 after")
 
     # --- the path ---
 

@@ -117,7 +117,7 @@ class Track:
             act.code,
             words,
             written,
-            {a: v for a, v in words.items() if a in self.axes},
+            self._radial({a: v for a, v in words.items() if a in self.axes}),
             self.state.position,
             bool(self.modes.incremental[line]),
             Plane(int(self.modes.plane[line])),
@@ -125,6 +125,12 @@ class Track:
             self.dialect,
             self.lines.reading,
         )
+
+    def _radial(self, words: dict[str, float]) -> dict[str, float]:
+        """Return axis words with X as a radius."""
+        if self.state.frames.diameter and "X" in words:
+            return {**words, "X": words["X"] / 2}
+        return words
 
     def _lose(self, line: int, axes: int) -> None:
         if not axes:

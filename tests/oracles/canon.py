@@ -3,7 +3,8 @@
 import re
 from dataclasses import dataclass, field
 
-AXES = "XYZABC"
+from oracles.frames import AXES, Coordinates, Point
+
 PLANES = {"XY": ("XY", "XYZ"), "XZ": ("ZX", "ZXY"), "YZ": ("YZ", "YZX")}
 MODES = {"inverse time": "G93", "units per minute": "G94", "units per revolution": "G95"}
 EVENTS = {
@@ -26,7 +27,9 @@ class CanonMove:
     `feed` is the rate that was set: mm/min (G94 and G93, where LinuxCNC has multiplied by the
     length of the path) or mm/rev; its second number is the same in degrees, for moves of rotary
     axes alone. `turns` counts the turns beyond the first. `unit` is the size of the program's
-    unit in mm: positions are rounded to 1e-4 of it.
+    unit in mm: positions are rounded to 1e-4 of it. `start`, `end` and `centre` are in coordinates
+    of the program (X is a radius), `machine` says where `start`, `end` and `centre` are in those of
+    the machine.
     """
 
     kind: str
@@ -39,6 +42,7 @@ class CanonMove:
     plane: str = "XY"
     centre: tuple[float, float, float] | None = None
     turns: int = 0
+    machine: tuple[Point, ...] = ()
 
 
 @dataclass
@@ -54,7 +58,8 @@ class Reader:
 
     def __init__(self) -> None:
         self.program = CanonProgram()
-        self.position = dict.fromkeys(AXES, 0.0)
+        self.coordinates = Coordinates()
+        self.place = dict.fromkeys(AXES, 0.0)  # of the machine
         self.unit = 1.0
         self.plane = "XY"
         self.mode = "G94"
@@ -83,25 +88,35 @@ class Reader:
             self.feed = (rate * self.unit, rate)
         elif name == "COMMENT" and "feed mode set to" in text:
             self.mode = MODES[re.sub(r'.*set to (.*)"', r"\1", text)]
-        else:
+        elif not self.coordinates.call(name, text, self.unit):
             self._event(name, text)
         self.last = name
 
-    def _move(self, line: int, kind: str, end: dict[str, float], **arc: object) -> None:
+    @property
+    def position(self) -> Point:
+        """Where the machine is, in coordinates of the program."""
+        return self.coordinates.program(self.place)
+
+    def _move(self, line: int, kind: str, end: Point, **arc: object) -> None:
+        start, machine = self.position, (self.place, self.coordinates.machine(end))
+        if "centre" in arc:
+            centre = dict(zip("XYZ", arc["centre"], strict=True))  # type: ignore[call-overload]
+            machine += (self.coordinates.machine(start | centre),)
         self.program.moves.append(
             CanonMove(
                 kind,
-                self.position,
+                start,
                 end,
                 line,
                 self.unit,
                 None if kind == "RAPID" else self.feed,
                 self.mode,
                 PLANES[self.plane][0],
+                machine=machine,
                 **arc,  # type: ignore[arg-type]
             )
         )
-        self.position = end
+        self.place = machine[1]
 
     def _arc(self, line: int, numbers: list[float]) -> None:
         axes = PLANES[self.plane][1]

@@ -97,8 +97,10 @@ class LinuxCNC(gx.Dialect):
     g10_p0_is_active = True
     g10_sets_position = True
     g10_ignores_g91 = True
+    g10_rotates = True
     g52_is_g92 = True
     g43_takes_spindle_tool = True
+    units_spoil_length = True
     g28_without_axes = True
     feed_mode_clears_feed = True
     feed_before_units = True
