@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
+from gcxform.dialect import LINEAR
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, as_written
+from gcxform.modal.meaning import FRAMING
 from gcxform.toolpath.path import Form
 
 Ints = NDArray[np.int64]
@@ -48,6 +50,7 @@ class Copying:
         stands = self._standing(old_count, pieces)
         self._refuse_changed(stands, pieces)
         self._refuse_presets()
+        self._refuse_lengths()
         if task.manner.crossing:
             self.lines &= self._nothing_to_say()
         else:
@@ -83,6 +86,29 @@ class Copying:
                 hint = 'put the pass "offsets" before'
                 raise InputError.one("GX506", message, self.task.location(line), hint)
 
+    def _refuse_lengths(self) -> None:
+        """Refuse lengths that codes take for themselves where another unit would be in force."""
+        takes = self.task.table.flag("takes_lengths", self.task.shape)
+        inch = self.path.blocks.inch != self.original.blocks.inch
+        halved = self.path.folded and any(frame.diameter for frame in self.original.frames)
+        for line in np.flatnonzero(takes & (inch | halved)).tolist():
+            for name, address in self._lengths_kept(line):
+                if inch[line] or address == "X":
+                    message = f"{address} of {name} would have to be written in another unit"
+                    hint = 'put the pass "offsets" before, or change the CAM system\'s output'
+                    raise InputError.one("GX506", message, self.task.location(line), hint)
+
+    def _lengths_kept(self, line: int) -> list[tuple[str, str]]:
+        """Return code and address of lengths, not 0, that codes of a line take and that stay."""
+        window, first = self.task.window, int(self.task.window.first_number[line])
+        meaning = self.task.table.meanings[int(self.task.shape[line])]
+        folded = {act.code for act in meaning.acts if act.name in FRAMING and self.path.folded}
+        return [
+            (name, address)
+            for name, address, slot in meaning.lengths
+            if name not in folded and window.value[first + slot]
+        ]
+
     def _skipped(self) -> None:
         """Copy the blocks that the control skips; another control might not skip them."""
         skipped = self.task.window.shape[: len(self.task.shape)] != self.task.shape
@@ -117,7 +143,7 @@ class Copying:
         if not len(rows):
             return stands
         lines = self.path.block[rows]
-        good = self._same_modes()[lines]
+        good = (self._same_modes() | self._without_lengths(special))[lines]
         if not self.task.manner.crossing:
             good &= special[lines] | ~pieces.repaired_in(lines)
         good &= self.path.form[rows] == self.original.form[others]
@@ -136,6 +162,25 @@ class Copying:
         stands[self.path.block[rows]] = True
         stands[self.path.block[rows[~good]]] = False
         return stands
+
+    def _without_lengths(self, special: Flags) -> Flags:
+        """Return the lines, of those that are special, that only the unit of no length changes."""
+        free = np.zeros(len(special), np.bool_)
+        now, old = self.path.blocks, self.original.blocks
+        mind = special & (now.incremental == old.incremental) & (now.inch != old.inch)
+        window, table = self.task.window, self.task.table
+        for line in np.flatnonzero(mind).tolist():
+            slots = table.meanings[int(self.task.shape[line])].slots
+            first = int(window.first_number[line])
+            free[line] = not any(window.value[first + slots[a]] for a in LINEAR if a in slots)
+        return free
+
+    def _same_diameters(self, rows: Ints, others: Ints) -> Flags:
+        """Return which rows name no X, or are in frames that agree on what X is."""
+        now = np.array([frame.diameter for frame in self.path.frames], np.bool_)
+        was = np.array([frame.diameter for frame in self.original.frames], np.bool_)
+        same = now[self.path.frame[rows]] == was[self.original.frame[others]]
+        return np.asarray(same | ~self.positions.programmed[rows, 0])
 
     def _same_ends(self, rows: Ints, others: Ints) -> Flags:
         """Return which rows end where their source ends and need no word it does not have."""
@@ -168,6 +213,7 @@ class Copying:
         good = (same | as_far).all(axis=1)
         if self.path.frames == self.original.frames:
             return np.asarray(good)
+        good &= self._same_diameters(rows, others)
         words, before = self.positions.end[rows], self.original.words[others]
         alike = (np.abs(words - before) <= EXACT) | (np.isnan(words) & np.isnan(before))
         framed = (self.path.form[rows] == Form.HOME) & (self.path.nth[rows] == 0)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from gcxform.dialect import Dialect
+from gcxform.dialect import LINEAR, Dialect
 from gcxform.modal.codes import Code, Effect, MCode
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Mark, Number, Statement, Word
@@ -96,7 +96,11 @@ TAKES_MOTION = frozenset({"home", "store-home", "set-work", "local", "preset", "
 
 @dataclass(slots=True)
 class Meaning:
-    """What a block of a shape does, but for its numbers."""
+    """What a block of a shape does, but for its numbers.
+
+    `lengths` are the words that codes take for themselves and that are in the unit of the program:
+    code, address, slot.
+    """
 
     groups: dict[str, str] = field(default_factory=dict)
     slots: dict[str, int] = field(default_factory=dict)
@@ -109,6 +113,7 @@ class Meaning:
     percent: bool = False
     events: list[EventShape] = field(default_factory=list)
     acts: list[Act] = field(default_factory=list)
+    lengths: list[tuple[str, str, int]] = field(default_factory=list)
     refusal: Refusal | None = None
 
 
@@ -216,6 +221,8 @@ def _g_effects(
         if code.effect is Effect.MODAL:
             continue
         taken = _take(code, dialect, meaning)
+        lengths = LINEAR if code.effect is Effect.FRAME else code.lengths
+        meaning.lengths += [(name, a, slot) for a, slot in taken if a in lengths]
         if code.effect is Effect.DWELL:
             meaning.dwell = True
             if not taken:

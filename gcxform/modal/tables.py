@@ -46,6 +46,7 @@ FLAGS = (
     "work_only",
     "framing",
     "presets",
+    "takes_lengths",
 )
 
 
@@ -98,6 +99,7 @@ class MeaningTable:
             [act.name for act in meaning.acts] == ["work"] and "frame" in meaning.groups,
             any(act.name in FRAMING for act in meaning.acts),
             any(act.name in PRESETS for act in meaning.acts),
+            bool(meaning.lengths),
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -38,7 +38,7 @@ class LinuxCNC(gx.Dialect):
         "G95": gx.Code("feed-mode"),
         **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
         **{code: v.frame("frame", "work") for code in ("G59.1", "G59.2", "G59.3")},
-        **{code: v.inert("path", "PQ") for code in ("G61", "G61.1", "G64")},
+        **{code: v.inert("path", "PQ", "PQ") for code in ("G61", "G61.1", "G64")},
         **{code: v.inert("retract") for code in ("G98", "G99")},
         "G7": v.frame("diameter", "diameter"),
         "G8": v.frame("diameter", "diameter"),
