@@ -13,6 +13,7 @@ from gcxform.emit.manner import Believed, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, as_written
 from gcxform.modal.meaning import FRAMING
+from gcxform.modal.tables import GROUPS
 from gcxform.toolpath.path import Form
 
 Ints = NDArray[np.int64]
@@ -95,8 +96,16 @@ class Copying:
             for name, address in self._lengths_kept(line):
                 if inch[line] or address == "X":
                     message = f"{address} of {name} would have to be written in another unit"
-                    hint = 'put the pass "offsets" before, or change the CAM system\'s output'
+                    hint = "leave the block out, or let the CAM system write it so"
+                    if (name, address) not in self._lengths_left(line):
+                        hint = 'put the pass "offsets" before'
                     raise InputError.one("GX506", message, self.task.location(line), hint)
+
+    def _lengths_left(self, line: int) -> list[tuple[str, str]]:
+        """Return what of those lengths folding would leave."""
+        meaning = self.task.table.meanings[int(self.task.shape[line])]
+        framing = {act.code for act in meaning.acts if act.name in FRAMING}
+        return [(name, address) for name, address, _ in meaning.lengths if name not in framing]
 
     def _lengths_kept(self, line: int) -> list[tuple[str, str]]:
         """Return code and address of lengths, not 0, that codes of a line take and that stay."""
@@ -169,6 +178,7 @@ class Copying:
         now, old = self.path.blocks, self.original.blocks
         mind = special & (now.incremental == old.incremental) & (now.inch != old.inch)
         window, table = self.task.window, self.task.table
+        mind &= table.groups[self.task.shape, GROUPS.index("units")] < 0
         for line in np.flatnonzero(mind).tolist():
             slots = table.meanings[int(self.task.shape[line])].slots
             first = int(window.first_number[line])

@@ -66,9 +66,11 @@ def nothing_left(
                 item.address == "N"
                 or (_name(item) if item.address in CODES else item.address) in folded
             )
-        return is_foreign(item, target)
+        slash = isinstance(item, Mark) and item.kind == "block_delete"
+        return slash or is_foreign(item, target)
 
     kept = [item for item in items if not (isinstance(item, Word) and item.address == "N")]
+    kept = [item for item in kept if not (isinstance(item, Mark) and item.kind == "block_delete")]
     return bool(kept) and all(goes(item) for item in items)
 
 
@@ -111,10 +113,15 @@ class TemplateWriter:
         at = slot = 0
         whole = key.role not in (Role.MIDDLE, Role.LAST)
         self._repairs_wait = True
+        gap: bytes | None = None  # what stood before words that are left out
         for item in self.shape.block.items:
             lead = self.text[at : item.start].encode("latin-1") if whole else b""
             at = item.end
-            self._item(item, lead, slot)
+            if self._goes(item):
+                gap = lead if gap is None else gap
+            else:
+                self._item(item, lead if gap is None else gap, slot)
+                gap = None
             if isinstance(item, Word) and item.address not in CODES:
                 slot += isinstance(item.value, Number)
         self._rest()
@@ -130,6 +137,12 @@ class TemplateWriter:
         self._feed_at_end()
 
     # --- one item ---
+
+    def _goes(self, item: Item) -> bool:
+        """Whether an item is folded into the words of moves."""
+        if not isinstance(item, Word):
+            return False
+        return (_name(item) if item.address in CODES else item.address) in self.folded
 
     def _item(self, item: Item, lead: bytes, slot: int) -> None:
         if isinstance(item, Word):
@@ -176,8 +189,6 @@ class TemplateWriter:
 
     def _word(self, word: Word, lead: bytes, slot: int) -> None:
         address = word.address
-        if (address if address not in CODES else _name(word)) in self.folded:
-            return
         if address not in "NO" and self._repairs_wait:
             lead = self._repair_before(word, lead)
         if address == "G":

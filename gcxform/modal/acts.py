@@ -84,7 +84,7 @@ def work(state: FrameState, asked: Asked) -> FrameState:
     unmoved = bool(np.isnan(asked.position).all())
     if not state.known and unmoved and name not in asked.reading.work_offsets:
         return state.starting_in(name, asked.reading.work_offsets, True)
-    return replace(state, work=name, known=True)
+    return state.in_work(name)
 
 
 def set_work(state: FrameState, asked: Asked) -> FrameState:
@@ -369,11 +369,17 @@ def no_turn(name: str) -> Act:
     """Return the act that ends a kind of turn."""
 
     def ended(state: FrameState, asked: Asked) -> FrameState:
-        if name == "mirror" and asked.axes and state.turns:
-            raise ActError("GX213", f"{asked.code} for some axes only is not followed")
+        if name == "mirror" and asked.axes and not _mirrored(state) <= set(asked.axes):
+            raise ActError("GX213", f"{asked.code} for some of the mirrored axes is not followed")
         return replace(state, turns=tuple(turn for turn in state.turns if turn[0] != name))
 
     return ended
+
+
+def _mirrored(state: FrameState) -> set[str]:
+    """Return the axes that G51.1 has mirrored."""
+    matrices = [turn.matrix for name, turn in state.turns if name == "mirror"]
+    return {axis for matrix in matrices for k, axis in enumerate("XYZ") if matrix[k][k] < 0}
 
 
 def polar(state: FrameState, asked: Asked) -> FrameState:

@@ -102,6 +102,10 @@ class FrameState:
         """Return the state with the zero of a work offset elsewhere."""
         return replace(self, zeros={**self.zeros, work: zero})
 
+    def in_work(self, work: str) -> FrameState:
+        """Return the state in another work offset."""
+        return replace(self, work=work, known=True)
+
     def with_tool(self, vector: tuple[float, float, float], name: str) -> FrameState:
         """Return the state with another tool vector; `name` says whose it is."""
         return replace(self, tool=vector, tool_name=name)

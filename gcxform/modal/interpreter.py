@@ -101,3 +101,5 @@ class Interpreter:
         if lines.flag("ends")[-1]:
             for name, code in self.dialect.resets_at_end.items():
                 self.state.groups[name] = NUMBER[code]
+                if name == "frame":
+                    self.state.frames = self.state.frames.in_work(code)

@@ -86,7 +86,9 @@ ACT_ORDER = (
 )
 """The order in which a block's acts are done; those with the name of a move are its motion."""
 OWN_MOVES = frozenset({"home", "machine"})
-FRAMING = frozenset({"diameter", *ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")]})
+FRAMING = frozenset(
+    {"diameter", *ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")]}
+)
 """Acts that folding takes into the words of moves, so that their codes are not written."""
 PRESETS = frozenset({"preset", "set-work", "store-home"})
 """Acts whose effect may depend on where the axes stand."""

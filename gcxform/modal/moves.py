@@ -20,7 +20,7 @@ from gcxform.modal.home import own_moves
 from gcxform.modal.lines import Lines
 from gcxform.modal.rows import Rows
 from gcxform.modal.state import Modes
-from gcxform.modal.tables import NUMBER
+from gcxform.modal.tables import MANY_WORK, NUMBER
 from gcxform.modal.track import Track
 from gcxform.toolpath.path import Blocks, Kind, Toolpath, constant
 
@@ -110,13 +110,22 @@ class Moves:
     def _acting(self) -> Ints:
         """Return the lines that act on the frame or move in a way of their own."""
         acts = self.lines.flag("acts")
+        self._reset = self._after_end()
         if not acts.any():
-            return np.empty(0, np.int64)
+            return np.flatnonzero(self._reset)
         work = np.append(np.int8(self.state.groups["frame"]), self.modes.work)
         again = self.lines.flag("work_only") & (work[1:] == work[:-1])
+        again &= (self.modes.work != MANY_WORK) & ~self._reset
         if not self.state.frames.known and again.any():
             again[int(np.argmax(again))] = False
-        return np.flatnonzero(acts & ~again)
+        return np.flatnonzero((acts & ~again) | self._reset)
+
+    def _after_end(self) -> Flags:
+        """Return the lines before which a control that goes on has reset the work offset."""
+        after = np.zeros(self.lines.live, np.bool_)
+        if "frame" in self.dialect.resets_at_end:
+            after[1:] = self.lines.flag("ends")[:-1]
+        return after
 
     def _stretches(self) -> Iterator[tuple[int, int]]:
         """Yield first and last line + 1 of the stretches."""
@@ -132,6 +141,8 @@ class Moves:
     def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows:
         """Return the rows of a stretch."""
         self._refuse_other_units(first, first + 1)
+        if first < len(self._reset) and self._reset[first]:
+            self.track.reset_work(first)
         if first in self._acts:
             self.track.act(first)
             own = own_moves(self.track, first)

@@ -22,12 +22,19 @@ NUMBER = {
     "G20": 1,
     **{f"G{54 + n}": n for n in range(6)},
     **{f"G59.{n}": 5 + n for n in (1, 2, 3)},
+    "G54.1": 9,
 }
 """The number that stands for a code within its group."""
 
 
+MANY_WORK = 9
+"""The number of codes that have a P word, so that they name more than one work offset."""
+
+
 def frame_name(frame: int) -> str:
     """Return the code of a work offset by its number: 0 is G54."""
+    if frame == MANY_WORK:
+        return "G54.1"
     return f"G{54 + frame}" if frame < 6 else f"G59.{frame - 5}"
 
 
