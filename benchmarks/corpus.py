@@ -31,7 +31,7 @@ CHAIN = (
     "absolute | segment chord-error=5um | "
     f"volumetric model={MODEL} part-origin=0,0,0 outside=clamp tolerance=1um"
 )
-OURS = ("fanuc", "grbl", "linuxcnc")
+OURS = ("fanuc", "grbl", "haas", "linuxcnc")
 START = Reading({"X": 0.0, "Y": 0.0, "Z": 0.0})
 """Many programs leave an axis where it is: the machine is taken to stand at its origin."""
 NUMBERS = gx.NumberFormat(mm=4, inch=5, angle=4)

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from gcxform.dialect import ArcRule as ArcRule
     from gcxform.dialect import Dialect as Dialect
     from gcxform.dialect import NumberFormat as NumberFormat
+    from gcxform.guess import Evidence as Evidence
+    from gcxform.guess import Guess as Guess
+    from gcxform.guess import guess_dialect as guess_dialect
     from gcxform.hookspecs import hookimpl as hookimpl
     from gcxform.machine.errors import AxisFunction as AxisFunction
     from gcxform.machine.errors import AxisFunctions as AxisFunctions
@@ -65,11 +68,13 @@ if TYPE_CHECKING:
     from gcxform.toolpath.facts import KNOWN_POSITIONS as KNOWN_POSITIONS
     from gcxform.toolpath.facts import LINEAR_ONLY as LINEAR_ONLY
     from gcxform.toolpath.facts import METRIC as METRIC
+    from gcxform.toolpath.facts import NO_CYCLES as NO_CYCLES
     from gcxform.toolpath.facts import NOMINAL as NOMINAL
     from gcxform.toolpath.facts import WORKPIECE_FRAME as WORKPIECE_FRAME
     from gcxform.toolpath.facts import XY_ARCS as XY_ARCS
     from gcxform.toolpath.facts import Fact as Fact
     from gcxform.toolpath.frames import Frame as Frame
+    from gcxform.toolpath.path import OWN_DISTANCES as OWN_DISTANCES
     from gcxform.toolpath.path import Event as Event
     from gcxform.toolpath.path import FeedMode as FeedMode
     from gcxform.toolpath.path import Form as Form
@@ -84,6 +89,7 @@ _HOMES = {
     "diagnostics": "Diagnostic FileError GcxformError InputError Location UsageError "
     "VerificationError",
     "dialect": "ArcRule Dialect NumberFormat",
+    "guess": "Evidence Guess guess_dialect",
     "hookspecs": "hookimpl",
     "machine.errors": "AxisFunction AxisFunctions ErrorModel Outside check_contraction compensate",
     "machine.formats": "ErrorFormat",
@@ -97,10 +103,10 @@ _HOMES = {
     "swept_anew",
     "toolpath.crossings": "line_crossings",
     "toolpath.deviation": "deviation",
-    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NOMINAL "
+    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NO_CYCLES NOMINAL "
     "WORKPIECE_FRAME XY_ARCS Fact",
     "toolpath.frames": "Frame",
-    "toolpath.path": "Event FeedMode Form Kind Plane Toolpath column_major",
+    "toolpath.path": "Event FeedMode Form Kind OWN_DISTANCES Plane Toolpath column_major",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 

@@ -26,7 +26,7 @@ from gcxform.registry import default_registry
 from gcxform.source import Source
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.matching import Matching, Pieces, match, measure
-from gcxform.toolpath.path import COLUMNS, Blocks, Event, FeedMode, Kind, Toolpath
+from gcxform.toolpath.path import BLOCK_MODES, COLUMNS, Blocks, Event, FeedMode, Kind, Toolpath
 
 TOLERANCE = 0.001  # mm: twice what rounding an axis to three decimals can do
 REACH = 1.0  # mm; what is farther apart is not taken for the same place
@@ -92,14 +92,13 @@ def joined(parts: Sequence[Toolpath]) -> Toolpath:
         for part, first in zip(parts, counts[:-1], strict=True)
         for event in part.events
     )
-    names = ("inch", "incremental", "absolute_centre")
     before = np.cumsum([0, *(len(part.frames) for part in parts)])
     columns["frame"] = np.concatenate(
         [part.frame + int(first) for part, first in zip(parts, before[:-1], strict=True)]
     )
     frames = tuple(frame for part in parts for frame in part.frames)
-    flags = [np.concatenate([getattr(p.blocks, name) for p in parts]) for name in names]
-    blocks = Blocks(parts[0].blocks.first, *flags)
+    modes = [np.concatenate([getattr(p.blocks, name) for p in parts]) for name in BLOCK_MODES]
+    blocks = Blocks(parts[0].blocks.first, *modes)
     return parts[0].replace(**columns, events=events, blocks=blocks, frames=frames)
 
 

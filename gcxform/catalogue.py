@@ -54,14 +54,16 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "On this control a distance without a point counts in its least increment, so that X10 "
         "may be 10 mm or 10 micrometres. The program does not say which, and a guess is wrong "
         'by a factor of a thousand. Say `increment = "0.001 mm"` in [input], or --increment; 0 '
-        "needs neither.",
+        "needs neither. A feed without a point is refused where settings of the control decide "
+        "on its unit: write the point, or on a Haas say `feed-increment` in [input].",
     ),
     "GX206": (
         "Code that would have to be run",
-        "The block has an expression, a variable, an assignment or a flow word. Its value "
-        "depends on what ran before, on the control too, and this version computes none. Let "
-        "the CAM system write plain blocks, or run the program through the control's own "
-        "simulation first; the empty pipeline and passes on text keep such blocks as they are.",
+        "The block has a flow word, a call, a code that is the value of an expression, or an "
+        "assignment to a parameter of the control. Assignments and expressions in programs that "
+        "run from top to bottom are computed; this is not. Let the CAM system write plain blocks, "
+        "or run the program through the control's own simulation first; the empty pipeline and "
+        "passes on text keep such blocks as they are.",
     ),
     "GX207": (
         "An incremental move from an unknown position",
@@ -114,6 +116,33 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "A setting of the control decides",
         "What the code does depends on a parameter or setting of the control which the program "
         "does not tell. Give it in [control] of the machine file.",
+    ),
+    "GX215": (
+        "A canned cycle is not expanded",
+        "What the cycle does cannot be told: a word is missing or cannot be, a level is not known, "
+        "the control refuses it, or a setting of the control decides. The message says which. "
+        "Settings go to [control] of the machine file: peck-return for G73, peck-clearance for "
+        "G83.",
+    ),
+    "GX219": (
+        "A line or a number beyond what the control takes",
+        "The block is longer than the control reads, or has a number that its word cannot have: a "
+        "negative speed, tool, time or feed, a sequence number too large. Controls stop here, or "
+        "drop the block and go on with the next. Shorten the block, or correct the number.",
+    ),
+    "GX220": (
+        "A parameter whose value is not known",
+        "An expression reads a parameter (a variable) that nothing in the program has set before. "
+        "It has what another program has left in it, or what the control keeps there; to take it "
+        "for zero could move a tool to the wrong place. Set it in the program, or say what it is "
+        'worth: `parameters = { "100" = 1.5 }` in [input], with a name as `"<depth>"`. What '
+        "the control itself changes (positions, offsets, probe results) cannot be given.",
+    ),
+    "GX221": (
+        "An expression without a value",
+        "The control would stop here: a division by zero, the root of a negative number, a number "
+        "that is not whole where one is asked for. Or controls are known to compute this in two "
+        "ways, such as the rounding of a half on Fanuc; then write it so that there is one.",
     ),
     # --- 3xx: geometry ---
     "GX301": (
@@ -181,6 +210,19 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "machine file lacks the offset. The error depends on where the part is in the machine. "
         "Give a machine file with [work-offset.G54] and the others that are used, in place of "
         "part-origin.",
+    ),
+    "GX320": (
+        "A feed that cannot be converted",
+        "Between G93 and G94 a feed is converted by the length of its move, as the control "
+        "measures it. Here that length is not known, or controls do not agree about it, or the "
+        "speed is not the program's: G95 depends on the spindle. Let the CAM write this part in "
+        "the feed mode that is wanted, or leave the pass out.",
+    ),
+    "GX321": (
+        "The program has no end at which its feed mode could be restored",
+        "The pass feed leaves the control in the feed mode in which the source program leaves it, "
+        "and states that mode in the block with M2 or M30. This program has none, and what runs "
+        "after it would find another feed mode. End the program with M2 or M30.",
     ),
     # --- 4xx: machine and error-model files ---
     "GX401": (
@@ -352,7 +394,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "A number with too many digits",
         "The number has more digits than controls take for a word, because a position is far "
         "away or the decimals are many. Check the units of the program and `decimals` in "
-        "[output].",
+        "[output]. In inverse time (G93) the feed of a long and slow move is very small: cut it.",
     ),
     "GX504": (
         "An arc cannot be written as this control accepts it",
@@ -529,6 +571,13 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "The program has no such line",
         "Lines count from 1, as in an editor and in messages. `gcxform info FILE` says how many "
         "there are.",
+    ),
+    "GX732": (
+        "No safe restart at this line",
+        "A restart must bring the control into the state in which the program is at that line: "
+        "modes, tool, spindle, coolant, and where the axes stand. Something of that is not known, "
+        "or cannot be said by blocks. Begin at an earlier line: at the tool change, at the block "
+        "that states the arc, before the code that is named.",
     ),
     # --- 8xx: plugins ---
     "GX801": (

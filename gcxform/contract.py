@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, ClassVar
 from gcxform.dialect import Dialect, NumberFormat
 from gcxform.syntax.tree import Block
 from gcxform.toolpath.facts import Fact
-from gcxform.toolpath.path import Toolpath
+from gcxform.toolpath.path import FeedMode, Toolpath
 
 if TYPE_CHECKING:
     from gcxform.machine.machine import Machine
@@ -57,6 +57,11 @@ class Pass:
     def promise_angle(self) -> float:
         """How far (deg) rotary axes may be from where they should be at a point of the path."""
         return 0.0
+
+    @property
+    def feed_mode(self) -> FeedMode | None:
+        """The feed mode that the pass turns those of others into; None: it keeps them."""
+        return None
 
     def begin(self, context: PassContext) -> None:
         """Look at the context before any input is read; raise UsageError if it does not fit."""

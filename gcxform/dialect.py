@@ -17,7 +17,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
+from gcxform.modal.arithmetic import Arithmetic
 from gcxform.modal.codes import ISO, ISO_M, Code, MCode
+from gcxform.modal.cyclerule import CycleRule
 from gcxform.syntax.grammar import Grammar, load
 
 INCH = 25.4  # mm, exact by definition
@@ -80,6 +82,8 @@ class Dialect:
     """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
     point_required: ClassVar[bool] = False
     """A distance without a point counts in increments of the control, which must be configured."""
+    feed_point_required: ClassVar[bool] = False
+    """An F without a point counts in a unit of the control, which must be configured."""
     circle_needs_axis_word: ClassVar[bool] = False
     turns_address: ClassVar[str] = ""
     """The word that counts the turns of an arc (n - 1 full turns beyond the arc itself)."""
@@ -87,18 +91,33 @@ class Dialect:
     feed_before_units: ClassVar[bool] = False
     """F is read in the unit that was in force before a G20 or G21 of its own block."""
     change_clears_feed: ClassVar[bool] = False
-    """After another unit or feed mode the feed is not known until it is programmed."""
+    """After another unit the feed is not known until it is programmed; after another feed mode it
+    never is."""
+    feed_along_lines: ClassVar[bool] = False
+    """In moves of several kinds of axes a feed counts along X Y Z, or along all rotary axes where
+    they move alone; otherwise the length of such moves is not known."""
+    inverse_time_arcs: ClassVar[bool] = True
+    """Whether arcs take the time that G93 gives them."""
+    least_inverse_rate: ClassVar[float] = 0.0
+    """Units of the program per minute: in G93 the control moves no slower."""
     lone_cr_is_blank: ClassVar[bool] = False
     """A CR without LF is a blank inside a block, and no line end."""
     resets_at_end: ClassVar[Mapping[str, str]] = {}
     """Where M2 and M30 do not stop the control: the modes they leave behind."""
     dwell: ClassVar[Mapping[str, float]] = {"P": 1.0}
-    """Seconds for one unit of each word that G4 takes; a value with a point is in seconds."""
+    """Seconds for one unit of each word that G4 takes."""
+    dwell_point_is_seconds: ClassVar[bool] = False
+    """A dwell that is written with a point is in seconds."""
     starts_in_frame: ClassVar[bool] = False
     """Whether the work offset of `initial` is in force for certain when a program starts."""
+    work_names: ClassVar[Mapping[str, str]] = {}
+    """Work offsets that have a second code: the code, and the name by which they are known."""
     g10_offsets: ClassVar[tuple[str, ...]] = ("G54", "G55", "G56", "G57", "G58", "G59")
     """The work offsets that P1, P2 ... of G10 L2 name."""
     g10_p0_is_active: ClassVar[bool] = False
+    g10_needs_p: ClassVar[bool] = True
+    length_axes: ClassVar[str] = "XYZ"
+    """The axes along which G43.1 gives a length."""
     g10_sets_position: ClassVar[bool] = False
     """G10 L20 makes the present position read what is given."""
     g10_ignores_g91: ClassVar[bool] = False
@@ -128,6 +147,8 @@ class Dialect:
     """Whether words may be written in small letters."""
     number_first: ClassVar[bool] = False
     """A sequence number anywhere but at the head of its block is refused."""
+    largest_number: ClassVar[int] = 0
+    """The largest sequence number the control takes; 0: no limit."""
     line_length: ClassVar[int] = 0
     """The longest block the control takes, in characters; 0: no limit."""
     length_without_blanks: ClassVar[bool] = False
@@ -136,14 +157,20 @@ class Dialect:
     """How a comment may begin: any of "(" and ";"."""
     has_percent: ClassVar[bool] = True
     has_program_number: ClassVar[bool] = True
+    program_number_digits: ClassVar[int] = 0
+    """How many digits a program number may have; 0: any number."""
     words: ClassVar[str] = "DEFHIJKLNPQRST"
     """Addresses the control knows, besides its axes and G, M, O."""
+    arithmetic: ClassVar[Arithmetic | None] = None
+    """How the control computes expressions; None: they are refused."""
     numbers: ClassVar[NumberFormat] = NumberFormat()
     arc_planes: ClassVar[frozenset[str]] = frozenset({"XY", "ZX", "YZ"})
     """Planes in which the control can cut arcs."""
     arc_rotary: ClassVar[bool] = False
     """Whether a rotary axis may turn along an arc."""
     arc_rule: ClassVar[ArcRule] = ArcRule(absolute=0.01)
+    cycle_rule: ClassVar[CycleRule | None] = None
+    """What the control makes of canned cycles; None: it has none, or they are not known."""
 
     @classmethod
     def load_grammar(cls) -> Grammar:

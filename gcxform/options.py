@@ -193,6 +193,18 @@ def _read_coordinates(raw: object, around: _Around) -> dict[str, float]:
     return {key: _read_quantity(quantity_of(key), value, around) for key, value in raw.items()}
 
 
+_PARAMETER = re.compile(r"[0-9]+|<[^<>#()]+>")
+
+
+def _read_parameters(raw: object, around: _Around) -> dict[str, float]:
+    if not isinstance(raw, dict):
+        raise _expected('a table of parameters, such as {"100" = 1.5, "<depth>" = -2.0}', raw)
+    if wrong := [key for key in raw if not _PARAMETER.fullmatch(key)]:
+        hint = 'write a number, "100", or a name in its brackets, "<depth>"'
+        raise _RefusedError("GX701", f"{wrong[0]!r} is not a parameter", hint)
+    return {key: _read_plain(float, "a number", value, around) for key, value in raw.items()}
+
+
 def _choice_kind(choices: tuple[Any, ...]) -> _Kind:
     """Return the kind of a value which is one of a few, strings or numbers."""
     texts = {str(choice): choice for choice in choices}
@@ -213,6 +225,7 @@ _LENGTH = _Kind("length", partial(_read_quantity, LENGTH), unit=" mm")
 _ANGLE = _Kind("angle", partial(_read_quantity, ANGLE), unit=" deg")
 _VECTOR = _Kind("three lengths", _read_vector, list)
 _COORDINATES = _Kind("coordinates by axis letter", _read_coordinates)
+_PARAMETERS = _Kind("numbers by parameter", _read_parameters)
 _PLAIN: dict[type, _Kind] = {
     bool: _Kind("true or false", partial(_read_plain, bool, "true or false")),
     int: _Kind("whole number", partial(_read_plain, int, "a whole number")),
@@ -230,6 +243,8 @@ Vector = Annotated[tuple[float, float, float], _VECTOR]
 """Three lengths in mm; written as a list, as "0,0,0" or as a table of X, Y and Z."""
 Coordinates = Annotated[dict[str, float], _COORDINATES]
 """Positions by axis letter, mm or degrees; written as a table."""
+ParameterValues = Annotated[dict[str, float], _PARAMETERS]
+"""Values of parameters by number ("100") or name ("<depth>"); written as a table."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -255,4 +255,12 @@ def _numbers(target: type[Dialect], spec: PipelineSpec) -> tuple[NumberFormat, d
 
 def _reading(source: type[Dialect], spec: PipelineSpec) -> Reading:
     given = spec.input
-    return Reading(dict(given.start), given.increment, given.feed, given.block_delete, given.units)
+    return Reading(
+        dict(given.start),
+        given.increment,
+        given.feed,
+        given.block_delete,
+        given.units,
+        given.feed_increment,
+        dict(given.parameters),
+    )

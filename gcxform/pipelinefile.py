@@ -25,7 +25,16 @@ from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.machine import machine
 from gcxform.machine.modelfile import AxisFunctionsFile
-from gcxform.options import Argument, Coordinates, Length, Option, OptionDoc, build, describe
+from gcxform.options import (
+    Argument,
+    Coordinates,
+    Length,
+    Option,
+    OptionDoc,
+    ParameterValues,
+    build,
+    describe,
+)
 from gcxform.registry import Registry, default_registry
 from gcxform.tomltext import Codes, TomlText, read_toml
 
@@ -51,10 +60,16 @@ class InputSpec:
     feed: Annotated[
         float | None, Option("feed before the first F word, in units per minute", above=0.0)
     ] = None
+    feed_increment: Annotated[
+        float | None, Option("what 1 means in an F without a point, per minute", above=0.0)
+    ] = None
     block_delete: Annotated[
         Literal["execute", "skip", ""], Option("what the control does with / blocks")
     ] = ""
     units: Annotated[Literal["mm", "in"], Option("units before the first G20 or G21")] = "mm"
+    parameters: Annotated[
+        ParameterValues, Option("values of parameters that the program reads and does not set")
+    ] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -295,6 +310,7 @@ _JSON_TYPES: Final[Mapping[str, str | list[str]]] = {
     "angle": ["number", "string"],
     "three lengths": ["array", "string", "object"],
     "coordinates by axis letter": "object",
+    "numbers by parameter": "object",
     "true or false": "boolean",
     "whole number": "integer",
     "number": "number",

@@ -129,6 +129,7 @@ class Run:
         progress: Progress,
     ) -> None:
         """Transform the windows; of several errors the first in the program is raised."""
+        feed_modes = any(step.feed_mode is not None for step in self.steps)
         proof: Future[None] | None = None
         try:
             for window, table in windows:
@@ -146,9 +147,19 @@ class Run:
                     )
                 self._hand_on(window, emitted, out)
                 progress(len(window.text))
+            if feed_modes:
+                self._check_end()
         finally:
             if proof is not None:
                 proof.result()
+
+    def _check_end(self) -> None:
+        """Refuse to leave the control in another feed mode than the source program does."""
+        assert self.interpreter is not None
+        if self.emitter.believed.feed_mode != self.interpreter.state.groups["feed-mode"]:
+            where = Location(self.source.name, max(self.reader.lines, 1))
+            message = "the program ends without M2 or M30: its feed mode cannot be restored"
+            raise InputError.one("GX321", message, where, "write M30 at its end")
 
     def _hand_on(self, window: Window, emitted: Emitted, out: Output) -> None:
         out.lines_in += len(window)
@@ -257,6 +268,8 @@ class Run:
                 certificate.assumed.append(f"{group} {code}, which the program does not state")
         for axis, value in self.interpreter.reading.start.items():
             certificate.assumed.append(f"{axis} stands at {value:g} before the first block")
+        for name, value in self.interpreter.reading.parameters.items():
+            certificate.assumed.append(f"#{name} is {value:g} before the first block")
 
 
 def _in_words_of(target: type[Dialect], path: Toolpath) -> Toolpath:

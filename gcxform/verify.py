@@ -23,12 +23,14 @@ from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.deviation import deviation
 from gcxform.toolpath.path import Event, FeedMode, Kind, Toolpath
+from gcxform.toolpath.travel import lengths
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
 
 FEED_ERROR = 2e-4  # relative: what the rounding of a feed may change
+TIME_ERROR = 1e-3  # relative: what the rounding of the feeds of pieces may change
 
 
 @dataclass(slots=True)
@@ -69,6 +71,7 @@ class Verifier:
         self.reader = WindowReader(context.target)
         self.interpreter = Interpreter(context.target, reading, axes, "output")
         self.budgets = budgets
+        self.feed_modes = [step.feed_mode for step in passes if step.feed_mode is not None]
         self.inch = False
         self.angle_budget = angle_budget
         self.file = file
@@ -100,6 +103,8 @@ class Verifier:
         trace = _Trace(read.path, window, back.path, path, source, nth, first)
         self._count(read, window, trace)
         self._compare(trace)
+        if self.feed_modes:
+            self._left_modes(read, back, trace)
         self._events(self._told(read.path.events), self._told(back.path.events), trace)
 
     def _count(self, read: Interpreted, window: Window, trace: _Trace) -> None:
@@ -177,25 +182,32 @@ class Verifier:
         """Check that feeds are those of the source; in inverse time, the times must add up."""
         before, after, owner = trace.before, trace.after, trace.owner
         moving = before.kind[owner] != Kind.RAPID
-        mode = before.feed_mode[owner] != after.feed_mode
-        if (mode & moving).any():
-            self._fail("the feed mode has changed", trace, int(np.argmax(mode & moving)))
+        other = before.feed_mode[owner] != after.feed_mode
+        meant = after.feed_mode == self.feed_modes[-1] if self.feed_modes else False
+        strange = other & moving & ~np.asarray(meant)
+        if strange.any():
+            self._fail("the feed mode has changed", trace, int(np.argmax(strange)))
+        if self.feed_modes:
+            self._converted(trace)
+            moving &= ~self._may_be_converted(trace, owner)
         inverse = after.feed_mode == FeedMode.INVERSE_TIME
         plain = moving & ~inverse
         off = np.abs(after.feed - before.feed[owner]) > FEED_ERROR * np.abs(after.feed)
         if (off & plain).any():
             self._fail("the feed has changed", trace, int(np.argmax(off & plain)))
         if (moving & inverse).any():
-            self._times(trace, moving & inverse)
+            self._times(trace)
 
-    def _times(self, trace: _Trace, rows: NDArray[np.bool_]) -> None:
+    def _times(self, trace: _Trace) -> None:
         """Add up the times of the written moves, before the models cut them further."""
         written, owner = trace.written, trace.written_owner
         mine = written.feed_mode == FeedMode.INVERSE_TIME
         mine &= written.kind != Kind.RAPID
+        if self.feed_modes:
+            mine &= ~self._may_be_converted(trace, owner)
         time = np.bincount(owner[mine], 1 / written.feed[mine], len(trace.before))
         wanted = 1 / trace.before.feed
-        slack = 1e-3 * wanted
+        slack = TIME_ERROR * wanted
         used = np.unique(owner[mine])
         wrong = used[np.abs(time[used] - wanted[used]) > slack[used]]
         if len(wrong):
@@ -208,6 +220,59 @@ class Verifier:
             return events
         codes = self.context.source.codes
         return tuple(e for e in events if e.what not in codes or codes[e.what].act not in FRAMING)
+
+    def _may_be_converted(self, trace: _Trace, owner: Ints) -> NDArray[np.bool_]:
+        """Return the rows whose feeds a pass may have converted, there and back if there are two.
+
+        One pass alone leaves what is in its mode; blocks after which another program may run keep
+        their mode.
+        """
+        before = trace.before
+        kept = before.blocks.leaves[before.block]
+        if len(self.feed_modes) == 1:
+            kept = kept | (before.feed_mode == self.feed_modes[0])
+        return np.asarray(~kept[owner])
+
+    def _converted(self, trace: _Trace) -> None:
+        """Check converted feeds by time: at the old feed it is that of the way.
+
+        The way may be measured as programmed or as written, and its pieces may be off by what the
+        path may be off.
+        """
+        before, written, owner = trace.before, trace.written, trace.written_owner
+        mine = (written.kind != Kind.RAPID) & self._may_be_converted(trace, owner)
+        if not mine.any():
+            return
+        rows, old, new = np.unique(owner[mine]), lengths(before), lengths(written)
+        inverse = written.feed_mode == FeedMode.INVERSE_TIME
+        ways = np.where(inverse, 1.0, (new.least + new.most) / 2)
+        time = self._sums(trace, mine, ways / written.feed)[rows]
+        timed = before.feed_mode[rows] == FeedMode.INVERSE_TIME
+        way = (old.least + old.most)[rows] / 2
+        implied = time * before.feed[rows] * np.where(timed, way, 1.0)
+        pieces = self._sums(trace, mine, np.ones(len(written)))[rows]
+        slack = pieces * np.where(old.turns[rows], self.angle_budget, self.budget)
+        least = np.minimum(old.least[rows], self._sums(trace, mine, new.least)[rows])
+        most = np.maximum(old.most[rows], self._sums(trace, mine, new.most)[rows])
+        low, high = least * (1 - TIME_ERROR) - slack, most * (1 + TIME_ERROR) + slack
+        off = rows[~((implied >= low) & (implied <= high))]
+        if len(off):
+            line = int(before.source[off[0]])
+            self._raise("the time of a move is another after its feed was converted", line, 0)
+
+    def _sums(self, trace: _Trace, mine: NDArray[np.bool_], values: Floats) -> Floats:
+        """Return the sums of values over the written rows `mine` of each row of the source."""
+        return np.bincount(trace.written_owner[mine], values[mine], len(trace.before)).astype(float)
+
+    def _left_modes(self, read: Interpreted, back: Interpreted, trace: _Trace) -> None:
+        """Check that what may run after a block finds the feed mode that the source leaves."""
+        first = read.path.blocks.first
+        for line in np.flatnonzero(read.path.blocks.leaves).tolist():
+            places = np.flatnonzero(trace.source == line + first)
+            mode = back.modes.feed_mode[places[-1:]]
+            if (mode != read.modes.feed_mode[line]).any():
+                message = "another feed mode is left to what may run after this block"
+                self._raise(message, line + first, int(places[-1]) + trace.first)
 
     def _events(self, old: tuple[Event, ...], new: tuple[Event, ...], trace: _Trace) -> None:
         """Check that events are the same, in order, at the same place between the moves."""

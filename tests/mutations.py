@@ -20,6 +20,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from cycle_faults import CYCLE_FAULTS
+
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("gcxform", "plugins/gcxform_plugins", "grammars/gcxform_grammars")
 FAILED = 1  # pytest's exit code for tests that failed
@@ -29,8 +31,12 @@ PASSES = "plugins/gcxform_plugins/passes"
 VERIFY = "tests/test_verify.py"
 FIGURES = "tests/test_volumetric.py"
 FOUND = "tests/properties/test_found.py"
+CORPUS = "tests/test_corpus.py::test_case"
 KIT = "tests/test_kit.py::test_registered_passes"
 LAWS = "tests/properties/test_laws.py"
+CYCLES = "tests/test_cycles.py"
+LIMITS = "gcxform/modal/limits.py"
+FACTS = "tests/test_dialect_facts.py::test_our_facts"
 READING = "tests/test_verify.py::test_the_proof_reads_as_the_control_does"
 
 
@@ -49,7 +55,106 @@ def _verifier(name: str, old: str, new: str = "if False:") -> Mutation:
     return Mutation(f"verifier: {name}", "gcxform/verify.py", old, new, VERIFY)
 
 
+def _computed(name: str, file: str, old: str, new: str) -> Mutation:
+    tests = "tests/test_expressions.py"
+    return Mutation(f"computing: {name}", f"gcxform/modal/{file}.py", old, new, tests)
+
+
 MUTATIONS = (
+    *(Mutation(f"cycles: {name}", *where, CYCLES) for name, *where in CYCLE_FAULTS),
+    Mutation(
+        "cycles: a hole above R",
+        "gcxform/modal/cycles.py",
+        "self.bottom > self.clearance",
+        "self.bottom > np.inf",
+        "tests/test_cycle_refusals.py",
+    ),
+    # times and restarts
+    Mutation(
+        "info: the feed per turn forgets the spindle",
+        "gcxform/cli/times.py",
+        "speed[event.row :] = self.spindle",
+        "speed[event.row :] = 1.0",
+        "tests/test_info.py",
+    ),
+    Mutation(
+        "info: rapids take as long as the fastest axis",
+        "gcxform/cli/times.py",
+        "each.max(axis=1, initial=0.0)",
+        "each.min(axis=1)",
+        "tests/test_info.py",
+    ),
+    Mutation(
+        "resume: the feed is stated in the wrong unit",
+        "gcxform/cli/preamble.py",
+        "feed_inch = self.state.feed_unit == INCH",
+        "feed_inch = self.state.feed_unit != INCH",
+        "tests/test_resume.py",
+    ),
+    Mutation(
+        "resume: the coolant stays on",
+        "gcxform/cli/memory.py",
+        "off = COOLANT_OFF.get(code)",
+        "off = ()",
+        "tests/test_resume.py",
+    ),
+    Mutation(
+        "haas: a dwell with a point is in milliseconds",
+        "gcxform/modal/events.py",
+        "lines.window.decimals[number] >= 0:",
+        "lines.window.decimals[number] >= 9:",
+        "tests/test_info.py",
+    ),
+    # parameters and expressions
+    _computed("relations are as close as sums", "arithmetic", "EQUAL = 1e-4", "EQUAL = 1e-9"),
+    _computed(
+        "fractions are cut towards zero", "arithmetic", "float(math.floor(a))", "float(int(a))"
+    ),
+    _computed("MOD keeps the sign", "arithmetic", "rest if rest >= 0 else rest + abs(b)", "rest"),
+    _computed("XOR is OR", "arithmetic", "(a != 0) != (b != 0)", "a != 0 or b != 0"),
+    _computed("angles are in radians", "arithmetic", "np.longdouble(a) * PI / 180", "a"),
+    _computed("a sign is lost", "expressions", "-value if children[0]", "value if children[0]"),
+    _computed("operands are swapped", "expressions", "(left), self", "(right), self"),
+    _computed("names have their case", "expressions", "BLANKS).lower()", "BLANKS)"),
+    _computed(
+        "what nobody set is zero",
+        "expressions",
+        "value = self.parameters.get(key)\n",
+        "value = self.parameters.get(key, 0.0)\n",
+    ),
+    _computed(
+        "assignments act at once",
+        "computing",
+        "return key, evaluator.value(expression)",
+        "self.lines.parameters[key] = evaluator.value(expression)\n            return None",
+    ),
+    _computed(
+        "parameters end with their window",
+        "interpreter",
+        "self.state.parameters = lines.parameters",
+        "pass",
+    ),
+    Mutation(
+        "an assignment stands in every piece of its block",
+        "gcxform/emit/templates.py",
+        "elif self.key.role not in (Role.MIDDLE, Role.LAST):\n            self._statement",
+        "else:\n            self._statement",
+        "tests/test_corpus.py",
+    ),
+    Mutation(
+        "what a macro may have set is still known",
+        "gcxform/modal/computing.py",
+        "if self.meaning.runs_macro:",
+        "if False:",
+        "tests/test_corpus.py",
+    ),
+    Mutation(
+        "computed distances are not rounded to the increment",
+        "gcxform/modal/lines.py",
+        "np.where(computed, rounded, np",
+        "np.where(computed, value, np",
+        "tests/test_expressions.py",
+    ),
     # the error model and the search for commands
     Mutation(
         "compensate: the sign of the error is swapped",
@@ -135,6 +240,77 @@ MUTATIONS = (
         "(path.sweep / pieces)[row]",
         "path.sweep[row]",
         f"{KIT}[segment]",
+    ),
+    Mutation(
+        "undo: pieces in inverse time keep the feed",
+        f"{PASSES}/undoing.py",
+        "feed / (part - before), feed)",
+        "feed, feed)",
+        f"{KIT}[volumetric]",
+    ),
+    # feed
+    Mutation(
+        "feed: an arc is as long as its chord",
+        f"{PASSES}/feed.py",
+        "size[arcs] = self._arc_lengths(arcs)",
+        "pass",
+        f"{KIT}[feed]",
+    ),
+    Mutation(
+        "feed: a helix does not rise",
+        f"{PASSES}/feed.py",
+        "np.hypot(first * self.path.sweep[rows], self.way[arcs, normal])",
+        "first * self.path.sweep[rows]",
+        f"{KIT}[feed]",
+    ),
+    Mutation(
+        "feed: length over feed for feed over length",
+        f"{PASSES}/feed.py",
+        "factor = 1 / way if",
+        "factor = way if",
+        f"{KIT}[feed]",
+    ),
+    Mutation(
+        "feed: degrees count beside millimetres",
+        f"{PASSES}/feed.py",
+        "self.way[:, self.linear] ** 2",
+        "self.way**2",
+        f"{CORPUS}[feed/rotary]",
+    ),
+    Mutation(
+        "feed: the mode of a tool change is not restored",
+        f"{PASSES}/feed.py",
+        "kept = path.blocks.leaves",
+        "kept = np.zeros_like(path.blocks.leaves)",
+        f"{CORPUS}[feed/macro]",
+    ),
+    Mutation(
+        "feed: the slowest rate of the control is ignored",
+        f"{PASSES}/feed.py",
+        "if slow.any():",
+        "if False:",
+        f"{CORPUS}[bad/gx320-too-slow]",
+    ),
+    Mutation(
+        "writing: a feed mode that has changed is not stated",
+        "gcxform/emit/pieces.py",
+        'self._mode("feed-mode", wanted, self.believed.feed_mode, needs)',
+        'self._mode("feed-mode", wanted, self.believed.feed_mode, needs & False)',
+        f"{CORPUS}[feed/to-inverse-time]",
+    ),
+    Mutation(
+        "writing: the end of a circle in inverse time is written",
+        "gcxform/emit/emitter.py",
+        "silent |= full & (self.path.feed_mode[rows] == FeedMode.INVERSE_TIME)",
+        "silent |= False",
+        f"{CORPUS}[feed/full-circle]",
+    ),
+    Mutation(
+        "a program without end leaves its feed mode behind",
+        "gcxform/run.py",
+        "if feed_modes:",
+        "if False:",
+        f"{CORPUS}[bad/gx321-no-end]",
     ),
     # reading
     Mutation(
@@ -236,12 +412,46 @@ MUTATIONS = (
         "del held",
         VERIFY,
     ),
+    # what a control refuses
+    Mutation(
+        "limits: a line may be one character longer",
+        LIMITS,
+        "if long > limit:",
+        "if long > limit + 1:",
+        FACTS,
+    ),
+    Mutation(
+        "limits: blanks and comments count",
+        LIMITS,
+        "without_blanks(window.line(line)) if blanks else int(length[line])",
+        "int(length[line])",
+        FACTS,
+    ),
+    Mutation(
+        "limits: speeds and times may be negative",
+        LIMITS,
+        "any(value < 0 for",
+        "any(value < -10 for",
+        FACTS,
+    ),
+    Mutation(
+        "limits: turns belong to lines",
+        LIMITS,
+        "modes.motion < Kind.ARC_CW",
+        "modes.motion > Kind.ARC_CCW",
+        FACTS,
+    ),
     # verification
     _verifier("the budget is ignored", "if not off.distance[worst] <= self.budget:"),
     _verifier("rotary axes are ignored", "if not off.angle[turned] <= self.angle_budget:"),
     _verifier("kinds are ignored", "if wrong.any():"),
     _verifier("feeds are ignored", "if (off & plain).any():"),
-    _verifier("feed modes are ignored", "if (mode & moving).any():"),
+    _verifier("feed modes are ignored", "if strange.any():"),
+    _verifier("converted feeds are ignored", "if len(off):"),
+    _verifier(
+        "feed modes left behind are ignored",
+        "if (mode != read.modes.feed_mode[line]).any():",
+    ),
     _verifier("times are ignored", "if len(wrong):"),
     _verifier("events are ignored", "self._events(read.path.events, back.path.events, trace)", ""),
     _verifier("missing events are ignored", "if len(old) != len(new):"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -102,21 +103,28 @@ def test_info_of_words(here: Path) -> None:
     assert found["codes"] == {"G1": 1, "G17": 1, "G21": 1, "G90": 2, "G91": 1, "M30": 1}
     assert found["letters"]["X"] == 3
     assert "dialect" not in found
+    assert set(found["guessed"]) == {"grbl", "linuxcnc"}
+    assert "guess  grbl or linuxcnc (nothing speaks against it)" in call("info", "part.nc").stdout
 
 
 def test_info_of_meaning(here: Path) -> None:
-    text = b"T3 M6\nG0 X0 Y0 Z5\nG1 F100 Z0\nG2 X0 Y0 I5 J0\nG4 P1\nG28\nM2\n"
+    text = b"T3 M6\nG0 X0 Y0 Z5\nG1 F100 Z0\nG2 X0 Y0 I5 J0\nG4 P1\nG38.2 X1\nM2\n"
     (here / "p.nc").write_bytes(text)
     words = ["info", "-f", "linuxcnc", "p.nc"]
     found = json.loads(call(*words, "--json").stdout)
     assert found["moves"] == {"rapids": 1, "lines": 1, "arcs cw": 1}
     assert found["extents"] == {"X": [0.0, 10.0], "Y": [-5.0, 5.0], "Z": [0.0, 5.0]}
     assert found["length_mm"]["feed"] == pytest.approx(5 + 31.416, abs=1e-3)
-    assert found["tools"] == ["T3"]
+    tool = found["tools"]["T3"]
+    assert (tool["moves"], tool["feed"], tool["extents"]["Z"]) == (3, [100, 100], [0, 5])
+    assert found["time_s"]["feed"] == pytest.approx((5 + 10 * math.pi) / 100 * 60, abs=1e-3)
+    assert (found["time_s"]["dwell"], found["time_without"]) == (1.0, {"rapid moves": 1})
+    assert found["features"] == ["arcs", "full circles", "probing (G38.2)"]
     assert found["refused"] == 1
     assert found["first_refused"]["6"].startswith("GX210")
     shown = call(*words).stdout
     assert "arcs cw 1" in shown
+    assert "T3  3 moves" in shown
     assert "line 6: GX210" in shown
 
 
@@ -124,7 +132,7 @@ def test_info_of_meaning(here: Path) -> None:
     "text",
     [b"", b"\n", b"\0" * 50, bytes(range(256)) * 300, b"\r\r\n\r", b"G1 X" * 900, b"%\n%\n%"],
 )
-@pytest.mark.parametrize("dialect", ["", "fanuc", "linuxcnc", "grbl"])
+@pytest.mark.parametrize("dialect", ["", "fanuc", "haas", "linuxcnc", "grbl"])
 def test_info_of_anything(here: Path, text: bytes, dialect: str) -> None:
     found = call("info", *(["-f", dialect] if dialect else []), "--json", "-", stdin=text)
     assert found.exit_code == 0, found.output
@@ -155,7 +163,7 @@ def test_explain_a_code() -> None:
 
 
 def test_explain_a_block(here: Path) -> None:
-    (here / "p.nc").write_bytes(b"G28\nG1 F100 X0 Y0 Z0\nN7 G2 X10 I5 M8 (so)\nM2\n")
+    (here / "p.nc").write_bytes(b"G38.2 X1\nG1 F100 X0 Y0 Z0\nN7 G2 X10 I5 M8 (so)\nM2\n")
     found = call("explain", "-f", "linuxcnc", "p.nc:3").stdout
     for words in (
         "word X, number 10",

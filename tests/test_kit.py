@@ -46,6 +46,8 @@ def instances(name: str) -> list[gx.Pass | gx.TextPass]:
             made(model=model, part_origin=HERE, split="none", iterations=1),
             made(model=model, part_origin=(-100.0, 0.0, 0.0), outside=gx.Outside.CLAMP),
         ]
+    if name == "feed":
+        return [made(mode="inverse-time"), made(mode="per-minute")]
     if name == "strip":
         return [made(), made(blanks=False), made(comments=False, empty=False)]
     return [made()]

@@ -149,7 +149,7 @@ def test_the_comparison_sees_every_field(change: object) -> None:
     assert difference(Program(right.moves, [(0, "M2")]), canon) is not None
 
 
-@pytest.mark.parametrize("dialect", ["linuxcnc", "fanuc", "grbl"])
+@pytest.mark.parametrize("dialect", ["linuxcnc", "fanuc", "haas", "grbl"])
 def test_strategies_are_valid_and_know_their_positions(dialect: str) -> None:
     @given(source=programs(dialect))
     @OTHERS
@@ -161,7 +161,7 @@ def test_strategies_are_valid_and_know_their_positions(dialect: str) -> None:
     check()
 
 
-@pytest.mark.parametrize("dialect", ["linuxcnc", "fanuc", "grbl"])
+@pytest.mark.parametrize("dialect", ["linuxcnc", "fanuc", "haas", "grbl"])
 def test_generated_programs_use_the_whole_language(dialect: str) -> None:
     sources = [drawn(seed, dialect=dialect) for seed in range(400)]
     moves = [move for source in sources for move in interpret(source, dialect).moves]
@@ -209,7 +209,7 @@ def words_of(source: bytes) -> set[str]:
 @given(source=lines_of_bytes())
 @OTHERS
 def test_arbitrary_bytes_are_interpreted_or_refused(source: bytes) -> None:
-    for dialect in ("linuxcnc", "fanuc", "grbl"):
+    for dialect in ("linuxcnc", "fanuc", "haas", "grbl"):
         answer = interpreted(source, dialect)
         if isinstance(answer, Refused):
             assert 0 <= answer.line <= source.count(b"\n") + 1

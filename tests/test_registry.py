@@ -63,7 +63,7 @@ def warnings(registry: Registry) -> list[str]:
 
 def test_the_builtin_dialects_come_through_the_entry_point() -> None:
     registry = Registry.load()
-    assert {"fanuc", "grbl", "linuxcnc"} <= set(registry.dialects)
+    assert {"fanuc", "grbl", "haas", "linuxcnc"} <= set(registry.dialects)
     assert set(registry.formats) == {"lddm"}
     assert registry.origin("dialect", "fanuc").startswith("gcxform ")
     assert registry.facts["ABSOLUTE"].name == "ABSOLUTE"
@@ -73,7 +73,7 @@ def test_the_builtin_dialects_come_through_the_entry_point() -> None:
 def test_the_builtin_plugin_has_no_fault() -> None:
     registry = Registry.load()
     assert registry.diagnostics == []
-    names = {"absolute", "metric", "plane", "segment", "volumetric", "renumber", "strip"}
+    names = {"absolute", "feed", "metric", "plane", "segment", "volumetric", "renumber", "strip"}
     assert set(registry.passes) == names
 
 
@@ -186,7 +186,7 @@ def test_unknown_names() -> None:
         registry.dialect("fanucc", place)
     (found,) = caught.value.diagnostics
     assert (found.code, found.where) == ("GX703", place)
-    assert found.hint.startswith("did you mean 'fanuc'?; known: fanuc, grbl, linuxcnc")
+    assert found.hint.startswith("did you mean 'fanuc'?; known: fanuc, grbl, haas, linuxcnc")
     with pytest.raises(UsageError) as caught:
         registry.pass_("nothing", place)
     (found,) = caught.value.diagnostics

@@ -266,3 +266,47 @@ M2
 )
 def test_what_was_written_passes_in_windows_of_any_size(chain: str, size: int) -> None:
     assert run(chain=chain, size=size) == run(chain=chain)
+
+
+# --- feeds that are converted ---
+
+CONVERTED = b"""\
+G21 G90 G94 G17
+G0 X0 Y0 Z5 A0
+G1 X10 F100
+G2 X30 Y0 I10 F200
+G3 X10 Y0 Z10 I-10
+G1 A90 F45
+X60 F300
+M2
+"""
+WRONG_FEEDS = {
+    "another time": (said("F10\n", "F10.02\n"), "time"),
+    "an arc as long as its chord": (said("F6.366", "F10"), "time"),
+    "a helix that does not rise": (said("F6.287", "F6.366"), "time"),
+    "a rotary move in mm": (said("F0.5", "F0.02"), "time"),
+    "a feed per minute": (said("F6\n", "F300\n"), "time"),
+    "the mode is not stated": (said("G93", "G94"), "time"),
+    "per turn": (said("G93", "G95"), "feed mode"),
+    "the mode is not restored": (said("G94 M2", "M2"), "left"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG_FEEDS)
+def test_a_feed_converted_wrong_is_refused(name: str) -> None:
+    change, message = WRONG_FEEDS[name]
+    chain = "feed mode=inverse-time"
+    assert run(chain=chain, program=CONVERTED).count(b"F") == 5
+    with pytest.raises(gx.VerificationError, match=message):
+        run(change, chain, CONVERTED)
+
+
+def test_a_feed_per_minute_converted_wrong_is_refused() -> None:
+    program = b"G21 G90 G93\nG0 X0 Y0\nG1 X10 F20\nG3 X20 Y10 J10 F6\nG94 G1 X30 F70\nM2\n"
+    chain = "feed mode=per-minute"
+    run(chain=chain, program=program)
+    for old, new in ((b"F200", b"F201"), (b"F94.248", b"F90"), (b"F70", b"F70.1")):
+        with pytest.raises(gx.VerificationError, match=r"time|feed"):
+            run(
+                lambda lines, o=old, n=new: [(t.replace(o, n), k) for t, k in lines], chain, program
+            )  # type: ignore[misc]

@@ -27,6 +27,7 @@ class Asked:
     start: str | None = None
     increment: str | None = None
     block_delete: str | None = None
+    feed_increment: str | None = None
 
     @property
     def file(self) -> str | None:
@@ -69,6 +70,9 @@ class Asked:
             given,
             start={**given.start, **said.start},
             increment=given.increment if said.increment is None else said.increment,
+            feed_increment=(
+                given.feed_increment if said.feed_increment is None else said.feed_increment
+            ),
             block_delete=said.block_delete or given.block_delete,
         )
 
@@ -79,9 +83,11 @@ class Asked:
             raw["start"] = _pairs(self.start)
         if self.increment is not None:
             raw["increment"] = Argument(self.increment)
+        if self.feed_increment is not None:
+            raw["feed-increment"] = Argument(self.feed_increment)
         if self.block_delete:
             raw["block-delete"] = self.block_delete
-        where = {"start": "--start", "increment": "--increment"}
+        where = {key: f"--{key}" for key in ("start", "increment", "feed-increment")}
         return build(
             InputSpec, raw, Path.cwd(), (), lambda key: Location(where.get(key, key)), "input"
         )
@@ -89,7 +95,8 @@ class Asked:
     def reading(self) -> Reading:
         """Return what the command line says for reading a program without a pipeline."""
         said = self.input()
-        return Reading(dict(said.start), said.increment, None, said.block_delete, said.units)
+        given = (dict(said.start), said.increment, None, said.block_delete, said.units)
+        return Reading(*given, said.feed_increment)
 
 
 def excluding(what: str) -> UsageError:

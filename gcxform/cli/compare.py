@@ -49,10 +49,16 @@ def command(
     start: str | None,
     increment: str | None,
     block_delete: str | None,
+    feed_increment: str | None,
     **model: str | None,
 ) -> int:
     """Compare two programs; exit 1 if path, feeds or events differ."""
-    asked = Asked(start=start, increment=increment, block_delete=block_delete)
+    asked = Asked(
+        start=start,
+        increment=increment,
+        block_delete=block_delete,
+        feed_increment=feed_increment,
+    )
     if a == b == STDOUT:
         raise excluding("stdin as A and stdin as B")
     limit = _length(tolerance)

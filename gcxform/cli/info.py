@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import click
@@ -12,16 +13,20 @@ import numpy as np
 
 from gcxform.cli import VERBS, options
 from gcxform.cli.asked import Asked
+from gcxform.cli.features import by_code, by_path
 from gcxform.cli.programs import opened
+from gcxform.cli.times import Times, lengths
 from gcxform.cli.tolerant import Tolerant
-from gcxform.dialect import LINEAR, Dialect
+from gcxform.cli.tools import Extents, Tools
+from gcxform.dialect import Dialect
+from gcxform.guess import guess_dialect
+from gcxform.machine.machine import load_machine
 from gcxform.modal.reader import WindowReader
 from gcxform.registry import default_registry
 from gcxform.source import Source
 from gcxform.syntax.scan import Window
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Number, Statement
-from gcxform.toolpath.circles import arc_extremes, radius_and_angle
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 FIRST = 10  # lines that are shown of those that are refused
@@ -35,18 +40,42 @@ _KINDS = {
 
 @click.command("info", help=VERBS["info"], short_help=VERBS["info"])
 @options.FROM
+@options.MACHINE
 @options.reading_options
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @options.FILE
-def command(file: str, dialect: str | None, as_json: bool, **asked: Any) -> None:
-    """Print what is in a program; without a dialect its words only."""
+def command(
+    file: str, dialect: str | None, machine: str | None, as_json: bool, **asked: Any
+) -> None:
+    """Print what is in a program; without a dialect its words, and which dialect it may be in."""
     reading = Asked(**asked).reading()
+    speeds = _speeds(machine)
     kind = default_registry().dialect(dialect) if dialect else None
     with opened(file) as source:
         found = {"file": source.name, "bytes": source.size, **_words(source, kind or Dialect)}
-        if kind is not None:
-            found |= _meaning(Tolerant(kind, source, reading))
+        if kind is None:
+            found |= _guess(source)
+        else:
+            found |= _meaning(Tolerant(kind, source, reading), found["codes"], speeds)
     click.echo(json.dumps(found, indent=2) if as_json else "\n".join(_text(found)))
+
+
+def _speeds(machine: str | None) -> dict[str, float]:
+    """Return the top speeds of the axes of a machine file."""
+    if machine is None:
+        return {}
+    axes = load_machine(Path(machine)).axes
+    return {name: axis.max_speed for name, axis in axes.items() if axis.max_speed is not None}
+
+
+def _guess(source: Source) -> dict[str, Any]:
+    """Return which dialect a program may be in, with what speaks for each and against it."""
+    guess = guess_dialect(source)
+    evidence = {
+        name: [f"{item.weight:+.1f} {item.what}" for item in items]
+        for name, items in guess.evidence.items()
+    }
+    return {"guess": str(guess), "guessed": list(guess.dialects), "evidence": evidence}
 
 
 def _text(found: dict[str, Any]) -> Iterator[str]:
@@ -55,14 +84,35 @@ def _text(found: dict[str, Any]) -> Iterator[str]:
         name = key.replace("_", " ")
         if isinstance(value, dict) and key.startswith("first_"):
             yield from (f"  line {line}: {reason}" for line, reason in value.items())
+        elif key == "guessed":
+            continue
         elif key == "extents":
             yield from (f"{axis:>15}  {low:g} ... {high:g}" for axis, (low, high) in value.items())
+        elif key == "evidence":
+            yield from (f"{name:>15}  {'; '.join(items) or '-'}" for name, items in value.items())
+        elif key == "tools":
+            yield from (f"{name:>15}  {_tool(use)}" for name, use in value.items())
+        elif key == "features":
+            yield f"{name:>15}  {', '.join(value) or '-'}"
         elif isinstance(value, dict):
             yield f"{name:>15}  {'  '.join(f'{k} {_number(n)}' for k, n in value.items()) or '-'}"
         elif isinstance(value, list):
             yield f"{name:>15}  {' '.join(value) or '-'}"
         else:
             yield f"{name:>15}  {value}"
+
+
+def _tool(use: dict[str, Any]) -> str:
+    """Return what a tool does in a line."""
+    parts = [f"{use['moves']} moves, {use['seconds']:g} s"]
+    if "feed" in use:
+        parts.append(f"F {use['feed'][0]:g} ... {use['feed'][1]:g}")
+    if "speed" in use:
+        parts.append(f"S {use['speed'][0]:g} ... {use['speed'][1]:g}")
+    parts += [
+        f"{axis} {low:g} ... {high:g}" for axis, (low, high) in use.get("extents", {}).items()
+    ]
+    return ", ".join(parts)
 
 
 def _number(value: Any) -> str:
@@ -141,32 +191,40 @@ def _by_number(code: str) -> tuple[str, float]:
 # --- meaning ---
 
 
-def _meaning(tolerant: Tolerant) -> dict[str, Any]:
+def _meaning(tolerant: Tolerant, codes: dict[str, int], speeds: dict[str, float]) -> dict[str, Any]:
     """Return what a program does, as far as it can be read."""
     moves: Counter[str] = Counter()
     events: Counter[str] = Counter()
     modes: Counter[str] = Counter()
-    tools: dict[str, None] = {}
-    lengths: Counter[str] = Counter()
-    extents = _Extents()
+    length = {"rapid": 0.0, "feed": 0.0}
+    shown: set[str] = set()
+    times, extents = Times(speeds), Extents()
+    tools = Tools(tolerant.dialect, set(codes))
     for _, path in tolerant.windows():
         if path is None:
             continue
         kinds, numbers = np.unique(path.kind, return_counts=True)
         moves.update({_KINDS[Kind(k)]: int(n) for k, n in zip(kinds, numbers, strict=True)})
         events.update(event.what for event in path.events)
-        tools.update({f"T{e.values[0][1]:g}": None for e in path.events if e.what == "T"})
         modes.update(_modes(path))
-        lengths.update(_lengths(path))
-        extents.add(path)
+        rapid = path.kind == Kind.RAPID
+        way = lengths(path)
+        length["rapid"] += float(way[rapid].sum())
+        length["feed"] += float(way[~rapid].sum())
+        tools.add(path, times.add(path))
+        extents.add(path, np.ones(len(path), np.bool_))
+        shown |= by_path(path)
     refused = tolerant.refused
     return {
         "dialect": tolerant.dialect.name,
         "moves": dict(moves),
-        "length_mm": {kind: round(length, 3) for kind, length in lengths.items()},
+        "length_mm": {kind: round(value, 3) for kind, value in length.items()},
+        "time_s": times.report(),
+        "time_without": dict(times.left_out),
         "extents": extents.found,
         "modes": {name: modes[name] for name in sorted(modes)},
-        "tools": list(tools),
+        "features": sorted(shown) + by_code(codes, tolerant.dialect),
+        "tools": tools.report(),
         "events": dict(events),
         "refused": len(refused) + tolerant.unread,
         "first_refused": {
@@ -193,41 +251,3 @@ def _modes(path: Toolpath) -> Counter[str]:
         numbers, counts = np.unique(column, return_counts=True)
         found.update({name(int(k)): int(n) for k, n in zip(numbers, counts, strict=True)})
     return Counter({name: n for name, n in found.items() if n})
-
-
-def _lengths(path: Toolpath) -> dict[str, float]:
-    """Return how far rapids and feed moves go (mm), where their ends are known."""
-    linear = [k for k, axis in enumerate(path.axes) if axis in LINEAR]
-    way = (path.end - path.start)[:, linear]
-    length = np.sqrt(np.nansum(way**2, axis=1))
-    if path.has_arcs:
-        arcs = np.flatnonzero(path.is_arc)
-        first, last, _ = radius_and_angle(path, arcs)
-        normal = np.array([plane.axes[2] for plane in Plane])[path.plane[arcs]]
-        rise = np.nan_to_num(way[arcs, normal])
-        length[arcs] = np.hypot((first + last) / 2 * path.sweep[arcs], rise)
-    rapid = path.kind == Kind.RAPID
-    return {"rapid": float(length[rapid].sum()), "feed": float(length[~rapid].sum())}
-
-
-class _Extents:
-    """The least and the largest position of each axis."""
-
-    def __init__(self) -> None:
-        self.found: dict[str, list[float]] = {}
-
-    def add(self, path: Toolpath) -> None:
-        """Take the ends of moves, and the sides of arcs, into account."""
-        for axis, column in zip(path.axes, path.end.T, strict=True):
-            self._take(axis, column)
-        if path.has_arcs:
-            points, _ = arc_extremes(path)
-            for axis, column in zip("XYZ", points.T, strict=True):
-                self._take(axis, column)
-
-    def _take(self, axis: str, values: Any) -> None:
-        known = values[np.isfinite(values)]
-        if len(known):
-            low, high = self.found.get(axis, [np.inf, -np.inf])
-            low, high = min(low, float(known.min())), max(high, float(known.max()))
-            self.found[axis] = [round(low, 6), round(high, 6)]

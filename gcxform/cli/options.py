@@ -35,6 +35,9 @@ _READING = (
     click.option("--start", metavar="X=4,Y=-2", help="Where axes stand before the first block."),
     click.option("--increment", metavar="LENGTH", help="What 1 means in a distance without point."),
     click.option(
+        "--feed-increment", metavar="NUMBER", help="What 1 means in an F without point, a minute."
+    ),
+    click.option(
         "--block-delete",
         type=click.Choice(["execute", "skip"]),
         help="What the control does with / blocks.",

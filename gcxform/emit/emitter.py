@@ -18,18 +18,24 @@ from numpy.typing import NDArray
 from gcxform.diagnostics import Diagnostic, InputError
 from gcxform.emit.arcs import ArcEnds, centre_words
 from gcxform.emit.copying import EXACT, Copying
-from gcxform.emit.fields import Axis, Centre, Copied, Feed, Field, Key, Literal, Role
+from gcxform.emit.fields import Axis, Centre, Computed, Copied, Feed, Field, Key, Literal, Role
 from gcxform.emit.manner import Believed, Manner, Task
 from gcxform.emit.numbers import MOST_DECIMALS, quantise
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, motion_kinds
 from gcxform.emit.render import Renderer, interleave
-from gcxform.emit.templates import CannotSayError, TemplateWriter, gaps_between, nothing_left
+from gcxform.emit.templates import (
+    CannotSayError,
+    TemplateWriter,
+    event_text,
+    gaps_between,
+    nothing_left,
+)
 from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
-from gcxform.toolpath.path import Kind, Plane, Toolpath
+from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -37,6 +43,7 @@ Flags = NDArray[np.bool_]
 
 
 PEELED_AT_MOST = 16
+FEED_SLIP = 1.5e-4  # relative; a feed that would be written farther off is refused
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,6 +210,8 @@ class _Job:
         said = self.positions.local(said)[np.ix_(rows, axes)]
         on_grid = (np.abs(said - begin) < EXACT).all(axis=1)
         silent = full & ~on_grid & refit
+        # LinuxCNC counts a circle that closes but for the last bit as no way at all in G93.
+        silent |= full & (self.path.feed_mode[rows] == FeedMode.INVERSE_TIME)
         if self.task.manner.target.circle_needs_axis_word:
             silent[:] = False
         for axis in axes.tolist():
@@ -236,11 +245,15 @@ class _Job:
         inch = self.path.blocks.inch[pieces.line]
         way = self.task.shape[pieces.line].astype(np.int64)
         parts = [
-            (pieces.role, 6),
+            (pieces.role, 7),
+            (pieces.event + 1, len(pieces.events) + 1),
+            (pieces.expanded_line[pieces.line], 2),
             (pieces.motion + 1, 128),
             (pieces.inch + 1, 3),
             (pieces.incremental + 1, 3),
             (pieces.absolute_centre + 1, 3),
+            (pieces.feed_mode + 1, 128),
+            (pieces.silent, 2),
             (pieces.feed, 3),
             (inch, 2),
         ]
@@ -266,6 +279,8 @@ class _Job:
     def _template(self, piece: int) -> tuple[Field, ...]:
         """Return the fields of a piece, which are those of all pieces written in its way."""
         pieces = self.pieces
+        if pieces.event[piece] >= 0:
+            return self._event_text(piece)
         line = int(pieces.line[piece])
         shape = int(self.task.shape[line])
         row = int(pieces.row[piece])
@@ -276,7 +291,10 @@ class _Job:
             int(pieces.inch[piece]),
             int(pieces.incremental[piece]),
             int(pieces.absolute_centre[piece]),
+            int(pieces.feed_mode[piece]),
+            bool(pieces.silent[piece]),
             Feed(int(pieces.feed[piece])),
+            bool(pieces.expanded_line[line]),
             arc,
             int(self.path.plane[row]) if arc else 0,
             int(self._turns()[row]) if arc else 0,
@@ -295,6 +313,16 @@ class _Job:
             where = self.task.location(line, error.column, error.width)
             raise InputError.one("GX501", error.message, where) from None
 
+    def _event_text(self, piece: int) -> tuple[Field, ...]:
+        """Return the block of something that a canned cycle does between its moves."""
+        event, target = self.pieces.events[int(self.pieces.event[piece])], self.task.manner.target
+        text = event_text(event, target, self.emitter.gap or b"")
+        if text is None:
+            where = self.task.location(int(self.pieces.line[piece]))
+            message = f"{target.name} cannot say the {event.what} of this cycle"
+            raise InputError.one("GX501", message, where)
+        return (Literal(text),)
+
     def _field(self, field: Field, members: Ints, renderer: Renderer) -> None:
         """Render one field of the pieces of a template."""
         manner, rows = self.task.manner, self.pieces.row[members]
@@ -303,6 +331,8 @@ class _Job:
             renderer.literal(field.text)
         elif isinstance(field, Copied):
             renderer.copied(self.pieces.line[members], field.slot)
+        elif isinstance(field, Computed):
+            self._computed(field, self.pieces.line[members], renderer)
         elif isinstance(field, Axis):
             column = self.path.axes.index(field.address)
             present = self.positions.write[rows, column]
@@ -319,11 +349,32 @@ class _Job:
             feed = self.pieces.feed_value[members]
             decimals = _decimals_for(feed, manner.decimals_of("F", inch))
             whole = quantise(feed, decimals)
+            self._check_feed(feed, whole / 10.0**decimals, members)
             everywhere = np.ones(len(rows), np.bool_)
             point = manner.target.point_required
             renderer.number(field.gap, "F", whole, decimals, everywhere, point)
 
+    def _computed(self, field: Computed, lines: Ints, renderer: Renderer) -> None:
+        """Write what expressions are worth as plain numbers, to the last bit."""
+        value = self.task.read.value[self.task.window.first_number[lines] + field.slot]
+        decimals = _decimals_of(value)
+        whole = quantise(value, decimals)
+        inexact = whole / 10.0**decimals != value
+        if inexact.any():
+            where = self.task.location(int(lines[np.argmax(inexact)]))
+            message = f"{field.address} is computed, and has more decimals than can be written"
+            raise InputError.one("GX501", message, where)
+        renderer.number(b"", field.address, whole, decimals, np.ones(len(lines), np.bool_), False)
+
     # --- after ---
+
+    def _check_feed(self, feed: Floats, written: Floats, members: Ints) -> None:
+        """Refuse feeds that are too small to be written."""
+        lost = np.flatnonzero(~(np.abs(written - feed) <= FEED_SLIP * feed))
+        for piece in members[lost[:1]].tolist():
+            where = self.task.location(int(self.pieces.line[piece]))
+            message = f"a feed this small has more than {MOST_DECIMALS} decimals"
+            raise InputError.one("GX503", message, where, 'cut the move with "segment"')
 
     def _check_lengths(self, text: bytes, lengths: Ints, chosen: Ints) -> None:
         target = self.task.manner.target
@@ -347,6 +398,7 @@ class _Job:
         if self.task.table.flag("ends", self.task.shape[-1:])[0] and resets:
             believed.motion = NUMBER[resets["motion"]]
             believed.incremental = NUMBER[resets["distance"]]
+            believed.feed_mode = NUMBER[resets.get("feed-mode", "G94")]
 
     def _carry(self) -> None:
         """Leave what the control believes after the window."""
@@ -360,7 +412,7 @@ class _Job:
             believed.motion = int(pieces.motion_after[-1])
             believed.feed = float(pieces.feed_after[-1])
             believed.feed_unit = float(pieces.unit_after[-1])
-            for name in ("inch", "incremental", "absolute_centre"):
+            for name in ("inch", "incremental", "absolute_centre", "feed_mode"):
                 stated = getattr(pieces, name)
                 last = np.flatnonzero(stated >= 0)
                 if len(last):
@@ -389,6 +441,13 @@ def _decimals_for(value: Floats, usual: int) -> int:
         if (error <= 1e-4 * np.abs(value)).all():
             return decimals
     return MOST_DECIMALS
+
+
+def _decimals_of(value: Floats) -> int:
+    """Return the least number of decimals with which values are written to the last bit."""
+    few = range(MOST_DECIMALS)
+    exact = (d for d in few if (quantise(value, d) / 10.0**d == value).all())
+    return next(exact, MOST_DECIMALS)
 
 
 def _without_blanks(text: bytes, lengths: Ints) -> Ints:

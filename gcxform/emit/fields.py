@@ -9,7 +9,8 @@ from enum import IntEnum
 class Role(IntEnum):
     """Which piece of its block a line is; NONE: the block does not move.
 
-    VERBATIM: the block moves in a way of its own, and its words stay as they are.
+    VERBATIM: the block moves in a way of its own, and its words stay as they are. EVENT: what a
+    canned cycle does between its moves, where it is written as plain moves.
     """
 
     NONE = 0
@@ -18,6 +19,7 @@ class Role(IntEnum):
     MIDDLE = 3
     LAST = 4
     VERBATIM = 5
+    EVENT = 6
 
 
 class Feed(IntEnum):
@@ -32,8 +34,10 @@ class Feed(IntEnum):
 class Key:
     """All that decides how a piece of a block is written, but for its numbers.
 
-    `motion`, `inch`, `incremental`, `absolute_centre`: what has to be stated; -1: nothing.
-    `arc`: whether centre words are written, in `plane`; `turns`: full turns beyond the arc.
+    `motion`, `inch`, `incremental`, `absolute_centre`, `feed_mode`: what has to be stated; -1:
+    nothing. `silent`: a motion code that moves nothing is left out.
+    `expanded`: the block called a canned cycle, of which this is a move. `arc`: whether centre
+    words are written, in `plane`; `turns`: full turns beyond the arc.
     """
 
     role: Role
@@ -41,7 +45,10 @@ class Key:
     inch: int
     incremental: int
     absolute_centre: int
+    feed_mode: int
+    silent: bool
     feed: Feed
+    expanded: bool
     arc: bool
     plane: int
     turns: int
@@ -58,6 +65,14 @@ class Literal:
 class Copied:
     """The number in a slot of the source line, as it was written."""
 
+    slot: int
+
+
+@dataclass(frozen=True, slots=True)
+class Computed:
+    """A word with the number that an expression in a slot of the source line is worth."""
+
+    address: str
     slot: int
 
 
@@ -85,4 +100,4 @@ class FeedWord:
     gap: bytes
 
 
-Field = Literal | Copied | Axis | Centre | FeedWord
+Field = Literal | Copied | Computed | Axis | Centre | FeedWord

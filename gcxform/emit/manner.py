@@ -71,6 +71,7 @@ class Believed:
     inch: int
     incremental: int
     absolute_centre: int
+    feed_mode: int
     feed: float = np.nan
     feed_unit: float = 1.0
     exact: bool = True
@@ -85,6 +86,7 @@ class Believed:
             NUMBER[initial["units"]],
             NUMBER[initial["distance"]],
             NUMBER[initial["arc-distance"]],
+            NUMBER[initial["feed-mode"]],
         )
 
 

@@ -14,8 +14,9 @@ from gcxform.emit.fields import Feed, Role
 from gcxform.emit.manner import Believed, Task
 from gcxform.modal.lines import fill
 from gcxform.modal.moves import turns_only
+from gcxform.modal.state import CYCLE_OFF
 from gcxform.modal.tables import GROUPS, NUMBER
-from gcxform.toolpath.path import FeedMode, Form, Kind
+from gcxform.toolpath.path import Event, FeedMode, Form, Kind
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -32,9 +33,12 @@ class Pieces:
     row       (pieces,) row of the path; only where `has_row`
     role      (pieces,) `Role`
     leads     (pieces,) whether it is the first piece of its line
-    motion, inch, incremental, absolute_centre   (pieces,) code to be stated, -1 for none
+    motion, inch, incremental, absolute_centre, feed_mode
+              (pieces,) code to be stated, -1 for none
+    silent    (pieces,) whether a motion code that moves nothing is left out
     feed      (pieces,) `Feed`; `feed_value` is the number to write
     special   (pieces,) whether it stands for all moves of a block that is written as it stands
+    event     (pieces,) index into `events`, -1 for none: what a cycle does between its moves
     repaired  (pieces,) whether something is stated that the source line did not state
     """
 
@@ -53,6 +57,7 @@ class Pieces:
         self.absolute_centre = self._mode(
             "arc-distance", blocks.absolute_centre, believed.absolute_centre, arcs
         )
+        self._feed_modes()
         self._motions()
         self._feeds()
 
@@ -61,22 +66,42 @@ class Pieces:
         self.count = np.bincount(path.block, minlength=live)
         special = np.zeros(live, np.bool_)
         special[path.block[path.form != Form.PLAIN]] = True
+        self.expanded_line = (self.task.read.modes.cycle != CYCLE_OFF) & ~special
+        self.events = [e for e in path.events if e.within and self._is_expanded(e)]
         pieces = np.where(special, 1, np.maximum(self.count, 1))
         self.line = np.repeat(np.arange(live), pieces)
-        self.has_row = self.count[self.line] > 0
         nth = np.arange(len(self.line)) - (np.cumsum(pieces) - pieces)[self.line]
         self.row = (np.cumsum(self.count) - self.count)[self.line] + nth
-        self.leads = nth == 0
-        ends = nth == pieces[self.line] - 1
-        role = np.where(self.has_row, np.int8(Role.ONLY), np.int8(Role.NONE))
-        split = pieces[self.line] > 1
-        role[split] = Role.MIDDLE
-        role[split & self.leads] = Role.FIRST
-        role[split & ends] = Role.LAST
+        self.event = np.full(len(self.line), -1)
+        if self.events:
+            self._put_events_between()
+        self.has_row = (self.count[self.line] > 0) & (self.event < 0)
+        self._give_roles(special)
+
+    def _put_events_between(self) -> None:
+        """Give what cycles do between their moves pieces of their own."""
+        line = np.array([e.line - self.task.path.blocks.first for e in self.events], np.int64)
+        before = np.array([2 * e.row for e in self.events], np.int64)
+        all_lines = np.concatenate([self.line, line])
+        order = np.lexsort((np.concatenate([2 * self.row + 1, before]), all_lines))
+        nothing = np.zeros(len(line), np.int64)
+        self.line, self.row = all_lines[order], np.concatenate([self.row, nothing])[order]
+        self.event = np.concatenate([self.event, np.arange(len(line))])[order]
+
+    def _is_expanded(self, event: Event) -> bool:
+        return bool(self.expanded_line[event.line - self.task.path.blocks.first])
+
+    def _give_roles(self, special: Flags) -> None:
+        self.leads = np.append(True, self.line[1:] != self.line[:-1])[: len(self.line)]
+        self.ends = np.append(self.line[1:] != self.line[:-1], True)[: len(self.line)]
+        role = np.where(self.has_row, np.int8(Role.MIDDLE), np.int8(Role.NONE))
+        role[self.has_row & self.leads] = Role.FIRST
+        role[self.has_row & self.ends] = Role.LAST
+        role[self.has_row & self.leads & self.ends] = Role.ONLY
         self.special = special[self.line]
         role[self.special] = Role.VERBATIM
+        role[self.event >= 0] = Role.EVENT
         self.role = role
-        self.ends = ends
 
     def of_rows(self, values: NDArray, absent: object) -> NDArray:  # type: ignore[type-arg]
         """Return a column over the rows as one over the pieces."""
@@ -95,7 +120,7 @@ class Pieces:
         explicit = self.task.table.groups[self.task.shape, GROUPS.index(group)] >= 0
         return np.asarray(explicit[self.line])
 
-    def _mode(self, group: str, wanted: Flags, before: int, needs: Flags) -> Small:
+    def _mode(self, group: str, wanted: Flags | Small, before: int, needs: Flags) -> Small:
         """Return the values of a mode that have to be stated."""
         explicit = self._stated_in(group) & self.leads
         here = wanted[self.line].astype(np.int8)
@@ -115,10 +140,30 @@ class Pieces:
         held = fill(sets, sets >= 0, before)
         return np.append(np.int8(before), held[:-1])[: len(sets)]
 
+    def _feed_modes(self) -> None:
+        """State a feed mode where the source stated one, and where the feed mode changes.
+
+        Feed moves need theirs. So do blocks after which something else than this program may run,
+        which shall find the control as the source leaves it.
+        """
+        blocks = self.task.path.blocks
+        wanted, before = blocks.feed_mode, self.task.read.modes.feed_mode
+        self.feeding = self.of_rows(self.kind != Kind.RAPID, False)
+        needs = self.feeding | (blocks.leaves[self.line] & self.ends)
+        self.feed_mode = self._mode("feed-mode", wanted, self.believed.feed_mode, needs)
+        self.other_mode = (wanted != before)[self.line]
+        self.repaired |= self.other_mode & (self.feed_mode >= 0)
+
     def _motions(self) -> None:
-        """State a motion code where the source stated one, and where the motion changes."""
+        """State a motion code where the source stated one, and where the motion changes.
+
+        Without a move it would need a feed: in another feed mode it waits for the next move.
+        """
         group = self.task.table.groups[self.task.shape, GROUPS.index("motion")]
-        sets = np.where(self.leads, group[self.line], NOTHING)
+        feeds = (group >= 1) & (group <= 3)
+        self.silent = self.other_mode & ~self.has_row & feeds[self.line]
+        self.repaired |= self.silent
+        sets = np.where(self.leads & ~self.silent, group[self.line], NOTHING)
         form = self.of_rows(self.task.path.form, Form.PLAIN)
         moves = self.has_row & np.isin(form, (Form.PLAIN, Form.MACHINE))
         sets[moves] = self.of_rows(self.kind, NOTHING)[moves]
@@ -137,48 +182,53 @@ class Pieces:
         """
         modes, path = self.task.read.modes, self.task.path
         slot = self.task.table.slots[self.task.shape, ord("F") - 65]
-        word = (slot >= 0)[self.line] & self.leads
-        feeding = self.of_rows(self.kind != Kind.RAPID, False)
-        inverse = modes.feed_mode == FeedMode.INVERSE_TIME
+        word = (slot >= 0)[self.line] & self.leads & ~self.expanded_line[self.line]
+        feeding = self.feeding
+        inverse = path.blocks.feed_mode == FeedMode.INVERSE_TIME
         unit_here = np.where(self._inch_for_feed(), INCH, 1.0)
         plain = turns_only(path.axes, path.entry, path.end) & (self.kind < Kind.ARC_CW)
         has_unit = self.of_rows(~plain, True) & ~inverse[self.line]
         unit = np.where(has_unit, unit_here, 1.0)
         given = modes.feed * np.where(inverse, 1.0, modes.feed_unit)
         given = given[self.line] / np.where(inverse[self.line], 1.0, unit_here)
-        need = np.where(word, given, np.nan)
+        need = np.where(word & ~self.other_mode, given, np.nan)
         need = np.where(feeding, self.of_rows(path.feed, np.nan) / unit, need)
-        sets = ~np.isnan(need) | self._feed_lost()
+        lost = self._feed_lost()
+        sets = ~np.isnan(need) | lost
         self.feed_after = fill(need, sets, self.believed.feed)
         self.unit_after = fill(unit_here, sets, self.believed.feed_unit)
         number = np.append(self.believed.feed, self.feed_after[:-1])[: len(need)]
         size = np.append(self.believed.feed_unit, self.unit_after[:-1])[: len(need)]
         held = np.where(has_unit, number * size / unit_here, number)
+        held = np.where(lost, np.nan, held)
         changes = feeding & (~_close(held, need) | inverse[self.line])
         kept = word & _close(need, modes.feed[self.line]) & ~self._must_have_point()
         self.feed = np.where(
-            kept, Feed.KEEP, np.where(word | changes, Feed.WRITE, Feed.NONE)
+            kept,
+            Feed.KEEP,
+            np.where(~np.isnan(need) & (word | changes), Feed.WRITE, Feed.NONE),
         ).astype(np.int8)
-        self.repaired |= self.feed == Feed.WRITE
+        self.repaired |= (self.feed == Feed.WRITE) | (word & (self.feed == Feed.NONE))
         self.feed_value = need
 
     def _must_have_point(self) -> bool:
-        """Whether feed words cannot be copied, because the target may want a point in them."""
-        return self.task.manner.crossing and self.task.manner.target.point_required
+        """Whether feed words cannot be copied, because a point decides on their unit."""
+        manner = self.task.manner
+        asks = manner.target.point_required or manner.source.feed_point_required
+        return manner.crossing and asks
 
     def _feed_lost(self) -> Flags:
         """Return the pieces at which the target forgets the feed."""
-        lost = np.zeros(len(self.line), np.bool_)
         target = self.task.manner.target
-        if target.feed_mode_clears_feed:
-            lost |= self._stated_in("feed-mode") & self.leads
+        stated = self.feed_mode >= 0
+        lost = stated
+        if not target.feed_mode_clears_feed and stated.any():
+            held = self._held(self.feed_mode, "feed-mode", self.believed.feed_mode)
+            lost = stated & (self.feed_mode != held)
         if target.change_clears_feed:
             inch = fill(self.inch, self.inch >= 0, self.believed.inch)
-            lost |= np.append(np.int8(self.believed.inch), inch[:-1])[: len(inch)] != inch
-            mode = self.task.read.modes.feed_mode[self.line]
-            before = np.int8(self.task.read.before.groups["feed-mode"])
-            lost |= np.append(before, mode[:-1])[: len(mode)] != mode
-        return lost
+            lost = lost | (np.append(np.int8(self.believed.inch), inch[:-1])[: len(inch)] != inch)
+        return np.asarray(lost)
 
     def _inch_for_feed(self) -> Flags:
         """Return, per piece, whether the control reads its feed in inches."""

@@ -96,7 +96,8 @@ class Positions:
             self.write[:, column] = known & ~self.stays[:, column]
         else:
             moved = ~(np.abs(held - self.before[:, column]) < 0.5 * self.step[column])
-            self.write[:, column] = (moved | (programmed & self._last)) & known
+            said = programmed & self._last & (self.task.path.nth == 0)
+            self.write[:, column] = (moved | said) & known
 
     def _off_grid(self) -> bool:
         """Whether the control stands at a place that cannot be written in the present unit."""

@@ -8,16 +8,28 @@ then a matter of whole arrays.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 from gcxform.dialect import Dialect
-from gcxform.emit.fields import Axis, Centre, Copied, Feed, FeedWord, Field, Key, Literal, Role
+from gcxform.emit.fields import (
+    Axis,
+    Centre,
+    Computed,
+    Copied,
+    Feed,
+    FeedWord,
+    Field,
+    Key,
+    Literal,
+    Role,
+)
 from gcxform.emit.manner import Manner
 from gcxform.modal.codes import Code
-from gcxform.modal.meaning import FRAMING, Meaning
+from gcxform.modal.meaning import DRILL_WORDS, FRAMING, Meaning, program_number_fits
 from gcxform.syntax.shapes import CODES, Shape
-from gcxform.syntax.tree import BLANKS, Comment, Item, Mark, Number, Word
+from gcxform.syntax.tree import BLANKS, Comment, Expression, Item, Mark, Number, Statement, Word
+from gcxform.toolpath.path import Event
 
 PLANE_AXES = ("XY", "ZX", "YZ")
 OFFSETS = {"X": "I", "Y": "J", "Z": "K"}
@@ -42,12 +54,30 @@ def gaps_between(text: str, words: list[Word]) -> Iterator[bool]:
 
 
 def is_foreign(item: Item, target: type[Dialect]) -> bool:
-    """Whether an item is a part of the program frame that the target has not."""
+    """Whether an item has no place in another dialect: assignments, frames that it has not."""
+    if isinstance(item, Statement):
+        return item.kind == "assignment"
     if not isinstance(item, Mark):
         return False
     if item.kind == "percent":
         return not target.has_percent
     return item.kind.startswith("program") and not target.has_program_number
+
+
+def event_text(event: Event, target: type[Dialect], gap: bytes) -> bytes | None:
+    """Return the block that does what a cycle does between its moves; None if there is none."""
+    if event.what != "DWELL":
+        known = event.what[0] == "M" and int(event.what[1:]) in target.m_codes
+        return event.what.encode() if known else None
+    seconds = event.values[0][1]
+    for address, unit in target.dwell.items():
+        count = seconds / unit
+        whole = abs(count - round(count)) < 1e-9
+        if unit != 1.0 and (not whole or (target.dwell_point_is_seconds and not whole)):
+            continue
+        number = f"{round(count)}" if unit != 1.0 else f"{seconds:.6f}".rstrip("0")
+        return b"G4" + gap + f"{address}{number}".encode()
+    return None
 
 
 def nothing_left(
@@ -116,14 +146,15 @@ class TemplateWriter:
         gap: bytes | None = None  # what stood before words that are left out
         for item in self.shape.block.items:
             lead = self.text[at : item.start].encode("latin-1") if whole else b""
+            if at and not self.fields:
+                lead = b""  # what stood before is left out, and the blank after it
             at = item.end
             if self._goes(item):
                 gap = lead if gap is None else gap
             else:
                 self._item(item, lead if gap is None else gap, slot)
                 gap = None
-            if isinstance(item, Word) and item.address not in CODES:
-                slot += isinstance(item.value, Number)
+            slot += isinstance(item, Word) and item.address not in CODES
         self._rest()
         if whole and at < len(self.text):
             self.fields.append(Literal(self.text[at:].encode("latin-1")))
@@ -154,9 +185,15 @@ class TemplateWriter:
                 self._literal(lead, self._comment(item))
         elif isinstance(item, Mark):
             self._mark(item, lead)
-        else:
-            self._check_same(item, f"{item.kind.replace('_', ' ')}")
-            self._literal(lead, self.text[item.start : item.end])
+        elif self.key.role not in (Role.MIDDLE, Role.LAST):
+            self._statement(item, lead)
+
+    def _statement(self, item: Statement, lead: bytes) -> None:
+        """Write an assignment; another dialect needs none, for its blocks hold plain numbers."""
+        if self.source is not self.target and is_foreign(item, self.target):
+            return
+        self._check_same(item, f"{item.kind.replace('_', ' ')}")
+        self._literal(lead, self.text[item.start : item.end])
 
     def _literal(self, lead: bytes, text: str) -> None:
         if lead or text:
@@ -188,14 +225,16 @@ class TemplateWriter:
     # --- words ---
 
     def _word(self, word: Word, lead: bytes, slot: int) -> None:
-        address = word.address
+        address, verbatim = word.address, self.key.role is Role.VERBATIM
+        if self.key.expanded and address in self.meaning.slots and address in DRILL_WORDS + "IJR":
+            return
         if address not in "NO" and self._repairs_wait:
             lead = self._repair_before(word, lead)
         if address == "G":
             self._g_word(word, lead)
         elif address == "M":
             self._m_word(word, lead)
-        elif address in self.meaning.slots and not self.as_it_stands and self._motion(word, lead):
+        elif address in self.meaning.slots and not verbatim and self._motion(word, lead):
             return
         elif address == "F" and "F" in self.meaning.slots:
             self._feed(word, lead, slot)
@@ -225,6 +264,12 @@ class TemplateWriter:
             raise CannotSayError(
                 word.start, word.end - word.start, f"{self.target.name} has no word {word.address}"
             )
+        if word.address == "O" and not program_number_fits(word, self.target):
+            self._refuse(word, "this program number")
+        if isinstance(word.value, Expression) and self.source is not self.target:
+            self._literal(lead, "")
+            self.fields.append(Computed(word.address, slot))
+            return
         if word.address in CODES or not isinstance(word.value, Number):
             self._literal(lead, self._said(word.start, word.end))
             return
@@ -239,6 +284,8 @@ class TemplateWriter:
         text = self._said(word.start, word.end)
         if self.key.role in (Role.MIDDLE, Role.LAST):
             lead = self._gap(lead)
+        if group == "cycle" and self.key.expanded:
+            return
         if group in STATED and group not in self.stated:
             wanted = self._wanted(group)
             self.stated.add(group)
@@ -246,7 +293,7 @@ class TemplateWriter:
                 if not self._goes_without_saying(word, wanted):
                     self._literal(lead, text if wanted == name else _like(text, wanted))
                 return
-            if group == "motion" and not self.as_it_stands:
+            if group == "motion" and (not self.as_it_stands or self.key.silent):
                 return
         elif group in self.stated:
             return  # of several codes of a group one has been written
@@ -270,7 +317,7 @@ class TemplateWriter:
         if (
             self.meaning.dwell
             and code.group == "non-modal"
-            and self.source.dwell != self.target.dwell
+            and not _same_dwell(self.source, self.target)
         ):
             self._refuse(word, "this dwell")
 
@@ -412,19 +459,25 @@ def folded_words(meaning: Meaning, work: str) -> frozenset[str]:
     return frozenset(gone)
 
 
-STATED = {
+STATED: Mapping[str, tuple[str, Mapping[int, str] | tuple[str, ...]]] = {
     "units": ("inch", ("G21", "G20")),
     "distance": ("incremental", ("G90", "G91")),
     "arc-distance": ("absolute_centre", ("G91.1", "G90.1")),
+    "feed-mode": ("feed_mode", {93: "G93", 94: "G94", 95: "G95"}),
     "motion": ("motion", ("G0", "G1", "G2", "G3")),
 }
 """Groups whose code may have to be stated: field of the key, and codes by value."""
+
+
+def _same_dwell(one: type[Dialect], other: type[Dialect]) -> bool:
+    """Whether a dwell of one dialect is as long in the other, however it is written."""
+    return one.dwell == other.dwell and one.dwell_point_is_seconds == other.dwell_point_is_seconds
 
 
 def _like(text: str, code: str) -> str:
     """Return a code written like another: `g01` for G3 gives `g03`."""
     letter, digits = text[0], text[1:].translate(BLANKS)
     number = code[1:]
-    if len(digits.split(".")[0]) == 2 and len(number.split(".")[0]) == 1:
+    if digits[:1] == "0" and len(digits.split(".")[0]) == 2 and len(number.split(".")[0]) == 1:
         number = "0" + number
     return letter + number

@@ -73,7 +73,7 @@ def moved_to_names(state: FrameState, asked: Asked, values: Vector) -> Vector:
 
 def work(state: FrameState, asked: Asked) -> FrameState:
     """G54 and its like: another work offset."""
-    name = asked.code
+    name = asked.dialect.work_names.get(asked.code, asked.code)
     if "P" in asked.words:
         number = asked.words["P"]
         if number < 1 or number % 1:
@@ -105,7 +105,7 @@ def set_work(state: FrameState, asked: Asked) -> FrameState:
 
 
 def _named_work(state: FrameState, asked: Asked) -> str:
-    number = asked.words.get("P", np.nan)
+    number = asked.words.get("P", np.nan if asked.dialect.g10_needs_p else 0.0)
     if asked.words.get("L") == 20 and not asked.dialect.g10_sets_position:
         raise ActError("GX213", "G10 L20 sets other offsets on this control")
     if number == 0 and asked.dialect.g10_p0_is_active:
@@ -297,8 +297,8 @@ def length_vector(state: FrameState, asked: Asked) -> FrameState:
     """G43.1: the vector given."""
     vector = np.array(state.tool)
     for axis, value in asked.axes.items():
-        if axis not in "XYZ":
-            raise ActError("GX213", f"{asked.code} with {axis} is not followed")
+        if axis not in asked.dialect.length_axes:
+            raise ActError("GX213", f"{asked.code} takes no {axis} on this control")
         vector[asked.column(state, axis)] = value
     return state.with_tool(tuple(vector.tolist()), "G43.1")
 

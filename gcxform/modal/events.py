@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,20 +14,34 @@ from gcxform.toolpath.path import Event
 Ints = NDArray[np.int64]
 
 
-def events_of(lines: Lines, rows: Ints) -> tuple[Event, ...]:
-    """Return what happens between the moves, in the order of execution."""
-    events = []
+def events_of(
+    lines: Lines, rows: Ints, within: Sequence[tuple[int, tuple[Event, ...]]] = ()
+) -> tuple[Event, ...]:
+    """Return what happens between the moves, in the order of execution.
+
+    `rows` (n,) are the lines of the moves. `within` is what happens within canned cycles: the first
+    line of a stretch, and its events, whose rows count from the first move of the stretch.
+    """
+    events: list[tuple[tuple[int, int, int], Event]] = []
     having = np.flatnonzero(lines.flag("has_events"))
-    row = np.searchsorted(rows, having)
-    on_move = np.isin(having, rows)
-    for line, at, moves in zip(having.tolist(), row.tolist(), on_move.tolist(), strict=True):
+    begin, end = np.searchsorted(rows, having), np.searchsorted(rows, having, "right")
+    for line, first_row, last_row in zip(
+        having.tolist(), begin.tolist(), end.tolist(), strict=True
+    ):
         first = int(lines.first[line])
         meaning = lines.table.meanings[int(lines.shape[line])]
-        for event in meaning.events:
-            values = tuple(_value(lines, event.what, a, first + n) for a, n in event.slots)
-            where = at + (moves and event.after)
-            events.append(Event(where, event.what, values, line + lines.window.first_line))
-    return tuple(events)
+        for shape in meaning.events:
+            values = tuple(_value(lines, shape.what, a, first + n) for a, n in shape.slots)
+            where = last_row if shape.after else first_row
+            event = Event(where, shape.what, values, line + lines.window.first_line)
+            events.append(((where, event.line, 2 * shape.after), event))
+    if not within:
+        return tuple(event for _, event in events)
+    for line, inner in within:
+        offset = int(np.searchsorted(rows, line))
+        moved = (replace(event, row=event.row + offset, within=True) for event in inner)
+        events += [((event.row, event.line, 1), event) for event in moved]
+    return tuple(event for _, event in sorted(events, key=lambda item: item[0]))
 
 
 def _value(lines: Lines, what: str, address: str, number: int) -> tuple[str, float]:
@@ -35,4 +52,6 @@ def _value(lines: Lines, what: str, address: str, number: int) -> tuple[str, flo
     pointless = lines.window.decimals[number] < 0 and address in LENGTHS
     if pointless and value and lines.dialect.point_required:
         return "increments", value
+    if lines.dialect.dwell_point_is_seconds and lines.window.decimals[number] >= 0:
+        return "seconds", value
     return "seconds", value * lines.dialect.dwell[address]

@@ -32,6 +32,11 @@ class Findings:
         where = self.location(line, column, width)
         self.found.append((line, Diagnostic(code, message, where, hint, context)))
 
+    def add_at(self, line: int, place: tuple[int, int], diagnostic: Diagnostic) -> None:
+        """Add a finding about a piece of a line: its first column, from 0, and its end."""
+        where = self.location(line, place[0] + 1, place[1] - place[0])
+        self.found.append((line, diagnostic.at(where)))
+
     def add_refusal(self, line: int) -> None:
         """Add what is wrong with the shape of a line."""
         refusal = self.table.meanings[int(self.window.shape[line])].refusal

@@ -48,7 +48,7 @@ def _home(track: Track, line: int, code: str) -> Rows:
     place = track.state.frames.homes.get(code, {})
     for k, axis in enumerate(track.axes):
         if axis in words or not words:
-            home[k] = track.state.frames.machine[k] + place.get(axis, np.nan)
+            home[k] = _in_frame(track, k, place.get(axis, np.nan))
     return _rows(track, line, Form.HOME, [*moves, (Kind.RAPID, home)])
 
 
@@ -77,6 +77,16 @@ def _reached(track: Track, line: int, words: dict[str, float]) -> Floats:
     return np.array(track.frame.positions(place[None, :])[0])
 
 
+def _in_frame(track: Track, k: int, value: float) -> float:
+    """Return a machine position of an axis as the position that the frame in force counts.
+
+    nan where that frame counts from a zero that is not known.
+    """
+    if track.frame.origin[k] != track.state.frames.first:
+        return float("nan")
+    return float(track.state.frames.machine[k]) + value
+
+
 def _in_machine(track: Track, line: int) -> Rows:
     """G53: to a point in the coordinates of the machine, without any offset."""
     if track.modes.incremental[line] and track.dialect.g53_in_g91 != "absolute":
@@ -96,5 +106,5 @@ def _in_machine(track: Track, line: int) -> Rows:
     for axis, value in words.items():
         k = track.axes.index(axis)
         value = value / 2 if axis == "X" and track.state.frames.diameter else value
-        end[k] = track.state.frames.machine[k] + value
+        end[k] = _in_frame(track, k, value)
     return _rows(track, line, Form.MACHINE, [(kind, end)])

@@ -8,16 +8,23 @@ needs a fact that is not known is refused, with the line.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, Dialect
+from gcxform.machine.machine import LENGTH
+from gcxform.modal.arithmetic import Key
+from gcxform.modal.computing import compute
+from gcxform.modal.cycles import Cycles
+from gcxform.modal.expressions import parameter_key
 from gcxform.modal.frames import FrameState
+from gcxform.modal.limits import refuse_limits
 from gcxform.modal.lines import Lines
 from gcxform.modal.moves import Moves
-from gcxform.modal.state import Modes, Reading, State
+from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, State
 from gcxform.modal.tables import GROUPS, NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Toolpath
@@ -27,7 +34,8 @@ from gcxform.toolpath.path import Toolpath
 class Interpreted:
     """A window's toolpath and the modes of its lines; `live` lines are those the control runs.
 
-    `shape` (live,) are their shapes: that of an empty line for blocks that are skipped.
+    `shape` (live,) are their shapes: that of an empty line for blocks that are skipped. `value`
+    are the window's numbers, those that were computed among them.
     """
 
     path: Toolpath
@@ -35,6 +43,17 @@ class Interpreted:
     live: int
     shape: NDArray[np.int64]
     before: State
+    value: NDArray[np.float64]
+
+
+PECKS = ("peck-return", "peck-clearance")
+"""Settings of the control that canned cycles need."""
+
+
+def _length(control: Mapping[str, str | float], name: str) -> float | None:
+    """Return a length (mm) among the settings of the control."""
+    value = control.get(name)
+    return LENGTH.parse(value) if isinstance(value, str) else value
 
 
 class Interpreter:
@@ -68,7 +87,20 @@ class Interpreter:
             self.reading.work_offsets,
             self.reading.homes,
         )
-        return State(groups, position, feed, unit, frames)
+        state = State(groups, position, feed, unit, frames, parameters=self._given())
+        rule = self.dialect.cycle_rule
+        if rule is not None:
+            control = self.reading.control
+            state.cycles = Cycles(rule, *(_length(control, name) for name in PECKS))
+        retract = int(rule is None or rule.initial_level)
+        state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": UNKNOWN_SPINDLE}
+        return state
+
+    def _given(self) -> dict[Key, float]:
+        """Return the parameters whose values are given, but for those the control changes."""
+        arithmetic = self.dialect.arithmetic
+        given = {parameter_key(name): v for name, v in self.reading.parameters.items()}
+        return {k: v for k, v in given.items() if arithmetic is not None and arithmetic.owns(k)}
 
     def interpret(self, window: Window, table: MeaningTable) -> Interpreted:
         """Return the moves of a window. Raises InputError with all that speaks against it."""
@@ -76,16 +108,19 @@ class Interpreter:
         before = replace(self.state, position=self.state.position.copy())
         lines = Lines(self.dialect, self.reading, self.state, window, table, self.file)
         lines.refuse_statically()
+        compute(lines)
         modes = lines.modes()
         path = Moves(lines, modes, self.axes).path()
+        refuse_limits(lines, modes, path.events)
         lines.findings.raise_if_any()
         self._carry(lines, modes)
-        return Interpreted(path, modes, lines.live, lines.shape, before)
+        return Interpreted(path, modes, lines.live, lines.shape, before, lines.window.value)
 
     def _carry(self, lines: Lines, modes: Modes) -> None:
         """Leave the state in which the window ends."""
         if not lines.live:
             return
+        self.state.parameters = lines.parameters
         last = {
             "motion": modes.motion,
             "plane": modes.plane,
@@ -100,6 +135,8 @@ class Interpreter:
         self.state.feed_unit = float(modes.feed_unit[-1])
         if lines.flag("ends")[-1]:
             for name, code in self.dialect.resets_at_end.items():
+                if name == "feed-mode" and self.state.groups[name] != NUMBER[code]:
+                    self.state.feed = np.nan
                 self.state.groups[name] = NUMBER[code]
                 if name == "frame":
                     self.state.frames = self.state.frames.in_work(code)

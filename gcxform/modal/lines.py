@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, LINEAR, Dialect
 from gcxform.modal.findings import Findings
-from gcxform.modal.state import Modes, Reading, State
-from gcxform.modal.tables import GROUPS, NUMBER, MeaningTable
+from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
+from gcxform.modal.tables import COLUMNS, CYCLES, GROUPS, MEMORY, NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
+from gcxform.syntax.tree import COMPUTED
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -42,6 +43,7 @@ class Lines:
     live     how many there are; those after the end of the program are not executed
     shape    (live,) their shapes; blocks that are skipped have that of an empty line
     first    (live,) index of the first number of each
+    parameters   what the program has set, before the window and, once computed, after it
     """
 
     def __init__(
@@ -59,10 +61,13 @@ class Lines:
         self.window = window
         self.table = table
         self.findings = Findings(file, window, table)
+        self.parameters = dict(state.parameters)
         self.live = self._live()
         self.shape = window.shape[: self.live]
         self.first = window.first_number[: self.live]
-        self._used = table.slots[np.unique(self.shape)].max(axis=0, initial=-1) >= 0
+        used = np.unique(self.shape)
+        self._used = table.slots[used].max(axis=0, initial=-1) >= 0
+        self._stated = table.groups[used].max(axis=0, initial=-1) >= 0
 
     def flag(self, name: str) -> Flags:
         """Return a flag of the meaning of each line."""
@@ -70,7 +75,7 @@ class Lines:
 
     def stated(self, group: str) -> Flags:
         """Return which lines have a code of a group."""
-        return np.asarray(self.table.groups[self.shape, GROUPS.index(group)] >= 0)
+        return np.asarray(self.table.groups[self.shape, COLUMNS.index(group)] >= 0)
 
     def refuse_statically(self) -> None:
         """Raise InputError for what can be seen without numbers."""
@@ -131,37 +136,51 @@ class Lines:
                 hint="convert the line ends of the file to LF or CRLF",
             )
 
-    def word(self, address: str) -> tuple[Floats, Flags] | None:
-        """Return value and presence of a word on each line; None if no line has it."""
+    def word(
+        self, address: str, among: Flags | None = None, distance: bool | None = None
+    ) -> tuple[Floats, Flags] | None:
+        """Return value and presence of a word on each line; None if no line has it.
+
+        Only lines `among` count, where given. Whether it is a `distance`, for which a point
+        matters, goes by its address unless it is said.
+        """
         column = ord(address) - 65
         if not self._used[column]:
             return None
         slot = self.table.slots[self.shape, column]
-        present = slot >= 0
+        present = slot >= 0 if among is None else (slot >= 0) & among
         number = self.first + slot
         if not present.all():
             number = np.where(present, number, 0)
         value = self.window.value[number] if len(self.window.value) else np.zeros(self.live)
-        if self.dialect.point_required and address in DISTANCES:
+        if distance is None:
+            distance = address in DISTANCES
+        if self.dialect.point_required and distance:
             value = self._with_increment(address, value, present, number)
         return value, present
 
     def _with_increment(self, address: str, value: Floats, present: Flags, number: Ints) -> Floats:
         """Return distances with those that have no point scaled by the increment."""
-        pointless = present & (self.window.decimals[number] < 0) & (value != 0)
+        decimals, increment = self.window.decimals[number], self.reading.increment
+        pointless = present & (decimals < 0) & (value != 0)
         if not pointless.any():
             return value
-        if self.reading.increment is None:
+        computed = pointless & (decimals == COMPUTED)
+        if increment is None:
             for line in np.flatnonzero(pointless).tolist():
+                why = "has no decimal point: its unit"
+                if computed[line]:
+                    why = "is computed: to what it is rounded"
                 self.findings.add(
                     line,
                     "GX205",
-                    f"{address} has no decimal point: its unit depends on the control",
+                    f"{address} {why} depends on the control",
                     address,
                     'say what 1 is worth: increment = "0.001 mm" in [input]',
                 )
             return value
-        return np.where(pointless, value * self.reading.increment, value)
+        rounded = np.copysign(np.floor(np.abs(value) / increment + 0.5) * increment, value)
+        return np.where(computed, rounded, np.where(pointless, value * increment, value))
 
     def refuse_pointless(self, line: int, address: str, number: int) -> None:
         """Refuse a distance without a point in a word that a code takes for itself."""
@@ -177,7 +196,11 @@ class Lines:
 
     def _group(self, name: str) -> Small:
         """Return the number of the code in force of a group, on each line."""
-        values = self.table.groups[self.shape, GROUPS.index(name)]
+        index = COLUMNS.index(name)
+        before = self.state.memory[name] if name in MEMORY else self.state.groups[name]
+        if not self._stated[index] and name not in self.dialect.resets_at_end:
+            return np.broadcast_to(np.int8(before), (self.live,))
+        values = self.table.groups[self.shape, index]
         present = values >= 0
         if present.any():
             self.state.stated.add(name)
@@ -187,7 +210,7 @@ class Lines:
             after = after[~present[after]]
             values[after] = NUMBER[self.dialect.resets_at_end[name]]
             present[after] = True
-        return fill(values, present, self.state.groups[name])
+        return fill(values, present, before)
 
     def modes(self) -> Modes:
         """Return what holds on each line after its words."""
@@ -205,7 +228,40 @@ class Lines:
             feed,
             feed_unit,
             self._tool(),
+            self._cycle(groups["motion"]),
+            self._remembered("retract"),
+            self._remembered("spindle"),
         )
+
+    def _remembered(self, name: str) -> Small:
+        """Return the number in force of a group that matters to cycles alone."""
+        values = self._group(name)
+        if name == "spindle" and self.flag("ends").any():
+            values = np.where(self.flag("ends"), 0, values).astype(np.int8)
+        if self.live:
+            self.state.memory[name] = int(values[-1])
+        return values
+
+    def _cycle(self, motion: Small) -> Small:
+        """Return the canned cycle in force on each line, `CYCLE_OFF` for none.
+
+        On some controls cycles are of the group of G0 to G3; on others a code of that group ends
+        the cycle, and is in force again after G80.
+        """
+        if self.dialect.cycle_rule is None:
+            return np.broadcast_to(np.int8(CYCLE_OFF), (self.live,))
+        if any(
+            code.group == "motion" for name, code in self.dialect.codes.items() if name == "G81"
+        ):
+            return np.where(np.isin(motion, CYCLES), motion, CYCLE_OFF).astype(np.int8)
+        if not (self._stated[COLUMNS.index("cycle")] or self.state.memory["cycle"] != CYCLE_OFF):
+            return np.broadcast_to(np.int8(CYCLE_OFF), (self.live,))
+        values = self.table.groups[self.shape, COLUMNS.index("cycle")]
+        values = np.where((values < 0) & self.stated("motion"), np.int8(CYCLE_OFF), values)
+        cycle = fill(values, values >= 0, self.state.memory["cycle"])
+        if self.live:
+            self.state.memory["cycle"] = int(cycle[-1])
+        return np.asarray(cycle)
 
     def _tool(self) -> Floats:
         """Return the tool number last programmed on or before each line, -1 for none."""
@@ -224,7 +280,7 @@ class Lines:
         present = np.zeros(self.live, np.bool_)
         if word is not None:
             value, present = np.where(word[1], word[0], np.nan), word[1]
-            self._refuse_pointless_feed(present, feed_mode, inch)
+            value = self._with_feed_increment(value, present, feed_mode, inch)
         present = present | self._cleared(feed_mode, inch)
         if self.dialect.feed_before_units:
             inch = np.append(self.state.groups["units"] == 1, inch[:-1])[: self.live]
@@ -239,20 +295,37 @@ class Lines:
         cleared = np.zeros(self.live, np.bool_)
         if self.dialect.feed_mode_clears_feed:
             cleared |= self.stated("feed-mode")
-        if self.dialect.change_clears_feed and self.live:
-            mode = np.append(np.int8(self.state.groups["feed-mode"]), feed_mode)
+        mode = np.append(np.int8(self.state.groups["feed-mode"]), feed_mode)
+        cleared |= mode[1:] != mode[:-1]
+        if self.dialect.change_clears_feed:
             unit = np.append(self.state.groups["units"] == 1, inch)
-            cleared |= (mode[1:] != mode[:-1]) | (unit[1:] != unit[:-1])
+            cleared |= unit[1:] != unit[:-1]
         return cleared
 
-    def _refuse_pointless_feed(self, present: Flags, feed_mode: Small, inch: Flags) -> None:
-        """Refuse feeds without a point where their unit depends on the control."""
+    def _with_feed_increment(
+        self, value: Floats, present: Flags, feed_mode: Small, inch: Flags
+    ) -> Floats:
+        """Return feeds with those that have no point scaled, or refuse them.
+
+        Their unit depends on the control: of every F where the dialect says so, else in inches and
+        in feed per turn.
+        """
         if not self.dialect.point_required:
-            return
+            return value
         slot = self.table.slots[self.shape, ord("F") - 65]
         number = np.where(present, self.first + slot, 0)
         odd = present & (self.window.decimals[number] < 0)
-        odd &= inch | (feed_mode == NUMBER["G95"])
+        per_minute = feed_mode == NUMBER["G94"]
+        increment = self.reading.feed_increment
+        if not self.dialect.feed_point_required:
+            odd &= inch | (feed_mode == NUMBER["G95"])
+        elif increment is not None:
+            value = np.where(odd & per_minute, value * increment, value)
+            odd &= ~per_minute
+        hint = "write the feed with a point"
+        if self.dialect.feed_point_required:
+            hint += ", or say what 1 is worth in G94: feed-increment = 1.0 in [input]"
         for line in np.flatnonzero(odd)[: Findings.enough].tolist():
             message = "F has no decimal point: its unit depends on the control"
-            self.findings.add(line, "GX205", message, "F", "write the feed with a point")
+            self.findings.add(line, "GX205", message, "F", hint)
+        return value

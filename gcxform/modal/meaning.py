@@ -15,6 +15,8 @@ from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Mark, Number, Statement, Word
 
 CENTRE = "IJK"
+DRILL_WORDS = "PQLK"
+"""Words that only a canned cycle in force may want."""
 UNTOUCHED_STATEMENTS: frozenset[str] = frozenset()
 
 
@@ -113,9 +115,13 @@ class Meaning:
     ends: bool = False
     loses_position: bool = False
     percent: bool = False
+    runs_macro: bool = False
+    assignments: list[Statement] = field(default_factory=list)
+    expressions: list[tuple[int, Word]] = field(default_factory=list)
     events: list[EventShape] = field(default_factory=list)
     acts: list[Act] = field(default_factory=list)
     lengths: list[tuple[str, str, int]] = field(default_factory=list)
+    drill_words: str = ""
     refusal: Refusal | None = None
 
 
@@ -148,26 +154,16 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
     for item in shape.block.items:
         if isinstance(item, Word):
             if isinstance(item.value, Expression):
-                yield Refusal(
-                    "GX206",
-                    item.start,
-                    item.end - item.start,
-                    f"the value of {item.address} is an expression, which is not computed",
-                    "let the CAM write plain numbers, or use passes that keep positions",
-                )
-            elif item.address not in CODES:
+                yield from _expression(item, dialect)
+                meaning.expressions.append((slot, item))
+            if item.address not in CODES:
                 if item.address in meaning.slots and item.address != "N":
                     yield Refusal("GX203", item.start, 1, f"{item.address} stands here twice")
                 meaning.slots.setdefault(item.address, slot)
                 slot += 1
         elif isinstance(item, Statement):
-            yield Refusal(
-                "GX206",
-                item.start,
-                item.end - item.start,
-                f"{item.kind.replace('_', ' ')} is code that would have to be run",
-                "let the CAM write plain blocks, or use passes that keep positions",
-            )
+            yield from _statement(item, shape, dialect)
+            meaning.assignments.append(item)
         elif isinstance(item, Mark):
             meaning.deleted |= item.kind == "block_delete"
             meaning.percent |= item.kind == "percent"
@@ -175,6 +171,39 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
             text = shape.block.text[item.start : item.end]
             if text[0] not in dialect.comments:
                 yield Refusal("GX101", item.start, 1, f"{dialect.name} has no such comments")
+
+
+def _expression(word: Word, dialect: type[Dialect]) -> Iterator[Refusal]:
+    """Refuse a word whose value cannot be computed."""
+    if dialect.arithmetic is None:
+        message = f"the value of {word.address} is an expression, which is not computed"
+    elif word.address in CODES or word.address == "N":
+        message = f"{word.address} is followed by an expression: which one it is must be written"
+    else:
+        return
+    hint = "let the CAM write plain numbers, or use passes that keep positions"
+    yield Refusal("GX206", word.start, word.end - word.start, message, hint)
+
+
+def _statement(item: Statement, shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
+    """Refuse what is not an assignment, and one that takes effect at an uncertain time."""
+    arithmetic, message = dialect.arithmetic, ""
+    if arithmetic is None or item.kind != "assignment":
+        message = f"{item.kind.replace('_', ' ')} is code that would have to be run"
+    elif not arithmetic.beside_words and not _stands_alone(item, shape):
+        message = "whether this assignment acts before the rest of its block is not certain"
+    if message:
+        hint = "let the CAM write plain blocks, or use passes that keep positions"
+        yield Refusal("GX206", item.start, item.end - item.start, message, hint)
+
+
+def _stands_alone(item: Statement, shape: Shape) -> bool:
+    """Whether a statement is all that its block does."""
+    others = (other for other in shape.block.items if other is not item)
+    return all(
+        isinstance(other, Comment | Mark) or (isinstance(other, Word) and other.address == "N")
+        for other in others
+    )
 
 
 def _code_of(word: Word) -> str:
@@ -211,6 +240,10 @@ def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         meaning.groups[code.group] = name
         if code.effect is Effect.BARRIER:
             yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.reason}")
+    if meaning.groups.get("cycle", "G80") != "G80" and "motion" in meaning.groups:
+        word = owners["cycle"]
+        message = f"{meaning.groups['cycle']} beside {meaning.groups['motion']}"
+        yield Refusal("GX202", word.start, word.end - word.start, message)
     yield from _g_effects(dialect, meaning, owners)
 
 
@@ -281,15 +314,37 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
             message = f"{name} and {groups[code.group]} are of one modal group"
             yield Refusal("GX202", word.start, width, message)
         groups[code.group] = name
+        if code.group == "spindle":
+            meaning.groups["spindle"] = name
         if code.barrier:
             yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.barrier}")
         meaning.ends |= code.ends
         meaning.loses_position |= code.loses_position
+        meaning.runs_macro |= code is dialect.unknown_m
         order = {"tool": 30, "spindle": 40, "coolant": 41, "override": 42}.get(code.group, 43)
         taken = _take(code, dialect, meaning)
         if code.act:
             meaning.acts.append(Act(code.act, name, taken, word.start, width))
         meaning.events.append(EventShape(order, name, taken, code.after))
+
+
+def program_number_fits(word: Word, dialect: type[Dialect]) -> bool:
+    """Whether the control can hold a program number."""
+    digits = dialect.program_number_digits
+    return not digits or not isinstance(word.value, Number) or word.value.value < 10**digits
+
+
+def _lacking(word: Word, dialect: type[Dialect]) -> Refusal | None:
+    """Return why the control does not have a word, None if it does."""
+    address, width = word.address, word.end - word.start
+    known = address in dialect.axes or address in dialect.words or address in CODES
+    if not known or (address == "O" and not dialect.has_program_number):
+        return Refusal("GX201", word.start, width, f"{dialect.name} has no word {address}")
+    if address == "O" and not program_number_fits(word, dialect):
+        digits = dialect.program_number_digits
+        message = f"{dialect.name} has program numbers of at most {digits} digits"
+        return Refusal("GX201", word.start, width, message)
+    return None
 
 
 def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
@@ -317,12 +372,10 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
         meaning.events.append(EventShape(45, "D", (("D", slots.pop("D")),)))
     for word in shape.block.words:
         address = word.address
-        known = address in dialect.axes or address in dialect.words or address in CODES
-        if address == "O" and not dialect.has_program_number:
-            known = False
-        if not known:
-            message = f"{dialect.name} has no word {address}"
-            yield Refusal("GX201", word.start, word.end - word.start, message)
+        if (lacking := _lacking(word, dialect)) is not None:
+            yield lacking
+        elif address in slots and address in DRILL_WORDS and dialect.cycle_rule is not None:
+            meaning.drill_words += "" if address in motion else address
         elif address in slots and address not in motion:
             message = f"{address} belongs to no code of this block"
             yield Refusal("GX203", word.start, word.end - word.start, message)

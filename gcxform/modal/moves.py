@@ -1,7 +1,8 @@
 """Moves of a window: which lines move, from where to where, and at what feed.
 
 Lines become rows in stretches of one frame (`gcxform/modal/track.py`). A plain line is one row; G28
-and G53 move in a way of their own (`gcxform/modal/home.py`).
+and G53 move in a way of their own (`gcxform/modal/home.py`), and so do canned cycles
+(`gcxform/modal/drilling.py`).
 """
 
 from __future__ import annotations
@@ -14,12 +15,13 @@ from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, LINEAR
 from gcxform.modal.arcs import ArcWords, resolve_arcs
+from gcxform.modal.drilling import Drilling
 from gcxform.modal.events import events_of
 from gcxform.modal.findings import Findings
 from gcxform.modal.home import own_moves
 from gcxform.modal.lines import Lines
 from gcxform.modal.rows import Rows
-from gcxform.modal.state import Modes
+from gcxform.modal.state import CYCLE_OFF, Modes
 from gcxform.modal.tables import MANY_WORK, NUMBER
 from gcxform.modal.track import Track
 from gcxform.toolpath.path import Blocks, Kind, Toolpath, constant
@@ -43,6 +45,7 @@ class Moves:
         self.state = lines.state
         self.findings = lines.findings
         self.track = Track(lines, modes, axes)
+        self.drilling = Drilling(self.track)
 
     def path(self) -> Toolpath:
         """Return the moves as a toolpath."""
@@ -60,7 +63,14 @@ class Moves:
         """Return the lines that are one plain move, after looking at what they may not be."""
         own = self.lines.flag("own_moves")
         moves = self.lines.flag("moves") & ~own
-        centre = self.lines.flag("has_centre")
+        drilling = self.modes.cycle != CYCLE_OFF
+        moves &= ~drilling
+        centre = self.lines.flag("has_centre") & ~drilling
+        stray = self.lines.flag("drill_words") & ~drilling
+        for line in np.flatnonzero(stray)[: Findings.enough].tolist():
+            words = self.lines.table.meanings[int(self.lines.shape[line])].drill_words
+            message = f"{words[0]} belongs to no code of this block"
+            self.findings.add(line, "GX203", message, words[0])
         arc = (self.modes.motion == 2) | (self.modes.motion == 3)
         for line in np.flatnonzero(moves & (self.modes.motion == NUMBER["G80"])).tolist():
             self.findings.add(
@@ -77,7 +87,7 @@ class Moves:
         moves &= self.modes.motion != NUMBER["G80"]
         moves |= centre & arc & ~own
         in_machine = self.lines.flag("in_machine") & (self.modes.motion == Kind.LINE)
-        self._check_feed(np.flatnonzero(moves | in_machine))
+        self._check_feed(np.flatnonzero(moves | in_machine), np.flatnonzero(self.drilling.calls))
         return moves
 
     def _dwells(self) -> Flags:
@@ -87,9 +97,9 @@ class Moves:
         dwell = np.array([meaning.dwell for meaning in self.lines.table.meanings], np.bool_)
         return np.asarray(dwell[self.lines.shape])
 
-    def _check_feed(self, rows: Ints) -> None:
+    def _check_feed(self, rows: Ints, calls: Ints) -> None:
         """Refuse feed moves without a feed, and blocks in inverse time without a feed word."""
-        feeding = rows[self.modes.motion[rows] != Kind.RAPID]
+        feeding = np.union1d(rows[self.modes.motion[rows] != Kind.RAPID], calls)
         feed = self.modes.feed[feeding]
         missing = feeding[~(feed > 0)]
         inverse = feeding[self.modes.feed_mode[feeding] == NUMBER["G93"]]
@@ -131,7 +141,8 @@ class Moves:
         """Yield first and last line + 1 of the stretches."""
         acting = self._acting()
         own = self.lines.flag("own_moves")[acting]
-        borders = np.concatenate([[0], acting, acting[own] + 1, [self.lines.live]])
+        drills = self.drilling.borders()
+        borders = np.concatenate([[0], acting, acting[own] + 1, drills, [self.lines.live]])
         borders = np.unique(borders).tolist()
         self._acts = set(acting.tolist())
         if len(borders) == 1:
@@ -149,6 +160,9 @@ class Moves:
             if own is not None:
                 return own
         self._refuse_other_units(first + 1, last)
+        if self.drilling.calls[first:last].any():
+            return self.drilling.rows(first, last)
+        self.drilling.leave(first, last)
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
         return Rows.plain(rows, self.modes.motion[rows], ends, len(self.track.frames) - 1)
@@ -190,8 +204,10 @@ class Moves:
                 self.modes.inch,
                 self.modes.incremental,
                 self.modes.absolute_centre,
+                self.modes.feed_mode,
+                self.lines.flag("ends") | self.lines.flag("loses_position"),
             ),
-            events_of(self.lines, line),
+            events_of(self.lines, line, self.drilling.events),
             first=self.state.frames.first,
             after_rapid=self.state.rapid,
         )
@@ -226,8 +242,11 @@ class Moves:
         """Return centre, radius and turns words of arcs, nan where there is none, in mm."""
         scale = np.where(self.modes.inch[lines], INCH, 1.0)
 
+        arcs = np.zeros(self.lines.live, np.bool_)
+        arcs[lines] = True
+
         def column(address: str) -> Floats:
-            word = self.lines.word(address) if address else None
+            word = self.lines.word(address, arcs) if address else None
             if word is None:
                 return np.full(len(lines), np.nan)
             return np.where(word[1][lines], word[0][lines], np.nan)

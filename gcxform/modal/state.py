@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +12,15 @@ from numpy.typing import NDArray
 from gcxform.machine.machine import Machine, Tool
 from gcxform.modal.frames import FrameState
 
+if TYPE_CHECKING:
+    from gcxform.modal.cycles import Cycles
+
 Floats = NDArray[np.float64]
 Small = NDArray[np.int8]
 Flags = NDArray[np.bool_]
+
+CYCLE_OFF = 80
+UNKNOWN_SPINDLE = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +37,9 @@ class Reading:
     homes         machine positions of G28 and G30
     tools         the tool table
     control       settings of the control on which the meaning of codes depends
+    feed_increment   what 1 means in an F without a point, in units per minute; None: such an F is
+                  refused where the dialect asks for a point
+    parameters    values of parameters before the first block, by number ("100") or name ("<a>")
     """
 
     start: Mapping[str, float] = field(default_factory=dict)
@@ -37,6 +47,8 @@ class Reading:
     feed: float | None = None
     block_delete: str = ""
     units: str = ""
+    feed_increment: float | None = None
+    parameters: Mapping[str, float] = field(default_factory=dict)
     work_offsets: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     homes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     tools: Mapping[int, Tool] = field(default_factory=dict)
@@ -67,6 +79,9 @@ class State:
     percents: int = 0
     rapid: bool = False
     stated: set[str] = field(default_factory=set)
+    parameters: dict[int | str, float] = field(default_factory=dict)
+    cycles: Cycles | None = None
+    memory: dict[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +89,8 @@ class Modes:
     """Per line of a window, after its words: the number of the code in force of each group.
 
     `feed` is the number last programmed and `feed_unit` what 1 of it is worth in mm; `tool` is the
-    number of the last T word, -1 for none.
+    number of the last T word, -1 for none; `cycle` is that of the canned cycle in force, or
+    `CYCLE_OFF`; `retract` is 1 in G98; `spindle` is 0 for M5, 1 for M3, 2 for M4.
     """
 
     motion: Small
@@ -87,3 +103,6 @@ class Modes:
     feed: Floats
     feed_unit: Floats
     tool: Floats
+    cycle: Small
+    retract: Small
+    spindle: Small

@@ -10,8 +10,12 @@ from gcxform.modal.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning, meaning_
 from gcxform.syntax.shapes import ShapeTable
 
 GROUPS = ("motion", "plane", "distance", "arc-distance", "feed-mode", "units", "frame")
+MEMORY = ("cycle", "retract", "spindle")
+"""Groups that matter to canned cycles alone."""
+COLUMNS = (*GROUPS, *MEMORY)
+CYCLES = tuple(n for n in range(73, 90) if n not in (75, 77, 78, 79, 80))
 NUMBER = {
-    **{f"G{n}": n for n in (0, 1, 2, 3, 80)},
+    **{f"G{n}": n for n in (0, 1, 2, 3, 80, *CYCLES)},
     **{f"G{17 + n}": n for n in range(3)},
     "G90": 0,
     "G91": 1,
@@ -23,6 +27,11 @@ NUMBER = {
     **{f"G{54 + n}": n for n in range(6)},
     **{f"G59.{n}": 5 + n for n in (1, 2, 3)},
     "G54.1": 9,
+    "G99": 0,
+    "G98": 1,
+    "M5": 0,
+    "M3": 1,
+    "M4": 2,
 }
 """The number that stands for a code within its group."""
 
@@ -54,7 +63,18 @@ FLAGS = (
     "framing",
     "presets",
     "takes_lengths",
+    "computes",
+    "drills",
+    "drill_words",
 )
+
+
+DRILL_WORDS = frozenset("XYZABCUVWRPQLIJK")
+
+
+def _calls(meaning: Meaning) -> bool:
+    """Whether blocks name a cycle."""
+    return any(NUMBER.get(code) in CYCLES for code in meaning.groups.values())
 
 
 class MeaningTable:
@@ -64,7 +84,7 @@ class MeaningTable:
         self.shapes = shapes
         self.dialect = dialect
         self.meanings: list[Meaning] = []
-        self.groups: NDArray[np.int8] = np.empty((0, len(GROUPS)), np.int8)
+        self.groups: NDArray[np.int8] = np.empty((0, len(COLUMNS)), np.int8)
         self.flags: NDArray[np.bool_] = np.empty((0, len(FLAGS)), np.bool_)
         self.slots: NDArray[np.int16] = np.empty((0, 26), np.int16)
 
@@ -78,7 +98,7 @@ class MeaningTable:
         room = len(self.groups)
         if room < len(self.meanings):
             more = max(len(self.meanings) - room, room)
-            self.groups = np.vstack([self.groups, np.full((more, len(GROUPS)), -1, np.int8)])
+            self.groups = np.vstack([self.groups, np.full((more, len(COLUMNS)), -1, np.int8)])
             self.flags = np.vstack([self.flags, np.zeros((more, len(FLAGS)), np.bool_)])
             self.slots = np.vstack([self.slots, np.full((more, 26), -1, np.int16)])
         for index in range(known, len(self.meanings)):
@@ -86,8 +106,8 @@ class MeaningTable:
 
     def _enter(self, index: int, meaning: Meaning) -> None:
         for group, code in meaning.groups.items():
-            if group in GROUPS and code in NUMBER:
-                self.groups[index, GROUPS.index(group)] = NUMBER[code]
+            if group in COLUMNS and code in NUMBER:
+                self.groups[index, COLUMNS.index(group)] = NUMBER[code]
         for address, slot in meaning.slots.items():
             if address.isalpha():
                 self.slots[index, ord(address) - 65] = slot
@@ -107,6 +127,9 @@ class MeaningTable:
             any(act.name in FRAMING for act in meaning.acts),
             any(act.name in PRESETS for act in meaning.acts),
             bool(meaning.lengths),
+            bool(meaning.assignments or meaning.expressions or meaning.runs_macro),
+            bool(set(meaning.slots) & DRILL_WORDS) or _calls(meaning),
+            bool(meaning.drill_words),
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -69,12 +69,13 @@ def _refusal(error: UnexpectedInput, text: str) -> tuple[int, str]:
     return at + 1, f"{text[at]!r} does not fit here"
 
 
-def _rule(node: Tree[Token]) -> str:
+def rule_of(node: Tree[Token]) -> str:
     """Return a rule's own name: lark puts the importing grammar's name in front."""
     return str(node.data).rsplit("__", 1)[-1]
 
 
-def _span(node: Any) -> tuple[int, int]:
+def span_of(node: Any) -> tuple[int, int]:
+    """Return where a node of lark's stands in its block: columns from 0."""
     if isinstance(node, Token):
         assert node.start_pos is not None
         assert node.end_pos is not None
@@ -84,8 +85,8 @@ def _span(node: Any) -> tuple[int, int]:
 
 def _item(node: Any, text: str) -> Item:
     """Return the item a child of the start rule stands for."""
-    start, end = _span(node)
-    rule = _rule(node)
+    start, end = span_of(node)
+    rule = rule_of(node)
     if rule == "word":
         address, value = node.children
         return Word(start, end, str(address).upper(), _value(value, text))
@@ -98,9 +99,9 @@ def _item(node: Any, text: str) -> Item:
 
 def _value(node: Any, text: str) -> Number | Expression:
     """Return a literal, also one whose sign the grammar reads by itself, or an expression."""
-    start, end = _span(node)
+    start, end = span_of(node)
     if isinstance(node, Token):
         return Number(start, end, text[start:end])
-    if _rule(node) == "negated" and isinstance(node.children[1], Token):
+    if rule_of(node) == "negated" and isinstance(node.children[1], Token):
         return Number(start, end, text[start:end])
     return Expression(start, end, node)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.syntax.grammar import Grammar
-from gcxform.syntax.tree import Block, Number, Word
+from gcxform.syntax.tree import Block, Expression, Number, Word
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -23,21 +23,17 @@ CODES = frozenset("GMO")
 OWN = b"\0"  # first byte of the key of a line read by itself: no plain line has it
 
 
-def slots_of(block: Block) -> list[Number]:
-    """Return the literal numbers of a block that vary within its shape, in order."""
-    return [
-        word.value
-        for word in block.words
-        if word.address not in CODES and isinstance(word.value, Number)
-    ]
+def slots_of(block: Block) -> list[Number | Expression]:
+    """Return the values of a block that vary within its shape, in order."""
+    return [word.value for word in block.words if word.address not in CODES]
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """A tree and the literal numbers in its slots; `own`: it stands for one text only."""
+    """A tree and the values in its slots; `own`: it stands for one text only."""
 
     block: Block
-    slots: tuple[Number, ...]
+    slots: tuple[Number | Expression, ...]
     own: bool
 
 

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 BLANKS = str.maketrans("", "", " \t")
+COMPUTED = -2
+"""Stands for the decimals of a value that is computed; -1 is a number without a point."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +37,24 @@ class Number:
 
 @dataclass(frozen=True, slots=True)
 class Expression:
-    """A value that has to be computed: parameters, operators, functions. `tree` is lark's."""
+    """A value that has to be computed: parameters, operators, functions. `tree` is lark's.
+
+    It fills a slot as a number does; its value is not known before the program is executed.
+    """
 
     start: int
     end: int
     tree: Any
+
+    @property
+    def value(self) -> float:
+        """No value yet."""
+        return float("nan")
+
+    @property
+    def decimals(self) -> int:
+        """No decimals, and no missing point either."""
+        return COMPUTED
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from gcxform.dialect import INCH, Dialect
 from gcxform.emit.numbers import MOST_DECIMALS
 from gcxform.modal.codes import ISO, Effect
 from gcxform.modal.meaning import Meaning, meaning_of
-from gcxform.modal.tables import GROUPS, NUMBER
+from gcxform.modal.tables import COLUMNS, GROUPS, NUMBER
 from gcxform.pipeline import Pipeline
 from gcxform.syntax.shapes import Shape, slots_of
 from gcxform.toolpath.path import Plane, Toolpath
@@ -115,7 +115,7 @@ def _check_code(dialect: type[Dialect], name: str) -> None:
     unknown = set(code.takes) - set(dialect.words + dialect.axes + SET_ASIDE)
     assert not unknown, f"{here} takes {sorted(unknown)}, which are no words of the dialect"
     if code.effect is Effect.MODAL:
-        assert code.group in GROUPS, f"{here}: the core has no group {code.group!r}; use inert"
+        assert code.group in COLUMNS, f"{here}: the core has no group {code.group!r}; use inert"
         assert name in NUMBER, f"{here} is a modal code that the core does not know"
     word = next(iter(dialect.dwell), "P") + "1." if code.effect is Effect.DWELL else ""
     meaning = _meaning(dialect, f"{name} {word}".strip())

@@ -17,8 +17,10 @@ Pick = Callable[[int, int], int]
 T = TypeVar("T")
 INCH: Final = 25.4
 PLANES: Final = {"G17": ("XYZ", "IJK"), "G18": ("ZXY", "KIJ"), "G19": ("YZX", "JKI")}
-CLOSENESS: Final = {"linuxcnc": 0.014, "grbl": 0.0025, "fanuc": 0.005}  # mm, radii of an arc
+CLOSENESS: Final = {"linuxcnc": 0.014, "grbl": 0.0025, "fanuc": 0.005, "haas": 0.005}
+"""Within how much (mm) the radii of an arc agree."""
 ROTARY: Final = "ABC"
+POINTED: Final = ("fanuc", "haas")  # a number without a point is another number there
 
 
 @dataclass(frozen=True)
@@ -76,14 +78,14 @@ class Builder:
         for _ in range(self.pick(1, max(1, self.options.max_blocks - 3))):
             self._step()
         self._emit([("M", "2" if self.dialect == "linuxcnc" else "30")], plain=True)
-        framed = self.dialect == "fanuc" or (self.dialect == "linuxcnc" and self.chance(10))
+        framed = self.dialect in POINTED or (self.dialect == "linuxcnc" and self.chance(10))
         lines = ["%", *self.lines, "%"] if framed else self.lines
         end = "\r\n" if self.chance(15) else "\n"
         return (end.join(lines) + end).encode("latin-1")
 
     def _open(self) -> None:
         """Write a first block with every mode and, absolutely, every axis."""
-        if self.dialect == "fanuc":
+        if self.dialect in POINTED:
             self.lines.append(f"O{self.pick(1, 9999):04d}")
         self.inch = self.options.inches and self.chance(25)
         modes = ["G20" if self.inch else "G21", "G90", "G94", "G17"]
@@ -196,7 +198,7 @@ class Builder:
         if self.pending or not self.chance(5):
             return []
         words: Words = [("M", self.one(("3", "8")))]
-        if words[0][1] == "3" and self.dialect != "fanuc":
+        if words[0][1] == "3" and self.dialect not in POINTED:
             self.speed = self.pick(1, 24000)
             words.append(("S", str(self.speed)))
         return words
@@ -273,7 +275,7 @@ class Builder:
         first, second, normal = tuple(PLANES[self.plane][0])
         _, words = self._draw_centre()
         if self.dialect != "grbl" and self.chance(50):
-            if self.dialect == "fanuc" and self.motion in ("G2", "G3"):
+            if self.dialect in POINTED and self.motion in ("G2", "G3"):
                 self.motion = ""  # write the G word
             return self._helix(normal) + words
         before = (self.position[first], self.position[second])
@@ -310,9 +312,10 @@ class Builder:
 
     def _dwell(self) -> tuple[str, str]:
         tenths = self.pick(1, 30)
-        if self.dialect != "fanuc":
+        if self.dialect not in POINTED:
             return ("P", number(tenths / 10, 1))
-        return self.one((("P", str(tenths * 100)), ("X", f"{tenths / 10:.1f}")))
+        seconds = "P" if self.dialect == "haas" else "X"
+        return self.one((("P", str(tenths * 100)), (seconds, f"{tenths / 10:.1f}")))
 
     def _modes(self) -> None:
         """Change one mode, in a block without motion or together with the next motion."""
@@ -343,7 +346,7 @@ class Builder:
     def _units(self) -> Words:
         """Change the units; GRBL and LinuxCNC keep the feed, a Fanuc is told again."""
         self.inch = not self.inch
-        self.feed_known = self.feed_known and self.dialect != "fanuc"
+        self.feed_known = self.feed_known and self.dialect not in POINTED
         return [("G", "20" if self.inch else "21")]
 
     def _plane(self) -> Words:

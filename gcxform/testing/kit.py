@@ -38,6 +38,7 @@ from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.deviation import deviation
 from gcxform.toolpath.facts import Fact
 from gcxform.toolpath.path import COLUMNS, FeedMode, Kind, Toolpath
+from gcxform.toolpath.travel import lengths
 
 SLACK = 1e-7  # mm and degrees; what arithmetic may add to a promise
 ON_CIRCLE = 1e-6  # mm
@@ -242,16 +243,39 @@ class _PathCheck:
         rapid = (before.kind == Kind.RAPID)[owner]
         same = bool((rapid == (after.kind == Kind.RAPID)).all())
         self._assert(same, trial, "makes a rapid of a feed move, or the reverse")
-        mode = bool((before.feed_mode[owner] == after.feed_mode).all())
-        self._assert(mode, trial, "changes the feed mode")
+        other = before.feed_mode[owner] != after.feed_mode
+        meant = self.step.feed_mode is not None
+        mode = not other.any() or (meant and (after.feed_mode[other] == self.step.feed_mode).all())
+        self._assert(bool(mode), trial, "changes the feed mode")
+        self._converted(trial, owner, other & ~rapid)
+        rapid = rapid | other
         timed = ~rapid & (after.feed_mode == FeedMode.INVERSE_TIME)
         plain = ~rapid & ~timed
         kept = np.allclose(after.feed[plain], before.feed[owner[plain]], rtol=1e-9, equal_nan=True)
         self._assert(kept, trial, "changes the feed")
-        time = np.bincount(owner[timed], 1 / after.feed[timed], len(before))
+        self._times(trial, after, owner, timed)
+
+    def _times(
+        self, trial: _Trial, path: Toolpath, owner: NDArray[np.int64], timed: NDArray[np.bool_]
+    ) -> None:
+        """Check that rows in G93 share the time of the row that they come from."""
+        time = np.bincount(owner[timed], 1 / path.feed[timed], len(trial.before))
         used = np.unique(owner[timed])
-        good = np.allclose(time[used], 1 / before.feed[used], rtol=1e-6)
+        good = np.allclose(time[used], 1 / trial.before.feed[used], rtol=1e-6)
         self._assert(good, trial, "changes the time of a move in G93: its pieces share it")
+
+    def _converted(self, trial: _Trial, owner: NDArray[np.int64], rows: NDArray[np.bool_]) -> None:
+        """Check feeds in another mode: the way that is gone in the same time."""
+        before, after = trial.before, trial.after
+        way, old = lengths(after), lengths(before)
+        inverse = after.feed_mode == FeedMode.INVERSE_TIME
+        time = np.where(inverse, 1.0, way.most) / after.feed
+        total = np.bincount(owner[rows], time[rows], len(before))
+        timed = before.feed_mode == FeedMode.INVERSE_TIME
+        gone = total * before.feed * np.where(timed, old.most, 1.0)
+        used = np.unique(owner[rows])
+        good = np.allclose(gone[used], old.most[used], rtol=1e-6)
+        self._assert(good, trial, "converts a feed by another length than that of its move")
 
     def _arcs(self, trial: _Trial) -> None:
         """Check that both ends of every arc are on its circle, where no pass says otherwise."""
@@ -276,7 +300,11 @@ class _PathCheck:
         """Check deviation(before, undo(after)) <= promise, from the first point on."""
         promise = self.step.promise
         undone = self._undo(trial.label, trial.after)
-        off = deviation(trial.before, undone, self._owner(trial, undone))
+        owner = self._owner(trial, undone)
+        timed = (undone.feed_mode == FeedMode.INVERSE_TIME) & (undone.kind != Kind.RAPID)
+        timed &= trial.before.feed_mode[owner] == FeedMode.INVERSE_TIME
+        self._times(trial, undone, owner, timed)
+        off = deviation(trial.before, undone, owner)
         if not np.isfinite(promise):
             return
         worst = float(off.distance.max(initial=0.0))

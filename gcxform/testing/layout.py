@@ -21,10 +21,11 @@ class Layout:
     def __init__(self, pick: Callable[[int, int], int], dialect: str) -> None:
         self.pick = pick
         self.dialect = dialect
+        self.pointed = dialect in ("fanuc", "haas")
         self.sequence = 0
         self.numbered = self.chance(25)
         self.lower = dialect != "fanuc" and self.chance(15)
-        self.gap = (" ", "", "  ", "\t")[self.pick(0, 2 if dialect == "fanuc" else 3)]
+        self.gap = (" ", "", "  ", "\t")[self.pick(0, 2 if self.pointed else 3)]
         self.padded = self.chance(20)
 
     def chance(self, percent: int) -> bool:
@@ -32,9 +33,9 @@ class Layout:
         return self.pick(0, 99) >= 100 - percent
 
     def number(self, text: str) -> str:
-        """Respell a number: `5.`, `5.00`, `.5`, `+5`, `05`; on a Fanuc always with a point."""
+        """Respell a number: `5.`, `5.00`, `.5`, `+5`, `05`; where it matters with a point."""
         style = self.pick(0, 11)
-        if "." not in text and (style == 1 or self.dialect == "fanuc"):
+        if "." not in text and (style == 1 or self.pointed):
             text += "."
         elif "." in text and style == 2:
             text += "0"
@@ -52,7 +53,7 @@ class Layout:
     def remark(self) -> str:
         """Return a line without words: a comment or nothing."""
         text = REMARKS[self.pick(0, len(REMARKS) - 1)]
-        if self.dialect == "fanuc":
+        if self.pointed:
             return f"({text.upper()})"
         return (f"({text})", f"; {text}", "")[self.pick(0, 2)]
 
@@ -71,7 +72,7 @@ def write(words: Words, layout: Layout, *, plain: bool = False) -> str:
     if not plain and layout.chance(6):
         texts = _commented(texts, layout)
     line = layout.gap.join(texts)
-    if not plain and layout.dialect != "fanuc" and layout.chance(3):
+    if not plain and not layout.pointed and layout.chance(3):
         line = _loosened(line)
     return line.lower() if layout.lower else line
 
@@ -93,7 +94,7 @@ def _code(letter: str, text: str, layout: Layout) -> str:
 def _commented(texts: list[str], layout: Layout) -> list[str]:
     """Put a comment at the end of the block, or between two words."""
     at = layout.pick(0, 1)
-    if layout.dialect == "fanuc" or at:
+    if layout.pointed or at:
         return [*texts, "(CUT)"]
     return [texts[0], "(cut)", *texts[1:]] if layout.pick(0, 1) else [*texts, "; cut"]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gcxform.dialect import Dialect
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
-from gcxform.toolpath.path import COLUMNS, Blocks, Kind, Toolpath
+from gcxform.toolpath.path import BLOCK_MODES, COLUMNS, Blocks, Kind, Toolpath
 
 HEAD = "G21 G90 G94 G17\n"
 PROGRAMS: dict[str, str] = {
@@ -65,8 +65,7 @@ def locked(path: Toolpath) -> Toolpath:
         return array
 
     was = path.blocks
-    modes = copy(was.inch), copy(was.incremental), copy(was.absolute_centre)
-    blocks = Blocks(was.first, *modes)
+    blocks = Blocks(was.first, *(copy(getattr(was, name)) for name in BLOCK_MODES))
     columns = {name: copy(getattr(path, name)) for name in (*COLUMNS, "entry")}
     return path.replace(blocks=blocks, **columns)
 
@@ -77,7 +76,7 @@ def differs(a: Toolpath, b: Toolpath, allowed: float) -> str:
         one, other = getattr(a, name), getattr(b, name)
         if one.shape != other.shape or not np.allclose(one, other, 0.0, allowed, equal_nan=True):
             return name
-    for name in ("inch", "incremental", "absolute_centre"):
+    for name in BLOCK_MODES:
         if not np.array_equal(getattr(a.blocks, name), getattr(b.blocks, name)):
             return f"blocks.{name}"
     for name in ("axes", "events", "slack", "refit_centres"):

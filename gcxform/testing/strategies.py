@@ -37,11 +37,12 @@ def programs(
     planes: bool = True,
     max_blocks: int = 30,
 ) -> SearchStrategy[bytes]:
-    """Draw whole programs that the control ("linuxcnc", "fanuc", "grbl") accepts, as bytes.
+    """Draw whole programs that a control accepts, as bytes.
 
-    They use lines, rapids, arcs in every form the dialect has, dwell, spindle, coolant, tools,
-    comments and many spellings; every mode and, absolutely, every axis used is programmed first.
-    Each keyword set to False leaves that part of the language out. GRBL has no rotary axes.
+    The control is "linuxcnc", "fanuc", "haas" or "grbl". The programs use lines, rapids, arcs in
+    every form the dialect has, dwell, spindle, coolant, tools, comments and many spellings; every
+    mode and, absolutely, every axis used is programmed first. Each keyword set to False leaves that
+    part of the language out. GRBL has no rotary axes.
     """
     options = Options(dialect, arcs, incremental, inches, rotary, feed_modes, planes, max_blocks)
     return _programs(options)

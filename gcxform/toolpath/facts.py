@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gcxform.toolpath.path import Form, Plane, Toolpath
+from gcxform.toolpath.path import OWN_DISTANCES, Form, Plane, Toolpath
 
 
 @dataclass(frozen=True)
@@ -34,11 +34,14 @@ def _always(path: Toolpath) -> bool:
 
 
 def _absolute(path: Toolpath) -> bool:
-    plain = path.block[path.form != Form.HOME]
+    plain = path.block[~np.isin(path.form, OWN_DISTANCES)]
     return not path.blocks.incremental[plain].any()
 
 
-ABSOLUTE = Fact("ABSOLUTE", "every block but returns to reference is in G90", _absolute)
+ABSOLUTE = Fact("ABSOLUTE", "every block but returns to reference and cycles is in G90", _absolute)
+NO_CYCLES = Fact(
+    "NO_CYCLES", "there is no canned cycle", lambda path: not (path.form == Form.CYCLE).any()
+)
 METRIC = Fact("METRIC", "every block is in millimetres", lambda path: not path.blocks.inch.any())
 LINEAR_ONLY = Fact("LINEAR_ONLY", "there is no arc", lambda path: not path.has_arcs)
 XY_ARCS = Fact(
@@ -77,4 +80,5 @@ FACTS = (
     NOMINAL,
     COMPENSATED,
     WORKPIECE_FRAME,
+    NO_CYCLES,
 )

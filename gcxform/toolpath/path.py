@@ -62,6 +62,10 @@ class Form(IntEnum):
     SYNCHRONISED = 5
 
 
+OWN_DISTANCES = (Form.CYCLE, Form.HOME, Form.SYNCHRONISED)
+"""Forms whose blocks may stay in G91 where all others are written in G90."""
+
+
 class FeedMode(IntEnum):
     """What a feed means: 1/min (G93), mm/min (G94) or mm per turn of the spindle (G95)."""
 
@@ -78,25 +82,35 @@ class Blocks:
     inch            lengths are written in inches (G20)
     incremental     axis words are distances from where the axis stands (G91)
     absolute_centre I, J, K are the centre itself (G90.1)
+    feed_mode       `FeedMode` in which the block is read
+    leaves          whether after the block something else than this program may run: it ends, or
+                    calls what may move axes
     """
 
     first: int
     inch: Flags
     incremental: Flags
     absolute_centre: Flags
+    feed_mode: Small
+    leaves: Flags
+
+
+BLOCK_MODES = ("inch", "incremental", "absolute_centre", "feed_mode", "leaves")
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
     """Something done between moves: `row` is the move it stands before, `what` names it.
 
-    `values` are its numbers, in seconds for a dwell. `line` counts source lines from 0.
+    `values` are its numbers, in seconds for a dwell. `line` counts source lines from 0. `within`:
+    it is a part of a canned cycle, and no word of its block.
     """
 
     row: int
     what: str
     values: tuple[tuple[str, float], ...] = ()
     line: int = 0
+    within: bool = False
 
 
 COLUMNS = (

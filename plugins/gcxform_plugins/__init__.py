@@ -10,15 +10,18 @@ def gcxform_dialects() -> list[type[gx.Dialect]]:
     """Return one class for each controller family."""
     from gcxform_plugins.dialects.fanuc import Fanuc
     from gcxform_plugins.dialects.grbl import Grbl
+    from gcxform_plugins.dialects.haas import Haas
     from gcxform_plugins.dialects.linuxcnc import LinuxCNC
 
-    return [Fanuc, Grbl, LinuxCNC]
+    return [Fanuc, Grbl, Haas, LinuxCNC]
 
 
 @gx.hookimpl
 def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
     """Return the passes on toolpaths, then those on text."""
     from gcxform_plugins.passes.absolute import Absolute
+    from gcxform_plugins.passes.cycles import ExpandCycles
+    from gcxform_plugins.passes.feed import FeedPass
     from gcxform_plugins.passes.metric import Metric
     from gcxform_plugins.passes.offsets import Offsets
     from gcxform_plugins.passes.plane import PlanePass
@@ -27,7 +30,18 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
     from gcxform_plugins.passes.strip import Strip
     from gcxform_plugins.passes.volumetric import Volumetric
 
-    return [Absolute, Metric, Offsets, PlanePass, Segment, Volumetric, Renumber, Strip]
+    return [
+        Absolute,
+        ExpandCycles,
+        FeedPass,
+        Metric,
+        Offsets,
+        PlanePass,
+        Segment,
+        Volumetric,
+        Renumber,
+        Strip,
+    ]
 
 
 @gx.hookimpl

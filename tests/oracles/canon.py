@@ -1,10 +1,22 @@
-"""LinuxCNC's canon calls as moves in mm and degrees."""
+"""LinuxCNC's canon calls as moves in mm and degrees.
 
+Positions are in the active program coordinates: what G5x, G92, rotation and tool length shift is
+taken off. A call that changes one of these changes the numbers of the place where the tool stands.
+"""
+
+import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-from oracles.frames import AXES, Coordinates, Point
-
+AXES = "XYZABC"
+CALL = re.compile(r"\s*(?:\d+\s+)?N\S*\s+([A-Z_0-9]+)\((.*)\)\s*$")
+SHIFTS = {
+    "SET_G5X_OFFSET": "g5x",
+    "SET_G92_OFFSET": "g92",
+    "USE_TOOL_LENGTH_OFFSET": "tool",
+    "SET_XY_ROTATION": "rotation",
+}
+TOUCHING = {"STRAIGHT_PROBE": "PROBE", "RIGID_TAP": "TAP"}
 PLANES = {"XY": ("XY", "XYZ"), "XZ": ("ZX", "ZXY"), "YZ": ("YZ", "YZX")}
 MODES = {"inverse time": "G93", "units per minute": "G94", "units per revolution": "G95"}
 EVENTS = {
@@ -16,6 +28,7 @@ EVENTS = {
     "FLOOD_OFF": "M9",
     "OPTIONAL_PROGRAM_STOP": "M1",
     "CHANGE_TOOL": "M6",
+    "ORIENT_SPINDLE": "M19",
     "PROGRAM_STOP": "M0",
 }
 
@@ -24,12 +37,13 @@ EVENTS = {
 class CanonMove:
     """One canonical motion: mm and degrees, all six axes known, centre for arcs.
 
-    `feed` is the rate that was set: mm/min (G94 and G93, where LinuxCNC has multiplied by the
-    length of the path) or mm/rev; its second number is the same in degrees, for moves of rotary
-    axes alone. `turns` counts the turns beyond the first. `unit` is the size of the program's
-    unit in mm: positions are rounded to 1e-4 of it. `start`, `end` and `centre` are in coordinates
-    of the program (X is a radius), `machine` says where `start`, `end` and `centre` are in those of
-    the machine.
+    `kind` is RAPID, LINE, ARC_CW, ARC_CCW; PROBE ends where it touches, at the latest at `end`; TAP
+    goes to `end` and back; SPLINE is one piece of a curve whose numbers are not printed. `feed` is
+    the rate that was set: mm/min (G94 and G93, where LinuxCNC has multiplied by the length of the
+    path) or mm/rev; its second number is the same in degrees, for moves of rotary axes alone.
+    `turns` counts the turns beyond the first. `unit` is the size of the program's unit in mm:
+    positions are rounded to 1e-4 of it. `machine` says where `start`, `end` and `centre` are in
+    coordinates of the machine.
     """
 
     kind: str
@@ -42,7 +56,7 @@ class CanonMove:
     plane: str = "XY"
     centre: tuple[float, float, float] | None = None
     turns: int = 0
-    machine: tuple[Point, ...] = ()
+    machine: tuple[dict[str, float], ...] = ()
 
 
 @dataclass
@@ -53,13 +67,50 @@ class CanonProgram:
     events: list[tuple[int, str]] = field(default_factory=list)
 
 
+@dataclass(frozen=True)
+class Shifts:
+    """What lies between the coordinates of the program and those of the machine: mm, degrees."""
+
+    g5x: tuple[float, ...] = (0.0,) * 6
+    g92: tuple[float, ...] = (0.0,) * 6
+    tool: tuple[float, ...] = (0.0,) * 6
+    rotation: float = 0.0
+
+    def to_machine(self, at: dict[str, float]) -> dict[str, float]:
+        """Return machine coordinates: G92 inside the rotation, G5x and tool outside."""
+        shifted = {a: at[a] + self.g92[k] for k, a in enumerate(AXES)}
+        turned = _turned(shifted, self.rotation)
+        return {a: turned[a] + self.g5x[k] + self.tool[k] for k, a in enumerate(AXES)}
+
+    def to_program(self, at: dict[str, float]) -> dict[str, float]:
+        """Return program coordinates of a place in machine coordinates."""
+        shifted = {a: at[a] - self.g5x[k] - self.tool[k] for k, a in enumerate(AXES)}
+        turned = _turned(shifted, -self.rotation)
+        return {a: turned[a] - self.g92[k] for k, a in enumerate(AXES)}
+
+
+def _turned(at: dict[str, float], degrees: float) -> dict[str, float]:
+    if not degrees:
+        return at
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return at | {"X": at["X"] * c - at["Y"] * s, "Y": at["X"] * s + at["Y"] * c}
+
+
+def parsed(text: str) -> CanonProgram:
+    """Return the program of a recorded output, as of `rs274 -g`; lines are not known."""
+    reader = Reader()
+    for call in filter(None, map(CALL.match, text.splitlines())):
+        reader.call(0, *call.groups())
+    return reader.program
+
+
 class Reader:
     """Consumes canon calls; `program` grows."""
 
     def __init__(self) -> None:
         self.program = CanonProgram()
-        self.coordinates = Coordinates()
-        self.place = dict.fromkeys(AXES, 0.0)  # of the machine
+        self.position = dict.fromkeys(AXES, 0.0)
+        self.shifts = Shifts()
         self.unit = 1.0
         self.plane = "XY"
         self.mode = "G94"
@@ -79,7 +130,19 @@ class Reader:
             self._move(line, "LINE" if name.endswith("FEED") else "RAPID", self._scaled(end))
         elif name == "ARC_FEED":
             self._arc(line, self._numbers(text))
-        elif name == "USE_LENGTH_UNITS":
+        elif name in TOUCHING:
+            self._touch(line, TOUCHING[name], self._numbers(text))
+        elif name == "NURBS_FEED":
+            self._move(line, "SPLINE", self.position)
+        elif name in SHIFTS:
+            self._shift(SHIFTS[name], self._numbers(text))
+        elif not self._mode(name, text):
+            self._event(name, text)
+        self.last = name
+
+    def _mode(self, name: str, text: str) -> bool:
+        """Take a call that sets a mode; False if it is none."""
+        if name == "USE_LENGTH_UNITS":
             self.unit = 25.4 if "INCHES" in text else 1.0
         elif name == "SELECT_PLANE":
             self.plane = text[-2:] if text[-2:] in PLANES else self.plane  # not UV, WU, VW
@@ -88,20 +151,34 @@ class Reader:
             self.feed = (rate * self.unit, rate)
         elif name == "COMMENT" and "feed mode set to" in text:
             self.mode = MODES[re.sub(r'.*set to (.*)"', r"\1", text)]
-        elif not self.coordinates.call(name, text, self.unit):
-            self._event(name, text)
-        self.last = name
+        else:
+            return False
+        return True
 
-    @property
-    def position(self) -> Point:
-        """Where the machine is, in coordinates of the program."""
-        return self.coordinates.program(self.place)
+    def _touch(self, line: int, kind: str, numbers: list[float]) -> None:
+        """Take a probing move, or a tap, which comes back to where it began."""
+        start = self.position
+        end = start | self._scaled(dict(zip(AXES, numbers, strict=False)))
+        self._move(line, kind, end)
+        if kind == "TAP":
+            self.position = start
 
-    def _move(self, line: int, kind: str, end: Point, **arc: object) -> None:
-        start, machine = self.position, (self.place, self.coordinates.machine(end))
+    def _shift(self, name: str, numbers: list[float]) -> None:
+        """Take another offset or rotation: the tool stands where it stood, under other numbers."""
+        at = self.shifts.to_machine(self.position)
+        if name == "rotation":
+            self.shifts = replace(self.shifts, rotation=numbers[0])
+        else:  # the first number of G5x says which one it is
+            values = dict(zip(AXES, numbers[name == "g5x" :], strict=False))
+            self.shifts = replace(self.shifts, **{name: tuple(self._scaled(values).values())})
+        self.position = self.shifts.to_program(at)
+
+    def _move(self, line: int, kind: str, end: dict[str, float], **arc: object) -> None:
+        start = self.position
+        machine = self.shifts.to_machine(start), self.shifts.to_machine(end)
         if "centre" in arc:
             centre = dict(zip("XYZ", arc["centre"], strict=True))  # type: ignore[call-overload]
-            machine += (self.coordinates.machine(start | centre),)
+            machine += (self.shifts.to_machine(start | centre),)
         self.program.moves.append(
             CanonMove(
                 kind,
@@ -116,7 +193,7 @@ class Reader:
                 **arc,  # type: ignore[arg-type]
             )
         )
-        self.place = machine[1]
+        self.position = end
 
     def _arc(self, line: int, numbers: list[float]) -> None:
         axes = PLANES[self.plane][1]
@@ -164,7 +241,7 @@ class Reader:
         self.program.events.append((len(self.program.moves), text))
 
     def _numbers(self, text: str) -> list[float]:
-        return [float(number) for number in text.split(",")]
+        return [float(number) for number in text.replace(",", " ").split()]
 
     def _scaled(self, position: dict[str, float]) -> dict[str, float]:
         return {a: v if a in "ABC" else v * self.unit for a, v in position.items()}

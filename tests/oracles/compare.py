@@ -20,7 +20,7 @@ def difference(program: Any, canon: CanonProgram) -> str | None:
     if [m.line for m in program.moves] != [m.line for m in theirs]:
         return f"moves on lines {[m.line for m in program.moves]}, {[m.line for m in theirs]}"
     for ours, move in zip(program.moves, theirs, strict=True):
-        if problem := _move_difference(ours, move):
+        if problem := move_difference(ours, move):
             return f"line {move.line}: {problem}\n  {ours}\n  {move}"
     events = [(index - null_before[index], text) for index, text in canon.events]
     if list(program.events) != events:
@@ -39,7 +39,7 @@ def _without_null_moves(program: Any, canon: CanonProgram) -> tuple[list[CanonMo
     return kept, null_before
 
 
-def _move_difference(ours: Any, theirs: CanonMove) -> str | None:
+def move_difference(ours: Any, theirs: CanonMove) -> str | None:
     if (ours.kind, ours.plane) != (theirs.kind, theirs.plane):
         return "kind or plane"
     for axis, value in ours.end.items():
@@ -54,26 +54,26 @@ def _move_difference(ours: Any, theirs: CanonMove) -> str | None:
                 return "centre"
         if not 0 < ours.sweep - math.tau * ours.turns <= math.tau + 1e-5:
             return "sweep"
-    return _feed_difference(ours, theirs)
+    return feed_difference(ours, theirs)
 
 
 def _close(move: CanonMove, axis: str) -> float:
     return SLACK + PRINTED * (move.unit if axis in "XYZ" else 1.0)
 
 
-def _feed_difference(ours: Any, theirs: CanonMove) -> str | None:
+def feed_difference(ours: Any, theirs: CanonMove) -> str | None:
     """Compare feeds; LinuxCNC has turned that of G93 into a rate along the path."""
     if ours.feed is None or theirs.feed is None:
         return None if ours.feed is theirs.feed else "feed"
     if ours.feed_mode != theirs.feed_mode:
         return "feed mode"
-    linear, rotary = _lengths(ours)
+    linear, rotary = lengths(ours)
     alone = bool(rotary and not linear)  # only rotary axes move
     unit = 1.0 if alone else theirs.unit
     expected, slack = [ours.feed], SLACK + PRINTED * 25.4
     if ours.feed_mode == "G93":
-        lengths = [rotary] if alone else [linear, *_circle_lost(ours)]
-        expected = [max(length * ours.feed, LEAST_RATE * unit) for length in lengths]
+        ways = [rotary] if alone else [linear, *_circle_lost(ours)]
+        expected = [max(way * ours.feed, LEAST_RATE * unit) for way in ways]
         slack += 1e-6 * expected[0]
     if any(abs(rate - theirs.feed[alone]) <= slack for rate in expected):
         return None
@@ -91,7 +91,7 @@ def _circle_lost(move: Any) -> list[float]:
     return [math.hypot(_radius(move) * math.tau * move.turns, rise)]
 
 
-def _lengths(move: Any) -> tuple[float, float]:
+def lengths(move: Any) -> tuple[float, float]:
     """Return the path of the linear axes in mm, and that of the rotary ones in degrees."""
     delta = {a: v - move.start.get(a, 0.0) for a, v in move.end.items()}
     rotary = math.hypot(*(delta.get(a, 0.0) for a in "ABC"))

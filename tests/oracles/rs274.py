@@ -23,24 +23,25 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from oracles.canon import CanonMove, CanonProgram, Reader
+from oracles.canon import CALL, CanonMove, CanonProgram, Reader
 
 __all__ = ["CanonMove", "CanonProgram", "Rejected", "available", "run", "run_many"]
 
-CALL = re.compile(r"\s*\d+\s+N\S*\s+([A-Z_0-9]+)\((.*)\)\s*$")
 MARK = re.compile(r'"gcx (\d+) (\d+)"')
 NOISE = ("executing", "link (updating")
 TIMEOUT = 10.0  # seconds
 BATCH = 250  # programs in one file
 ZERO = b"X0 Y0 Z0 A0 B0 C0"
 RESET = (
-    b"G80 G21 G17 G90 G91.1 G94 G40 G49 G8 G92.1 M5 M9\nS0 T0\nM61 Q0\n"
+    b"G80 G21 G17 G90 G91.1 G94 G40 G49 G8 G92.1 G99 M5 M9\nS0 T0\nM61 Q0\n"
     + b"".join(b"G10 L2 P%d R0 %s\n" % (n, ZERO) for n in range(1, 10))
-    + b"G54\nG0 %s\nG28.1\nG30.1\nG80\n" % ZERO
+    + b"G54\nG0 %s\nG28.1\nG30.1\n" % ZERO
+    + b"G82 X0 Z0 R0 P0 F1\nG80 G94\n"  # a dwell of a cycle would stay
 )
 PLAIN_G = {0, 1, 2, 3, 4, 17, 18, 19, 20, 21, 40, 49, 80, 90, 91, 90.1, 91.1, 93, 94, 95}
 PLAIN_G |= {*range(54, 60), 59.1, 59.2, 59.3, 52, 53, 92, 92.1, 92.2, 92.3}
 PLAIN_G |= {7, 8, 10, 28, 28.1, 30, 30.1, 43, 43.1, 43.2}
+PLAIN_G |= {73, 74, 98, 99, *range(81, 90)}
 PLAIN_M = {0, 1, 3, 4, 5, 6, 7, 8, 9, 60, 61}
 BLOCK = re.compile(r"/?(N\d+)?(?:[ABCFGHIJKLMPQRSTXYZ][+-]?[\d.]+)*")
 END = re.compile(rb"[ \t]*([nN]\d+)?[ \t]*[mM]0*2[ \t]*")  # not taken apart by a comment

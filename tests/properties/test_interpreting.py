@@ -29,8 +29,15 @@ class KeepingFanuc(default_registry().dialect("fanuc")):  # type: ignore[misc]
     m_codes = {**default_registry().dialect("fanuc").m_codes, 6: gx.MCode("tool")}  # noqa: RUF012
 
 
+class KeepingHaas(default_registry().dialect("haas")):  # type: ignore[misc]
+    """A Haas whose tool change moves no axis, as the reference has it."""
+
+    m_codes = {**default_registry().dialect("haas").m_codes, 6: gx.MCode("tool")}  # noqa: RUF012
+
+
 DIALECTS = {
     "fanuc": KeepingFanuc,
+    "haas": KeepingHaas,
     "grbl": default_registry().dialect("grbl"),
     "linuxcnc": default_registry().dialect("linuxcnc"),
 }

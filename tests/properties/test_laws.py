@@ -281,7 +281,7 @@ def test_a_compensated_machine_follows_the_program(
 # --- further laws ---
 
 
-NAMES = st.sampled_from(("linuxcnc", "fanuc", "grbl"))
+NAMES = st.sampled_from(("linuxcnc", "fanuc", "haas", "grbl"))
 SOURCES = NAMES.flatmap(lambda name: st.tuples(st.just(name), programs(name, max_blocks=12)))
 
 

@@ -13,7 +13,7 @@ from gcxform.syntax.tree import Block, Expression, Statement, Word, print_block
 from gcxform.testing.strategies import lines_of_bytes, programs
 from gcxform.verify import WindowReader
 
-DIALECTS = ("fanuc", "grbl", "linuxcnc")
+DIALECTS = ("fanuc", "grbl", "haas", "linuxcnc")
 in_every_dialect = pytest.mark.parametrize("name", DIALECTS)
 
 

@@ -53,4 +53,9 @@ def radius_reaches(radius: float, chord: float, dialect: str, inch: bool) -> boo
 
 
 FANUC_TOLERANCE = 0.01  # mm; parameter 3410, the low end of what machines are set to
-FUZZ = {"linuxcnc": 1e-6, "grbl": 5e-7, "fanuc": 1e-9}  # rad: below this an arc is a full turn
+FUZZ = {
+    "linuxcnc": 1e-6,
+    "grbl": 5e-7,
+    "fanuc": 1e-9,
+    "haas": 1e-9,
+}  # rad: below this an arc is a full turn

@@ -20,6 +20,7 @@ from reference.arcs import (
 )
 from reference.model import (
     DIALECTS,
+    FANUCS,
     PLANES,
     Dialect,
     Move,
@@ -119,7 +120,7 @@ class _Machine:
     def _motion_of_block(self, said: Sorted) -> int | None:
         """Return the motion that this block performs, if any."""
         values = said.values
-        fanuc_dwell = said.dwell and self.dialect.name == "fanuc"  # X is a time there
+        fanuc_dwell = said.dwell and self.dialect.name in FANUCS  # X is a time there
         axes = not fanuc_dwell and any(axis in values for axis in self.dialect.axes)
         motion = self.modal["motion"]
         if motion == 800:
@@ -146,7 +147,7 @@ class _Machine:
         if "T" in values and abs(values["T"].value - round(values["T"].value)) > 1e-4:
             raise self._refused("T is an integer")
         self._check_company(said, motion)
-        if name == "fanuc":
+        if name in FANUCS:
             self._check_points(values)
 
     def _check_company(self, said: Sorted, motion: int | None) -> None:
@@ -154,17 +155,19 @@ class _Machine:
         name, explicit = self.dialect.name, "motion" in said.codes
         if said.dwell and motion in (20, 30) and explicit and name == "linuxcnc":
             raise self._refused("G4 with G2 or G3")
-        if said.dwell and name == "fanuc" and (explicit or len(said.values) != 1):
+        if said.dwell and name in FANUCS and (explicit or len(said.values) != 1):
             raise self._refused("G4 stands alone")
         if "length" in said.codes and name == "grbl" and (explicit or motion is not None):
             raise self._refused("G49 with axis words")
 
     def _check_points(self, values: dict[str, Word]) -> None:
         """Refuse Fanuc numbers whose unit depends on whether they have a point."""
-        if any(values[letter].pointed for letter in "STNPM" if letter in values):
+        whole = "STNM" if self.dialect.name == "haas" else "STNPM"
+        if any(values[letter].pointed for letter in whole if letter in values):
             raise self._refused("an integer word with a decimal point")
         feed = values.get("F")
         plain = self.modal["feed"] != 950 and self.modal["units"] == 210
+        plain = plain and self.dialect.name != "haas"
         if feed is not None and feed.value and not feed.pointed and not plain:
             raise self._refused("F without a point here depends on parameters")
 
@@ -187,7 +190,7 @@ class _Machine:
         inch = (had["units"] if name == "linuxcnc" else self.modal["units"]) == 200
         if changed or inverse or ("feed" in said.codes and name == "linuxcnc"):
             self.feed = (0.0, 0.0)
-        if name == "fanuc" and self.modal["units"] != had["units"]:
+        if name in FANUCS and self.modal["units"] != had["units"]:
             self.feed = (0.0, 0.0)
         if "F" in said.values:
             if name == "grbl" and changed and not inverse and inch:
@@ -204,14 +207,15 @@ class _Machine:
 
     def _dwell(self, values: dict[str, Word]) -> float:
         """Return the dwell in seconds."""
-        if self.dialect.name != "fanuc":
+        if self.dialect.name not in FANUCS:
             if "P" not in values:
                 raise self._refused("dwell without a time")
             return values["P"].value
         word = next(iter(values.values()))
         if word.letter != "P" and not word.pointed:
             raise self._refused("dwell without a point")
-        return word.value / 1000 if word.letter == "P" else word.value
+        in_ms = word.letter == "P" and not (self.dialect.name == "haas" and word.pointed)
+        return word.value / 1000 if in_ms else word.value
 
     def _move(self, motion: int, values: dict[str, Word]) -> None:
         """Perform a rapid, line or arc."""
@@ -255,7 +259,7 @@ class _Machine:
     def _length(self, word: Word) -> float:
         """Return a distance word in mm, or degrees for a rotary axis."""
         value = word.value
-        if self.dialect.name == "fanuc" and not word.pointed and value:
+        if self.dialect.name in FANUCS and not word.pointed and value:
             if self.increment is None:
                 raise self._refused(f"{word.letter} has no decimal point")
             value *= self.increment
@@ -302,7 +306,7 @@ class _Machine:
     def _radius_centre(
         self, clockwise: bool, values: dict[str, Word], first: Point, last: Point, axes: str
     ) -> Point:
-        if set("IJK") & set(values) and self.dialect.name != "fanuc":
+        if set("IJK") & set(values) and self.dialect.name not in FANUCS:
             raise self._refused("R with I, J or K")
         if not {axes[0], axes[1]} & set(values) or first == last:
             raise self._refused("R needs another end point")

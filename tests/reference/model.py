@@ -1,9 +1,10 @@
-"""What the reference interpreter knows about the three controls, and what it returns."""
+"""What the reference interpreter knows about the four controls, and what it returns."""
 
 import math
 from dataclasses import dataclass, field, replace
 
 LINEAR = "XYZ"
+FANUCS = ("fanuc", "haas")  # the controls of that family
 PLANES = {170: ("XY", "XYZ", "IJK"), 180: ("ZX", "ZXY", "KIJ"), 190: ("YZ", "YZX", "JKI")}
 GROUPS = {  # code times ten: modal group
     **dict.fromkeys((0, 10, 20, 30, 800), "motion"),
@@ -44,6 +45,9 @@ DIALECTS = {
     "linuxcnc": Dialect("linuxcnc", "XYZABC", frozenset()),
     "fanuc": Dialect(
         "fanuc", "XYZABC", frozenset((901, 911)), many_m=3, late=frozenset((*STOPS, 5, 9))
+    ),
+    "haas": Dialect(
+        "haas", "XYZABC", frozenset((901, 911)), many_m=3, late=frozenset((*STOPS, 5, 9))
     ),
     "grbl": Dialect(
         "grbl", "XYZ", frozenset((901, 950)), frozenset((6, 7, 60)), motion=0, frame=540

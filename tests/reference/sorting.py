@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from reference.model import GROUPS, M_GROUPS, Dialect
+from reference.model import FANUCS, GROUPS, M_GROUPS, Dialect
 from reference.words import Block, Refused, Word
 
 
@@ -57,7 +57,7 @@ def _m_code(word: Word, dialect: Dialect, line: int) -> int:
 def _add_code(codes: dict[str, int], code: int, dialect: Dialect, line: int) -> None:
     """Enter a code; a second one of its group wins (Fanuc), or is refused."""
     group = GROUPS[code]
-    if dialect.name == "fanuc":
+    if dialect.name in FANUCS:
         if code != 800:  # cycles are a group of their own there: G80 leaves motion alone
             codes[group] = code
         return

@@ -42,7 +42,7 @@ def blocks(program: bytes, dialect: str, *, skip: bool = False) -> Iterator[Bloc
 
     `skip` leaves out the lines which begin with a slash; GRBL has no such switch.
     """
-    reader = {"linuxcnc": _linuxcnc, "fanuc": _fanuc, "grbl": _grbl}[dialect]
+    reader = {"linuxcnc": _linuxcnc, "fanuc": _fanuc, "haas": _haas, "grbl": _grbl}[dialect]
     lines = program.decode("latin-1").split("\n")
     if lines and not lines[-1]:
         lines.pop()
@@ -70,7 +70,12 @@ def _linuxcnc(lines: list[str], skip: bool) -> Iterator[Block]:
 # --- Fanuc ---------------------------------------------------------------------------------
 
 
-def _fanuc(lines: list[str], skip: bool) -> Iterator[Block]:
+def _haas(lines: list[str], skip: bool) -> Iterator[Block]:
+    """Blocks of a Haas program: a Fanuc tape in capitals or small letters."""
+    yield from _fanuc(lines, skip, any_case=True)
+
+
+def _fanuc(lines: list[str], skip: bool, *, any_case: bool = False) -> Iterator[Block]:
     """Blocks of a Fanuc tape: nothing before the first percent sign, nothing after the second."""
     filled = [i for i, text in enumerate(lines) if text.strip()]
     framed = bool(filled) and lines[filled[0]].strip() == "%"
@@ -82,6 +87,7 @@ def _fanuc(lines: list[str], skip: bool) -> Iterator[Block]:
         if skip and text.lstrip(" ").startswith("/"):
             continue
         text = _strip_comments(text, number, semicolon=False)
+        text = text.upper() if any_case else text
         if re.search("[a-z;]", text):
             raise Refused(number, "lower case and semicolons are not in the alphabet")
         if re.fullmatch(rf"[O:]\d+{BREAK}*", text):

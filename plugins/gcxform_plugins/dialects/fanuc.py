@@ -13,8 +13,21 @@
 | another unit or feed mode | the feed is not known until it is programmed |
 | M0 M1 M2 M30 M98 M99 | act after the motion of their block |
 | M5, M9 with a motion | the machine's PLC decides, commonly after it: taken as after |
-| an M code not listed | may move axes: positions are unknown after it |
+| an M code not listed | may run a macro: positions and variables are unknown after it |
 | tool change | moves axes: positions are unknown after it |
+| canned cycles | R, Z, P, Q stay until the cycle mode ends; K0 stores them without drilling |
+| G73, G83 between pecks | parameters 5114 and 5115: must be given |
+| G76, G87, G88 | depend on parameters or on the operator: refused |
+| a variable that nothing has set | is null: refused, unless given |
+| a computed distance | in mm, rounded to `[input] increment`, which must be given |
+| an assignment beside words | when it acts is not certain: refused |
+| AND OR XOR | known in two ways: refused |
+| FIX, FUP, MOD of negative numbers, halves in ROUND | known in two ways: refused |
+| ATAN, ASIN below 0 | a parameter may add 360 degrees: refused |
+| ROUND in a word | rounds to the increment of the word: refused |
+| computed S T F D H L P | must be whole numbers |
+| #1000 and above | belong to the control: refused |
+| IF WHILE GOTO G65 | refused: code that would have to be run |
 """
 
 from __future__ import annotations
@@ -25,7 +38,32 @@ from typing import ClassVar
 import gcxform as gx
 from gcxform import vocabulary as v
 
+BOTTOM, _, CLEARANCE, RETRACT = v.Level
+
 CYCLES = ("G73", "G74", "G76", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89")
+SHIFTS = "the direction in which its tool is shifted is a parameter of the machine"
+CYCLE_RULE = v.CycleRule(
+    steps={
+        73: v.DRILL,
+        74: (*v.tap(v.REVERSE, v.FORWARD, CLEARANCE), v.rapid(RETRACT)),
+        81: v.DRILL,
+        82: v.DRILL_DWELL,
+        83: v.DRILL,
+        84: (*v.tap(v.FORWARD, v.REVERSE, CLEARANCE), v.rapid(RETRACT)),
+        85: (v.feed(BOTTOM), v.feed(CLEARANCE), v.rapid(RETRACT)),
+        86: v.BORE_STOP,
+        89: (v.feed(BOTTOM, v.DWELL), v.feed(CLEARANCE), v.rapid(RETRACT)),
+    },
+    pecks={73: "break", 83: "clear"},
+    needs={73: "Q", 82: "P", 83: "Q", 89: "P"},
+    takes={int(code[1:]): "PQK" for code in CYCLES},
+    spindle={86: (1, -1)},
+    open_words={74: "Q", 84: "Q"},
+    refused={76: SHIFTS, 87: SHIFTS, 88: "the operator takes the tool out of the hole by hand"},
+    keeps_words=True,
+    stores=True,
+    repeats="K",
+)
 
 
 class Fanuc(gx.Dialect):
@@ -80,7 +118,7 @@ class Fanuc(gx.Dialect):
             code: v.barrier("transform", v.TRANSFORM, "PRIJKQ")
             for code in ("G7.1", "G12.1", "G107", "G112")
         },
-        **{code: v.barrier("cycle", v.CYCLE, "IJKLPQR") for code in CYCLES},
+        **{code: gx.Code("cycle") for code in CYCLES},
         **{code: v.barrier("motion", v.SYNCHRONISED, "PQR") for code in ("G33", "G34")},
         **{code: v.barrier("motion", "it cuts a spline", "PRK") for code in ("G6.2",)},
         **{code: v.barrier("motion", "it cuts a spiral", "IJKRLPQ") for code in ("G2.2", "G3.2")},
@@ -111,3 +149,5 @@ class Fanuc(gx.Dialect):
     lower_case = False
     dwell: ClassVar[Mapping[str, float]] = {"X": 1.0, "U": 1.0, "P": 0.001}
     arc_rule = gx.ArcRule(absolute=0.01)
+    cycle_rule = CYCLE_RULE
+    arithmetic = v.MACRO_B

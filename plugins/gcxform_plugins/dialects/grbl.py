@@ -10,6 +10,8 @@
 | start and end radius | refused beyond 0.5 mm, or beyond 0.005 mm and 0.1 % |
 | `%`, O numbers | refused |
 | after M2, M30 | modes are G1 G17 G90 G94 G54 and execution goes on |
+| G93 on an arc | its source takes F as mm/min there: refused where feeds are converted |
+| another feed mode | the feed is not known until it is programmed |
 | block | at most 79 characters after comments and blanks |
 """
 
@@ -32,13 +34,13 @@ class Grbl(gx.Dialect):
         **v.ISO,
         "G61": v.inert("path"),
         "G91.1": gx.Code("arc-distance"),
-        "G10": v.frame("non-modal", "set-work", "XYZLPR"),
+        "G10": v.frame("non-modal", "set-work", "XYZLP"),
         "G92": v.frame("non-modal", "preset", "XYZ"),
         "G92.1": v.frame("non-modal", "preset-clear"),
         **{code: v.frame("non-modal", "home") for code in ("G28", "G30")},
         **{code: v.frame("non-modal", "store-home") for code in ("G28.1", "G30.1")},
         "G53": v.frame("non-modal", "machine"),
-        "G43.1": v.frame("tool-length", "length-vector", "Z"),
+        "G43.1": v.frame("tool-length", "length-vector", "XYZ"),
         **{code: v.barrier("motion", v.PROBE) for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
@@ -50,6 +52,8 @@ class Grbl(gx.Dialect):
     axis_words_once = True
     starts_in_frame = True
     g10_p0_is_active = True
+    g10_needs_p = False
+    length_axes = "Z"
     g10_sets_position = True
     g10_ignores_g91 = True
     g53_in_g91 = "absolute"
@@ -64,10 +68,12 @@ class Grbl(gx.Dialect):
         "feed-mode": "G94",
         "frame": "G54",
     }
+    largest_number = 10_000_000
     line_length = 79
     length_without_blanks = True
     comments = "(;"
     has_percent = False
     has_program_number = False
     words = "FIJKLNPRST"
+    inverse_time_arcs = False
     arc_rule = gx.ArcRule(absolute=0.005, relative=0.001, largest=0.5)

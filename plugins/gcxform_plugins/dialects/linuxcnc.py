@@ -9,11 +9,21 @@
 | turns of an arc | P n: n - 1 full turns more |
 | start and end radius | refused if they differ by more than 0.0282843 mm and 0.1 % |
 | G93, G94, G95 | set the feed to zero, also when re-stated |
+| feed | along X Y Z; in degrees where only rotary axes move; in G93 no less than 0.1 per minute |
 | `G20 F10` | F is in the unit before; after G20, G21 the feed in mm/min stays |
 | CR without LF | is a blank |
 | M5, M9 | act before the motion of their block |
 | after M2, M30 | nothing is executed |
 | tool change | the axes stay, as far as the interpreter knows |
+| G98, G99 at start | G99 |
+| canned cycles | R, Z, P, Q stay within one cycle; from below R first up; 0.254 mm between pecks |
+| G74, G84 in G18, G19 | the axes of the feed moves are mixed up: refused |
+| G76 | a thread: refused |
+| assignments | take effect after their block: `#1=#2 #2=#1` swaps |
+| expressions | a sign binds to its number, `**` goes from the left, numbers within 1e-4 are EQ |
+| a parameter that nothing has set | refused unless given: the control may have a value left |
+| #5001 and above, `#<_x>` and its like | belong to the control: refused |
+| O-words | refused: code that would have to be run |
 """
 
 from __future__ import annotations
@@ -24,7 +34,49 @@ from typing import ClassVar
 import gcxform as gx
 from gcxform import vocabulary as v
 
+BOTTOM, MIDDLE, CLEARANCE, RETRACT = v.Level
+
 CYCLES = ("G73", "G74", "G76", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89")
+MIXED_UP = "LinuxCNC 2.9 mixes the axes up and feeds to another point"
+CYCLE_RULE = v.CycleRule(
+    steps={
+        73: v.DRILL,
+        74: v.tap(v.REVERSE, v.FORWARD),
+        81: v.DRILL,
+        82: v.DRILL_DWELL,
+        83: v.DRILL,
+        84: v.tap(v.FORWARD, v.REVERSE),
+        85: (v.feed(BOTTOM), v.feed(CLEARANCE), v.rapid(RETRACT)),
+        86: (v.feed(BOTTOM, v.DWELL, v.STOP), v.rapid(RETRACT, v.RESUME)),
+        87: (
+            v.rapid(CLEARANCE, v.STOP, v.ORIENT, shifted=True),
+            v.rapid(BOTTOM, shifted=True),
+            v.rapid(BOTTOM, v.RESUME),
+            v.feed(MIDDLE),
+            v.feed(BOTTOM, v.STOP, v.ORIENT),
+            v.rapid(BOTTOM, shifted=True),
+            v.rapid(RETRACT, shifted=True),
+            v.rapid(RETRACT, v.RESUME),
+        ),
+        88: (v.feed(BOTTOM, v.DWELL, v.STOP, v.HALT, v.RESUME),),
+        89: (v.feed(BOTTOM, v.DWELL), v.feed(RETRACT)),
+    },
+    pecks={73: "break", 83: "clear"},
+    needs={73: "Q", 82: "P", 83: "Q", 86: "P", 87: "IJK", 88: "P", 89: "P"},
+    takes={
+        **{73: "QL", 74: "P", 81: "L", 82: "PL", 83: "QL", 84: "PL", 85: "L", 86: "PL"},
+        **{87: "IJKL", 88: "PL", 89: "PL"},
+    },
+    spindle={74: (-1,), 84: (1,), 86: (1, -1), 87: (1, -1), 88: (1, -1)},
+    refused={76: "its motion is tied to the spindle"},
+    xy_only={74: MIXED_UP, 84: MIXED_UP},
+    peck_return=0.254,
+    peck_clearance=0.254,
+    rises_first=True,
+    keeps_dwell=True,
+    one_plane=False,
+    initial_level=False,
+)
 
 
 class LinuxCNC(gx.Dialect):
@@ -58,7 +110,8 @@ class LinuxCNC(gx.Dialect):
         "G43": v.frame("tool-length", "length", "H"),
         "G43.1": v.frame("tool-length", "length-vector", v.AXES),
         "G43.2": v.frame("tool-length", "length-add", "H"),
-        **{code: v.barrier("motion", v.CYCLE, "EHIJKLPQR") for code in CYCLES},
+        **{code: gx.Code("motion") for code in CYCLES if code != "G76"},
+        "G76": v.barrier("motion", v.SYNCHRONISED, "EHIJKLPQR"),
         **{
             code: v.barrier("motion", "it cuts a spline", "IJKPQL")
             for code in ("G5", "G5.1", "G5.2", "G5.3")
@@ -107,10 +160,14 @@ class LinuxCNC(gx.Dialect):
     lone_cr_is_blank = True
     number_first = True
     turns_address = "P"
+    cycle_rule = CYCLE_RULE
     line_length = 252
     comments = "(;"
     words = "DEFHIJKLNPQRST@^$"
     arc_rotary = True
+    feed_along_lines = True
+    least_inverse_rate = 0.1
+    arithmetic = v.RS274
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     arc_rule = gx.ArcRule(
         absolute=0.0282843, relative=0.001, largest=2.82843, smallest=0.00127, r_short=0.00127

@@ -14,7 +14,7 @@ class Absolute(gx.Pass):
     """Write positions instead of distances: G91 becomes G90.
 
     Positions are summed exactly as the control does and rounded once, so nothing drifts. Returns to
-    reference (`G91 G28 Z0`) stay as they are.
+    reference (`G91 G28 Z0`) and canned cycles stay as they are.
     """
 
     name = "absolute"
@@ -23,6 +23,6 @@ class Absolute(gx.Pass):
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path with every plain block in absolute distance mode."""
         own = np.zeros(len(path.blocks.incremental), np.bool_)
-        own[path.block[path.form == gx.Form.HOME]] = True
+        own[path.block[np.isin(path.form, gx.OWN_DISTANCES)]] = True
         incremental = path.blocks.incremental & own
         return path.replace(blocks=replace(path.blocks, incremental=incremental))

@@ -17,6 +17,19 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+SAME = 1e-9  # mm; an axis that moves by less stays where it is
+
+
+def left_alone(path: gx.Toolpath) -> NDArray[np.bool_]:
+    """Return the moves that are not compensated.
+
+    These are moves to points of the machine itself (G28, G53), and rapids that end where some axis
+    is at an unknown place, as between a tool change and the first Z.
+    """
+    unknown = np.isnan(path.end[:, :3]).any(axis=1) & (path.kind == gx.Kind.RAPID)
+    machine = (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
+    return np.asarray(machine | unknown)
+
 
 class Compensation:
     """The forward work on one window."""
@@ -27,6 +40,7 @@ class Compensation:
         self.offset = offset
         self.start = path.start[:, :3] + offset
         self.end = path.end[:, :3] + offset
+        self.left = left_alone(path)
 
     def offset_of(self, rows: Ints) -> Floats:
         """Return table position minus program position of rows."""
@@ -41,16 +55,34 @@ class Compensation:
         """Return the commands."""
         self._check_known()
         self._check_inside()
-        commands = self.step.command(self.end)
         self.entry_command = self.step.command(self.start[:1])[0]
         if self.step.rapids == "skip" and self.path.after_rapid:
             self.entry_command = self.start[0]
+        commands = self._commands()
         rows, part = self._cuts(commands)
         if len(rows):
             return self._cut(rows, part, commands)
         self._check_size(commands, self.end, np.arange(len(self.path)))
         end = self._with_others(commands - self.offset)
         return self._arcs(self.path.replace(end=end, entry=self._entry()), np.arange(len(end)))
+
+    def _commands(self) -> Floats:
+        """Return the commands for the ends of the rows; what G28 and G53 say stays as it is."""
+        if not self.left.any():
+            return self.step.command(self.end)
+        commands = self.end.copy()
+        commands[~self.left] = self.step.command(self.end[~self.left])
+        path = self.path
+        distances = path.blocks.incremental[path.block] & (path.form == gx.Form.HOME)
+        distances &= np.append(path.nth[1:] > 0, False)[: len(path)]  # the way to G28's own point
+        for row in np.flatnonzero(self.left).tolist():
+            before = commands[row - 1] if row else self.entry_command
+            way = self.end[row] - self.start[row]
+            stays = np.abs(way) < SAME
+            commands[row] = np.where(stays, before, commands[row])
+            if distances[row]:
+                commands[row] = before + way
+        return commands
 
     def _entry(self) -> Floats:
         entry = self.path.entry.copy()
@@ -71,7 +103,7 @@ class Compensation:
     # --- refusals ---
 
     def _check_known(self) -> None:
-        unknown = np.isnan(self.end)
+        unknown = np.isnan(self.end) & ~self.left[:, None]
         if unknown.any():
             row = int(np.argmax(unknown.any(axis=1)))
             axis = "XYZ"[int(np.argmax(unknown[row]))]
@@ -84,7 +116,8 @@ class Compensation:
 
     def _check_inside(self) -> None:
         """Refuse positions beyond the table, or too far beyond it."""
-        points, rows = self.end, np.arange(len(self.path))
+        rows = np.flatnonzero(~self.left)
+        points = self.end[rows]
         if self.path.has_arcs:
             more, owners = gx.arc_extremes(self.path)
             offset = self.offset if len(self.offset) == 1 else self.offset[owners]
@@ -128,6 +161,7 @@ class Compensation:
 
     def _check_size(self, command: Floats, target: Floats, rows: Ints) -> None:
         size = np.sqrt(((command - target) ** 2).sum(axis=1))
+        size[self.left[rows]] = 0.0
         if np.nanmax(size, initial=0.0) > self.step.max_correction:
             worst = int(np.nanargmax(size))
             raise self.path.refuse(

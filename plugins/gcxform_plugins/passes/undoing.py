@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+STILL = 1e-9  # mm; an axis that moves by less stays where it is
 UNDO_SLACK = 2e-6  # mm; how far pieces of an undone arc are from the curve they stand for
 
 
@@ -50,12 +51,37 @@ class Machine:
         if self.step.rapids == "skip":
             rapid = path.kind[every] == gx.Kind.RAPID
             actual[rapid] = point[rapid]
+        self._leave(every, point, actual)
         return self._path(counts, every, at, actual)
+
+    def _leave(self, rows: Ints, point: Floats, actual: Floats) -> None:
+        """Take moves to points of the machine itself as they are said: they are where they go.
+
+        So are rapids to a place that is not known in every axis, which nothing can compensate. An
+        axis that does not move in them stays where it is.
+        """
+        form, rapid = self.path.form[rows], self.path.kind[rows] == gx.Kind.RAPID
+        unknown = rapid & np.isnan(point).any(axis=1)
+        own = np.flatnonzero((form == gx.Form.HOME) | (form == gx.Form.MACHINE) | unknown)
+        for at in own.tolist():
+            before = self.path.start[rows[at], :3]
+            stays = np.abs(point[at] - before) < STILL
+            here = actual[at - 1] if at else self._entry()
+            actual[at] = np.where(stays, here, point[at])
+
+    def _entry(self) -> Floats:
+        """Return where the machine stands before the first row (3,)."""
+        entry = self.path.entry[:3].copy()
+        skipped = self.step.rapids == "skip" and self.path.after_rapid
+        if np.isfinite(entry).all() and not skipped:
+            entry += self.step.error(entry[None, :] + self.offset[:1])[0]
+        return entry
 
     def _crossings(self) -> tuple[Ints, Floats]:
         """Return where lines and arcs are cut: at nodes, and arcs also where they turn far."""
         path = self.path
-        lines = np.flatnonzero((path.kind == gx.Kind.LINE) & path.starts_known)
+        plain = path.form == gx.Form.PLAIN
+        lines = np.flatnonzero((path.kind == gx.Kind.LINE) & path.starts_known & plain)
         row, part = self._bends(lines)
         if path.has_arcs:
             reach = self.step.model.model.lipschitz
@@ -97,14 +123,14 @@ class Machine:
         a, b = path.start[rows, 3:], path.end[rows, 3:]
         end[:, 3:] = np.where((part == 1.0)[:, None], b, a + part[:, None] * (b - a))
         entry = path.entry.copy()
-        skipped = self.step.rapids == "skip" and path.after_rapid
-        if np.isfinite(entry[:3]).all() and not skipped:
-            entry[:3] += self.step.error(entry[None, :3] + self.offset[:1])[0]
+        entry[:3] = self._entry()
         columns: dict[str, Floats] = {"end": end}
+        before = np.where(np.append(True, rows[1:] != rows[:-1]), 0.0, np.append(0.0, part[:-1]))
+        inverse = path.feed_mode[rows] == gx.FeedMode.INVERSE_TIME
+        if inverse.any():
+            feed = path.feed[rows]
+            columns["feed"] = np.where(inverse, feed / (part - before), feed)
         if path.has_arcs:
-            before = np.where(
-                np.append(True, rows[1:] != rows[:-1]), 0.0, np.append(0.0, part[:-1])
-            )
             columns["sweep"] = path.sweep[rows] * (part - before)
             middle = self._points_between(rows, (part + before) / 2)
             columns["centre"] = path.centre[rows] + middle

@@ -1,0 +1,91 @@
+"""`gcxform resume`: the blocks that bring a control into the state before a line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import click
+
+from gcxform.cli import VERBS, options
+from gcxform.cli.asked import Asked, needed_dialect
+from gcxform.cli.failures import warn
+from gcxform.cli.preamble import Preamble
+from gcxform.cli.programs import opened
+from gcxform.cli.restart import Restart
+from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
+from gcxform.machine.machine import LENGTH
+from gcxform.registry import default_registry
+
+
+@click.command("resume", help=VERBS["resume"], short_help=VERBS["resume"])
+@click.option("--line", type=click.IntRange(1), required=True, help="Line to begin at, from 1.")
+@click.option("--clearance", metavar="LENGTH", help="Z of the program that is clear of all.")
+@click.option("--plunge", metavar="FEED", type=float, help="Feed down to Z, mm/min.  [default: F]")
+@click.option("--tool-loaded", is_flag=True, help="Name the tool in a comment; do not change it.")
+@click.option("--rest", is_flag=True, help="Print the rest of the program as well.")
+@options.FROM
+@options.reading_options
+@options.FILE
+def command(
+    file: str,
+    line: int,
+    clearance: str | None,
+    plunge: float | None,
+    tool_loaded: bool,
+    rest: bool,
+    dialect: str | None,
+    **asked: Any,
+) -> None:
+    """Print the blocks for a restart at a line, proved to lead to what the program does."""
+    kind = default_registry().dialect(needed_dialect(dialect))
+    height = _height(clearance)
+    if plunge is not None and not plunge > 0:
+        raise UsageError.one("GX706", f"{plunge:g} is not above 0", Location("--plunge"))
+    if rest and height is None:
+        raise UsageError.one("GX705", "--rest needs --clearance", hint="--clearance 50mm")
+    with opened(file) as source:
+        restart = Restart(kind, source, Asked(**asked).reading(), line)
+        preamble = restart.preamble(height, plunge, not tool_loaded)
+        end = b"\r\n" if b"\r\n" in restart.rest[0] else b"\n"
+        frame = ["%"] if rest and restart.state.percents == 1 else []
+        said = [*frame, *_blocks(preamble, line), *_standing(restart)]
+        text = b"".join(block.encode("latin-1") + end for block in said)
+        if open_end := restart.prove(preamble, text):
+            warn([_as_note(open_end)])
+        click.echo(text, nl=False)
+        if rest:
+            for part in restart.rest:
+                click.echo(part, nl=False)
+
+
+def _height(text: str | None) -> float | None:
+    """Return the clearance in mm."""
+    if text is None:
+        return None
+    try:
+        return LENGTH.parse(text, bare=True)
+    except ValueError as error:
+        raise UsageError.one("GX708", str(error), Location("--clearance")) from None
+
+
+def _as_note(found: Diagnostic) -> Diagnostic:
+    note = Severity.NOTE
+    return Diagnostic(found.code, found.message, found.where, found.hint, found.context, note)
+
+
+def _blocks(preamble: Preamble, line: int) -> Iterator[str]:
+    """Yield the blocks with what a person must know of them."""
+    yield f"(RESTART AT LINE {line})"
+    if preamble.memory.loaded is None:
+        yield "(NO TOOL CHANGE BEFORE IT: CHECK THE TOOL)"
+    yield from preamble.blocks()
+    if preamble.approach is None:
+        yield f"(THE AXES MUST STAND AT {preamble.places_text()})"
+
+
+def _standing(restart: Restart) -> Iterator[str]:
+    """Yield a word on axes that the program has not moved yet but moves later."""
+    later = [axis for axis in restart.unknown() if axis in restart.used]
+    if later:
+        yield f"({' '.join(later)} MUST STAND WHERE THE PROGRAM BEGAN)"

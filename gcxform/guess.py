@@ -1,0 +1,199 @@
+"""Which of the known dialects a program may be written in, and what speaks for it.
+
+Every dialect reads the program with its own grammar and tables. What counts most is what it does
+not know; the rest is custom: points, program numbers, the unit of dwells, names in comments. The
+scores order the dialects and are no probabilities. Dialects that nothing tells apart are named
+together.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+
+from gcxform.dialect import LINEAR, Dialect
+from gcxform.modal.meaning import Meaning
+from gcxform.modal.reader import WindowReader
+from gcxform.registry import default_registry
+from gcxform.source import Source
+from gcxform.syntax.scan import Window
+from gcxform.syntax.shapes import Shape
+from gcxform.syntax.tree import Comment, Number, Word
+
+FOREIGN = frozenset({"GX101", "GX201", "GX202", "GX203"})  # blocks the control itself refuses
+WINDOWS = 2  # of the program that are looked at
+HOPELESS = 0.25  # the share of foreign lines from which on no dialect fits
+ALIKE = 0.5  # scores that differ by less say the same
+DISTANCES = LINEAR + "IJK"
+SHOWN = 3  # words that are named of those a dialect does not have
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Something in a program that speaks for a dialect (weight above 0) or against it."""
+
+    what: str
+    weight: float
+
+
+@dataclass(frozen=True)
+class Guess:
+    """The dialects a program may be in, the best guess first; none if no known dialect fits.
+
+    `evidence` by dialect, of all that were tried.
+    """
+
+    dialects: tuple[str, ...]
+    evidence: Mapping[str, tuple[Evidence, ...]]
+
+    def score(self, dialect: str) -> float:
+        """Return the sum of the weights of a dialect."""
+        return sum(item.weight for item in self.evidence[dialect])
+
+    def __str__(self) -> str:
+        """Return the guess in words, with what speaks for it."""
+        if not self.dialects:
+            return "none of the known dialects"
+        reasons = [e.what for e in self.evidence[self.dialects[0]] if e.weight > 0]
+        return f"{' or '.join(self.dialects)} ({', '.join(reasons) or 'nothing speaks against it'})"
+
+
+@dataclass
+class _Seen:
+    """What one dialect sees in a program."""
+
+    lines: int = 0
+    foreign: int = 0
+    strange: Counter[str] = field(default_factory=Counter)
+    small: bool = False
+    whole_with_point: int = 0
+    whole_without: int = 0
+    dwells: list[tuple[str, float, int]] = field(default_factory=list)
+    numbers: set[int] = field(default_factory=set)
+    comments: set[str] = field(default_factory=set)
+
+
+def guess_dialect(
+    program: bytes | Path | Source, dialects: Mapping[str, type[Dialect]] | None = None
+) -> Guess:
+    """Return which dialects a program, or the file of that name, may be in.
+
+    Two megabytes from its start are looked at. `dialects` are those to choose from, by name; all
+    that are installed if not given. Raises FileError.
+    """
+    if isinstance(program, Path):
+        source = Source.open(program)
+        with source.stream:
+            return guess_dialect(source, dialects)
+    source = Source.of_bytes(program) if isinstance(program, bytes) else program
+    tried = default_registry().dialects if dialects is None else dialects
+    seen = {name: _seen(source, dialect) for name, dialect in tried.items()}
+    found = {name: tuple(_evidence(tried[name], seen[name])) for name in tried}
+    fitting = [n for n in tried if seen[n].foreign <= HOPELESS * max(seen[n].lines, 1)]
+    scores = {name: sum(item.weight for item in found[name]) for name in fitting}
+    best = max(scores.values(), default=0.0)
+    if not any(seen[name].lines for name in fitting):
+        return Guess((), found)
+    chosen = [name for name in scores if scores[name] > best - ALIKE]
+    return Guess(tuple(sorted(chosen, key=lambda name: (-scores[name], name))), found)
+
+
+# --- what a dialect sees ---
+
+
+def _seen(source: Source, dialect: type[Dialect]) -> _Seen:
+    seen, reader = _Seen(), WindowReader(dialect)
+    for text in islice(source.windows(), WINDOWS):
+        window = reader.read(text)
+        reader.table.update()
+        numbers, counts = np.unique(window.shape, return_counts=True)
+        for number, count in zip(numbers.tolist(), counts.tolist(), strict=True):
+            shape = reader.shapes.shapes[number]
+            if shape.block.items or shape.block.error:
+                meaning = reader.table.meanings[number]
+                _look(seen, shape, meaning, count)
+                _numbers(seen, window, meaning, np.flatnonzero(window.shape == number))
+    return seen
+
+
+def _look(seen: _Seen, shape: Shape, meaning: Meaning, count: int) -> None:
+    """Take the lines of one shape into account, without their numbers."""
+    block = shape.block
+    seen.lines += count
+    if meaning.refusal is not None and meaning.refusal.code in FOREIGN:
+        at = meaning.refusal.column
+        seen.foreign += count
+        seen.strange[block.text[at : at + meaning.refusal.width].strip()[:12] or "?"] += count
+    for item in block.items:
+        if isinstance(item, Word):
+            seen.small |= block.text[item.start].islower()
+            if item.address == "O" and isinstance(item.value, Number):
+                seen.numbers.add(item.value.end - item.value.start)
+        elif isinstance(item, Comment):
+            seen.comments.add(block.text[item.start : item.end].lower())
+
+
+def _numbers(seen: _Seen, window: Window, meaning: Meaning, lines: np.ndarray) -> None:
+    """Take the numbers of the lines of one shape into account."""
+    first = window.first_number[lines]
+    for address, slot in meaning.slots.items():
+        if address in DISTANCES:
+            value, decimals = window.value[first + slot], window.decimals[first + slot]
+            whole = (value % 1 == 0) & (value != 0) & (decimals <= 0)
+            seen.whole_with_point += int((whole & (decimals == 0)).sum())
+            seen.whole_without += int((whole & (decimals < 0)).sum())
+    for event in meaning.events:
+        if event.what == "DWELL":
+            for address, slot in event.slots:
+                at = int(first[0]) + slot
+                value, decimals = float(window.value[at]), int(window.decimals[at])
+                seen.dwells.append((address, value, decimals))
+
+
+# --- what it means ---
+
+
+def _evidence(dialect: type[Dialect], seen: _Seen) -> Iterator[Evidence]:
+    """Yield what speaks for a dialect and against it."""
+    if seen.foreign:
+        words = " ".join(word for word, _ in seen.strange.most_common(SHOWN))
+        what = f"{seen.foreign} of {seen.lines} lines it does not have: {words}"
+        yield Evidence(what, -3.0 - 20.0 * seen.foreign / seen.lines)
+    if seen.small and not dialect.lower_case:
+        yield Evidence("small letters", -4.0)
+    yield from _points(dialect, seen)
+    if seen.numbers and dialect.point_required:
+        yield Evidence("a program number", 1.5)
+    if dialect.program_number_digits in seen.numbers:
+        yield Evidence(f"a program number of {dialect.program_number_digits} digits", 1.0)
+    if any(dialect.name in comment for comment in seen.comments):
+        yield Evidence("its name in a comment", 3.0)
+    for address, value, decimals in seen.dwells[:1]:
+        yield from _dwell(dialect, address, value, decimals)
+
+
+def _points(dialect: type[Dialect], seen: _Seen) -> Iterator[Evidence]:
+    """Yield what the points of whole numbers say."""
+    if dialect.point_required and seen.whole_without:
+        yield Evidence("distances without a point", -1.5)
+    elif dialect.point_required and seen.whole_with_point:
+        yield Evidence("a point in every distance", 2.0)
+
+
+def _dwell(dialect: type[Dialect], address: str, value: float, decimals: int) -> Iterator[Evidence]:
+    """Yield what the number of a dwell says of its unit: hardly anybody waits for minutes."""
+    if address not in dialect.dwell:
+        return
+    unit = dialect.dwell[address]
+    if dialect.dwell_point_is_seconds and decimals >= 0:
+        unit = 1.0
+    seconds = value * unit
+    if 0.04 <= seconds < 100:
+        yield Evidence(f"a dwell of {seconds:g} s", 1.0)
+    else:
+        yield Evidence(f"a dwell of {seconds:g} s", -1.0)

@@ -1,0 +1,117 @@
+"""What a control makes of its canned cycles, as data: the steps of each and the rules around them.
+
+A hole is drilled from a level at which the tool comes to it; every step of a cycle goes from there
+to one of a few levels, at rapid or at the feed, and something may be done when it has arrived.
+Pecking is the only thing that is not a fixed list of steps. Nothing here is true of every control:
+each dialect has a `CycleRule` of its own, or that of its relative with changes (`replace`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import IntEnum
+
+DWELL = "DWELL"
+STOP = "M5"
+FORWARD = "M3"
+REVERSE = "M4"
+HALT = "M0"
+ORIENT = "M19"
+RESUME = "RESUME"
+"""What may be done after a step; RESUME is M3 or M4, as the spindle turned before the cycle."""
+
+
+class Level(IntEnum):
+    """Where along the normal axis a step ends.
+
+    BOTTOM: the depth of the hole. MIDDLE: how far a back boring goes up (G87). CLEARANCE: the
+    R level. RETRACT: the level at which the cycle ends, as G98 or G99 chooses.
+    """
+
+    BOTTOM = 0
+    MIDDLE = 1
+    CLEARANCE = 2
+    RETRACT = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One move of a cycle: at the feed or at rapid, to a level, perhaps shifted by I, J, K.
+
+    `then` names what is done when the move has ended.
+    """
+
+    feeds: bool
+    level: Level
+    then: tuple[str, ...] = ()
+    shifted: bool = False
+
+
+def feed(level: Level, *then: str) -> Step:
+    """Return a step at the feed."""
+    return Step(True, level, then)
+
+
+def rapid(level: Level, *then: str, shifted: bool = False) -> Step:
+    """Return a step at rapid."""
+    return Step(False, level, then, shifted)
+
+
+def tap(forward: str, reverse: str, level: Level = Level.RETRACT) -> tuple[Step, ...]:
+    """Return the steps of tapping: in, and out at the feed to a level with the spindle reversed."""
+    return (feed(Level.BOTTOM, STOP, reverse, DWELL), feed(level, STOP, forward))
+
+
+DRILL = (feed(Level.BOTTOM), rapid(Level.RETRACT))
+DRILL_DWELL = (feed(Level.BOTTOM, DWELL), rapid(Level.RETRACT))
+BORE_STOP = (feed(Level.BOTTOM, STOP), rapid(Level.RETRACT, RESUME))
+TAPPING = frozenset({74, 84})
+
+
+@dataclass(frozen=True)
+class CycleRule:
+    """The canned cycles of a control. Codes are whole numbers: 81 is G81.
+
+    steps           the steps of each cycle, without pecking
+    pecks           the step of a cycle (its first) that is done in pecks, and where the tool goes
+                    between them: "clear" up to R and back down, "break" a little up
+    needs           the words of P Q I J K that must have been given when a cycle runs
+    takes           the words of P Q I J K, and the one that counts repeats, that a cycle may have;
+                    any other is refused
+    spindle         how the spindle must turn: +1 (M3), -1 (M4); an empty tuple: it does not matter
+    open_words      words that leave the moves of a cycle open when they are in force
+    refused         cycles that are not expanded, and why
+    xy_only         cycles that are not expanded outside G17, and why
+    peck_return     mm; how far the tool goes up between the pecks of "break"; None: not known
+    peck_clearance  mm; how far above the last depth a peck of "clear" begins; None: not known
+    rises_first     from below R the tool rises to R before it goes to the hole; the initial level
+                    then counts as R. Under G98 it goes to the next hole at the initial level, from
+                    wherever it stands at or below R
+    keeps_words     R, Z, P, Q stay when another cycle is programmed; otherwise they must be given
+    keeps_dwell     the last P stays for good, for cycles that take P but do not need it; 0 s before
+                    the first one of the program
+    stores          a block without X, Y, Z, R, or with no repeats, stores words and drills nothing;
+                    otherwise it is refused
+    one_plane       the plane may not change while a cycle is in force
+    repeats         the word that counts the repeats
+    initial_level   whether a program starts in G98
+    """
+
+    steps: Mapping[int, tuple[Step, ...]]
+    pecks: Mapping[int, str] = field(default_factory=dict)
+    needs: Mapping[int, str] = field(default_factory=dict)
+    takes: Mapping[int, str] = field(default_factory=dict)
+    spindle: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
+    open_words: Mapping[int, str] = field(default_factory=dict)
+    refused: Mapping[int, str] = field(default_factory=dict)
+    xy_only: Mapping[int, str] = field(default_factory=dict)
+    peck_return: float | None = None
+    peck_clearance: float | None = None
+    rises_first: bool = False
+    keeps_words: bool = False
+    keeps_dwell: bool = False
+    stores: bool = False
+    one_plane: bool = True
+    repeats: str = "L"
+    initial_level: bool = True

@@ -1,0 +1,78 @@
+"""What a control refuses whatever the block does: lines too long, numbers a word cannot have."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+import numpy as np
+
+from gcxform.modal.findings import Findings
+from gcxform.modal.lines import Lines
+from gcxform.modal.state import Modes
+from gcxform.toolpath.path import Event, Kind
+
+NOT_NEGATIVE = {"S": "a speed", "T": "a tool number", "DWELL": "a dwell"}
+SILENT = re.compile(rb"\([^)]*\)|;.*|\s")
+
+
+def refuse_limits(lines: Lines, modes: Modes, events: Iterable[Event]) -> None:
+    """Add what is refused to the findings."""
+    _too_long(lines)
+    _negative(lines, events)
+    _number_too_large(lines)
+    _turns_without_arc(lines, modes)
+
+
+def without_blanks(line: bytes) -> int:
+    """Return the length of a line without blanks and comments."""
+    return len(SILENT.sub(b"", line))
+
+
+def _too_long(lines: Lines) -> None:
+    limit, window = lines.dialect.line_length, lines.window
+    if not limit:
+        return
+    length = (window.end - window.start)[: lines.live]
+    for line in np.flatnonzero(length > limit).tolist():
+        blanks = lines.dialect.length_without_blanks
+        long = without_blanks(window.line(line)) if blanks else int(length[line])
+        if long > limit:
+            message = f"the block has {long} characters; {lines.dialect.name} takes {limit}"
+            lines.findings.add(line, "GX219", message)
+
+
+def _negative(lines: Lines, events: Iterable[Event]) -> None:
+    """Refuse speeds, tools, times and feeds below zero."""
+    for event in events:
+        if event.what in NOT_NEGATIVE and any(value < 0 for _, value in event.values):
+            message = f"{NOT_NEGATIVE[event.what]} cannot be negative"
+            lines.findings.add(event.line - lines.window.first_line, "GX219", message)
+    feed = lines.word("F")
+    if feed is None:
+        return
+    for line in np.flatnonzero(feed[1] & (feed[0] < 0))[: Findings.enough].tolist():
+        lines.findings.add(line, "GX219", "a feed cannot be negative", "F")
+
+
+def _number_too_large(lines: Lines) -> None:
+    """Refuse sequence numbers that the control cannot count to."""
+    most = lines.dialect.largest_number
+    number = lines.word("N") if most else None
+    if number is None:
+        return
+    for line in np.flatnonzero(number[1] & (number[0] > most))[: Findings.enough].tolist():
+        message = f"the sequence number is larger than {most}, which {lines.dialect.name} refuses"
+        lines.findings.add(line, "GX219", message, "N")
+
+
+def _turns_without_arc(lines: Lines, modes: Modes) -> None:
+    """Refuse the word for the turns of an arc where there is none."""
+    address = lines.dialect.turns_address
+    turns = lines.word(address) if address else None
+    if turns is None:
+        return
+    for line in np.flatnonzero(
+        turns[1] & (modes.motion < Kind.ARC_CW) & (modes.cycle == 80)
+    ).tolist():
+        lines.findings.add(line, "GX203", f"{address} belongs to an arc, and this is none", address)

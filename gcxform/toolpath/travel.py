@@ -1,0 +1,49 @@
+"""How far moves go: what a feed in inverse time (G93) is to one per minute (G94)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.dialect import LINEAR
+from gcxform.toolpath.circles import radius_and_angle
+from gcxform.toolpath.path import Plane, Toolpath
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+STILL = 1e-7  # mm; linear axes that move by less stand still
+
+
+@dataclass(frozen=True)
+class Lengths:
+    """Lengths (n,) of moves: mm along the linear axes, or degrees where only rotary ones turn.
+
+    An arc whose ends are on two circles is between `least` and `most`. `turns` says which moves
+    are those of rotary axes alone. Unknown lengths are nan.
+    """
+
+    least: Floats
+    most: Floats
+    turns: Flags
+
+
+def lengths(path: Toolpath) -> Lengths:
+    """Return how far the moves of a path go."""
+    start, end = path.start, path.end
+    way = np.where(np.isnan(start) & np.isnan(end), 0.0, end - start)
+    linear = np.array([axis in LINEAR for axis in path.axes])
+    along = np.sqrt((way[:, linear] ** 2).sum(axis=1))
+    least, most = along.copy(), along.copy()
+    arcs = np.flatnonzero(path.is_arc)
+    if len(arcs):
+        first, last, _ = radius_and_angle(path, arcs)
+        normal = np.array([plane.axes[2] for plane in Plane])[path.plane[arcs]]
+        rise = way[arcs, normal]
+        least[arcs] = np.hypot(np.minimum(first, last) * path.sweep[arcs], rise)
+        most[arcs] = np.hypot(np.maximum(first, last) * path.sweep[arcs], rise)
+    turned = np.sqrt((way[:, ~linear] ** 2).sum(axis=1))
+    turns = (most < STILL) & (turned > 0)
+    return Lengths(np.where(turns, turned, least), np.where(turns, turned, most), turns)

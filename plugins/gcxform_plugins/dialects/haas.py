@@ -1,0 +1,105 @@
+"""Haas NGC, milling: the language of Fanuc with settings in the place of parameters.
+
+Nothing here was executed on a Haas. *Manual* is what Haas prints in its manuals and on its help
+pages; *known* is common knowledge that nobody checked, so that what hangs on it is an option or
+refused. What is not named here is as in `fanuc`.
+
+| what | Haas | known from |
+|---|---|---|
+| a distance without a point | Setting 162: refused, or `[input] increment` | manual |
+| F without a point | Settings 77, 162: refused, or `[input] feed-increment` | manual |
+| G4 P | an integer is ms, with a point it is seconds; no X, no U | known |
+| small letters | are read as capitals | known |
+| program number | O and five digits at most | manual |
+| block | 256 characters | known |
+| two codes of a group | as Fanuc: the last is taken | known |
+| start and end radius | 0.001 inch is said of alarm 303: taken as 0.01 mm | known |
+| M5 M9 M89, M0 M1 M2 M30 | act after the motion of their block | known |
+| G154, G110 to G129 | more work offsets: as Fanuc's G54.1 | manual |
+| G28 | without axis words every axis goes home at once: refused | known |
+| G52, G92 | Setting 33 decides what they shift: refused unless `[control] g52` is set | manual |
+| G12 G13 G70 G71 G72 G150, drilling | cycles: refused by name | manual |
+| G47 G35 G36 G37 G136 | engraving and probing: refused by name | manual |
+| G68, G101, G100 | as Fanuc's G68, G51.1, G50.1; G51 is refused | manual |
+| G107 G112 G113 G234 G253 to G255 G268 G269 | another frame: refused | manual |
+| G103, G187 | look-ahead, smoothness: change no position | manual |
+| M96 M97 M98 M99 M198, G65 | calls and jumps: refused by name | manual |
+| M16 | is M6 | known |
+| M29, M48, M49 | are no tapping mode and no overrides: as any unknown M code | known |
+| G141, G143, G161 to G169, G174, G184 | five axes: refused by name | manual |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import gcxform as gx
+from gcxform import vocabulary as v
+from gcxform_plugins.dialects.fanuc import Fanuc
+
+# fmt: off
+NOT_HERE = frozenset((
+    "G2.2", "G3.2", "G5", "G5.1", "G6.2", "G7.1", "G8", "G10.6", "G11", "G12.1", "G13.1", "G15",
+    "G16", "G22", "G23", "G27", "G30", "G33", "G34", "G43.1", "G43.4", "G43.5", "G50.1", "G51.1",
+    "G53.1", "G54.1", "G54.2", "G54.4", "G62", "G63", "G66", "G66.1", "G67", "G68.2", "G68.3",
+    "G68.4", "G92.1", "G96", "G97",
+))
+# fmt: on
+"""Codes of Fanuc's table that a Haas mill does not have."""
+NOT_HERE_M = frozenset((29, 48, 49))
+MORE_OFFSETS = tuple(f"G{number}" for number in range(110, 130) if number not in (112, 113))
+POCKETS = ("G12", "G13", "G70", "G71", "G72", "G150")
+FIVE_AXIS_CYCLES = ("G153", "G155", *(f"G{n}" for n in (161, 162, 163, 164, 165, 166, 169)))
+
+
+class Haas(Fanuc):
+    """Haas mill, NGC."""
+
+    name = "haas"
+    axes = "XYZABC"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **{name: code for name, code in Fanuc.codes.items() if name not in NOT_HERE},
+        "G100": v.frame("mirror", "no-mirror", "XYZABC"),
+        "G101": v.frame("mirror", "mirror", "XYZABC"),
+        "G103": v.inert("non-modal", "P"),
+        "G113": v.barrier("transform", v.TRANSFORM),
+        "G187": v.inert("non-modal", "PE"),
+        "G154": Fanuc.codes["G54.1"],
+        **{code: v.frame("frame", "work") for code in MORE_OFFSETS},
+        **{code: v.barrier("cycle", v.CYCLE, "DIJKLPQR") for code in POCKETS},
+        "G77": v.barrier("cycle", v.CYCLE, "IJKLPQR"),
+        "G47": v.barrier("non-modal", v.CYCLE, "EDIJKPRQ"),
+        **{code: v.barrier("cycle", v.CYCLE, "EIJKLPQR") for code in FIVE_AXIS_CYCLES},
+        **{code: v.barrier("cycle", v.SYNCHRONISED, "EIJKLPQR") for code in ("G174", "G184")},
+        "G141": v.barrier("cutter-comp", v.COMP, "DIJK"),
+        "G143": v.barrier("tool-length", v.LENGTH, "H"),
+        "G234": v.barrier("tool-length", v.LENGTH, "H"),
+        **{code: v.barrier("transform", v.TRANSFORM, "IJKPQ") for code in ("G268", "G269")},
+        **{code: v.barrier("transform", v.TRANSFORM) for code in ("G253", "G254", "G255")},
+        **{code: v.barrier("non-modal", v.PROBE, "DHIJKPQR") for code in ("G35", "G136")},
+    }
+    m_codes: ClassVar[Mapping[int, gx.MCode]] = {
+        **{number: code for number, code in Fanuc.m_codes.items() if number not in NOT_HERE_M},
+        **{number: gx.MCode("brake") for number in (10, 11, 12, 13)},
+        16: Fanuc.m_codes[6],
+        19: gx.MCode("spindle", takes="PR"),
+        **{number: gx.MCode("conveyor") for number in (31, 33)},
+        **{number: gx.MCode("coolant-place") for number in (34, 35)},
+        **{number: gx.MCode("gear") for number in (41, 42)},
+        88: gx.MCode("coolant"),
+        89: gx.MCode("coolant", after=True),
+        **{number: gx.MCode("stop", after=True, barrier=v.CALL, takes="PQ") for number in (46, 96)},
+        97: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL"),
+    }
+    work_names: ClassVar[Mapping[str, str]] = {
+        code: f"G154 P{int(code[1:]) - 109}" for code in MORE_OFFSETS
+    }
+    g52_known = False
+    words = Fanuc.words + "UVW"
+    lower_case = True
+    feed_point_required = True
+    dwell: ClassVar[Mapping[str, float]] = {"P": 0.001}
+    dwell_point_is_seconds = True
+    program_number_digits = 5
+    line_length = 256

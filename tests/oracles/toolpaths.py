@@ -1,0 +1,147 @@
+"""Toolpaths beside LinuxCNC's canonical moves, where no call says which line it came from.
+
+Order is all there is: moves are paired one after the other. A motion that moves nothing may be
+missing on either side (LinuxCNC reports one for a bare G1), and events must stand between the same
+pairs of moves that move something.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from itertools import zip_longest
+from typing import Any
+
+import numpy as np
+from oracles.canon import CanonMove, CanonProgram
+from oracles.compare import move_difference
+from reference.model import Move
+
+import gcxform as gx
+from gcxform.dialect import INCH
+from gcxform.machine.machine import Tool
+from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
+
+KINDS = {Kind.RAPID: "RAPID", Kind.LINE: "LINE", Kind.ARC_CW: "ARC_CW", Kind.ARC_CCW: "ARC_CCW"}
+COMPARED = {"M0", "M1", "M2", "M3", "M4", "M5", "M6", "M7", "M8", "M9", "M30", "M60", "S", "T"}
+STILL = 1.001e-4  # units of the program: a move that the print shows as none
+START = dict.fromkeys("XYZABCUVW", 0.0)
+OFFSETS = {f"G{n}": START for n in (54, 55, 56, 57, 58, 59)} | {
+    f"G59.{n}": START for n in (1, 2, 3)
+}
+HOMES = {"G28": START, "G30": START}
+OWN_TOOLS = {
+    number: Tool(length=length * INCH, radius=diameter * INCH / 2)
+    for number, length, diameter in ((1, 0.511, 0.125), (2, 0.1, 0.0625), (3, 1.273, 0.201))
+}
+"""The tools that `rs274` has when it is given no table."""
+
+
+def read(text: bytes, tools: Mapping[int, Tool] = OWN_TOOLS) -> Toolpath:
+    """Read a program as `rs274` does, with its tools. Raises InputError.
+
+    It starts from zero, with all offsets zero, and executes blocks with a slash.
+    """
+    told: dict[str, Any] = {"work_offsets": OFFSETS, "homes": HOMES, "tools": tools}
+    return gx.read(text, "linuxcnc", start=START, block_delete="execute", **told).path
+
+
+def programmed(path: Toolpath) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return start, end (n, axes) and centre (n, 3) in the active program coordinates."""
+    start, end = path.start.copy(), path.end.copy()
+    start[:, :3], end[:, :3] = path.local(path.start[:, :3]), path.local(path.end[:, :3])
+    return start, end, path.local(path.centre)
+
+
+def moves_of(path: Toolpath) -> Iterator[Move]:
+    """Yield the moves of a path as the reference has them."""
+    start, end, centre = (column.tolist() for column in programmed(path))
+    sweep = path.sweep.tolist()
+    for row, (kind, mode, plane) in enumerate(
+        zip(path.kind.tolist(), path.feed_mode.tolist(), path.plane.tolist(), strict=True)
+    ):
+        arc = kind >= Kind.ARC_CW
+        yield Move(
+            KINDS[Kind(kind)],
+            _known(path.axes, start[row]),
+            _known(path.axes, end[row]),
+            int(path.source[row]) + 1,
+            None if kind == Kind.RAPID else float(path.feed[row]),
+            f"G{FeedMode(mode).value}",
+            Plane(plane).name,
+            tuple(centre[row]) if arc else None,
+            math.ceil(sweep[row] / math.tau - 1e-6) - 1 if arc else 0,
+            sweep[row],
+        )
+
+
+def _known(axes: str, at: list[float]) -> dict[str, float]:
+    return {a: v for a, v in zip(axes, at, strict=True) if v == v and a in "XYZABC"}
+
+
+def events_of(path: Toolpath) -> list[tuple[int, str, int]]:
+    """Return row, text and line of the events that LinuxCNC prints as well."""
+    found = []
+    for event in path.events:
+        value = event.values[0][1] if event.values else 0.0
+        if event.what == "DWELL":
+            found.append((event.row, f"DWELL {value:.4f}", event.line + 1))
+        elif event.what in COMPARED:
+            words = f"{event.what}{value:.10g}" if event.what in "ST" else event.what
+            found.append((event.row, words, event.line + 1))
+    return found
+
+
+def difference(path: Toolpath, canon: CanonProgram) -> str:
+    """Return the first difference in words, with its line; nothing if there is none."""
+    ours, theirs = list(moves_of(path)), canon.moves
+    pairs, problem = _paired(ours, theirs)
+    return problem or _events_differ(events_of(path), canon.events, pairs)
+
+
+def _paired(ours: list[Move], theirs: list[CanonMove]) -> tuple[list[tuple[int, int]], str]:
+    """Return the pairs of moves that move something, and where the first has no partner."""
+    pairs: list[tuple[int, int]] = []
+    row = other = 0
+    while row < len(ours) and other < len(theirs):
+        problem = move_difference(ours[row], theirs[other])
+        if not problem:
+            pairs += [] if _stands_still(theirs[other]) else [(row, other)]
+            row, other = row + 1, other + 1
+        elif _stands_still(theirs[other]):
+            other += 1
+        elif ours[row].centre is None and _stands_still(ours[row], theirs[other].unit):
+            row += 1
+        else:
+            return pairs, f"line {ours[row].line}: {problem}\n  {ours[row]}\n  {theirs[other]}"
+    lone = [m for m in theirs[other:] if not _stands_still(m)]
+    if lone:
+        return pairs, f"after the last line: {lone[0]}"
+    late = [m for m in ours[row:] if not _stands_still(m)]
+    return pairs, f"line {late[0].line}: LinuxCNC has no such move: {late[0]}" if late else ""
+
+
+def _stands_still(move: Move | CanonMove, unit: float = 0.0) -> bool:
+    if move.centre is not None or move.kind in ("PROBE", "TAP", "SPLINE"):
+        return False
+    near = STILL * (getattr(move, "unit", unit) or 1.0)
+    return all(abs(v - move.start.get(a, math.inf)) <= near for a, v in move.end.items())
+
+
+def _events_differ(
+    ours: list[tuple[int, str, int]],
+    theirs: list[tuple[int, str]],
+    pairs: list[tuple[int, int]],
+) -> str:
+    """Compare events, and between which pairs of moves they stand."""
+    rows, others = [row for row, _ in pairs], [other for _, other in pairs]
+    for mine, their in zip_longest(ours, theirs):
+        if mine is None or their is None or mine[1] != _text(their[1]):
+            return f"line {mine[2] if mine else 0}: event {mine} for {their}"
+        if int(np.searchsorted(rows, mine[0])) != int(np.searchsorted(others, their[0])):
+            return f"line {mine[2]}: {mine[1]} stands elsewhere"
+    return ""
+
+
+def _text(event: str) -> str:
+    return f"DWELL {float(event[6:]):.4f}" if event.startswith("DWELL") else event

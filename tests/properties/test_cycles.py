@@ -1,0 +1,61 @@
+"""LinuxCNC's interpreter as the judge of canned cycles: the same moves, or the same refusal."""
+
+from __future__ import annotations
+
+import pytest
+from cycle_kit import Drawn, Played, Player, text
+from hypothesis import settings
+from oracles import rs274
+from oracles.canon import CanonProgram
+
+from gcxform.registry import default_registry
+
+COUNT = 5 * settings.default.max_examples  # 500; the profile `long` asks for more
+CHUNK = 500
+NEAR = 1e-4  # of a unit of the program: the rounding of the print, and a little
+
+pytestmark = pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
+
+
+def test_cycles_move_as_linuxcnc_moves() -> None:
+    rule = default_registry().dialect("linuxcnc").cycle_rule
+    assert rule is not None
+    moves = refused = 0
+    for first in range(0, COUNT, CHUNK):
+        programs = [Drawn(seed).blocks() for seed in range(first, min(first + CHUNK, COUNT))]
+        answers = rs274.run_many([text(blocks) for blocks in programs])
+        for blocks, answer in zip(programs, answers, strict=True):
+            played = Player(rule).play(blocks)
+            problem = difference(played, answer)
+            assert problem == "", f"{problem}\n{text(blocks).decode()}"
+            moves += len(played.moves)
+            refused += played.refused > 0
+    assert moves > 20 * COUNT
+    assert 0.05 * COUNT < refused < 0.5 * COUNT
+
+
+def difference(played: Played, answer: CanonProgram | rs274.Rejected) -> str:
+    if isinstance(answer, rs274.Rejected) or played.refused:
+        line = answer.line if isinstance(answer, rs274.Rejected) else 0
+        same = line == played.refused
+        return "" if same else f"refused: {played.refused} {played.why}, theirs: {answer}"
+    ends = [(m.kind, m.end["X"], m.end["Y"], m.end["Z"]) for m in answer.moves]
+    if [m.line for m in answer.moves] != played.lines:
+        return f"lines {played.lines}, {[m.line for m in answer.moves]}\n{played.moves}\n{ends}"
+    for ours, theirs, move in zip(played.moves, ends, answer.moves, strict=True):
+        near = NEAR * move.unit
+        if ours[0] != theirs[0] or any(
+            abs(a - b) > near for a, b in zip(ours[1:], theirs[1:], strict=True)
+        ):
+            return f"line {move.line}: {ours}, theirs {theirs}"
+    events = [(row, name) for row, name in answer.events if name[0] not in "S" and name != "M2"]
+    return "" if events == played.events else f"events {played.events}, {events}"
+
+
+@pytest.mark.parametrize("code", [74, 84])
+def test_linuxcnc_taps_in_other_planes_at_another_place(code: int) -> None:
+    """Why this is refused: the feed goes to X-4 Y3 Z1, and not to the hole at X1 Y-4 Z3."""
+    turning = "M4" if code == 74 else "M3"
+    program = f"G0 X10 Y20 Z30\n{turning} S100 F100\nG18 G{code} X1 Y-4 Z3 R2\nM2\n"
+    move = next(m for m in rs274.run(program.encode()).moves if m.kind == "LINE")
+    assert [move.end[axis] for axis in "XYZ"] == [-4, 3, 1]

@@ -1,0 +1,77 @@
+"""Guessing the dialect of programs: of generated ones, of one fact, of real ones."""
+
+from __future__ import annotations
+
+import csv
+from collections import Counter
+from pathlib import Path
+from random import Random
+
+import pytest
+
+import gcxform as gx
+from gcxform.testing.generate import Options, program
+
+BESIDE = Path(__file__).parents[2] / "shared" / "corpus"
+NAMES = ("fanuc", "grbl", "haas", "linuxcnc")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_generated_programs_may_be_in_their_dialect(name: str) -> None:
+    guesses = [gx.guess_dialect(program(Random(seed).randint, Options(name))) for seed in range(60)]
+    right = sum(name in guess.dialects for guess in guesses)
+    assert right >= 57, Counter(guess.dialects for guess in guesses)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (b"%\nO1000\nG10.6\nG0 X1. Y2.\nM30\n%\n", {"fanuc"}),
+        (b"%\nO01000\nG187 P3\nG0 X1. Y2.\nM30\n%\n", {"haas"}),
+        (b"%\nO1000\nG0 G90 X1. Y2.\nG4 P500\nM30\n%\n", {"fanuc", "haas"}),
+        (b"G21\no100 sub\n#<x> = 1\nG1 X#<x> F10\no100 endsub\nM2\n", {"linuxcnc"}),
+        (b"(for grbl)\nG21 G90\nG1 X1.5 F100\nM30\n", {"grbl"}),
+        (b"G21 G90\nG1 X10 Y5 F100\nM30\n", {"grbl", "linuxcnc"}),
+        (b"0 BEGIN PGM A MM\n1 L X+10 R0 FMAX\n2 END PGM A MM\n", set()),
+        (b"", set()),
+        (b"\x00\x01\xff" * 50, set()),
+    ],
+)
+def test_what_tells_dialects_apart(text: bytes, expected: set[str]) -> None:
+    guess = gx.guess_dialect(text)
+    assert set(guess.dialects) == expected, guess
+    assert ("none" in str(guess)) == (not expected)
+    assert set(guess.evidence) >= set(NAMES)
+
+
+def test_the_score_is_the_sum_of_the_evidence(tmp_path: Path) -> None:
+    (tmp_path / "p.nc").write_bytes(b"O1000\nG0 X1.\n")
+    guess = gx.guess_dialect(tmp_path / "p.nc")
+    assert guess.score("fanuc") == sum(item.weight for item in guess.evidence["fanuc"]) > 0
+    assert "a point in every distance" in str(guess)
+
+
+def manifest() -> list[dict[str, str]]:
+    """Return the programs of the collection; those of LinuxCNC's tests are no test here."""
+    file = BESIDE / "manifest.csv"
+    if not file.exists():
+        return []
+    with file.open() as stream:
+        rows = [row for row in csv.DictReader(stream) if (BESIDE / row["path"]).is_file()]
+    return [row for row in rows if row["role"] == "program" and int(row["bytes"]) < 1 << 20]
+
+
+@pytest.mark.skipif(not manifest(), reason="the collection of real programs is absent")
+def test_real_programs() -> None:
+    """Most programs are guessed, and other languages are not taken for one that is known."""
+    hits: Counter[tuple[str, bool]] = Counter()
+    for row in manifest():
+        dialect = row["dialect"]
+        if dialect in (*NAMES, "heidenhain", "sinumerik"):
+            guessed = gx.guess_dialect(BESIDE / row["path"]).dialects
+            hits[dialect, dialect in guessed if dialect in NAMES else not guessed] += 1
+    table = {name: (hits[name, True], hits[name, False]) for name, _ in hits}
+    print(table)
+    shares = {name: good / (good + bad) for name, (good, bad) in table.items()}
+    assert shares["heidenhain"] == 1.0, table
+    assert min(shares.values()) > 0.7, table
