@@ -16,6 +16,7 @@ from gcxform.modal.meaning import FRAMING
 from gcxform.modal.tables import GROUPS
 from gcxform.toolpath.path import Form
 
+Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
@@ -61,6 +62,7 @@ class Copying:
             self.lines[self.task.table.flag("framing", self.task.shape)] = False
         self.lines[pieces.line[pieces.repaired]] = False
         self._skipped()
+        self._refuse_unknown()
 
     def _refuse_changed(self, stands: Flags, pieces: Pieces) -> None:
         """Refuse blocks that move in a way of their own and would have to move otherwise."""
@@ -71,6 +73,19 @@ class Copying:
         hint = HINTS.get(form, "leave it as it is, or take it out of the program")
         message = f"{WHAT[form]} would have to be written otherwise than it stands"
         raise InputError.one("GX506", message, self.task.location(int(wrong[0])), hint)
+
+    def _refuse_unknown(self) -> None:
+        """Refuse words that have to be written anew while it is not known what they would be."""
+        unknown = self.positions.programmed & np.isnan(self.positions.held)
+        anew = ~self.lines[self.path.block] & (self.path.form == Form.PLAIN)
+        rows = np.flatnonzero(anew & unknown.any(axis=1))
+        if len(rows):
+            row = int(rows[0])
+            axis = self.path.axes[int(np.argmax(unknown[row]))]
+            where = self.task.location(int(self.path.block[row]))
+            message = f"the block would be written anew, and where {axis} goes is not known"
+            hint = f"program {axis} before, or give a machine file with the offsets"
+            raise InputError.one("GX506", message, where, hint)
 
     def _refuse_presets(self) -> None:
         """Refuse blocks that set coordinates from where the axes stand if they stand elsewhere."""
@@ -195,9 +210,9 @@ class Copying:
     def _same_ends(self, rows: Ints, others: Ints) -> Flags:
         """Return which rows end where their source ends and need no word it does not have."""
         good = np.ones(len(rows), np.bool_)
-        words, original = self.positions.end, self.original.words
+        words, original = self.positions.end, self._old_words(rows, others)
         for k in range(len(self.path.axes)):
-            end, old = _take(words[:, k], rows), _take(original[:, k], others)
+            end, old = _take(words[:, k], rows), original[:, k]
             held = _take(self.positions.held[:, k], rows)
             programmed = _take(self.positions.programmed[:, k], rows)
             same = (np.abs(held - old) <= EXACT) | (end == old)
@@ -240,9 +255,25 @@ class Copying:
 
     def _starts_alike(self, rows: Ints, others: Ints) -> Flags:
         """Return which rows begin where their source begins, in the axes that the block names."""
-        start = self.original.in_frames(self.original.start)[others]
+        start = self._in_frames(self.original.start, rows, others)
         same = np.abs(self.positions.before[rows] - start) <= EXACT
         return np.asarray((same | ~self.positions.programmed[rows]).all(axis=1))
+
+    def _old_words(self, rows: Ints, others: Ints) -> Floats:
+        """Return the ends of source rows as programmed; distances count in any frame."""
+        words = _take(self.original.words, others)
+        if self.path.frames == self.original.frames:
+            return words
+        distance = self.path.blocks.incremental[self.path.block[rows]]
+        return np.where(distance[:, None], self._in_frames(self.original.end, rows, others), words)
+
+    def _in_frames(self, positions: Floats, rows: Ints, others: Ints) -> Floats:
+        """Return positions of source rows in the frames of the rows that stand for them."""
+        if self.path.plainly_framed:
+            return _take(positions, others)
+        placed = np.full_like(self.path.end, np.nan)
+        placed[rows] = positions[others]
+        return self.path.in_frames(placed)[rows]
 
     def _track_exactness(self, rows: Ints, others: Ints, good: Flags) -> Flags:
         """Follow how far everything is exactly as in the source; return where rows start so."""
@@ -256,7 +287,7 @@ class Copying:
 
     def _same_arcs(self, rows: Ints, others: Ints, starts_exact: Flags) -> Flags:
         """Return which arcs have centre and sweep of their source, seen from where they start."""
-        start = self.original.in_frames(self.original.start)[others]
+        start = self._in_frames(self.original.start, rows, others)
         on_grid = (np.abs(self.positions.before[rows] - start) <= EXACT) | np.isnan(start)
         centre, old = self.path.centre[rows], self.original.centre[others]
         if self.path.blocks.absolute_centre.any():

@@ -213,6 +213,7 @@ class Moves:
         )
         if count:
             self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
+            self.state.row_frame = self.track.frames[int(path.frame[-1])]
         if not path.has_arcs:
             return path
         arcs = np.flatnonzero(path.is_arc)
@@ -220,12 +221,14 @@ class Moves:
 
     def _lost_before(self, line: Ints, nth: Ints) -> Ints:
         """Return of which axes the position was lost between each row and the row before."""
-        if not self.track.breaks:
+        if not self.track.breaks and not self.state.lost:
             return constant(0, len(line), np.int64)
         lost = np.zeros(len(line) + 1, np.int64)
+        lost[0] = self.state.lost
         at = np.searchsorted(line, [found.line for found in self.track.breaks])
         for place, found in zip(at.tolist(), self.track.breaks, strict=True):
             lost[place] |= found.axes
+        self.state.lost = int(lost[-1])
         return lost[:-1]
 
     def _feed_of_rows(self, rows: Rows) -> Floats:

@@ -49,6 +49,8 @@ class Track:
         self.findings = lines.findings
         self.entry = lines.state.position.copy()
         self.frames: list[Frame] = [self.state.frames.frame()]
+        if self.state.row_frame not in (None, self.frame):
+            self.frames.insert(0, self.state.row_frame)
         self.breaks: list[Break] = []
         self._columns: dict[str, tuple[Floats, Flags] | None] = {}
 
@@ -95,6 +97,8 @@ class Track:
             self._lose(line, (1 << len(self.axes)) - 1)
         if act.name in LENGTHENED and self.dialect.length_may_move and frames.frame() != old:
             self._lose(line, 4)
+        if act.name == "polar":
+            self.state.polar = np.nan, np.nan
         if act.name in LOST_BY_TURN:
             self._lose(line, self._turned_by(line, before, frames))
         self._enter(line, old)
@@ -226,12 +230,14 @@ class Track:
         columns = []
         count = self.modes.plane[here].shape[0]
         any_word = np.zeros(count, np.bool_)
-        for axis in names:
+        for k, axis in enumerate(names):
             word = self.column(axis)
             value = np.full(count, np.nan) if word is None else word[0][here]
             present = np.zeros(count, np.bool_) if word is None else word[1][here]
-            columns.append(fill(np.where(present, value, np.nan), present, np.nan))
+            columns.append(fill(np.where(present, value, np.nan), present, self.state.polar[k]))
             any_word |= present
+        if count:
+            self.state.polar = float(columns[0][-1]), float(columns[1][-1])
         radius, angle = columns[0], np.deg2rad(columns[1])
         bad = any_word & (np.isnan(radius + angle) | self.modes.incremental[here])
         bad |= len(planes) > 1

@@ -23,7 +23,23 @@ from gcxform.machine.machine import Tool
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 KINDS = {Kind.RAPID: "RAPID", Kind.LINE: "LINE", Kind.ARC_CW: "ARC_CW", Kind.ARC_CCW: "ARC_CCW"}
-COMPARED = {"M0", "M1", "M2", "M3", "M4", "M5", "M6", "M7", "M8", "M9", "M30", "M60", "S", "T"}
+COMPARED = {
+    "M0",
+    "M1",
+    "M2",
+    "M3",
+    "M4",
+    "M5",
+    "M6",
+    "M7",
+    "M8",
+    "M9",
+    "M19",
+    "M30",
+    "M60",
+    "S",
+    "T",
+}
 STILL = 1.001e-4  # units of the program: a move that the print shows as none
 START = dict.fromkeys("XYZABCUVW", 0.0)
 OFFSETS = {f"G{n}": START for n in (54, 55, 56, 57, 58, 59)} | {
