@@ -51,9 +51,9 @@ def test_a_case_has_arcs_both_ways_and_distances(case: Path) -> None:
 
 
 def test_nothing_of_a_shift_is_left() -> None:
-    source = b"G21 G90\nG0 X0 Y0 Z5\nN5 G52 X1 (one)\nG92.1 G0 X2 ;two\n/G92 X0\nG55\nG54 X3\nM2\n"
+    source = b"G21 G90\nG0 X0 Y0 Z5\nN5 G52 X1 (one)\nG92.1 G0 X2 ;two\n/G92 X0\nG54 X3\nM2\n"
     pipeline = gx.Pipeline.parse("offsets", "linuxcnc")
     with pytest.raises(gx.InputError, match="switch"):
         pipeline.run(source)
-    with pytest.raises(gx.InputError, match="not known"):
-        pipeline.run(source.replace(b"/", b"").replace(b"G55\n", b"G55 X1\n"))
+    text = pipeline.run(source.replace(b"/", b""), "full").text
+    assert text == b"G21 G90\nG0 X0 Y0 Z5\nN5 (one)\nG0 X2. ;two\nG54 X5.\nM2\n"

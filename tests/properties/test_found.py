@@ -131,7 +131,7 @@ def test_a_length_in_diameters_does_not_become_a_radius() -> None:
 
 
 def test_a_control_that_goes_on_after_the_end_is_in_its_first_offset() -> None:
-    path = gx.read(b"G21\nG10 L20 P2 X-10\nG55 G0 X1\nM2\nX1\n", "grbl", start={"X": 0.0}).path
+    path = gx.read(b"G21\nG10 L20 P2 X-10\nG55 G0 X1\nM2\nG0 X1\n", "grbl", start={"X": 0.0}).path
     assert path.end[:, 0].tolist() == [11.0, 1.0]
 
 
