@@ -21,15 +21,14 @@ from gcxform.modal.meaning import FRAMING
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
-from gcxform.toolpath.deviation import deviation
 from gcxform.toolpath.path import Event, FeedMode, Kind, Toolpath
+from gcxform.toolpath.runs import SAME_FEED, Runs, deviation_of_runs, runs_of
 from gcxform.toolpath.travel import lengths
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
 
-FEED_ERROR = 2e-4  # relative: what the rounding of a feed may change
 TIME_ERROR = 1e-3  # relative: what the rounding of the feeds of pieces may change
 
 
@@ -114,15 +113,16 @@ class Verifier:
         found.lines_after_end += len(window) - read.live
 
     def _compare(self, trace: _Trace) -> None:
-        """Compare moves; every row of the output must belong to a row of the input."""
+        """Compare moves; each of the output must belong to one of the input, or a run of them."""
         before, after = trace.before, trace.after
         if len(trace.owner) and int(trace.owner.min()) < 0:
             row = int(np.argmin(trace.owner))
             self._fail("a move that the source does not have", trace, row)
-        self._missing(trace)
+        runs = trace.find_runs()
+        self._missing(trace, runs)
         if not len(trace.owner):
             return
-        off = deviation(before, after, trace.owner, self.budget)
+        off = deviation_of_runs(before, after, runs, self.budget)
         self.findings.unknown_starts += int(off.unknown_start.sum())
         self._start(trace)
         worst = int(np.argmax(off.distance))
@@ -136,6 +136,7 @@ class Verifier:
         if not off.angle[turned] <= self.angle_budget:
             self._fail(f"a rotary axis is {off.angle[turned]:.5f} degrees off", trace, turned)
         self._kinds(trace)
+        self._sides(trace)
         self._feeds(trace)
 
     def _note_worst(self, distance: float, trace: _Trace, row: int) -> None:
@@ -161,11 +162,9 @@ class Verifier:
             )
             self._fail(message, trace, int(rows[worst]))
 
-    def _missing(self, trace: _Trace) -> None:
-        """Check that rows without any move in the output were too short to write."""
-        has = np.zeros(len(trace.before), np.bool_)
-        has[trace.owner] = True
-        for row in np.flatnonzero(~has).tolist():
+    def _missing(self, trace: _Trace, runs: Runs) -> None:
+        """Check that rows which no move in the output stands for were too short to write."""
+        for row in runs.left.tolist():
             way = np.nan_to_num(trace.before.end[row] - trace.before.start[row])
             length = float(np.sqrt((way**2).sum()))
             if trace.before.is_arc[row] or not length <= self.budget:
@@ -177,6 +176,16 @@ class Verifier:
         wrong = rapid_before != (trace.after.kind == Kind.RAPID)
         if wrong.any():
             self._fail("a rapid became a feed move, or the reverse", trace, int(np.argmax(wrong)))
+
+    def _sides(self, trace: _Trace) -> None:
+        """Check that cutter compensation is on where it was, on the same side and as far."""
+        before, after, owner = trace.before, trace.after, trace.owner
+        if not before.side.any() and not after.side.any():
+            return
+        radius, old = after.radius, before.radius[owner]
+        changed = (after.side != before.side[owner]) | ~((radius == old) | np.isnan(radius + old))
+        if changed.any():
+            self._fail("cutter compensation has changed", trace, int(np.argmax(changed)))
 
     def _feeds(self, trace: _Trace) -> None:
         """Check that feeds are those of the source; in inverse time, the times must add up."""
@@ -192,7 +201,7 @@ class Verifier:
             moving &= ~self._may_be_converted(trace, owner)
         inverse = after.feed_mode == FeedMode.INVERSE_TIME
         plain = moving & ~inverse
-        off = np.abs(after.feed - before.feed[owner]) > FEED_ERROR * np.abs(after.feed)
+        off = np.abs(after.feed - before.feed[owner]) > SAME_FEED * np.abs(after.feed)
         if (off & plain).any():
             self._fail("the feed has changed", trace, int(np.argmax(off & plain)))
         if (moving & inverse).any():
@@ -280,7 +289,7 @@ class Verifier:
         for before, after in zip(old, new, strict=False):
             line = trace.line_of(after.line)
             same = (before.what, before.values, before.line) == (after.what, after.values, line)
-            if not same or not trace.stands_before(after.row, before.row):
+            if not same or not trace.stands_before(after.row, before.row, self.budget):
                 message = f"{before.what} of the source became {after.what}, or moved"
                 self._raise(message, before.line, after.line)
         if len(old) != len(new):
@@ -329,6 +338,14 @@ class _Trace:
         self._window_first = window.first_line
         self.owner = self._owners(after)
         self.written_owner = self.owner if after is written else self._owners(written)
+        self.through = self.written_owner
+
+    def find_runs(self) -> Runs:
+        """Find which moves of the input each move stands for."""
+        runs = runs_of(self.before, self.owner)
+        same = self.written_owner is self.owner
+        self.through = (runs if same else runs_of(self.before, self.written_owner)).through
+        return runs
 
     def _owners(self, path: Toolpath) -> Ints:
         written = path.source - self.first
@@ -342,9 +359,23 @@ class _Trace:
         index = output_line - self.first
         return int(self.source[index]) if 0 <= index < len(self.source) else 0
 
-    def stands_before(self, written_row: int, row: int) -> bool:
-        """Whether what stands before a written move stands before that row of the input."""
+    def stands_before(self, written_row: int, row: int, short: float) -> bool:
+        """Whether what stands before a written move stands before that row of the input.
+
+        Rows no longer than `short` (mm) together may have been left out on either side of it.
+        """
         owner = self.written_owner
-        earlier = written_row == 0 or int(owner[written_row - 1]) < row
+        earlier = written_row == 0 or self._ends_before(written_row - 1, row, short)
         later = written_row >= len(owner) or int(owner[written_row]) >= row
         return earlier and later
+
+    def _ends_before(self, written_row: int, row: int, short: float) -> bool:
+        """Whether a written move stands for nothing from a row on, or for too little to matter."""
+        through = int(self.through[written_row])
+        if through < row:
+            return True
+        rest = slice(row, through + 1)
+        if int(self.written_owner[written_row]) >= row or self.before.is_arc[rest].any():
+            return False
+        way = np.nan_to_num(self.before.end[rest] - self.before.start[rest])
+        return float(np.sqrt((way**2).sum(axis=1)).sum()) <= short

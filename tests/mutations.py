@@ -34,8 +34,10 @@ FOUND = "tests/properties/test_found.py"
 CORPUS = "tests/test_corpus.py::test_case"
 OFFSETS = "tests/test_corpus.py"
 SHIFTS = "tests/properties/test_shifts.py::test_gcxform_reads_shifts_as_linuxcnc_does"
+CUTTER = "tests/test_cutter_comp.py"
 KIT = "tests/test_kit.py::test_registered_passes"
 LAWS = "tests/properties/test_laws.py"
+ARCS = "tests/test_arcs.py"
 CYCLES = "tests/test_cycles.py"
 LIMITS = "gcxform/modal/limits.py"
 FACTS = "tests/test_dialect_facts.py::test_our_facts"
@@ -51,6 +53,14 @@ class Mutation:
     old: str
     new: str
     tests: str
+
+
+def _offsetting(name: str, old: str, new: str) -> Mutation:
+    return Mutation(f"offsetting: {name}", f"{PASSES}/offsetting.py", old, new, CUTTER)
+
+
+def _beside(name: str, old: str, new: str) -> Mutation:
+    return Mutation(f"beside: {name} not looked at", f"{PASSES}/beside.py", old, new, CUTTER)
 
 
 def _verifier(name: str, old: str, new: str = "if False:") -> Mutation:
@@ -492,6 +502,133 @@ MUTATIONS = (
         "del held",
         VERIFY,
     ),
+    # arcs for lines
+    Mutation(
+        "arcs: the sense is swapped",
+        f"{PASSES}/fit.py",
+        "np.where(self._sum(y) < 0, 1.0, -1.0)",
+        "np.where(self._sum(y) < 0, -1.0, 1.0)",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: the sagitta of the lines is not looked at",
+        f"{PASSES}/fit.py",
+        "flat = np.maximum(np.abs(size - inside), sagitta)",
+        "flat = np.abs(size - inside)",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: corners are not looked at",
+        f"{PASSES}/fit.py",
+        "flat = np.maximum(np.abs(size - inside), sagitta)",
+        "flat = sagitta",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: lines may go back",
+        f"{PASSES}/fit.py",
+        "good = (angle > 0) & (angle <= WIDEST) & self._points_along(x, y, size, wx, wy, length)",
+        "good = angle <= WIDEST",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: a break between lines is explained away",
+        f"{PASSES}/fit.py",
+        "(angle <= WIDEST) & self._points_along(x, y, size, wx, wy, length)",
+        "(angle <= WIDEST)",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: the axis of a helix is not looked at",
+        f"{PASSES}/fit.py",
+        "axial = self._off_axis(turned / sweep[self.run])",
+        "axial = np.zeros(len(turned))",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: what happens between lines is ignored",
+        f"{PASSES}/arcs.py",
+        "follows[[e.row for e in path.events if e.row < len(path)]] = False",
+        "pass",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: another feed is ignored",
+        f"{PASSES}/arcs.py",
+        "(path.plane, path.feed, path.feed_mode, path.frame)",
+        "(path.plane, path.feed_mode, path.frame)",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: they end inside blocks",
+        f"{PASSES}/reach.py",
+        "return np.where(self._own(first, stop), stop, self.before[stop])",
+        "return stop",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: a way straight ahead is an arc",
+        f"{PASSES}/fit.py",
+        "curved = near & (rises > self.limits.tolerance + self.limits.step)",
+        "curved = near.copy()",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: the motion code of a block that is gone counts",
+        "gcxform/emit/pieces.py",
+        "self.leads & ~self.silent & (self.role != Role.GONE)",
+        "self.leads & ~self.silent",
+        ARCS,
+    ),
+    Mutation(
+        "runs: events may stand inside",
+        "gcxform/verify.py",
+        "through = int(self.through[written_row])",
+        "through = int(self.written_owner[written_row])",
+        ARCS,
+    ),
+    Mutation(
+        "runs: another feed is ignored",
+        "gcxform/toolpath/runs.py",
+        "return np.asarray(same & (np.abs(path.feed - path.feed[base]) <= SAME_FEED * path.feed))",
+        "return np.asarray(same)",
+        ARCS,
+    ),
+    Mutation(
+        "runs: another work offset is ignored",
+        "gcxform/toolpath/runs.py",
+        "same = free & free[base] & (path.frame == path.frame[base])",
+        "same = free & free[base]",
+        ARCS,
+    ),
+    Mutation(
+        "runs: rapids are joined",
+        "gcxform/toolpath/runs.py",
+        "free = (path.kind != Kind.RAPID) & (path.form",
+        "free = (path.kind >= Kind.RAPID) & (path.form",
+        ARCS,
+    ),
+    Mutation(
+        "runs: what lies behind a row that is not alike is joined",
+        "gcxform/toolpath/runs.py",
+        "covered = alike & (stop < base)",
+        "covered = alike",
+        ARCS,
+    ),
+    Mutation(
+        "runs: arcs are compared at their ends alone",
+        "gcxform/toolpath/beside.py",
+        "bound[pieces] = np.maximum(bound[pieces], off)",
+        "pass",
+        ARCS,
+    ),
+    Mutation(
+        "runs: lines are not compared at their ends",
+        "gcxform/toolpath/beside.py",
+        "bound = np.maximum(_apart(one.start, other.start), _apart(one.end, other.end))",
+        "bound = np.zeros(len(one.row))",
+        ARCS,
+    ),
     # what a control refuses
     Mutation(
         "limits: a line may be one character longer",
@@ -536,9 +673,11 @@ MUTATIONS = (
     _verifier("events are ignored", "self._events(read.path.events, back.path.events, trace)", ""),
     _verifier("missing events are ignored", "if len(old) != len(new):"),
     _verifier(
-        "the place of events is ignored", "or not trace.stands_before(after.row, before.row)", ""
+        "the place of events is ignored",
+        "or not trace.stands_before(after.row, before.row, self.budget)",
+        "",
     ),
-    _verifier("missing moves are ignored", "self._missing(trace)\n        if not", "if not"),
+    _verifier("missing moves are ignored", "self._missing(trace, runs)\n        if not", "if not"),
     _verifier("moves of nobody are ignored", "if len(trace.owner) and int(trace.owner.min()) < 0:"),
     _verifier("nothing is undone", "path = step.undo(path, self.context)", "pass"),
     Mutation(
@@ -548,6 +687,89 @@ MUTATIONS = (
         "np.isfinite(self.sense)",
         VERIFY,
     ),
+    # cutter compensation: reading, the centre path, its proof
+    Mutation(
+        "cutter: a negative diameter keeps its side",
+        "gcxform/modal/cutter.py",
+        "np.where(radius < 0, -SIDES[code], SIDES[code])",
+        "SIDES[code]",
+        CUTTER,
+    ),
+    Mutation(
+        "cutter: the diameter is taken for the radius",
+        "gcxform/modal/cutter.py",
+        "value * unit / 2",
+        "value * unit",
+        CUTTER,
+    ),
+    Mutation(
+        "cutter: T counts before it is in the spindle",
+        "gcxform/modal/cutter.py",
+        "np.where(_is_m6(lines, changes), selected, np.nan), changes, state.tool",
+        "selected, selected == selected, state.tool",
+        CUTTER,
+    ),
+    _offsetting("the other side", "(at[0] - side * radius", "(at[0] + side * radius"),
+    _offsetting(
+        "arcs grow inside", "self.radius - side * self.sense", "self.radius + side * self.sense"
+    ),
+    _offsetting("the other crossing", "u[1] * v[0]) >= 0:", "u[1] * v[0]) <= 0:"),
+    _offsetting("moves that go backwards are let through", "if way < -1e-9:", "if False:"),
+    _offsetting("small turns are corners", "abs(turn) <= manner.straight", "abs(turn) <= 1e-9"),
+    _offsetting("the inside is the outside", "elif turn < 0 or", "elif turn > 0 or"),
+    Mutation(
+        "cutter-comp: corners go the wrong way",
+        f"{PASSES}/cutter_comp.py",
+        "gx.Kind.ARC_CW if path.side[row] > 0",
+        "gx.Kind.ARC_CW if path.side[row] < 0",
+        CUTTER,
+    ),
+    Mutation(
+        "cutter-comp: still moves stay on the contour",
+        f"{PASSES}/cutter_comp.py",
+        "            self.end[inside, axis] = self.end[mover, axis]",
+        "            pass",
+        CUTTER,
+    ),
+    Mutation(
+        "cutter-comp: the speed in inverse time is that of the centre",
+        f"{PASSES}/cutter_comp.py",
+        "np.where(change, feed * programmed / np.where(change, mine, 1.0), feed)",
+        "feed",
+        CUTTER,
+    ),
+    Mutation(
+        "compensated: windows end inside a stretch",
+        "gcxform/compensated.py",
+        'on = found[-1][1] != b"0"',
+        "on = False",
+        CUTTER,
+    ),
+    Mutation(
+        "compensated: contours may be moved",
+        "gcxform/compensated.py",
+        "if type(step).undo is not Pass.undo and len(rows):",
+        "if False:",
+        "tests/test_corpus.py::test_case",
+    ),
+    Mutation(
+        "compensated: the first move may be cut",
+        "gcxform/compensated.py",
+        "if len(lines) and (_pieces(after, lines) != _pieces(before, lines)).any():",
+        "if False:",
+        CUTTER,
+    ),
+    _beside("begins", 'self._fail(wrong & ~self.entry, "the centre is not', 'str("'),
+    _beside("ends", 'self._fail(wrong, "the centre is not', 'str("'),
+    _beside("backwards", 'self._fail(back, "', 'str("'),
+    _beside("sweeps", 'self._fail(self.arc & (off > slack), "', 'str("'),
+    _beside("centres", 'self._fail(self.arc & (_size(self.c - self.d) > CLOSE), "', 'str("'),
+    _beside("missing corners", 'self._fail(missing, "', 'str("'),
+    _beside("round corners", "self.row[k][round_it & wrong]", "self.row[k][:0]"),
+    _beside("other axes", "rows[~same.all(axis=1)]", "rows[:0]"),
+    _beside("still moves", "on[~moves & (np.abs(a - b).sum(axis=1) > CLOSE)]", "on[:0]"),
+    _beside("rising corners", "self.row[k][rises]", "self.row[k][:0]"),
+    _beside("feeds", "mode & ~feed", "mode & False"),
 )
 
 

@@ -46,6 +46,12 @@ def instances(name: str) -> list[gx.Pass | gx.TextPass]:
             made(model=model, part_origin=HERE, split="none", iterations=1),
             made(model=model, part_origin=(-100.0, 0.0, 0.0), outside=gx.Outside.CLAMP),
         ]
+    if name == "arcs":
+        return [
+            made(tolerance=0.12),
+            made(tolerance=0.4, min_lines=2, max_sweep=100.0),
+            made(tolerance=0.0001),
+        ]
     if name == "feed":
         return [made(mode="inverse-time"), made(mode="per-minute")]
     if name == "strip":

@@ -126,7 +126,7 @@ TAMPERED = {
     "a rotary axis": (said("A90", "A91"), "degrees off"),
     "a move is dropped": (dropped(5), "."),
     "there and back are dropped": (dropped(8, 9), "missing"),
-    "the last move is dropped": (dropped(16), "missing"),
+    "the last move is dropped": (dropped(16), "off"),
     "two lines change places": (swapped(7), "."),
     "an extra move for a line that has none": (inserted("X60 Y40", 10), "does not have"),
     "an extra move beyond the end": (inserted("X90", 8), "off"),

@@ -29,12 +29,14 @@ from gcxform.emit.templates import (
     TemplateWriter,
     event_text,
     gaps_between,
+    left_out,
     nothing_left,
 )
 from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
+from gcxform.syntax.tree import Comment
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 Floats = NDArray[np.float64]
@@ -104,7 +106,7 @@ class _Job:
     def run(self) -> Emitted:
         copied = self.copying.lines
         self._arcs()
-        empty = self._without_words() | self._foreign()
+        empty = self._without_words() | self._foreign() | self._gone() | self._only_compensates()
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
         renderer = Renderer(self.task)
         self._render(chosen, renderer)
@@ -119,7 +121,17 @@ class _Job:
         """Return the inner pieces of split blocks that would have no word: nothing moves."""
         still: Flags = ~self.positions.write.any(axis=1) & (self.kind < Kind.ARC_CW)
         inner: Flags = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row
+        inner &= ~self.pieces.expanded_line[self.pieces.line] | (self.pieces.motion < 0)
         return np.asarray(inner & self.pieces.of_rows(still, False))
+
+    def _gone(self) -> Flags:
+        """Return the pieces of lines of whose move and text nothing is left: no comment either."""
+        gone: Flags = self.pieces.role == Role.GONE
+        if not gone.any():
+            return gone
+        items = [shape.block.items for shape in self.task.table.shapes.shapes]
+        silent = np.array([not any(isinstance(i, Comment) for i in some) for some in items])
+        return np.asarray(gone & silent[self.task.shape][self.pieces.line])
 
     def _foreign(self) -> Flags:
         """Return the pieces of lines of which nothing is left to write in the target dialect."""
@@ -137,6 +149,18 @@ class _Job:
             np.bool_,
         )
         return np.asarray(gone[task.shape][self.pieces.line] & ~self.pieces.has_row)
+
+    def _only_compensates(self) -> Flags:
+        """Return the pieces of lines that hold nothing but what is left out of them."""
+        if not self.path.blocks.uncompensated:
+            return np.zeros(len(self.pieces.line), np.bool_)
+        table = self.task.table
+        shapes = zip(table.shapes.shapes, table.meanings, strict=False)  # others are read ahead
+        only = np.array(
+            [m.compensates and all(left_out(item, m) for item in s.block.items) for s, m in shapes],
+            np.bool_,
+        )
+        return np.asarray(only[self.task.shape][self.pieces.line] & ~self.pieces.has_row)
 
     # --- arcs ---
 
@@ -245,7 +269,7 @@ class _Job:
         inch = self.path.blocks.inch[pieces.line]
         way = self.task.shape[pieces.line].astype(np.int64)
         parts = [
-            (pieces.role, 7),
+            (pieces.role, len(Role)),
             (pieces.event + 1, len(pieces.events) + 1),
             (pieces.expanded_line[pieces.line], 2),
             (pieces.motion + 1, 128),
@@ -306,6 +330,7 @@ class _Job:
             self.path.axes,
             b" " if self.emitter.gap is None else self.emitter.gap,
             self.path.frames[0].work if self.path.folded else "",
+            self.path.blocks.uncompensated,
         )
         try:
             return writer.write(key)
@@ -338,6 +363,7 @@ class _Job:
             present = self.positions.write[rows, column]
             if present.any():
                 whole = self.positions.words_of(column, rows)
+                self._check_known(np.isnan(whole) & present, rows, field.address)
                 decimals = manner.decimals_of(field.address, inch)
                 renderer.number(field.gap, field.address, whole, decimals, present)
         elif isinstance(field, Centre):
@@ -365,6 +391,13 @@ class _Job:
             message = f"{field.address} is computed, and has more decimals than can be written"
             raise InputError.one("GX501", message, where)
         renderer.number(b"", field.address, whole, decimals, np.ones(len(lines), np.bool_), False)
+
+    def _check_known(self, unknown: Flags, rows: Ints, axis: str) -> None:
+        """Refuse distances from a place that is not known."""
+        if unknown.any():
+            message = f"{axis} would be a distance from a place that is not known here"
+            hint = 'put the pass "absolute" before'
+            self._refuse(rows[unknown], "GX506", message, hint)
 
     # --- after ---
 

@@ -10,7 +10,8 @@ class Role(IntEnum):
     """Which piece of its block a line is; NONE: the block does not move.
 
     VERBATIM: the block moves in a way of its own, and its words stay as they are. EVENT: what a
-    canned cycle does between its moves, where it is written as plain moves.
+    canned cycle does between its moves, where it is written as plain moves. GONE: its move is a
+    part of one that another block makes.
     """
 
     NONE = 0
@@ -20,6 +21,7 @@ class Role(IntEnum):
     LAST = 4
     VERBATIM = 5
     EVENT = 6
+    GONE = 7
 
 
 class Feed(IntEnum):

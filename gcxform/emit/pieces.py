@@ -99,9 +99,18 @@ class Pieces:
         role[self.has_row & self.ends] = Role.LAST
         role[self.has_row & self.leads & self.ends] = Role.ONLY
         self.special = special[self.line]
+        if self.task.path.joined:
+            role[self._gone()[self.line]] = Role.GONE
         role[self.special] = Role.VERBATIM
         role[self.event >= 0] = Role.EVENT
         self.role = role
+
+    def _gone(self) -> Flags:
+        """Return the lines whose moves are parts of others', and in which nothing else happens."""
+        gone = np.zeros(len(self.count), np.bool_)
+        gone[self.task.read.path.block] = True
+        gone &= ~self.task.table.flag("has_events", self.task.shape)
+        return np.asarray(gone & (self.count == 0))
 
     def of_rows(self, values: NDArray, absent: object) -> NDArray:  # type: ignore[type-arg]
         """Return a column over the rows as one over the pieces."""
@@ -163,7 +172,8 @@ class Pieces:
         feeds = (group >= 1) & (group <= 3)
         self.silent = self.other_mode & ~self.has_row & feeds[self.line]
         self.repaired |= self.silent
-        sets = np.where(self.leads & ~self.silent, group[self.line], NOTHING)
+        said = self.leads & ~self.silent & (self.role != Role.GONE)
+        sets = np.where(said, group[self.line], NOTHING)
         form = self.of_rows(self.task.path.form, Form.PLAIN)
         moves = self.has_row & np.isin(form, (Form.PLAIN, Form.MACHINE))
         sets[moves] = self.of_rows(self.kind, NOTHING)[moves]

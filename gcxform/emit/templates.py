@@ -104,6 +104,15 @@ def nothing_left(
     return bool(kept) and all(goes(item) for item in items)
 
 
+def left_out(item: Item, meaning: Meaning) -> bool:
+    """Whether an item turns cutter compensation on, and is left out once that is resolved."""
+    if not isinstance(item, Word) or not meaning.compensates:
+        return False
+    if item.address == "G" and isinstance(item.value, Number):
+        return f"G{round(item.value.value, 6):g}" == meaning.groups["cutter-comp"]
+    return item.address == "D"
+
+
 class TemplateWriter:
     """Makes the templates of one shape."""
 
@@ -115,6 +124,7 @@ class TemplateWriter:
         axes: str,
         gap: bytes,
         folded_to: str = "",
+        uncompensated: bool = False,
     ) -> None:
         self.shape = shape
         self.text = shape.block.text
@@ -124,6 +134,7 @@ class TemplateWriter:
         self.axes = axes
         self.folded = folded_words(meaning, folded_to) if folded_to else frozenset()
         self.gap = self._own_gap(gap)
+        self.uncompensated = uncompensated
 
     def _own_gap(self, usual: bytes) -> bytes:
         """Return what stands between the words of this block, or what is usual in the program."""
@@ -140,6 +151,8 @@ class TemplateWriter:
         self.axes_written = self.as_it_stands
         self.centre_written = not key.arc
         self.stated: set[str] = set()
+        if key.role is Role.GONE:
+            return self._comments()
         at = slot = 0
         whole = key.role not in (Role.MIDDLE, Role.LAST)
         self._repairs_wait = True
@@ -149,7 +162,7 @@ class TemplateWriter:
             if at and not self.fields:
                 lead = b""  # what stood before is left out, and the blank after it
             at = item.end
-            if self._goes(item):
+            if self._goes(item) or (self.uncompensated and left_out(item, self.meaning)):
                 gap = lead if gap is None else gap
             else:
                 self._item(item, lead if gap is None else gap, slot)
@@ -158,6 +171,18 @@ class TemplateWriter:
         self._rest()
         if whole and at < len(self.text):
             self.fields.append(Literal(self.text[at:].encode("latin-1")))
+        return tuple(self.fields)
+
+    def _comments(self) -> tuple[Field, ...]:
+        """Write the sequence number and the comments of a block whose move another makes."""
+        slot = 0
+        for item in self.shape.block.items:
+            if isinstance(item, Comment):
+                self._literal(self.gap if self.fields else b"", self._comment(item))
+            elif isinstance(item, Word) and item.address not in CODES:
+                if item.address == "N":
+                    self._copy(item, b"", slot)
+                slot += isinstance(item.value, Number)
         return tuple(self.fields)
 
     def _rest(self) -> None:
@@ -429,6 +454,8 @@ class TemplateWriter:
             self._literal(self._gap(b""), f"{self.target.turns_address}{self.key.turns + 1}")
 
     def _feed(self, word: Word, lead: bytes, slot: int) -> None:
+        if self.axes_written and not set("IJKR") & set(self.meaning.slots):
+            self._centre(b"")
         if self.key.feed is Feed.KEEP:
             self._copy(word, self._gap(lead) if self.fields else lead, slot)
         elif self.key.feed is Feed.WRITE:

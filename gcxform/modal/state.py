@@ -73,6 +73,9 @@ class State:
     lost        axes, as bits, whose position was lost since the last row
     row_frame   the frame of the last row
     polar       radius and angle last programmed in G16
+    side, radius  cutter compensation in force; `at_side`: that of the last move;
+                  `cancelled`: G40 has been in force since
+    selected      the T word; `tool`: the tool in the spindle; `stored`: the D word; nan: not known
     """
 
     groups: dict[str, int]
@@ -87,6 +90,13 @@ class State:
     lost: int = 0
     row_frame: Frame | None = None
     polar: tuple[float, float] = (np.nan, np.nan)
+    side: int = 0
+    radius: float = np.nan
+    selected: float = np.nan
+    tool: float = np.nan
+    stored: float = np.nan
+    at_side: int = 0
+    cancelled: bool = False
     stated: set[str] = field(default_factory=set)
     parameters: dict[int | str, float] = field(default_factory=dict)
     cycles: Cycles | None = None
@@ -109,6 +119,7 @@ class Modes:
     feed_mode: Small
     inch: Flags
     work: Small
+    comp: Small
     feed: Floats
     feed_unit: Floats
     tool: Floats

@@ -9,7 +9,16 @@ from gcxform.dialect import Dialect
 from gcxform.modal.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning, meaning_of
 from gcxform.syntax.shapes import ShapeTable
 
-GROUPS = ("motion", "plane", "distance", "arc-distance", "feed-mode", "units", "frame")
+GROUPS = (
+    "motion",
+    "plane",
+    "distance",
+    "arc-distance",
+    "feed-mode",
+    "units",
+    "frame",
+    "cutter-comp",
+)
 MEMORY = ("cycle", "retract", "spindle")
 """Groups that matter to canned cycles alone."""
 COLUMNS = (*GROUPS, *MEMORY)
@@ -32,19 +41,17 @@ NUMBER = {
     "M5": 0,
     "M3": 1,
     "M4": 2,
+    "G40": 0,
+    "G41": 1,
+    "G42": 2,
+    "G41.1": 3,
+    "G42.1": 4,
 }
 """The number that stands for a code within its group."""
 
 
 MANY_WORK = 9
 """The number of codes that have a P word, so that they name more than one work offset."""
-
-
-def frame_name(frame: int) -> str:
-    """Return the code of a work offset by its number: 0 is G54."""
-    if frame == MANY_WORK:
-        return "G54.1"
-    return f"G{54 + frame}" if frame < 6 else f"G59.{frame - 5}"
 
 
 FLAGS = (
@@ -56,6 +63,7 @@ FLAGS = (
     "loses_position",
     "has_events",
     "percent",
+    "marked",
     "acts",
     "own_moves",
     "in_machine",
@@ -66,6 +74,10 @@ FLAGS = (
     "computes",
     "drills",
     "drill_words",
+    "changes_tool",
+    "bars_comp_before",
+    "bars_comp_after",
+    "compensates",
 )
 
 
@@ -120,6 +132,7 @@ class MeaningTable:
             meaning.loses_position,
             bool(meaning.events),
             meaning.percent,
+            meaning.marked,
             bool(meaning.acts),
             any(act.name in OWN_MOVES for act in meaning.acts),
             any(act.name == "machine" for act in meaning.acts),
@@ -130,6 +143,10 @@ class MeaningTable:
             bool(meaning.assignments or meaning.expressions or meaning.runs_macro),
             bool(set(meaning.slots) & DRILL_WORDS) or _calls(meaning),
             bool(meaning.drill_words),
+            meaning.changes_tool,
+            bool(meaning.bars_comp[0]),
+            bool(meaning.bars_comp[1]),
+            meaning.compensates,
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

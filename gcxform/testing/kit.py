@@ -35,9 +35,9 @@ from gcxform.testing.paths import (
 )
 from gcxform.textpasses import TextRun
 from gcxform.toolpath.circles import radius_and_angle
-from gcxform.toolpath.deviation import deviation
 from gcxform.toolpath.facts import Fact
 from gcxform.toolpath.path import COLUMNS, FeedMode, Kind, Toolpath
+from gcxform.toolpath.runs import Runs, deviation_of_runs, runs_of
 from gcxform.toolpath.travel import lengths
 
 SLACK = 1e-7  # mm and degrees; what arithmetic may add to a promise
@@ -205,10 +205,10 @@ class _PathCheck:
 
     def _check(self, trial: _Trial) -> None:
         self._facts(trial)
-        owner = self._owner(trial, trial.after)
-        self._kinds(trial, owner)
+        runs = self._runs(trial, trial.after)
+        self._kinds(trial, runs.owner)
         self._arcs(trial)
-        self._events(trial, owner)
+        self._events(trial, runs)
         self._law(trial)
         self._windows(trial)
 
@@ -223,20 +223,22 @@ class _PathCheck:
                 message = f"loses {fact}, and does not say so in `clears`"
                 self._assert(fact.check(trial.after), trial, message)
 
-    def _owner(self, trial: _Trial, path: Toolpath) -> NDArray[np.int64]:
-        """Return the row of the source that each row belongs to, after checking `source`."""
+    def _runs(self, trial: _Trial, path: Toolpath) -> Runs:
+        """Return the rows of the source that each row stands for, after checking `source`."""
         before = trial.before.source
         known = bool(np.isin(path.source, before).all())
         self._assert(known, trial, "loses `source`: a row belongs to no line of the program")
         ordered = bool((np.diff(path.source) >= 0).all())
         self._assert(ordered, trial, "loses the order of `source`")
-        lost = np.flatnonzero(~np.isin(before, path.source))
-        start, end = trial.before.start[lost], trial.before.end[lost]
+        runs = runs_of(trial.before, np.searchsorted(before, path.source))
+        joined = len(runs.joined) == 0 or self.step.joins
+        self._assert(joined, trial, "leaves a move out, and does not say `joins = True`")
+        start, end = trial.before.start[runs.left], trial.before.end[runs.left]
         way = np.where(np.isnan(start) & np.isnan(end), 0.0, np.nan_to_num(end - start, nan=np.inf))
         short = np.sqrt((way**2).sum(axis=1)) <= self.step.promise + SLACK
-        gone = bool((short & ~trial.before.is_arc[lost]).all())
+        gone = bool((short & ~trial.before.is_arc[runs.left]).all())
         self._assert(gone, trial, "leaves a move out: a line of the program has no row")
-        return np.searchsorted(before, path.source)
+        return runs
 
     def _kinds(self, trial: _Trial, owner: NDArray[np.int64]) -> None:
         before, after = trial.before, trial.after
@@ -287,24 +289,25 @@ class _PathCheck:
         message = f"an arc ends {off:g} mm off its circle: move `centre` along with `end`"
         self._assert(off <= ON_CIRCLE, trial, message)
 
-    def _events(self, trial: _Trial, owner: NDArray[np.int64]) -> None:
+    def _events(self, trial: _Trial, runs: Runs) -> None:
         before, after = trial.before.events, trial.after.events
         same = [replace(e, row=0) for e in before] == [replace(e, row=0) for e in after]
         self._assert(same, trial, "changes events: spindle, coolant, dwell, stops")
         for old, new in zip(before, after, strict=True):
-            earlier = new.row == 0 or int(owner[new.row - 1]) < old.row
-            later = new.row >= len(owner) or int(owner[new.row]) >= old.row
+            earlier = new.row == 0 or int(runs.through[new.row - 1]) < old.row
+            later = new.row >= len(runs.owner) or int(runs.owner[new.row]) >= old.row
             self._assert(earlier and later, trial, f"moves the event {old.what}; use with_rows")
 
     def _law(self, trial: _Trial) -> None:
         """Check deviation(before, undo(after)) <= promise, from the first point on."""
         promise = self.step.promise
         undone = self._undo(trial.label, trial.after)
-        owner = self._owner(trial, undone)
+        runs = self._runs(trial, undone)
+        owner = runs.owner
         timed = (undone.feed_mode == FeedMode.INVERSE_TIME) & (undone.kind != Kind.RAPID)
         timed &= trial.before.feed_mode[owner] == FeedMode.INVERSE_TIME
         self._times(trial, undone, owner, timed)
-        off = deviation(trial.before, undone, owner)
+        off = deviation_of_runs(trial.before, undone, runs)
         if not np.isfinite(promise):
             return
         worst = float(off.distance.max(initial=0.0))
@@ -317,11 +320,24 @@ class _PathCheck:
         message = f"undo(after) begins {gap:g} mm off: apply and undo change `entry` as well"
         self._assert(gap <= promise + SLACK, trial, message)
 
+    def _parts(self, trial: _Trial, line: int) -> None:
+        """Check that a pass that joins rows keeps its law in each of two windows."""
+        for nth, part in enumerate(halves(trial.before, line)):
+            after = self._apply(trial.label, part)
+            self._assert(after is not None, trial, "refuses a part of a path it takes as a whole")
+            if after is not None and len(part):
+                half = _Trial(f"{trial.label}, part {nth}", part, after)
+                self._events(half, self._runs(half, after))
+                self._law(half)
+
     def _windows(self, trial: _Trial) -> None:
         """Check that a program in two windows gives what it gives in one."""
         if len(trial.before) < 2:
             return
         lines = trial.before.source
+        if self.step.joins:
+            self._parts(trial, int(lines[len(lines) // 2]))
+            return
         for line in (int(lines[1]), int(lines[len(lines) // 2])):
             for whole, call in ((trial.before, self._apply), (trial.after, self._undo)):
                 first, second = halves(whole, line)

@@ -12,9 +12,28 @@ from numpy.typing import NDArray
 from gcxform.dialect import Dialect
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
-from gcxform.toolpath.path import BLOCK_MODES, COLUMNS, Blocks, Kind, Toolpath
+from gcxform.toolpath.path import BLOCK_MODES, COLUMNS, Kind, Toolpath
 
 HEAD = "G21 G90 G94 G17\n"
+
+
+def polygon(plane: str, lines: int, rise: float = 0.0) -> str:
+    """Return the lines of a polygon from X60 Y50 Z20 back to there, on a radius of 10 mm.
+
+    It is clockwise for a negative number of lines; `rise` (mm) is what each line goes up.
+    """
+    first, second = plane[0], plane[1]
+    normal = next(axis for axis in "XYZ" if axis not in plane)
+    place = {"X": 60.0, "Y": 50.0, "Z": 20.0}
+    text = []
+    for nth in range(1, abs(lines) + 1):
+        angle = 2 * np.pi * nth / lines
+        u, v = place[first] - 10 + 10 * np.cos(angle), place[second] + 10 * np.sin(angle)
+        up = f" {normal}{place[normal] + rise * nth:.4f}" if rise else ""
+        text.append(f"G1 {first}{u:.4f} {second}{v:.4f}{up}\n")
+    return "".join(text) + (f"{normal}{place[normal]:g}\n" if rise else "")
+
+
 PROGRAMS: dict[str, str] = {
     "no block": "",
     "no move": HEAD + "M3 S100\n",
@@ -30,6 +49,16 @@ PROGRAMS: dict[str, str] = {
     + "G0 X20 Y20 Z20\nG91 G1 X30 F100\nY40 Z-5\nG3 X-10 Y10 I-10\nG90 G0 X20\n",
     "inverse time": HEAD + "G0 X20 Y20 Z20\nG93 G1 X180 F2\nG3 X160 Y40 I-20 F4\nG94 G1 X20 F100\n",
     "rotary": HEAD + "G0 X20 Y20 Z20 A0 B0 C0\nG1 X180 A45 F100\nC-90\nG2 X160 Y0 I-20 B10\n",
+    "many lines": HEAD
+    + "G0 X60 Y50 Z20\nF200\n"
+    + polygon("XY", 24)
+    + "M8\n"
+    + polygon("XY", -30, 2.0)
+    + "F250\nG18\n"
+    + polygon("ZX", -24)
+    + "G19\n"
+    + polygon("YZ", 12)
+    + "X60.5\nX61\nX61.5\nX62\nX62 Y51\n",
     "unknown start": HEAD + "G0 Z30\nX20\nG1 X60 F100\nY20\nX120 Y100\n",
 }
 """Small programs in the common part of all dialects."""
@@ -65,7 +94,8 @@ def locked(path: Toolpath) -> Toolpath:
         return array
 
     was = path.blocks
-    blocks = Blocks(was.first, *(copy(getattr(was, name)) for name in BLOCK_MODES))
+    modes: dict[str, Any] = {name: copy(getattr(was, name)) for name in BLOCK_MODES}
+    blocks = replace(was, **modes)
     columns = {name: copy(getattr(path, name)) for name in (*COLUMNS, "entry")}
     return path.replace(blocks=blocks, **columns)
 

@@ -2,7 +2,8 @@
 
 `rs274 -g -t TOOLS -v VARIABLES FILE OUT` writes one canon call a line, numbers with four decimals
 in the units in force, to OUT, and messages to stderr. It starts at 0 on all axes, in millimetres,
-G17 G90 G91.1 G94, with no motion mode, all work offsets zero and block delete off. It stops at
+G17 G90 G91.1 G94, with no motion mode, all work offsets zero and block delete off. Tool n has a
+diameter of n mm (the table is in inches). It stops at
 the first refusal. A comment `(gcx k)` put behind line k comes back as a canon call, so each
 call is known to belong to a line.
 
@@ -164,7 +165,7 @@ def tool(number: int) -> tuple[float, float, float]:
 
 def _tool_line(number: int) -> str:
     x, y, z = tool(number)
-    return f"T{number} P{number} X{x} Y{y} Z{z}\n"
+    return f"T{number} P{number} X{x} Y{y} Z{z} D{number / 25.4:.12f}\n"
 
 
 def _collect(text: str, message: str) -> _Output:

@@ -18,28 +18,14 @@ from oracles.compare import move_difference
 from reference.model import Move
 
 import gcxform as gx
+from gcxform.contract import PassContext
 from gcxform.dialect import INCH
 from gcxform.machine.machine import Tool
+from gcxform.registry import default_registry
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 KINDS = {Kind.RAPID: "RAPID", Kind.LINE: "LINE", Kind.ARC_CW: "ARC_CW", Kind.ARC_CCW: "ARC_CCW"}
-COMPARED = {
-    "M0",
-    "M1",
-    "M2",
-    "M3",
-    "M4",
-    "M5",
-    "M6",
-    "M7",
-    "M8",
-    "M9",
-    "M19",
-    "M30",
-    "M60",
-    "S",
-    "T",
-}
+COMPARED = {f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 19, 30, 60)} | {"S", "T"}
 STILL = 1.001e-4  # units of the program: a move that the print shows as none
 START = dict.fromkeys("XYZABCUVW", 0.0)
 OFFSETS = {f"G{n}": START for n in (54, 55, 56, 57, 58, 59)} | {
@@ -59,7 +45,15 @@ def read(text: bytes, tools: Mapping[int, Tool] = OWN_TOOLS) -> Toolpath:
     It starts from zero, with all offsets zero, and executes blocks with a slash.
     """
     told: dict[str, Any] = {"work_offsets": OFFSETS, "homes": HOMES, "tools": tools}
-    return gx.read(text, "linuxcnc", start=START, block_delete="execute", **told).path
+    path = gx.read(text, "linuxcnc", start=START, block_delete="execute", **told).path
+    return resolved(path) if path.side.any() else path
+
+
+def resolved(path: Toolpath) -> Toolpath:
+    """Return the path of the tool's centre, which is what `rs274` prints. Raises InputError."""
+    dialect = default_registry().dialect("linuxcnc")
+    step: Any = default_registry().passes["cutter-comp"]()
+    return step.apply(path, PassContext(dialect, dialect, dialect.numbers))  # type: ignore[no-any-return]
 
 
 def programmed(path: Toolpath) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
