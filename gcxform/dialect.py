@@ -126,6 +126,8 @@ class Dialect:
     g10_sets_position: ClassVar[bool] = False
     """G10 L20 makes the present position read what is given."""
     g10_ignores_g91: ClassVar[bool] = False
+    g10_rotates: ClassVar[bool] = False
+    """R in G10 L2 turns the work offset about Z."""
     g52_is_g92: ClassVar[bool] = False
     """G52 and G92 set one and the same shift."""
     g52_known: ClassVar[bool] = True
@@ -134,6 +136,8 @@ class Dialect:
     """G43 without H takes the length of the tool in the spindle."""
     length_may_move: ClassVar[bool] = False
     """Another tool length may move the axis by itself; where it stands is then not known."""
+    units_spoil_length: ClassVar[bool] = False
+    """A tool length in force keeps its number when the unit changes, so that it is another one."""
     g53_in_g91: ClassVar[str] = "refused"
     """What G53 does under G91: "absolute", or "refused" by the control or by us."""
     g53_is_rapid: ClassVar[bool] = False

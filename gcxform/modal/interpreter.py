@@ -140,3 +140,5 @@ class Interpreter:
                 if name == "feed-mode" and self.state.groups[name] != NUMBER[code]:
                     self.state.feed = np.nan
                 self.state.groups[name] = NUMBER[code]
+                if name == "frame":
+                    self.state.frames = self.state.frames.in_work(code)

@@ -35,6 +35,7 @@ NUMBER = {
     "G20": 1,
     **{f"G{54 + n}": n for n in range(6)},
     **{f"G59.{n}": 5 + n for n in (1, 2, 3)},
+    "G54.1": 9,
     "G99": 0,
     "G98": 1,
     "M5": 0,
@@ -49,6 +50,10 @@ NUMBER = {
 """The number that stands for a code within its group."""
 
 
+MANY_WORK = 9
+"""The number of codes that have a P word, so that they name more than one work offset."""
+
+
 FLAGS = (
     "moves",
     "has_centre",
@@ -61,9 +66,11 @@ FLAGS = (
     "marked",
     "acts",
     "own_moves",
+    "in_machine",
     "work_only",
     "framing",
     "presets",
+    "takes_lengths",
     "computes",
     "drills",
     "drill_words",
@@ -128,9 +135,11 @@ class MeaningTable:
             meaning.marked,
             bool(meaning.acts),
             any(act.name in OWN_MOVES for act in meaning.acts),
+            any(act.name == "machine" for act in meaning.acts),
             [act.name for act in meaning.acts] == ["work"] and "frame" in meaning.groups,
             any(act.name in FRAMING for act in meaning.acts),
             any(act.name in PRESETS for act in meaning.acts),
+            bool(meaning.lengths),
             bool(meaning.assignments or meaning.expressions or meaning.runs_macro),
             bool(set(meaning.slots) & DRILL_WORDS) or _calls(meaning),
             bool(meaning.drill_words),

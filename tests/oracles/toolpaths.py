@@ -58,9 +58,7 @@ def resolved(path: Toolpath) -> Toolpath:
 
 def programmed(path: Toolpath) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return start, end (n, axes) and centre (n, 3) in the active program coordinates."""
-    start, end = path.start.copy(), path.end.copy()
-    start[:, :3], end[:, :3] = path.local(path.start[:, :3]), path.local(path.end[:, :3])
-    return start, end, path.local(path.centre)
+    return path.local(path.start), path.local(path.end), path.local(path.centre)
 
 
 def moves_of(path: Toolpath) -> Iterator[Move]:
