@@ -293,7 +293,7 @@ MUTATIONS = (
         "gcxform/modal/moves.py",
         "again &= (self.modes.work != MANY_WORK) & ~self._reset",
         "again &= ~self._reset",
-        OFFSETS,
+        FOUND,
     ),
     Mutation(
         "frames: radius and angle are not carried into the next window",

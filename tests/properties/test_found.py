@@ -138,3 +138,10 @@ def test_a_control_that_goes_on_after_the_end_is_in_its_first_offset() -> None:
 def test_another_unit_under_a_tool_length_is_refused() -> None:
     with pytest.raises(gx.InputError, match="another unit under a tool length"):
         run("absolute", "linuxcnc", "G21 G43.1 Z5\nG20 G0 Z1\n")
+
+
+def test_two_offsets_of_one_code_are_two() -> None:
+    offsets = {"G54": {"X": 0.0}, "G54.1 P1": {"X": 10.0}, "G54.1 P2": {"X": 20.0}}
+    program = b"G54 G0 X0. Y0.\nG54.1 P1 X0.\nG54.1 P2 X0.\nG54 X0.\n"
+    path = gx.read(program, "fanuc", work_offsets=offsets).path
+    assert path.end[:, 0].tolist() == [0.0, 10.0, 20.0, 0.0]
