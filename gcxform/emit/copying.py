@@ -116,6 +116,8 @@ class Copying:
                     hint = "leave the block out, or let the CAM system write it so"
                     if (name, address) not in self._lengths_left(line):
                         hint = 'put the pass "offsets" before'
+                    elif address == "D":
+                        hint = 'put the pass "cutter-comp" before'
                     raise InputError.one("GX506", message, self.task.location(line), hint)
 
     def _lengths_left(self, line: int) -> list[tuple[str, str]]:
@@ -129,6 +131,8 @@ class Copying:
         window, first = self.task.window, int(self.task.window.first_number[line])
         meaning = self.task.table.meanings[int(self.task.shape[line])]
         folded = {act.code for act in meaning.acts if act.name in FRAMING and self.path.folded}
+        if self.path.blocks.uncompensated:
+            folded.add(meaning.groups.get("cutter-comp", ""))
         return [
             (name, address)
             for name, address, slot in meaning.lengths
