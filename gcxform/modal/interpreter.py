@@ -93,7 +93,8 @@ class Interpreter:
             control = self.reading.control
             state.cycles = Cycles(rule, *(_length(control, name) for name in PECKS))
         retract = int(rule is None or rule.initial_level)
-        state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": UNKNOWN_SPINDLE}
+        spindle = NUMBER.get(self.dialect.initial.get("spindle", ""), UNKNOWN_SPINDLE)
+        state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": spindle}
         return state
 
     def _given(self) -> dict[Key, float]:

@@ -1,12 +1,6 @@
 """Facts that do not hold yet, by what they wait for: a fact that holds must leave the list."""
 
 WAITING = {
-    "M words are not counted": """
-        blocks_m_five
-    """,
-    "arcs in inches are held to the tolerance of mm": """
-        arcs_off_in_inch
-    """,
     "cutter compensation": """
         cutters_arc_beside cutters_inner_corner cutters_left cutters_outer_corner cutters_right
     """,
@@ -28,15 +22,6 @@ WAITING = {
     """,
     "the end of a program is not asked for": """
         lexical_no_end lexical_percent_frame_without_end lexical_percent_only_at_end
-    """,
-    "the number of a spindle": """
-        lexical_spindle_number
-    """,
-    "the programs of user codes are not known": """
-        blocks_m100_unknown
-    """,
-    "tool tables": """
-        lengths_t_unknown
     """,
 }
 KNOWN = {name: reason for reason, names in WAITING.items() for name in names.split()}
