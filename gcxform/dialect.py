@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from gcxform.modal.arithmetic import Arithmetic
-from gcxform.modal.codes import ISO, ISO_M, Code, MCode
+from gcxform.modal.codes import ISO, ISO_M, Code, CutterComp, MCode
 from gcxform.modal.cyclerule import CycleRule
 from gcxform.syntax.grammar import Grammar, load
 
@@ -76,12 +76,15 @@ class Dialect:
         "feed-mode": "G94",
         "units": "G21",
         "frame": "G54",
+        "cutter-comp": "G40",
     }
     """The modal state a program is taken to start in; the certificate says what was taken."""
     axis_words_once: ClassVar[bool] = False
     """A motion code beside a code that takes the axis words for itself (G92, G28) is refused."""
     last_code_wins: ClassVar[bool] = False
     """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
+    cutter_comp: ClassVar[CutterComp] = CutterComp()
+    """How G41 and G42 are read, where the dialect has them."""
     point_required: ClassVar[bool] = False
     """A distance without a point counts in increments of the control, which must be configured."""
     feed_point_required: ClassVar[bool] = False
@@ -110,6 +113,8 @@ class Dialect:
     """Seconds for one unit of each word that G4 takes."""
     dwell_point_is_seconds: ClassVar[bool] = False
     """A dwell that is written with a point is in seconds."""
+    spindle_stands: ClassVar[bool] = False
+    """Whether the spindle stands still, as far as the control knows, when a program starts."""
     starts_in_frame: ClassVar[bool] = False
     """Whether the work offset of `initial` is in force for certain when a program starts."""
     work_names: ClassVar[Mapping[str, str]] = {}
@@ -123,6 +128,8 @@ class Dialect:
     g10_sets_position: ClassVar[bool] = False
     """G10 L20 makes the present position read what is given."""
     g10_ignores_g91: ClassVar[bool] = False
+    g10_rotates: ClassVar[bool] = False
+    """R in G10 L2 turns the work offset about Z."""
     g52_is_g92: ClassVar[bool] = False
     """G52 and G92 set one and the same shift."""
     g52_known: ClassVar[bool] = True
@@ -131,6 +138,8 @@ class Dialect:
     """G43 without H takes the length of the tool in the spindle."""
     length_may_move: ClassVar[bool] = False
     """Another tool length may move the axis by itself; where it stands is then not known."""
+    units_spoil_length: ClassVar[bool] = False
+    """A tool length in force keeps its number when the unit changes, so that it is another one."""
     g53_in_g91: ClassVar[str] = "refused"
     """What G53 does under G91: "absolute", or "refused" by the control or by us."""
     g53_is_rapid: ClassVar[bool] = False

@@ -136,6 +136,7 @@ class Verifier:
         if not off.angle[turned] <= self.angle_budget:
             self._fail(f"a rotary axis is {off.angle[turned]:.5f} degrees off", trace, turned)
         self._kinds(trace)
+        self._sides(trace)
         self._feeds(trace)
 
     def _note_worst(self, distance: float, trace: _Trace, row: int) -> None:
@@ -175,6 +176,16 @@ class Verifier:
         wrong = rapid_before != (trace.after.kind == Kind.RAPID)
         if wrong.any():
             self._fail("a rapid became a feed move, or the reverse", trace, int(np.argmax(wrong)))
+
+    def _sides(self, trace: _Trace) -> None:
+        """Check that cutter compensation is on where it was, on the same side and as far."""
+        before, after, owner = trace.before, trace.after, trace.owner
+        if not before.side.any() and not after.side.any():
+            return
+        radius, old = after.radius, before.radius[owner]
+        changed = (after.side != before.side[owner]) | ~((radius == old) | np.isnan(radius + old))
+        if changed.any():
+            self._fail("cutter compensation has changed", trace, int(np.argmax(changed)))
 
     def _feeds(self, trace: _Trace) -> None:
         """Check that feeds are those of the source; in inverse time, the times must add up."""

@@ -9,7 +9,16 @@ from gcxform.dialect import Dialect
 from gcxform.modal.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning, meaning_of
 from gcxform.syntax.shapes import ShapeTable
 
-GROUPS = ("motion", "plane", "distance", "arc-distance", "feed-mode", "units", "frame")
+GROUPS = (
+    "motion",
+    "plane",
+    "distance",
+    "arc-distance",
+    "feed-mode",
+    "units",
+    "frame",
+    "cutter-comp",
+)
 MEMORY = ("cycle", "retract", "spindle")
 """Groups that matter to canned cycles alone."""
 COLUMNS = (*GROUPS, *MEMORY)
@@ -26,18 +35,23 @@ NUMBER = {
     "G20": 1,
     **{f"G{54 + n}": n for n in range(6)},
     **{f"G59.{n}": 5 + n for n in (1, 2, 3)},
+    "G54.1": 9,
     "G99": 0,
     "G98": 1,
     "M5": 0,
     "M3": 1,
     "M4": 2,
+    "G40": 0,
+    "G41": 1,
+    "G42": 2,
+    "G41.1": 3,
+    "G42.1": 4,
 }
 """The number that stands for a code within its group."""
 
 
-def frame_name(frame: int) -> str:
-    """Return the code of a work offset by its number: 0 is G54."""
-    return f"G{54 + frame}" if frame < 6 else f"G59.{frame - 5}"
+MANY_WORK = 9
+"""The number of codes that have a P word, so that they name more than one work offset."""
 
 
 FLAGS = (
@@ -52,12 +66,18 @@ FLAGS = (
     "marked",
     "acts",
     "own_moves",
+    "in_machine",
     "work_only",
     "framing",
     "presets",
+    "takes_lengths",
     "computes",
     "drills",
     "drill_words",
+    "changes_tool",
+    "bars_comp_before",
+    "bars_comp_after",
+    "compensates",
 )
 
 
@@ -115,12 +135,18 @@ class MeaningTable:
             meaning.marked,
             bool(meaning.acts),
             any(act.name in OWN_MOVES for act in meaning.acts),
+            any(act.name == "machine" for act in meaning.acts),
             [act.name for act in meaning.acts] == ["work"] and "frame" in meaning.groups,
             any(act.name in FRAMING for act in meaning.acts),
             any(act.name in PRESETS for act in meaning.acts),
+            bool(meaning.lengths),
             bool(meaning.assignments or meaning.expressions or meaning.runs_macro),
             bool(set(meaning.slots) & DRILL_WORDS) or _calls(meaning),
             bool(meaning.drill_words),
+            meaning.changes_tool,
+            bool(meaning.bars_comp[0]),
+            bool(meaning.bars_comp[1]),
+            meaning.compensates,
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

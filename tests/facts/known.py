@@ -2,6 +2,7 @@
 
 WAITING = {
     "cutter compensation": """
+        lcnc_comp_entry_too_short_refused cutters_entry_short
         cutters_arc_beside cutters_inner_corner cutters_left cutters_outer_corner cutters_right
     """,
     "motion tied to the spindle": """

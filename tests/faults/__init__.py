@@ -2,13 +2,26 @@
 
 from __future__ import annotations
 
-from faults import arcs, commands, computing, cycles, passes, proof, reading, writing
+from faults import (
+    arcs,
+    commands,
+    computing,
+    cutter,
+    cycles,
+    frames,
+    passes,
+    proof,
+    reading,
+    writing,
+)
 from faults.mutation import Mutation
 
 MUTATIONS: tuple[Mutation, ...] = (
     *cycles.MUTATIONS,
     *commands.MUTATIONS,
     *computing.MUTATIONS,
+    *frames.MUTATIONS,
+    *cutter.MUTATIONS,
     *passes.MUTATIONS,
     *reading.MUTATIONS,
     *writing.MUTATIONS,

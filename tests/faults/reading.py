@@ -87,8 +87,8 @@ MUTATIONS = (
     Mutation(
         "limits: turns belong to lines",
         LIMITS,
-        "modes.motion < Kind.ARC_CW",
-        "modes.motion > Kind.ARC_CCW",
+        "arc = (modes.motion >= Kind.ARC_CW)",
+        "arc = (modes.motion > Kind.ARC_CCW)",
         FACTS,
     ),
 )

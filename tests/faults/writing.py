@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import FIGURES, LAWS, VERIFY, Mutation
+from faults.mutation import FIGURES, FOUND, LAWS, VERIFY, Mutation
 
 MUTATIONS = (
     Mutation(
@@ -46,5 +46,12 @@ MUTATIONS = (
         "believed.position = np.array(held)",
         "del held",
         VERIFY,
+    ),
+    Mutation(
+        "writing: lengths in another unit are kept",
+        "gcxform/emit/copying.py",
+        'if inch[line] or address == "X":',
+        "if False:",
+        FOUND,
     ),
 )
