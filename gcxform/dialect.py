@@ -47,6 +47,7 @@ class ArcRule:
 
     Accepted if delta <= `absolute`, or if delta <= `relative` * radius and delta <= `largest`.
     `smallest` is the least radius; `r_short` is how much an R may fall short of the half chord.
+    `in_inch`: how many times as large `absolute` and `largest` are in blocks in inches.
     """
 
     absolute: float
@@ -54,6 +55,7 @@ class ArcRule:
     largest: float = float("inf")
     smallest: float = 0.0
     r_short: float = 0.0
+    in_inch: float = 1.0
 
 
 class Dialect:
@@ -164,6 +166,12 @@ class Dialect:
     has_program_number: ClassVar[bool] = True
     program_number_digits: ClassVar[int] = 0
     """How many digits a program number may have; 0: any number."""
+    most_m_words: ClassVar[int] = 0
+    """How many M words a block may have; 0: any number."""
+    tools_in_table: ClassVar[bool] = False
+    """A tool that the tool table does not have is refused where it is named."""
+    spindle_words: ClassVar[frozenset[str]] = frozenset()
+    """Codes, and S, beside which a word `$` says which spindle is meant."""
     words: ClassVar[str] = "DEFHIJKLNPQRST"
     """Addresses the control knows, besides its axes and G, M, O."""
     arithmetic: ClassVar[Arithmetic | None] = None

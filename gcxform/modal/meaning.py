@@ -61,6 +61,7 @@ class Act:
 ACT_ORDER = (
     "change-tool",
     "set-tool",
+    "user-code",
     "diameter",
     "length",
     "length-negative",
@@ -312,6 +313,7 @@ def _take(
 def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
     """Turn M codes into events."""
     groups: dict[str, str] = {}
+    yield from _too_many(shape, dialect)
     for word in shape.block.words:
         if word.address != "M" or not isinstance(word.value, Number):
             continue
@@ -337,6 +339,25 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         if code.act:
             meaning.acts.append(Act(code.act, name, taken, word.start, width))
         meaning.events.append(EventShape(order, name, taken, code.after))
+
+
+def _too_many(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
+    """Refuse more M words than the control takes in a block."""
+    most = dialect.most_m_words
+    for word in [word for word in shape.block.words if word.address == "M"][most:][:1]:
+        if most:
+            message = f"{dialect.name} takes {most} M words in a block"
+            yield Refusal("GX219", word.start, word.end - word.start, message)
+
+
+def _spindle_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> None:
+    """Turn a word `$` into an event beside what turns a spindle; elsewhere it is left over."""
+    if "$" not in meaning.slots or not dialect.spindle_words:
+        return
+    coded = [w for w in shape.block.words if w.address in CODES and isinstance(w.value, Number)]
+    codes = {_code_of(word) for word in coded}
+    if dialect.spindle_words & {*codes, *meaning.slots}:
+        meaning.events.append(EventShape(9, "$", (("$", meaning.slots.pop("$")),)))
 
 
 def program_number_fits(word: Word, dialect: type[Dialect]) -> bool:
@@ -397,6 +418,7 @@ def _offset_word(dialect: type[Dialect], meaning: Meaning) -> set[str]:
 def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
     """Give the remaining words to motion, feed, spindle and tool; what is left over is refused."""
     slots = meaning.slots
+    _spindle_number(shape, dialect, meaning)
     for address, order in (("S", 10), ("T", 20)):
         if address in slots:
             event = EventShape(order, address, ((address, slots[address]),))

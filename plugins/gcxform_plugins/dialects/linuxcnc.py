@@ -7,7 +7,8 @@
 | arc centre | incremental, or absolute (in work coordinates) after G90.1 |
 | full circle | end repeated, or plane words left out |
 | turns of an arc | P n: n - 1 full turns more |
-| start and end radius | refused if they differ by more than 0.0282843 mm and 0.1 % |
+| start and end radius | may differ by 0.0282843 mm, or by 0.1 % and 2.82843 mm |
+| the same in G20 | 0.00282843 in, or 0.1 % and 0.282843 in |
 | G93, G94, G95 | set the feed to zero, also when re-stated |
 | feed | along X Y Z; in degrees where only rotary axes move; in G93 no less than 0.1 per minute |
 | `G20 F10` | F is in the unit before; after G20, G21 the feed in mm/min stays |
@@ -28,6 +29,11 @@
 | expressions | a sign binds to its number, `**` goes from the left, numbers within 1e-4 are EQ |
 | a parameter that nothing has set | refused unless given: the control may have a value left |
 | #5001 and above, `#<_x>` and its like | belong to the control: refused |
+| M words in a block | four at most |
+| T, M61 | a tool that is not in the table, where one is given, is refused |
+| `$` | beside S or what turns a spindle; only the first spindle is known |
+| M100 to M199 | run a program of the machine: refused unless it is said what they are |
+| @ and ^ | polar words: refused |
 | O-words | refused: code that would have to be run |
 """
 
@@ -82,6 +88,7 @@ CYCLE_RULE = v.CycleRule(
     one_plane=False,
     initial_level=False,
 )
+USER_CODE = gx.MCode("user", takes="PQ", act="user-code", loses_position=True)
 
 
 class LinuxCNC(gx.Dialect):
@@ -147,7 +154,7 @@ class LinuxCNC(gx.Dialect):
         },
         98: gx.MCode("stop", barrier=v.CALL, takes="PL"),
         99: gx.MCode("stop", barrier=v.CALL),
-        **{code: gx.MCode("user", takes="PQ") for code in range(100, 200)},
+        **{code: USER_CODE for code in range(100, 200)},
     }
     axis_words_once = True
     spindle_stands = True
@@ -175,6 +182,9 @@ class LinuxCNC(gx.Dialect):
     feed_before_units = True
     lone_cr_is_blank = True
     number_first = True
+    most_m_words = 4
+    tools_in_table = True
+    spindle_words = frozenset({"S", "M3", "M4", "M5", "M19", "M51", "G95", "G96", "G97"})
     turns_address = "P"
     cycle_rule = CYCLE_RULE
     line_length = 252
@@ -186,5 +196,10 @@ class LinuxCNC(gx.Dialect):
     arithmetic = v.RS274
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     arc_rule = gx.ArcRule(
-        absolute=0.0282843, relative=0.001, largest=2.82843, smallest=0.00127, r_short=0.00127
+        absolute=0.0282843,
+        relative=0.001,
+        largest=2.82843,
+        smallest=0.00127,
+        r_short=0.00127,
+        in_inch=2.54,
     )
