@@ -151,6 +151,8 @@ class Dialect:
     """The limit counts neither blanks nor comments."""
     comments: ClassVar[str] = "("
     """How a comment may begin: any of "(" and ";"."""
+    active_comments: ClassVar[tuple[str, ...]] = ()
+    """How comments begin that the control executes, in capitals."""
     has_percent: ClassVar[bool] = True
     has_program_number: ClassVar[bool] = True
     program_number_digits: ClassVar[int] = 0
@@ -167,6 +169,11 @@ class Dialect:
     arc_rule: ClassVar[ArcRule] = ArcRule(absolute=0.01)
     cycle_rule: ClassVar[CycleRule | None] = None
     """What the control makes of canned cycles; None: it has none, or they are not known."""
+
+    @classmethod
+    def executes(cls, comment: str) -> bool:
+        """Whether the control does something when it reads a comment."""
+        return comment.lstrip("(; \t").upper().startswith(cls.active_comments)
 
     @classmethod
     def load_grammar(cls) -> Grammar:

@@ -44,7 +44,7 @@ class Copying:
         old_count = np.bincount(self.original.block, minlength=live)
         self.exact = np.zeros(len(self.path), np.bool_)
         self.believed_exact = believed.exact
-        self.lines = (old_count == 0) & (pieces.count == 0)
+        self.lines = (old_count == 0) & (pieces.count == 0) & ~pieces.expanded_line
         stands = self._standing(old_count, pieces)
         self._refuse_changed(stands, pieces)
         self._refuse_presets()

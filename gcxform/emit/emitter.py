@@ -139,7 +139,7 @@ class _Job:
         work = self.path.frames[0].work if self.path.folded else ""
         gone = np.array(
             [
-                nothing_left(shape.block.items, meaning, task.manner.target, work)
+                nothing_left(shape.block.items, meaning, task.manner, work)
                 for shape, meaning in zip(
                     task.table.shapes.shapes, task.table.meanings, strict=False
                 )
@@ -348,6 +348,7 @@ class _Job:
             present = self.positions.write[rows, column]
             if present.any():
                 whole = self.positions.words_of(column, rows)
+                self._check_known(field.address, whole, present, rows)
                 decimals = manner.decimals_of(field.address, inch)
                 renderer.number(field.gap, field.address, whole, decimals, present)
         elif isinstance(field, Centre):
@@ -377,6 +378,13 @@ class _Job:
         renderer.number(b"", field.address, whole, decimals, np.ones(len(lines), np.bool_), False)
 
     # --- after ---
+
+    def _check_known(self, address: str, whole: Floats, present: Flags, rows: Ints) -> None:
+        """Refuse increments from where the control only knows: the operator may have moved it."""
+        unknown = rows[present & np.isnan(whole)]
+        if len(unknown):
+            message = f"{address} is incremental, but where {address} stands is not known"
+            self._refuse(unknown, "GX207", message, f"program {address} in G90 before")
 
     def _check_feed(self, feed: Floats, written: Floats, members: Ints) -> None:
         """Refuse feeds that are too small to be written."""

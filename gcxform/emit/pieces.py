@@ -66,7 +66,8 @@ class Pieces:
         self.count = np.bincount(path.block, minlength=live)
         special = np.zeros(live, np.bool_)
         special[path.block[path.form != Form.PLAIN]] = True
-        self.expanded_line = (self.task.read.modes.cycle != CYCLE_OFF) & ~special
+        drilling = self.task.read.modes.cycle != CYCLE_OFF
+        self.expanded_line = drilling & ~special & self._expands()
         self.events = [e for e in path.events if e.within and self._is_expanded(e)]
         pieces = np.where(special, 1, np.maximum(self.count, 1))
         self.line = np.repeat(np.arange(live), pieces)
@@ -77,6 +78,11 @@ class Pieces:
             self._put_events_between()
         self.has_row = (self.count[self.line] > 0) & (self.event < 0)
         self._give_roles(special)
+
+    def _expands(self) -> bool:
+        """Whether the cycles of the window have become plain moves."""
+        was, now = self.task.read.path.form, self.task.path.form
+        return bool((was == Form.CYCLE).any() and not (now == Form.CYCLE).any())
 
     def _put_events_between(self) -> None:
         """Give what cycles do between their moves pieces of their own."""

@@ -187,6 +187,9 @@ def preset(state: FrameState, asked: Asked) -> FrameState:
 
 
 def _refuse_turned(state: FrameState, asked: Asked) -> None:
+    if asked.incremental and not asked.dialect.g10_ignores_g91:
+        message = f"under G91, {asked.code} adds on some controls and does not on others"
+        raise ActError("GX213", message, "write it under G90")
     if state.turns or state.polar or state.rotation.get(state.work, 0.0):
         raise ActError("GX213", f"{asked.code} in turned or scaled coordinates")
 

@@ -319,6 +319,17 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         meaning.events.append(EventShape(order, name, taken, code.after))
 
 
+def only_for_cycles(name: str, source: type[Dialect], target: type[Dialect]) -> bool:
+    """Whether a code is about cycles alone (G80, G98, G99), and the target gets no cycle.
+
+    That is so where the target has no cycles, or calls them otherwise: those of the source are then
+    refused, or have become plain moves.
+    """
+    if name not in ("G80", "G98", "G99") or source.codes.get(name) == target.codes.get(name):
+        return False
+    return source.codes.get("G81") != target.codes.get("G81")
+
+
 def program_number_fits(word: Word, dialect: type[Dialect]) -> bool:
     """Whether the control can hold a program number."""
     digits = dialect.program_number_digits

@@ -149,5 +149,5 @@ class Fanuc(gx.Dialect):
     lower_case = False
     dwell: ClassVar[Mapping[str, float]] = {"X": 1.0, "U": 1.0, "P": 0.001}
     arc_rule = gx.ArcRule(absolute=0.01)
-    cycle_rule = CYCLE_RULE
+    cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE
     arithmetic = v.MACRO_B

@@ -23,6 +23,7 @@
 | expressions | a sign binds to its number, `**` goes from the left, numbers within 1e-4 are EQ |
 | a parameter that nothing has set | refused unless given: the control may have a value left |
 | #5001 and above, `#<_x>` and its like | belong to the control: refused |
+| comments | `(MSG,` `(PRINT,` `(LOG,` `(PROBEOPEN` `(ABORT,` and their like are executed |
 | O-words | refused: code that would have to be run |
 """
 
@@ -77,6 +78,12 @@ CYCLE_RULE = v.CycleRule(
     one_plane=False,
     initial_level=False,
 )
+# fmt: off
+ACTIVE = (
+    "MSG,", "DEBUG,", "PRINT,", "LOG,", "LOGOPEN,", "LOGAPPEND,", "LOGCLOSE", "PROBEOPEN",
+    "PROBECLOSE", "ABORT,", "PY,",
+)
+# fmt: on
 
 
 class LinuxCNC(gx.Dialect):
@@ -161,6 +168,7 @@ class LinuxCNC(gx.Dialect):
     cycle_rule = CYCLE_RULE
     line_length = 252
     comments = "(;"
+    active_comments = ACTIVE
     words = "DEFHIJKLNPQRST@^$"
     arc_rotary = True
     feed_along_lines = True
