@@ -170,6 +170,9 @@ class Dialect:
     cycle_rule: ClassVar[CycleRule | None] = None
     """What the control makes of canned cycles; None: it has none, or they are not known."""
 
+    cycles_stop: ClassVar[bool] = False
+    """The moves of a cycle end exactly, also where G64 rounds corners."""
+
     @classmethod
     def executes(cls, comment: str) -> bool:
         """Whether the control does something when it reads a comment."""

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError
+from gcxform.dialect import Dialect
 from gcxform.emit.arcs import ArcEnds, centre_words
 from gcxform.emit.copying import EXACT, Copying
 from gcxform.emit.fields import Axis, Centre, Computed, Copied, Feed, Field, Key, Literal, Role
@@ -68,6 +69,7 @@ class Emitter:
         self.believed = Believed.at_start(manner, start)
         self.line_end = b""
         self.gap: bytes | None = None
+        self.path_mode = ""
 
     def emit(
         self, window: Window, table: MeaningTable, read: Interpreted, path: Toolpath
@@ -104,6 +106,7 @@ class _Job:
 
     def run(self) -> Emitted:
         copied = self.copying.lines
+        self._refuse_rounding()
         self._arcs()
         empty = self._without_words() | self._foreign() | self._gone()
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
@@ -147,6 +150,23 @@ class _Job:
             np.bool_,
         )
         return np.asarray(gone[task.shape][self.pieces.line] & ~self.pieces.has_row)
+
+    def _refuse_rounding(self) -> None:
+        """Refuse moves of cycles where corners are rounded: the bottom would not be reached."""
+        manner, path = self.task.manner, self.path
+        modes = [e for e in path.events if _is_path_mode(e.what, manner.source)]
+        if manner.source.cycles_stop and self.pieces.expanded_line.any():
+            rows = np.flatnonzero(self.pieces.expanded_line[path.block])
+            last = np.searchsorted([event.row for event in modes], rows, "right")
+            rounds = np.array(
+                [e == "G64" for e in [self.emitter.path_mode, *(e.what for e in modes)]]
+            )
+            if rounds[last].any():
+                message = "the moves of a cycle end exactly, and G64 would round their ends"
+                first = rows[rounds[last]][:1]
+                self._refuse(first, "GX506", message, "write G61 before the cycle")
+        if modes:
+            self.emitter.path_mode = modes[-1].what
 
     # --- arcs ---
 
@@ -473,3 +493,7 @@ def _without_blanks(text: bytes, lengths: Ints) -> Ints:
     ends = np.cumsum(lengths)
     lines = [text[int(e - n) : int(e)] for e, n in zip(ends, lengths, strict=True)]
     return np.array([len(re.sub(rb"\([^)]*\)|;.*|\s", b"", line)) for line in lines], np.int64)
+
+
+def _is_path_mode(what: str, source: type[Dialect]) -> bool:
+    return what in source.codes and source.codes[what].group == "path"

@@ -309,7 +309,8 @@ class TemplateWriter:
                 return
         elif group in self.stated:
             return  # of several codes of a group one has been written
-        if self.key.role in (Role.MIDDLE, Role.LAST):
+        after = code is not None and code.after
+        if self.key.role in ((Role.FIRST, Role.MIDDLE) if after else (Role.MIDDLE, Role.LAST)):
             return
         if only_for_cycles(name, self.source, self.target):
             return

@@ -25,7 +25,8 @@ class Effect(Enum):
 class Code:
     """One G code. `takes` are the address letters of the words that are parameters to it.
 
-    `act` names what a code with Effect.FRAME does (`gcxform/modal/acts.py`).
+    `act` names what a code with Effect.FRAME does (`gcxform/modal/acts.py`). `after`: it acts at
+    the end of its block, which is that of the last piece where the block is cut.
     """
 
     group: str
@@ -33,6 +34,7 @@ class Code:
     takes: str = ""
     reason: str = ""
     act: str = ""
+    after: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +53,11 @@ class MCode:
 def inert(group: str, takes: str = "") -> Code:
     """Return a code that changes no position."""
     return Code(group, Effect.INERT, takes)
+
+
+def at_end(group: str) -> Code:
+    """Return a code that changes no position and acts at the end of its block."""
+    return Code(group, Effect.INERT, after=True)
 
 
 def frame(group: str, act: str, takes: str = "") -> Code:

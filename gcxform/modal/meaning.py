@@ -257,7 +257,7 @@ def _g_effects(
                 yield Refusal("GX204", owners[group].start, 2, f"{name} needs a time")
             meaning.events.append(EventShape(50, "DWELL", taken))
         else:
-            meaning.events.append(EventShape(60, name, taken))
+            meaning.events.append(EventShape(60, name, taken, code.after))
             if code.effect is Effect.FRAME:
                 yield from _g_act(dialect, meaning, code, owners[group], taken)
 

@@ -78,7 +78,7 @@ class Fanuc(gx.Dialect):
         "G95": gx.Code("feed-mode"),
         **{code: v.inert("path") for code in ("G61", "G62", "G64")},
         "G63": v.barrier("path", v.SYNCHRONISED),
-        "G9": v.inert("non-modal"),
+        "G9": v.at_end("non-modal"),
         "G8": v.inert("non-modal", "P"),
         "G5": v.inert("non-modal", "PQR"),
         "G5.1": v.inert("non-modal", "PQR"),

@@ -166,6 +166,7 @@ class LinuxCNC(gx.Dialect):
     number_first = True
     turns_address = "P"
     cycle_rule = CYCLE_RULE
+    cycles_stop = True
     line_length = 252
     comments = "(;"
     active_comments = ACTIVE
