@@ -67,7 +67,7 @@ class Pieces:
         special = np.zeros(live, np.bool_)
         special[path.block[path.form != Form.PLAIN]] = True
         drilling = self.task.read.modes.cycle != CYCLE_OFF
-        self.expanded_line = drilling & ~special & self._expands()
+        self.expanded_line = drilling & ~special & self.task.manner.expands
         self.events = [e for e in path.events if e.within and self._is_expanded(e)]
         pieces = np.where(special, 1, np.maximum(self.count, 1))
         self.line = np.repeat(np.arange(live), pieces)
@@ -78,11 +78,6 @@ class Pieces:
             self._put_events_between()
         self.has_row = (self.count[self.line] > 0) & (self.event < 0)
         self._give_roles(special)
-
-    def _expands(self) -> bool:
-        """Whether the cycles of the window have become plain moves."""
-        was, now = self.task.read.path.form, self.task.path.form
-        return bool((was == Form.CYCLE).any() and not (now == Form.CYCLE).any())
 
     def _put_events_between(self) -> None:
         """Give what cycles do between their moves pieces of their own."""

@@ -153,6 +153,7 @@ class Drilling:
         track.state.position = ends[-1].copy()
         if (calls.code == 88).any():
             track.breaks.append(Break(int(here[-1]) + 1, 1 << axes[2]))
+            track.state.position[axes[2]] = np.nan  # the operator has moved it
         starts = np.searchsorted(rows.call, rows.call)
         self.events.append((first_line, rows.events))
         form = np.where(rows.synchronised, Form.SYNCHRONISED, Form.CYCLE).astype(np.int8)
