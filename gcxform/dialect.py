@@ -162,6 +162,8 @@ class Dialect:
     """The limit counts neither blanks nor comments."""
     comments: ClassVar[str] = "("
     """How a comment may begin: any of "(" and ";"."""
+    active_comments: ClassVar[tuple[str, ...]] = ()
+    """How comments begin that the control executes, in capitals."""
     has_percent: ClassVar[bool] = True
     has_program_number: ClassVar[bool] = True
     program_number_digits: ClassVar[int] = 0
@@ -184,6 +186,14 @@ class Dialect:
     arc_rule: ClassVar[ArcRule] = ArcRule(absolute=0.01)
     cycle_rule: ClassVar[CycleRule | None] = None
     """What the control makes of canned cycles; None: it has none, or they are not known."""
+
+    cycles_stop: ClassVar[bool] = False
+    """The moves of a cycle end exactly, also where G64 rounds corners."""
+
+    @classmethod
+    def executes(cls, comment: str) -> bool:
+        """Whether the control does something when it reads a comment."""
+        return comment.lstrip("(; \t").upper().startswith(cls.active_comments)
 
     @classmethod
     def load_grammar(cls) -> Grammar:

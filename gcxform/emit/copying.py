@@ -48,7 +48,8 @@ class Copying:
         old_count = np.bincount(self.original.block, minlength=live)
         self.exact = np.zeros(len(self.path), np.bool_)
         self.believed_exact = believed.exact
-        self.lines = (old_count == 0) & (pieces.count == 0)
+        self.believed_position = believed.position
+        self.lines = (old_count == 0) & (pieces.count == 0) & ~pieces.expanded_line
         stands = self._standing(old_count, pieces)
         self._refuse_changed(stands, pieces)
         self._refuse_presets()
@@ -96,9 +97,10 @@ class Copying:
         for line in np.flatnonzero(self.task.table.flag("presets", self.task.shape)).tolist():
             now = np.searchsorted(self.path.block, line) - 1
             was = np.searchsorted(self.original.block, line) - 1
-            if now < 0 or was < 0 or self.exact[now]:
+            if self.exact[now] if now >= 0 else self.believed_exact:
                 continue
-            gap = np.abs(self.positions.after[now] - self.original.end[was])
+            stands = self.positions.after[now] if now >= 0 else self.believed_position
+            gap = np.abs(stands - (self.original.end[was] if was >= 0 else self.original.entry))
             if (gap > EXACT).any():
                 message = "this block counts from where the axes stand, and they stand elsewhere"
                 hint = 'put the pass "offsets" before'

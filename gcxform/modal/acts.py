@@ -210,6 +210,9 @@ def _with_preset(state: FrameState, shift: Vector) -> FrameState:
 
 
 def _refuse_turned(state: FrameState, asked: Asked) -> None:
+    if asked.incremental and not asked.dialect.g10_ignores_g91:
+        message = f"under G91, {asked.code} adds on some controls and does not on others"
+        raise ActError("GX213", message, "write it under G90")
     if state.turns or state.polar:
         raise ActError("GX213", f"{asked.code} in turned or scaled coordinates")
 

@@ -275,7 +275,7 @@ def _g_effects(
                 yield Refusal("GX204", owners[group].start, 2, f"{name} needs a time")
             meaning.events.append(EventShape(50, "DWELL", taken))
         else:
-            meaning.events.append(EventShape(60, name, taken))
+            meaning.events.append(EventShape(60, name, taken, code.after))
             if code.effect is Effect.FRAME:
                 yield from _g_act(dialect, meaning, code, owners[group], taken)
 
@@ -358,6 +358,17 @@ def _spindle_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> N
     codes = {_code_of(word) for word in coded}
     if dialect.spindle_words & {*codes, *meaning.slots}:
         meaning.events.append(EventShape(9, "$", (("$", meaning.slots.pop("$")),)))
+
+
+def only_for_cycles(name: str, source: type[Dialect], target: type[Dialect]) -> bool:
+    """Whether a code is about cycles alone (G80, G98, G99), and the target gets no cycle.
+
+    That is so where the target has no cycles, or calls them otherwise: those of the source are then
+    refused, or have become plain moves.
+    """
+    if name not in ("G80", "G98", "G99") or source.codes.get(name) == target.codes.get(name):
+        return False
+    return source.codes.get("G81") != target.codes.get("G81")
 
 
 def program_number_fits(word: Word, dialect: type[Dialect]) -> bool:

@@ -34,6 +34,7 @@
 | `$` | beside S or what turns a spindle; only the first spindle is known |
 | M100 to M199 | run a program of the machine: refused unless it is said what they are |
 | @ and ^ | polar words: refused |
+| comments | `(MSG,` `(PRINT,` `(LOG,` `(PROBEOPEN` `(ABORT,` and their like are executed |
 | O-words | refused: code that would have to be run |
 """
 
@@ -89,6 +90,12 @@ CYCLE_RULE = v.CycleRule(
     initial_level=False,
 )
 USER_CODE = gx.MCode("user", takes="PQ", act="user-code", loses_position=True)
+# fmt: off
+ACTIVE = (
+    "MSG,", "DEBUG,", "PRINT,", "LOG,", "LOGOPEN,", "LOGAPPEND,", "LOGCLOSE", "PROBEOPEN",
+    "PROBECLOSE", "ABORT,", "PY,",
+)
+# fmt: on
 
 
 class LinuxCNC(gx.Dialect):
@@ -187,8 +194,10 @@ class LinuxCNC(gx.Dialect):
     spindle_words = frozenset({"S", "M3", "M4", "M5", "M19", "M51", "G95", "G96", "G97"})
     turns_address = "P"
     cycle_rule = CYCLE_RULE
+    cycles_stop = True
     line_length = 252
     comments = "(;"
+    active_comments = ACTIVE
     words = "DEFHIJKLNPQRST@^$"
     arc_rotary = True
     feed_along_lines = True
