@@ -148,6 +148,8 @@ class Dialect:
     """G28 without an axis word sends all axes home."""
     block_delete: ClassVar[str] = ""
     """What the control does with `/` blocks: "execute", "skip", or "" when a switch decides."""
+    needs_end: ClassVar[bool] = False
+    """A file without M2 or M30, and not between two percent signs, is refused by the control."""
     stops_at_end: ClassVar[bool] = True
     skips_first_text: ClassVar[bool] = False
     lower_case: ClassVar[bool] = True

@@ -21,8 +21,5 @@ WAITING = {
         flow_modes_restored flow_modes_restored_by_sub flow_repeat flow_return_value flow_while
         lcnc_g91_leaks_from_sub lcnc_while_loop
     """,
-    "the end of a program is not asked for": """
-        lexical_no_end lexical_percent_frame_without_end lexical_percent_only_at_end
-    """,
 }
 KNOWN = {name: reason for reason, names in WAITING.items() for name in names.split()}

@@ -15,6 +15,7 @@
 | CR without LF | is a blank |
 | M5, M9 | act before the motion of their block |
 | after M2, M30 | nothing is executed |
+| a file without end | refused (`gcxform check` says so), but if it stands between two % signs |
 | G41 D, G42 D | tool D of the table, or the tool in the spindle; the table is the machine file's |
 | G41.1 D, G42.1 D | the diameter itself; a negative one swaps the side |
 | G41, G42 | refused when on already, and in YZ; on, many codes are refused |
@@ -189,6 +190,7 @@ class LinuxCNC(gx.Dialect):
     feed_before_units = True
     lone_cr_is_blank = True
     number_first = True
+    needs_end = True
     most_m_words = 4
     tools_in_table = True
     spindle_words = frozenset({"S", "M3", "M4", "M5", "M19", "M51", "G95", "G96", "G97"})
