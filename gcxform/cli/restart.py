@@ -23,7 +23,7 @@ from gcxform.toolpath.path import Kind, Toolpath
 CLOSE = 1e-6  # mm, degrees: positions are written with so many decimals
 ARCS = ("G2", "G3")
 COMPARED = ("kind", "plane", "feed_mode", "frame", "source", "nth", "form", "side")
-MEASURED = ("end", "centre", "sweep", "feed", "radius")  # the feed where it cuts
+MEASURED = ("end", "centre", "sweep", "feed", "radius", "control")  # the feed where it cuts
 
 
 @dataclass

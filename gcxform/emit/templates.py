@@ -253,7 +253,8 @@ class TemplateWriter:
         elif word.address in "IJKR":
             self._centre(lead)
         else:
-            return word.address == self.source.turns_address
+            spline = self.meaning.groups.get("motion") in ("G5", "G5.1")
+            return word.address == self.source.turns_address or (spline and word.address in "PQ")
         return True
 
     def _said(self, start: int, end: int) -> str:

@@ -21,8 +21,9 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.home import own_moves
 from gcxform.modal.lines import Lines
 from gcxform.modal.rows import Rows
+from gcxform.modal.splines import read_splines, with_splines
 from gcxform.modal.state import CYCLE_OFF, Modes
-from gcxform.modal.tables import NUMBER
+from gcxform.modal.tables import NUMBER, of_splines
 from gcxform.modal.track import Track
 from gcxform.toolpath.path import Blocks, Kind, Toolpath, constant
 
@@ -46,6 +47,8 @@ class Moves:
         self.findings = lines.findings
         self.track = Track(lines, modes, axes)
         self.drilling = Drilling(self.track)
+        self.splines = of_splines(modes.motion)
+        self.bends = bool(self.splines.any())
 
     def path(self) -> Toolpath:
         """Return the moves as a toolpath."""
@@ -67,11 +70,13 @@ class Moves:
         moves &= ~drilling
         centre = self.lines.flag("has_centre") & ~drilling
         stray = self.lines.flag("drill_words") & ~drilling
+        stray &= ~self.splines
         for line in np.flatnonzero(stray)[: Findings.enough].tolist():
             words = self.lines.table.meanings[int(self.lines.shape[line])].drill_words
             message = f"{words[0]} belongs to no code of this block"
             self.findings.add(line, "GX203", message, words[0])
         arc = (self.modes.motion == 2) | (self.modes.motion == 3)
+        arc |= self.splines
         for line in np.flatnonzero(moves & (self.modes.motion == NUMBER["G80"])).tolist():
             self.findings.add(
                 line,
@@ -152,7 +157,8 @@ class Moves:
         self.drilling.leave(first, last)
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
-        return Rows.plain(rows, self.modes.motion[rows], ends, len(self.track.frames) - 1)
+        plain = Rows.plain(rows, self.modes.motion[rows], ends, len(self.track.frames) - 1)
+        return with_splines(plain) if self.bends else plain
 
     # --- the path ---
 
@@ -175,6 +181,7 @@ class Moves:
             constant(0, count, np.int8),
             constant(np.nan, count),
             self._lost_before(line, rows.nth),
+            np.broadcast_to(np.nan, (count, 2, 3)),
             self.track.entry,
             tuple(self.track.frames),
             Blocks(
@@ -192,6 +199,8 @@ class Moves:
         )
         if count:
             self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
+        if count and (self.state.pull or self.bends):
+            path = read_splines(path, self.lines, self.modes)
         if not path.has_arcs:
             return path
         arcs = np.flatnonzero(path.is_arc)

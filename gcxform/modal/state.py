@@ -67,7 +67,10 @@ class Reading:
 
 @dataclass(slots=True)
 class State:
-    """What one window hands to the next."""
+    """What one window hands to the next.
+
+    pull   P and Q of the last move if that was a G5, in units of the program
+    """
 
     groups: dict[str, int]
     position: Floats
@@ -81,6 +84,7 @@ class State:
     stated: set[str] = field(default_factory=set)
     parameters: dict[int | str, float] = field(default_factory=dict)
     cycles: Cycles | None = None
+    pull: tuple[float, float] | None = None
     memory: dict[str, int] = field(default_factory=dict)
 
 

@@ -43,7 +43,11 @@ NO_CYCLES = Fact(
     "NO_CYCLES", "there is no canned cycle", lambda path: not (path.form == Form.CYCLE).any()
 )
 METRIC = Fact("METRIC", "every block is in millimetres", lambda path: not path.blocks.inch.any())
-LINEAR_ONLY = Fact("LINEAR_ONLY", "there is no arc", lambda path: not path.has_arcs)
+LINEAR_ONLY = Fact(
+    "LINEAR_ONLY",
+    "there is no arc and no spline",
+    lambda path: not path.has_arcs and not path.has_splines,
+)
 XY_ARCS = Fact(
     "XY_ARCS",
     "every arc is in the XY plane",

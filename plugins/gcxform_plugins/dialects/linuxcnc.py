@@ -110,11 +110,12 @@ class LinuxCNC(gx.Dialect):
         "G43": v.frame("tool-length", "length", "H"),
         "G43.1": v.frame("tool-length", "length-vector", v.AXES),
         "G43.2": v.frame("tool-length", "length-add", "H"),
+        **{code: gx.Code("motion") for code in ("G5", "G5.1")},
         **{code: gx.Code("motion") for code in CYCLES if code != "G76"},
         "G76": v.barrier("motion", v.SYNCHRONISED, "EHIJKLPQR"),
         **{
-            code: v.barrier("motion", "it cuts a spline", "IJKPQL")
-            for code in ("G5", "G5.1", "G5.2", "G5.3")
+            code: v.barrier("motion", "it cuts a spline of NURBS", "IJKPQL")
+            for code in ("G5.2", "G5.3")
         },
         **{code: v.barrier("motion", v.SYNCHRONISED, "K") for code in ("G33", "G33.1")},
         **{code: v.barrier("motion", v.PROBE) for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
