@@ -291,7 +291,7 @@ def _differences(one: Toolpath, other: Toolpath) -> Iterator[int]:
         close = np.isclose(a, b, rtol=1e-9, atol=INCH * CLOSE, equal_nan=True)
         if name == "feed":
             close |= one.kind == Kind.RAPID
-        wrong |= ~(close.all(axis=1) if close.ndim > 1 else close)
+        wrong |= ~close.all(axis=tuple(range(1, close.ndim)))
     yield from (one.source[np.flatnonzero(wrong)] + 1).tolist()
     yield from (a.line + 1 for a, b in zip(one.events, other.events, strict=False) if a != b)
     if len(one.events) != len(other.events):

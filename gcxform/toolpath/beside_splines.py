@@ -4,7 +4,9 @@ A spline beside a spline is off by at most the largest distance of their control
 difference of Bezier curves is one, and stays in the hull of its control points. Lines beside a
 spline are taken for a part of it each: where a line ends, the point of the spline is sought that is
 nearest. Wherever that leads, the difference of the part and the line is a Bezier curve again, and
-its hull, after some halvings, is the bound. Nothing here knows how splines are cut.
+its hull, after some halvings, is a bound. The search begins at the same share of the length, and
+once more at the same share of the parameter; the smaller bound counts. Nothing here knows how
+splines are cut.
 """
 
 from __future__ import annotations
@@ -77,19 +79,32 @@ class _Lines:
 
     def run(self) -> Floats:
         """Return the distances (n,)."""
-        part = self._nearest(self._guess())
-        part = np.where(self.last, 1.0, part)
+        bounds = [self._bound_of(guess) for guess in (self._by_length(), self._by_number())]
+        return np.asarray(np.minimum(*bounds))
+
+    def _bound_of(self, guess: Floats) -> Floats:
+        """Return bounds (n,), one for all lines of a spline, from guesses of where they end."""
+        part = np.where(self.last, 1.0, self._nearest(guess))
         part = self._growing(part)
         begin = np.where(self.first, 0.0, np.append(0.0, part[:-1]))
         piece = _cut(self.points[self.group], begin, part)
         line = self.start[:, None] + THIRDS * (self.end - self.start)[:, None]
-        return self._bound(piece - line)
+        bound = self._hull_of(piece - line)
+        worst = np.zeros(len(self.points))
+        np.maximum.at(worst, self.group, bound)
+        return np.asarray(worst[self.group])
 
     def _growing(self, part: Floats) -> Floats:
         """Return parts that never go back along a spline."""
         return np.asarray(np.maximum.accumulate(part + 2.0 * self.group) - 2.0 * self.group)
 
-    def _guess(self) -> Floats:
+    def _by_number(self) -> Floats:
+        """Return the parts at which the lines end if all are as long in the parameter."""
+        count = np.bincount(self.group)
+        nth = np.arange(len(self.group)) - (np.cumsum(count) - count)[self.group] + 1
+        return np.asarray(nth / count[self.group])
+
+    def _by_length(self) -> Floats:
         """Return the parts at which splines are as long as the lines are up to their ends."""
         t = np.linspace(0.0, 1.0, SAMPLES + 1)
         curve = _at(np.nan_to_num(self.points)[:, None], t[None, :])
@@ -135,7 +150,7 @@ class _Lines:
         gap = _at(points, part) - goal
         return gap, np.asarray((gap**2).sum(axis=1))
 
-    def _bound(self, difference: Floats) -> Floats:
+    def _hull_of(self, difference: Floats) -> Floats:
         """Return upper bounds (n,) of how far Bezier curves (n, 4, 3) go from zero."""
         step = 1.0 / 2**HALVINGS
         worst = np.zeros(len(difference))
