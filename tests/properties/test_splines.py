@@ -43,6 +43,9 @@ def curve(start, control, end, t):
 
 # --- reading ---
 
+STRICTER = ("I and J are left out", "stands here twice")
+"""A series that is interrupted, and P or Q twice: LinuxCNC sees that if the first is above -1."""
+
 
 @judged
 def test_splines_go_where_linuxcnc_draws_them():
@@ -79,7 +82,7 @@ def broken(source: str, pick: random.Random) -> str:
 
 @judged
 def test_what_linuxcnc_refuses_is_refused():
-    """All that LinuxCNC refuses; and what it takes too, but a series that is interrupted."""
+    """All that LinuxCNC refuses is, and little else."""
     sources = [broken(drawn(seed), random.Random(seed)) for seed in range(COUNT)]
     refused = 0
     for source, theirs in zip(sources, preview.preview(sources), strict=True):
@@ -92,7 +95,7 @@ def test_what_linuxcnc_refuses_is_refused():
             assert ours, (theirs, source)
             refused += 1
         else:
-            assert not ours or "I and J are left out" in ours, (ours, source)
+            assert not ours or any(text in ours for text in STRICTER), (ours, source)
     assert refused > COUNT / 4
 
 
