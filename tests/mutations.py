@@ -36,6 +36,8 @@ KIT = "tests/test_kit.py::test_registered_passes"
 LAWS = "tests/properties/test_laws.py"
 ARCS = "tests/test_arcs.py"
 CYCLES = "tests/test_cycles.py"
+SPLINES = "tests/test_corpus.py::test_case"
+SPLINE_LAWS = "tests/properties/test_splines.py"
 LIMITS = "gcxform/modal/limits.py"
 FACTS = "tests/test_dialect_facts.py::test_our_facts"
 READING = "tests/test_verify.py::test_the_proof_reads_as_the_control_does"
@@ -69,6 +71,75 @@ MUTATIONS = (
         "self.bottom > self.clearance",
         "self.bottom > np.inf",
         "tests/test_cycle_refusals.py",
+    ),
+    # splines
+    *(
+        Mutation(f"splines: {name}", f"gcxform/{file}.py", old, new, tests)
+        for name, file, old, new, tests in (
+            (
+                "minus the P and Q before is plus",
+                "modal/splines",
+                "np.isnan(words.offset), -in_series,",
+                "np.isnan(words.offset), in_series,",
+                SPLINES,
+            ),
+            (
+                "P and Q from the start",
+                "modal/splines",
+                "second = end + np.where(cubic, pull,",
+                "second = start + np.where(cubic, pull,",
+                SPLINES,
+            ),
+            (
+                "a quadratic is cubic",
+                "modal/splines",
+                "offset, THIRDS * offset)",
+                "offset, offset)",
+                SPLINES,
+            ),
+            (
+                "the series goes on after a line",
+                "modal/splines",
+                "(np.diff(words.row) == 1) & words.cubic[:-1]",
+                "(np.diff(words.row) >= 1) & words.cubic[:-1]",
+                SPLINES,
+            ),
+            (
+                "half as many chords",
+                "toolpath/splines",
+                "np.sqrt(0.75 * second",
+                "0.5 * np.sqrt(0.75 * second",
+                SPLINE_LAWS,
+            ),
+            (
+                "pieces longer than asked",
+                "toolpath/splines",
+                "_whole(3.0 * first",
+                "_whole(1.0 * first",
+                SPLINE_LAWS,
+            ),
+            (
+                "the bound is a quarter",
+                "toolpath/beside_splines",
+                "np.maximum.at(worst, self.group, bound)",
+                "np.maximum.at(worst, self.group, bound / 4)",
+                SPLINE_LAWS,
+            ),
+            (
+                "the bound forgets a part of each line",
+                "toolpath/beside_splines",
+                "for k in range(2**HALVINGS):",
+                "for k in range(2**HALVINGS - 1, 2**HALVINGS):",
+                SPLINE_LAWS,
+            ),
+            (
+                "a spline for a line is no matter",
+                "toolpath/deviation",
+                "bent = before.is_spline[self.owner] | self.after.is_spline",
+                "bent = before.is_spline[self.owner]",
+                SPLINE_LAWS,
+            ),
+        )
     ),
     # times and restarts
     Mutation(
