@@ -299,6 +299,8 @@ class TemplateWriter:
                 return
             if group == "motion" and (not self.as_it_stands or self.key.silent):
                 return
+            if name in ("G5", "G5.1") and group == "motion" and self.key.role is Role.NONE:
+                return  # a spline that goes nowhere is left out, and its words are
         elif group in self.stated:
             return  # of several codes of a group one has been written
         if self.key.role in (Role.MIDDLE, Role.LAST):

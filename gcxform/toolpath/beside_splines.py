@@ -5,8 +5,8 @@ difference of Bezier curves is one, and stays in the hull of its control points.
 spline are taken for a part of it each: where a line ends, the point of the spline is sought that is
 nearest. Wherever that leads, the difference of the part and the line is a Bezier curve again, and
 its hull, after some halvings, is a bound. The search begins at the same share of the length, and
-once more at the same share of the parameter; the smaller bound counts. Nothing here knows how
-splines are cut.
+once more at the same share of the parameter; at a cusp it may lead astray, so where it began is
+tried as well. The smallest bound counts. Nothing here knows how splines are cut.
 """
 
 from __future__ import annotations
@@ -79,13 +79,13 @@ class _Lines:
 
     def run(self) -> Floats:
         """Return the distances (n,)."""
-        bounds = [self._bound_of(guess) for guess in (self._by_length(), self._by_number())]
-        return np.asarray(np.minimum(*bounds))
+        guesses = self._by_length(), self._by_number()
+        tried = [*guesses, *(self._nearest(guess) for guess in guesses)]
+        return np.asarray(np.min([self._bound_of(part) for part in tried], axis=0))
 
-    def _bound_of(self, guess: Floats) -> Floats:
-        """Return bounds (n,), one for all lines of a spline, from guesses of where they end."""
-        part = np.where(self.last, 1.0, self._nearest(guess))
-        part = self._growing(part)
+    def _bound_of(self, part: Floats) -> Floats:
+        """Return bounds (n,), one for all lines of a spline, if they end at parts (n,) of it."""
+        part = self._growing(np.where(self.last, 1.0, part))
         begin = np.where(self.first, 0.0, np.append(0.0, part[:-1]))
         piece = _cut(self.points[self.group], begin, part)
         line = self.start[:, None] + THIRDS * (self.end - self.start)[:, None]
