@@ -84,7 +84,6 @@ if TYPE_CHECKING:
     from gcxform.toolpath.path import column_major as column_major
     from gcxform.toolpath.splines import points_on_splines as points_on_splines
     from gcxform.toolpath.splines import spline_chords as spline_chords
-    from gcxform.toolpath.splines import spline_steps as spline_steps
     from gcxform.toolpath.splines import splines_as_lines as splines_as_lines
 
 _HOMES = {
@@ -111,7 +110,7 @@ _HOMES = {
     "WORKPIECE_FRAME XY_ARCS Fact",
     "toolpath.frames": "Frame",
     "toolpath.path": "Event FeedMode Form Kind OWN_DISTANCES Plane Toolpath column_major",
-    "toolpath.splines": "points_on_splines spline_chords spline_steps splines_as_lines",
+    "toolpath.splines": "points_on_splines spline_chords splines_as_lines",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 

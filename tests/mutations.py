@@ -112,13 +112,6 @@ MUTATIONS = (
                 SPLINE_LAWS,
             ),
             (
-                "pieces longer than asked",
-                "toolpath/splines",
-                "_whole(3.0 * first",
-                "_whole(1.0 * first",
-                SPLINE_LAWS,
-            ),
-            (
                 "the bound is a quarter",
                 "toolpath/beside_splines",
                 "np.maximum.at(worst, self.group, bound)",

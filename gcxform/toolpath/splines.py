@@ -44,16 +44,6 @@ def spline_chords(path: Toolpath, rows: Ints, chord_error: float) -> Ints:
     return _whole(np.sqrt(0.75 * second / chord_error))
 
 
-def spline_steps(path: Toolpath, rows: Ints, longest: float) -> Ints:
-    """Return how many chords, equal in t, are no longer than `longest` (mm).
-
-    The first derivative is at most 3 times the largest difference of the control points.
-    """
-    points = np.nan_to_num(control_points(path, rows))
-    first = np.sqrt((np.diff(points, 1, axis=1) ** 2).sum(axis=2)).max(axis=1, initial=0.0)
-    return _whole(3.0 * first / longest)
-
-
 def _whole(value: Floats) -> Ints:
     return np.maximum(np.ceil(value - JUST_WHOLE), 1).astype(np.int64)
 

@@ -71,7 +71,7 @@ class Segment(gx.Pass):
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path with its arcs and long lines cut."""
         if path.has_splines and self.arcs == "lines":
-            path = splines_as_lines(path, self.chord_error, self.max_length)
+            path = splines_as_lines(path, self.chord_error)
         arcs = path.is_arc
         pieces = np.ones(len(path), np.int64)
         if arcs.any():
@@ -100,18 +100,14 @@ class Segment(gx.Pass):
         return pieces
 
 
-def splines_as_lines(
-    path: gx.Toolpath, chord_error: float | None, max_length: float | None
-) -> gx.Toolpath:
-    """Return the path with lines for its splines, within a chord error and a length (mm)."""
+def splines_as_lines(path: gx.Toolpath, chord_error: float | None) -> gx.Toolpath:
+    """Return the path with lines for its splines, within a chord error (mm)."""
     rows = np.flatnonzero(path.form == gx.Form.SPLINE)
     if chord_error is None:
         message = "a spline becomes lines by their chord error, and none is given"
         raise path.refuse("GX506", rows, message, 'chord-error = "2 um"')
     pieces = np.ones(len(path), np.int64)
     pieces[rows] = gx.spline_chords(path, rows, chord_error * (1.0 - MEASURED))
-    if max_length is not None:
-        pieces[rows] = np.maximum(pieces[rows], gx.spline_steps(path, rows, max_length))
     return gx.splines_as_lines(path, pieces)
 
 
