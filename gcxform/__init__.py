@@ -84,6 +84,9 @@ if TYPE_CHECKING:
     from gcxform.toolpath.path import Plane as Plane
     from gcxform.toolpath.path import Toolpath as Toolpath
     from gcxform.toolpath.path import column_major as column_major
+    from gcxform.toolpath.splines import points_on_splines as points_on_splines
+    from gcxform.toolpath.splines import spline_chords as spline_chords
+    from gcxform.toolpath.splines import splines_as_lines as splines_as_lines
 
 _HOMES = {
     "api": "Comparison Difference Program compare read write",
@@ -108,6 +111,7 @@ _HOMES = {
     "NO_CYCLES NOMINAL WORKPIECE_FRAME XY_ARCS Fact inseparable_cycles",
     "toolpath.frames": "Frame",
     "toolpath.path": "Event FeedMode Form Kind OWN_DISTANCES Plane Toolpath column_major",
+    "toolpath.splines": "points_on_splines spline_chords splines_as_lines",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 

@@ -27,7 +27,9 @@ from gcxform.source import Source
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.matching import Matching, Pieces, match, measure
 from gcxform.toolpath.path import BLOCK_MODES, COLUMNS, Event, FeedMode, Kind, Toolpath
+from gcxform.toolpath.splines import straightened
 
+STRAIGHT = 1e-5  # mm; lines that stand for splines are so near
 TOLERANCE = 0.001  # mm: twice what rounding an axis to three decimals can do
 REACH = 1.0  # mm; what is farther apart is not taken for the same place
 FEED_SLIP = 1e-3  # of a feed, or of the time of a move in G93
@@ -164,6 +166,7 @@ def compare(
         context = PassContext(a.dialect, b.dialect, b.dialect.numbers, machine)
         through.begin(context)
         path_b = through.undo(path_b, context)
+    path_a, path_b = (straightened(path, STRAIGHT) for path in (path_a, path_b))
     matching = match(path_a, path_b, tolerance, max(REACH, tolerance))
     found = measure(path_a, path_b, matching)
     worst = int(np.argmax(found.distance)) if len(matching.a) else -1

@@ -73,11 +73,11 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "`start = { X = 0.0 }` in [input], or --start X=0.",
     ),
     "GX208": (
-        "An arc from an unknown position",
+        "An arc or a spline from an unknown position",
         "The circle of an arc follows from its start, its end and its centre, and here the "
-        "start or the end is not known in the plane of the arc. Program both axes of the plane "
-        "before the arc, or give the position at the start: `start = { X = 0.0, Y = 0.0 }` in "
-        "[input], or --start.",
+        "start or the end is not known in the plane of the arc, or of a spline. Program both "
+        "axes of the plane before, or give the position at the start: "
+        "`start = { X = 0.0, Y = 0.0 }` in [input], or --start.",
     ),
     "GX209": (
         "Axis words without a motion code",
@@ -208,6 +208,13 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "In this dialect P counts the turns of an arc, the arc itself included. Zero, negative "
         "and broken numbers have no meaning there. Correct the word, or leave it out for less "
         "than a full turn.",
+    ),
+    "GX306": (
+        "A spline that the control refuses, or that is not certain",
+        "G5 takes X and Y (at least one), P and Q, and I and J, which may be left out directly "
+        "behind another G5; G5.1 takes X and Y, I and J. LinuxCNC refuses other words and other "
+        "planes than G17. In G93 it does not time splines, and a series that is interrupted goes "
+        "on from the last G5 that it met: both are refused here. Correct the block.",
     ),
     "GX309": (
         "The compensated position does not converge",

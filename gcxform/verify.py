@@ -24,7 +24,7 @@ from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Event, FeedMode, Kind, Toolpath
 from gcxform.toolpath.runs import SAME_FEED, Runs, deviation_of_runs, runs_of
-from gcxform.toolpath.travel import lengths
+from gcxform.toolpath.travel import lengths, ways
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -168,9 +168,8 @@ class Verifier:
 
     def _missing(self, trace: _Trace, runs: Runs) -> None:
         """Check that rows which no move in the output stands for were too short to write."""
-        for row in runs.left.tolist():
-            way = np.nan_to_num(trace.before.end[row] - trace.before.start[row])
-            length = float(np.sqrt((way**2).sum()))
+        left = ways(trace.before, runs.left).tolist()
+        for row, length in zip(runs.left.tolist(), left, strict=True):
             if trace.before.is_arc[row] or not length <= self.budget:
                 line = int(trace.before.source[row])
                 self._raise("a move of the source is missing in the output", line, 0)
@@ -395,5 +394,5 @@ class _Trace:
         rest = slice(row, through + 1)
         if int(self.written_owner[written_row]) >= row or self.before.is_arc[rest].any():
             return False
-        way = np.nan_to_num(self.before.end[rest] - self.before.start[rest])
-        return float(np.sqrt((way**2).sum(axis=1)).sum()) <= short
+        rows = np.arange(row, through + 1)
+        return float(ways(self.before, rows).sum()) <= short

@@ -157,9 +157,14 @@ def _move(path: Toolpath, row: int) -> Iterator[str]:
     kind = Kind(int(path.kind[row]))
     unit = _UNITS[FeedMode(int(path.feed_mode[row]))]
     feed = "" if kind == Kind.RAPID else f" at {path.feed[row]:g} {unit}"
-    yield f"  {_MOVES[kind]}{feed}"
+    spline = bool(path.is_spline[row])
+    yield f"  {'spline' if spline else _MOVES[kind]}{feed}"
     yield f"    from {_point(path.axes, path.in_frames(path.start)[row])}"
     yield f"    to   {_point(path.axes, path.words[row])}"
+    if spline:
+        first, second = (path.local(path.control[:, k]) for k in range(2))
+        yield f"    by   {_point('XYZ', first[row])}"
+        yield f"    and  {_point('XYZ', second[row])}"
     if path.is_arc[row]:
         plane = Plane(int(path.plane[row]))
         u, v, _ = plane.axes

@@ -27,8 +27,12 @@ WHAT = {
     Form.MACHINE: "a move in machine coordinates",
     Form.PROBE: "a probing move",
     Form.SYNCHRONISED: "a move tied to the spindle",
+    Form.SPLINE: "a spline",
 }
-HINTS = {Form.CYCLE: 'put the pass "cycles" before'}
+HINTS = {
+    Form.CYCLE: 'put the pass "cycles" before',
+    Form.SPLINE: 'put the pass "segment" before',
+}
 
 
 class Copying:
@@ -185,7 +189,8 @@ class Copying:
         good &= ~plain | self._same_ends(rows, others)
         if not plain.all():
             good &= plain | self._same_words(rows, others)
-        good &= ~plain | self._same_frames(rows, others)
+        turned = plain | (self.path.form[rows] == Form.SPLINE)
+        good &= ~turned | self._same_frames(rows, others)
         starts_exact = self._track_exactness(rows, others, good)
         incremental = self.path.blocks.incremental[self.path.block[rows]]
         good &= ~plain | ~incremental | starts_exact | self._starts_alike(rows, others)
@@ -241,7 +246,7 @@ class Copying:
         same = (np.abs(end - old) <= EXACT) | unknown
         incremental = self.path.blocks.incremental[self.path.block[rows]][:, None]
         still = np.abs(old_way) <= EXACT
-        cycle = (self.path.form[rows] == Form.CYCLE)[:, None]
+        cycle = np.isin(self.path.form[rows], (Form.CYCLE, Form.SPLINE))[:, None]
         as_far = (np.abs(way - old_way) <= EXACT) & (incremental | (still & ~cycle))
         good = (same | as_far).all(axis=1)
         if self.path.frames == self.original.frames:

@@ -284,7 +284,8 @@ class TemplateWriter:
         elif word.address in "IJKR":
             self._centre(lead)
         else:
-            return word.address == self.source.turns_address
+            spline = self.meaning.groups.get("motion") in ("G5", "G5.1")
+            return word.address == self.source.turns_address or (spline and word.address in "PQ")
         return True
 
     def _said(self, start: int, end: int) -> str:
@@ -320,17 +321,10 @@ class TemplateWriter:
             lead = self._gap(lead)
         if group == "cycle" and self.key.expanded:
             return
-        if group in STATED and group not in self.stated:
-            wanted = self._wanted(group)
-            self.stated.add(group)
-            if wanted is not None:
-                if not self._goes_without_saying(word, wanted):
-                    self._literal(lead, text if wanted == name else _like(text, wanted))
-                return
-            if group == "motion" and (not self.as_it_stands or self.key.silent):
-                return
-        elif group in self.stated:
+        if group in self.stated:
             return  # of several codes of a group one has been written
+        if group in STATED and self._states(word, name, group, lead):
+            return
         after = code is not None and code.after
         if self.key.role in ((Role.FIRST, Role.MIDDLE) if after else (Role.MIDDLE, Role.LAST)):
             return
@@ -338,6 +332,21 @@ class TemplateWriter:
             return
         self._check_code(word, name, code)
         self._literal(lead, text)
+
+    def _states(self, word: Word, name: str, group: str, lead: bytes) -> bool:
+        """Write the code that has to be stated for a group; return whether this settles it."""
+        wanted = self._wanted(group)
+        self.stated.add(group)
+        if wanted is not None:
+            if not self._goes_without_saying(word, wanted):
+                text = self._said(word.start, word.end)
+                self._literal(lead, text if wanted == name else _like(text, wanted))
+            return True
+        if group != "motion":
+            return False
+        # A spline that goes nowhere is left out, and its words are.
+        left_out = name in ("G5", "G5.1") and self.key.role is Role.NONE
+        return left_out or not self.as_it_stands or self.key.silent
 
     def _check_code(self, word: Word, name: str, code: Code | None) -> None:
         """Raise CannotSayError unless a G code means the same in the target."""

@@ -25,7 +25,7 @@ from gcxform.modal.limits import refuse_limits
 from gcxform.modal.lines import Lines
 from gcxform.modal.moves import Moves
 from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, State
-from gcxform.modal.tables import GROUPS, NUMBER, MeaningTable
+from gcxform.modal.tables import GROUPS, NUMBER, SPLINES, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Toolpath
 
@@ -133,6 +133,8 @@ class Interpreter:
             "cutter-comp": modes.comp,
         }
         self.state.groups = {name: int(column[-1]) for name, column in last.items()}
+        if self.state.groups["motion"] in SPLINES:
+            self.state.groups["motion"] = NUMBER["G80"]
         self.state.feed = float(modes.feed[-1])
         self.state.feed_unit = float(modes.feed_unit[-1])
         if lines.flag("ends")[-1]:

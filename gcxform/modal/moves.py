@@ -23,8 +23,9 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.home import own_moves
 from gcxform.modal.lines import Lines
 from gcxform.modal.rows import Rows
+from gcxform.modal.splines import read_splines, with_splines
 from gcxform.modal.state import CYCLE_OFF, Modes
-from gcxform.modal.tables import MANY_WORK, NUMBER
+from gcxform.modal.tables import MANY_WORK, NUMBER, of_splines
 from gcxform.modal.track import Track
 from gcxform.toolpath.path import Blocks, Kind, Toolpath, constant
 
@@ -49,6 +50,8 @@ class Moves:
         self.track = Track(lines, modes, axes)
         self.drilling = Drilling(self.track)
         self.side, self.radius = compensation(lines, modes)
+        self.splines = of_splines(modes.motion)
+        self.bends = bool(self.splines.any())
 
     def path(self) -> Toolpath:
         """Return the moves as a toolpath."""
@@ -70,11 +73,13 @@ class Moves:
         moves &= ~drilling
         centre = self.lines.flag("has_centre") & ~drilling
         stray = self.lines.flag("drill_words") & ~drilling
+        stray &= ~self.splines
         for line in np.flatnonzero(stray)[: Findings.enough].tolist():
             words = self.lines.table.meanings[int(self.lines.shape[line])].drill_words
             message = f"{words[0]} belongs to no code of this block"
             self.findings.add(line, "GX203", message, words[0])
         arc = (self.modes.motion == 2) | (self.modes.motion == 3)
+        arc |= self.splines
         for line in np.flatnonzero(moves & (self.modes.motion == NUMBER["G80"])).tolist():
             self.findings.add(
                 line,
@@ -168,7 +173,8 @@ class Moves:
         self.drilling.leave(first, last)
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
-        return Rows.plain(rows, self.modes.motion[rows], ends, len(self.track.frames) - 1)
+        plain = Rows.plain(rows, self.modes.motion[rows], ends, len(self.track.frames) - 1)
+        return with_splines(plain) if self.bends else plain
 
     def _refuse_other_units(self, first: int, last: int) -> None:
         """Refuse a change of units under a tool length that would become another one by it."""
@@ -200,6 +206,7 @@ class Moves:
             _at(self.side, line),
             _at(self.radius, line),
             self._lost_before(line, rows.nth),
+            np.broadcast_to(np.nan, (count, 2, 3)),
             self.track.entry,
             tuple(self.track.frames),
             Blocks(
@@ -220,6 +227,8 @@ class Moves:
             self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
             self.state.row_frame = self.track.frames[int(path.frame[-1])]
         refuse_ends(self.lines, self.modes, path.side, path.kind, line)
+        if count and (self.state.pull or self.bends):
+            path = read_splines(path, self.lines, self.modes)
         if not path.has_arcs:
             return path
         arcs = np.flatnonzero(path.is_arc)

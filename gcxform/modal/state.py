@@ -76,6 +76,7 @@ class State:
     side, radius  cutter compensation in force; `at_side`: that of the last move;
                   `cancelled`: G40 has been in force since
     selected      the T word; `tool`: the tool in the spindle; `stored`: the D word; nan: not known
+    pull   P and Q of the last move if that was a G5, in units of the program
     """
 
     groups: dict[str, int]
@@ -100,6 +101,7 @@ class State:
     stated: set[str] = field(default_factory=set)
     parameters: dict[int | str, float] = field(default_factory=dict)
     cycles: Cycles | None = None
+    pull: tuple[float, float] | None = None
     memory: dict[str, int] = field(default_factory=dict)
 
 

@@ -23,8 +23,11 @@ MEMORY = ("cycle", "retract", "spindle")
 """Groups that matter to canned cycles alone."""
 COLUMNS = (*GROUPS, *MEMORY)
 CYCLES = tuple(n for n in range(73, 90) if n not in (75, 77, 78, 79, 80))
+SPLINES = CUBIC, QUADRATIC = (5, 51)
 NUMBER = {
     **{f"G{n}": n for n in (0, 1, 2, 3, 80, *CYCLES)},
+    "G5": CUBIC,
+    "G5.1": QUADRATIC,
     **{f"G{17 + n}": n for n in range(3)},
     "G90": 0,
     "G91": 1,
@@ -79,6 +82,11 @@ FLAGS = (
     "bars_comp_after",
     "compensates",
 )
+
+
+def of_splines(motion: NDArray[np.int8]) -> NDArray[np.bool_]:
+    """Return which numbers of motion codes are those of splines."""
+    return np.asarray((motion == CUBIC) | (motion == QUADRATIC))
 
 
 DRILL_WORDS = frozenset("XYZABCUVWRPQLIJK")

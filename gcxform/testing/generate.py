@@ -34,6 +34,7 @@ class Options:
     rotary: bool = True
     feed_modes: bool = True
     planes: bool = True
+    splines: bool = False  # G5 and G5.1, which LinuxCNC has
     max_blocks: int = 30
 
 
@@ -56,6 +57,7 @@ class Builder:
         self.inch = self.absolute_centre = self.incremental = False
         self.plane, self.feed_mode, self.motion = "G17", "G94", ""
         self.feed_known = False
+        self.in_series = False  # the move before is a G5
         self.speed = 0
         self.pending: Words = []  # modes that go into the next motion block
         self.lines: list[str] = []
@@ -112,6 +114,8 @@ class Builder:
         kinds: list[Callable[[], None]] = [self._line, self._line, self._line, self._rapid]
         if self.options.arcs:
             kinds += [self._arc] * 4
+        if self.options.splines and self.plane == "G17" and self.feed_mode != "G93":
+            kinds += [self._spline] * 4
         return [*kinds, self._auxiliary, self._modes, self._modes]
 
     def _emit(self, words: Words, *, plain: bool = False) -> None:
@@ -161,6 +165,7 @@ class Builder:
 
     def _head(self, code: str) -> Words:
         """Return the motion word, which a modal control may do without."""
+        self.in_series = False
         if self.motion == code and self.chance(50):
             return []
         self.motion = code
@@ -285,6 +290,21 @@ class Builder:
 
     def _helix(self, normal: str) -> Words:
         return [(normal, self._place(normal))] if self.chance(25) else []
+
+    # --- splines
+
+    def _spline(self) -> None:
+        """Write a G5, without I and J at times in a series, or a G5.1."""
+        cubic, goes_on = self.chance(70), self.in_series
+        words: Words = [("G", "5" if cubic else "5.1")]
+        words += [(a, self._place(a)) for a in self.one(("XY", "XY", "X", "Y"))]
+        letters = "IJ" if not (cubic and goes_on and self.chance(50)) else ""
+        words += [(a, self._distance_word()) for a in letters + "PQ" * cubic]
+        self.in_series, self.motion = cubic, ""
+        self._emit_motion(words + self._feed())
+
+    def _distance_word(self) -> str:
+        return self.layout.number(number(self._value("X", 40), self._decimals("X")))
 
     # --- everything else
 

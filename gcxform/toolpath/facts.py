@@ -61,7 +61,11 @@ def _no_cycles(path: Toolpath) -> bool:
 
 NO_CYCLES = Fact("NO_CYCLES", "there is no canned cycle, but tapping and fine boring", _no_cycles)
 METRIC = Fact("METRIC", "every block is in millimetres", lambda path: not path.blocks.inch.any())
-LINEAR_ONLY = Fact("LINEAR_ONLY", "there is no arc", lambda path: not path.has_arcs)
+LINEAR_ONLY = Fact(
+    "LINEAR_ONLY",
+    "there is no arc and no spline",
+    lambda path: not path.has_arcs and not path.has_splines,
+)
 XY_ARCS = Fact(
     "XY_ARCS",
     "every arc is in the XY plane",

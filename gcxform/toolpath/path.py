@@ -51,7 +51,8 @@ class Form(IntEnum):
     """What a row is a part of; all but PLAIN are written as the block they came from, or refused.
 
     CYCLE: a canned cycle. HOME: G28, G30. MACHINE: a move in machine coordinates (G53). PROBE: it
-    ends where something is touched. SYNCHRONISED: it is tied to the spindle.
+    ends where something is touched. SYNCHRONISED: it is tied to the spindle. SPLINE: a cubic Bezier
+    curve; its kind is LINE, because it cuts.
     """
 
     PLAIN = 0
@@ -60,6 +61,7 @@ class Form(IntEnum):
     MACHINE = 3
     PROBE = 4
     SYNCHRONISED = 5
+    SPLINE = 6
 
 
 OWN_DISTANCES = (Form.CYCLE, Form.HOME, Form.SYNCHRONISED)
@@ -132,6 +134,7 @@ COLUMNS = (
     "side",
     "radius",
     "lost",
+    "control",
 )
 
 
@@ -155,6 +158,8 @@ class Toolpath:
     radius          (n,) mm, of the tool that is compensated; nan where it is not known
     lost            (n,) of which axes the position was lost before the move, by a tool change for
                     example: bit k stands for axis k
+    control         (n, 2, 3) mm, the inner control points of splines; nan for other moves. The
+                    outer ones are where the row starts and where it ends
     entry           (axes,) position before the first row
     frames          the frames of the rows
     blocks          how the blocks the rows came from are to be written
@@ -183,6 +188,7 @@ class Toolpath:
     side: Small
     radius: Floats
     lost: Ints
+    control: Floats
     entry: Floats
     frames: tuple[Frame, ...]
     blocks: Blocks
@@ -285,6 +291,16 @@ class Toolpath:
         """(n,) index into `blocks` of each move."""
         return self.source - self.blocks.first
 
+    @property
+    def is_spline(self) -> Flags:
+        """(n,) whether the move is a spline."""
+        return np.asarray(self.form == Form.SPLINE)
+
+    @property
+    def has_splines(self) -> bool:
+        """Whether there is any spline."""
+        return bool((self.form == Form.SPLINE).any())
+
     def refuse(self, code: str, rows: Ints, message: str, hint: str = "") -> InputError:
         """Return the error that refuses rows; the pipeline adds the text of their lines."""
         lines = np.unique(self.source[rows])[:20] + 1
@@ -317,10 +333,10 @@ class Toolpath:
 
 def _picked(column: NDArray[Any], rows: Ints | Flags) -> NDArray[Any]:
     """Return a column at rows; a column that holds one value keeps taking no memory."""
-    if column.strides != (0,) or not len(column):
+    if any(column.strides) or not len(column):
         return column[rows]
     count = int(np.count_nonzero(rows)) if rows.dtype == np.bool_ else len(rows)
-    return np.broadcast_to(column[0], (count,))
+    return np.broadcast_to(column[0], (count, *column.shape[1:]))
 
 
 def column_major(rows: int, columns: int) -> Floats:

@@ -12,6 +12,7 @@ from faults import (
     passes,
     proof,
     reading,
+    splines,
     writing,
 )
 from faults.mutation import Mutation
@@ -26,5 +27,6 @@ MUTATIONS: tuple[Mutation, ...] = (
     *reading.MUTATIONS,
     *writing.MUTATIONS,
     *arcs.MUTATIONS,
+    *splines.MUTATIONS,
     *proof.MUTATIONS,
 )

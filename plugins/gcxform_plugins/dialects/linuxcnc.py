@@ -26,6 +26,12 @@
 | canned cycles | R, Z, P, Q stay within one cycle; from below R first up; 0.254 mm between pecks |
 | G74, G84 in G18, G19 | the axes of the feed moves are mixed up: refused |
 | G76 | a thread: refused |
+| G5 | a cubic Bezier curve in G17: I J from its start, P Q from its end, also in G91 and G90.1 |
+| G5 without I J | minus the P Q of the G5 before; with no G5 directly before: refused |
+| G5.1 | a quadratic one: I J from its start |
+| G5, G5.1 | refused: other planes, axes but X and Y, one of two words, neither X nor Y; in G93 |
+| after G5, G5.1 | no motion code is in force |
+| G5.2, G5.3 | NURBS: refused |
 | assignments | take effect after their block: `#1=#2 #2=#1` swaps |
 | expressions | a sign binds to its number, `**` goes from the left, numbers within 1e-4 are EQ |
 | a parameter that nothing has set | refused unless given: the control may have a value left |
@@ -130,11 +136,12 @@ class LinuxCNC(gx.Dialect):
         "G43": v.frame("tool-length", "length", "H"),
         "G43.1": v.frame("tool-length", "length-vector", v.AXES),
         "G43.2": v.frame("tool-length", "length-add", "H"),
+        **{code: gx.Code("motion") for code in ("G5", "G5.1")},
         **{code: gx.Code("motion") for code in CYCLES if code != "G76"},
         "G76": v.barrier("motion", v.SYNCHRONISED, "EHIJKLPQR"),
         **{
-            code: v.barrier("motion", "it cuts a spline", "IJKPQL")
-            for code in ("G5", "G5.1", "G5.2", "G5.3")
+            code: v.barrier("motion", "it cuts a spline of NURBS", "IJKPQL")
+            for code in ("G5.2", "G5.3")
         },
         **{code: v.barrier("motion", v.SYNCHRONISED, "K") for code in ("G33", "G33.1")},
         **{code: v.barrier("motion", v.PROBE) for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
