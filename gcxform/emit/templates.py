@@ -250,6 +250,8 @@ class TemplateWriter:
         """Write what a word of the motion stands for; return whether it is one."""
         if word.address in self.axes:
             self._axes(lead)
+        elif self.key.thread:
+            return False
         elif word.address in "IJKR":
             self._centre(lead)
         else:
@@ -296,7 +298,8 @@ class TemplateWriter:
                 if not self._goes_without_saying(word, wanted):
                     self._literal(lead, text if wanted == name else _like(text, wanted))
                 return
-            if group == "motion" and (not self.as_it_stands or self.key.silent):
+            unsaid = not (self.as_it_stands or self.key.thread) or self.key.silent
+            if group == "motion" and unsaid:
                 return
         elif group in self.stated:
             return  # of several codes of a group one has been written

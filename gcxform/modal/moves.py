@@ -2,7 +2,7 @@
 
 Lines become rows in stretches of one frame (`gcxform/modal/track.py`). A plain line is one row; G28
 and G53 move in a way of their own (`gcxform/modal/home.py`), and so do canned cycles
-(`gcxform/modal/drilling.py`).
+(`gcxform/modal/drilling.py`), threads, taps and probes (`gcxform/modal/tied.py`).
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from gcxform.modal.lines import Lines
 from gcxform.modal.rows import Rows
 from gcxform.modal.state import CYCLE_OFF, Modes
 from gcxform.modal.tables import NUMBER
+from gcxform.modal.tied import Tied
 from gcxform.modal.track import Track
 from gcxform.toolpath.path import Blocks, Kind, Toolpath, constant
 
@@ -46,14 +47,15 @@ class Moves:
         self.findings = lines.findings
         self.track = Track(lines, modes, axes)
         self.drilling = Drilling(self.track)
+        self.tied = Tied(self.track)
 
     def path(self) -> Toolpath:
         """Return the moves as a toolpath."""
         moving = self._moving()
-        lost = self.lines.flag("loses_position")
+        lost = self.lines.loses_position()
         parts = [
             self._stretch(first, last, moving, lost if lost.any() else None)
-            for first, last in self._stretches()
+            for first, last in self._stretches(moving)
         ]
         return self._path(Rows.joined(parts, len(self.axes)))
 
@@ -79,15 +81,18 @@ class Moves:
                 "axis words, but no motion code is in force",
                 hint="write G0 or G1 in this block",
             )
-        for line in np.flatnonzero(centre & ~(arc & ~own)).tolist():
+        for line in np.flatnonzero(centre & ~((arc | self.tied.paced) & ~own)).tolist():
             self.findings.add(line, "GX203", "I, J, K and R belong to arcs, and this is none")
         for line in np.flatnonzero(centre & arc & self._dwells()).tolist():
             message = "a dwell and an arc: the control takes some words for both"
             self.findings.add(line, "GX203", message, hint="write the dwell in a block of its own")
         moves &= self.modes.motion != NUMBER["G80"]
         moves |= centre & arc & ~own
+        self.tied.check(moves, own)
         in_machine = own & (self.modes.motion == Kind.LINE)
-        self._check_feed(np.flatnonzero(moves | in_machine), np.flatnonzero(self.drilling.calls))
+        feeding = (moves & ~self.tied.paced) | in_machine
+        calls = self.drilling.calls | self.lines.flag("probes")
+        self._check_feed(np.flatnonzero(feeding), np.flatnonzero(calls))
         return moves
 
     def _dwells(self) -> Flags:
@@ -128,12 +133,17 @@ class Moves:
             again[int(np.argmax(again))] = False
         return np.flatnonzero(acts & ~again)
 
-    def _stretches(self) -> Iterator[tuple[int, int]]:
+    def _alone(self, moving: Flags) -> Flags:
+        """Return the lines that are a tap or a probe."""
+        return np.asarray(moving & self.tied.single) if self.tied.any else moving[:0]
+
+    def _stretches(self, moving: Flags) -> Iterator[tuple[int, int]]:
         """Yield first and last line + 1 of the stretches."""
         acting = self._acting()
         own = self.lines.flag("own_moves")[acting]
         drills = self.drilling.borders()
-        borders = np.concatenate([[0], acting, acting[own] + 1, drills, [self.lines.live]])
+        alone = np.concatenate([acting[own], np.flatnonzero(self._alone(moving))])
+        borders = np.concatenate([[0], acting, alone, alone + 1, drills, [self.lines.live]])
         borders = np.unique(borders).tolist()
         self._acts = set(acting.tolist())
         if len(borders) == 1:
@@ -150,15 +160,20 @@ class Moves:
         if self.drilling.calls[first:last].any():
             return self.drilling.rows(first, last)
         self.drilling.leave(first, last)
+        if self._alone(moving)[first : first + 1].any():
+            return self.tied.row(first)
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
-        return Rows.plain(rows, self.modes.motion[rows], ends, len(self.track.frames) - 1)
+        return self.tied.plain(rows, ends, len(self.track.frames) - 1)
 
     # --- the path ---
 
     def _path(self, rows: Rows) -> Toolpath:
         """Return the rows as a toolpath; arcs get their centres."""
         count, line = len(rows.line), rows.line
+        feed, mode = self.tied.paced_rows(
+            rows, self._feed_of_rows(rows), self.modes.feed_mode[line]
+        )
         path = Toolpath(
             self.axes,
             rows.kind,
@@ -166,8 +181,8 @@ class Moves:
             np.broadcast_to(np.nan, (count, 3)),
             constant(0.0, count),
             self.modes.plane[line],
-            self._feed_of_rows(rows),
-            self.modes.feed_mode[line],
+            feed,
+            mode,
             rows.frame,
             line + self.lines.window.first_line,
             rows.nth,

@@ -72,7 +72,7 @@ class Segment(gx.Pass):
         if arcs.any():
             pieces = np.where(arcs, self._pieces_of_arcs(path), 1)
         if self.max_length is not None:
-            lines = path.kind == gx.Kind.LINE
+            lines = (path.kind == gx.Kind.LINE) & (path.form == gx.Form.PLAIN)
             length = np.nan_to_num(_length(path.start, path.end))
             pieces = np.where(lines, _whole(length / self.max_length), pieces)
         pieces = np.where(path.starts_known, pieces, 1)
