@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from gcxform.machine.errors import compensate as compensate
     from gcxform.machine.formats import ErrorFormat as ErrorFormat
     from gcxform.modal.codes import Code as Code
+    from gcxform.modal.codes import CutterComp as CutterComp
     from gcxform.modal.codes import MCode as MCode
     from gcxform.modal.tables import frame_name as frame_name
     from gcxform.options import Angle as Angle
@@ -68,6 +69,7 @@ if TYPE_CHECKING:
     from gcxform.toolpath.facts import KNOWN_POSITIONS as KNOWN_POSITIONS
     from gcxform.toolpath.facts import LINEAR_ONLY as LINEAR_ONLY
     from gcxform.toolpath.facts import METRIC as METRIC
+    from gcxform.toolpath.facts import NO_CUTTER_COMP as NO_CUTTER_COMP
     from gcxform.toolpath.facts import NO_CYCLES as NO_CYCLES
     from gcxform.toolpath.facts import NOMINAL as NOMINAL
     from gcxform.toolpath.facts import WORKPIECE_FRAME as WORKPIECE_FRAME
@@ -95,7 +97,7 @@ _HOMES = {
     "hookspecs": "hookimpl",
     "machine.errors": "AxisFunction AxisFunctions ErrorModel Outside check_contraction compensate",
     "machine.formats": "ErrorFormat",
-    "modal.codes": "Code MCode",
+    "modal.codes": "Code CutterComp MCode",
     "modal.tables": "frame_name",
     "options": "Angle Length ModelFile Option Vector",
     "pipeline": "Pipeline Result",
@@ -105,9 +107,8 @@ _HOMES = {
     "swept_anew",
     "toolpath.crossings": "line_crossings",
     "toolpath.deviation": "deviation",
-    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NO_CYCLES NOMINAL "
-    "WORKPIECE_FRAME XY_ARCS Fact "
-    "inseparable_cycles",
+    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NO_CUTTER_COMP "
+    "NO_CYCLES NOMINAL WORKPIECE_FRAME XY_ARCS Fact inseparable_cycles",
     "toolpath.frames": "Frame",
     "toolpath.path": "Event FREE FeedMode Form Kind OWN_DISTANCES Plane Toolpath column_major",
 }

@@ -149,6 +149,32 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "that is not whole where one is asked for. Or controls are known to compute this in two "
         "ways, such as the rounding of a half on Fanuc; then write it so that there is one.",
     ),
+    "GX230": (
+        "Cutter compensation that the control refuses",
+        "G41, G42 or G40 stands where the control stops with an alarm, or a code stands between "
+        "them that it does not take there: another plane, work offset or tool, for instance; or "
+        "D says nothing. Cancel compensation with G40 before such blocks, and begin and end it "
+        "with a straight move.",
+    ),
+    "GX231": (
+        "The radius of the tool is not known",
+        "The pass computes the path of the tool's centre, and for that it needs the radius of the "
+        "tool that G41 or G42 names. Programs give a number; the radius is in the tool table of "
+        "the control. Give a machine file with the tool: `[tool.1]` and `radius = 5.0`.",
+    ),
+    "GX232": (
+        "Cutter compensation that cannot be resolved",
+        "Between G41 or G42 and G40 the program does what depends on the control, or what leaves "
+        "open where the tool is: another side or tool without G40 between, an unknown position, "
+        "or an end without G40. Cancel compensation before such blocks.",
+    ),
+    "GX233": (
+        "A contour under cutter compensation would be moved",
+        "In G41 and G42 the blocks are a contour, which the control offsets by the tool's radius. "
+        "Points of it that are moved for another reason would be offset as well, and the moves "
+        "that begin and end compensation must stay whole. Put the pass `cutter-comp` before: then "
+        "there is the path of the centre, and no compensation in the control.",
+    ),
     # --- 3xx: geometry ---
     "GX301": (
         "The end of an arc is off its circle",
@@ -228,6 +254,13 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "The pass feed leaves the control in the feed mode in which the source program leaves it, "
         "and states that mode in the block with M2 or M30. This program has none, and what runs "
         "after it would find another feed mode. End the program with M2 or M30.",
+    ),
+    "GX350": (
+        "A contour that the tool cannot follow",
+        "The tool is too large for an inside corner, a concave arc or a move between two inside "
+        "corners, so that it would cut into the contour; or the move that begins compensation is "
+        "not longer than the tool's radius. Use a smaller tool, or change the contour. LinuxCNC "
+        "stops at most of these and cuts into the contour at some.",
     ),
     # --- 4xx: machine and error-model files ---
     "GX401": (
@@ -442,6 +475,12 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "see `gcxform list passes`.",
     ),
     # --- 7xx: command line and pipeline ---
+    "GX604": (
+        "The centre path is not beside the contour",
+        "The path that `cutter-comp` made was checked against the contour by other means, and is "
+        "not at the tool's radius from it. Nothing was written. This is a bug of gcxform or of a "
+        "plugin; please report it with the program.",
+    ),
     "GX701": (
         "Unknown key in a pipeline",
         "A pipeline file, or an option of a pass, has a key which means nothing there; a misspelt "
@@ -585,6 +624,18 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "that states the arc, before the code that is named.",
     ),
     # --- 8xx: plugins ---
+    "GX740": (
+        "How the control compensates the cutter",
+        "What joins two moves at an outside corner, and where compensation begins, is a parameter "
+        "of some machines and fixed on others. Where it is a parameter, say what it is set to; "
+        "where it is fixed, leave the option out.",
+    ),
+    "GX741": (
+        "A step that changes the path stands before one that resolves it",
+        "`cutter-comp` is proved against the contour as programmed, so only steps that leave the "
+        "contour as it is may come before it: `absolute` and `metric`. Put the other steps after "
+        "it.",
+    ),
     "GX801": (
         "Two plugins offer the same name",
         "Which one a pipeline means would depend on the order of installation. Uninstall one of "

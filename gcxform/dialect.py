@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from gcxform.modal.arithmetic import Arithmetic
-from gcxform.modal.codes import ISO, ISO_M, Code, MCode
+from gcxform.modal.codes import ISO, ISO_M, Code, CutterComp, MCode
 from gcxform.modal.cyclerule import CycleRule
 from gcxform.syntax.grammar import Grammar, load
 
@@ -74,12 +74,15 @@ class Dialect:
         "feed-mode": "G94",
         "units": "G21",
         "frame": "G54",
+        "cutter-comp": "G40",
     }
     """The modal state a program is taken to start in; the certificate says what was taken."""
     axis_words_once: ClassVar[bool] = False
     """A motion code beside a code that takes the axis words for itself (G92, G28) is refused."""
     last_code_wins: ClassVar[bool] = False
     """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
+    cutter_comp: ClassVar[CutterComp] = CutterComp()
+    """How G41 and G42 are read, where the dialect has them."""
     point_required: ClassVar[bool] = False
     """A distance without a point counts in increments of the control, which must be configured."""
     feed_point_required: ClassVar[bool] = False

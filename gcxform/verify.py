@@ -137,6 +137,7 @@ class Verifier:
             self._fail(f"a rotary axis is {off.angle[turned]:.5f} degrees off", trace, turned)
         self._kinds(trace)
         self._forms(trace)
+        self._sides(trace)
         self._feeds(trace)
 
     def _note_worst(self, distance: float, trace: _Trace, row: int) -> None:
@@ -188,6 +189,16 @@ class Verifier:
             output = int(written.source[np.argmax(wrong)])
             message = "a move tied to the spindle or to a probe became another, or several"
             self._raise(message, trace.line_of(output), output)
+
+    def _sides(self, trace: _Trace) -> None:
+        """Check that cutter compensation is on where it was, on the same side and as far."""
+        before, after, owner = trace.before, trace.after, trace.owner
+        if not before.side.any() and not after.side.any():
+            return
+        radius, old = after.radius, before.radius[owner]
+        changed = (after.side != before.side[owner]) | ~((radius == old) | np.isnan(radius + old))
+        if changed.any():
+            self._fail("cutter compensation has changed", trace, int(np.argmax(changed)))
 
     def _feeds(self, trace: _Trace) -> None:
         """Check that feeds are those of the source; in inverse time, the times must add up."""

@@ -168,7 +168,7 @@ def test_explain_a_block(here: Path) -> None:
     for words in (
         "word X, number 10",
         "comment (so)",
-        "modal G1 G17 G90 G91.1 G94 G21 G54, F 100",
+        "modal G1 G17 G90 G91.1 G94 G21 G54 G40, F 100",
         "X0 Y0 Z0",
         "first line 1",
         "clockwise arc at 100 mm/min",

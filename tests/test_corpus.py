@@ -24,6 +24,7 @@ LONGEST_PAGE = 60
 
 ELSEWHERE = {
     "GX602": "test_corpus.py",  # a pass that does not ensure what it says
+    "GX604": "test_cutter_comp.py",
     "GX603": "test_corpus.py",  # a text pass that changes words
     "GX712": "test_pipelinefile.py",  # a chain on the command line
     "GX713": "test_options.py",  # a pass that looks at its options together

@@ -35,6 +35,7 @@ _FAMILIES = {
     "arc-distance": ("G91.1", "G90.1"),
     "feed-mode": ("G93", "G94", "G95"),
     "units": ("G21", "G20"),
+    "cutter-comp": ("G40", "G41", "G42", "G41.1", "G42.1"),
 }
 _UNITS = {
     FeedMode.INVERSE_TIME: "1/min",

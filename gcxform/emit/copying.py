@@ -56,6 +56,8 @@ class Copying:
             self.lines |= stands
         if self.path.folded:
             self.lines[self.task.table.flag("framing", self.task.shape)] = False
+        if self.path.blocks.uncompensated:
+            self.lines &= ~self.task.table.flag("compensates", self.task.shape)
         self.lines[pieces.line[pieces.repaired]] = False
         self._skipped()
 

@@ -29,6 +29,7 @@ from gcxform.emit.templates import (
     TemplateWriter,
     event_text,
     gaps_between,
+    left_out,
     nothing_left,
 )
 from gcxform.modal.arcs import TURN
@@ -105,7 +106,7 @@ class _Job:
     def run(self) -> Emitted:
         copied = self.copying.lines
         self._arcs()
-        empty = self._without_words() | self._foreign() | self._gone()
+        empty = self._without_words() | self._foreign() | self._gone() | self._only_compensates()
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
         renderer = Renderer(self.task)
         self._render(chosen, renderer)
@@ -148,6 +149,18 @@ class _Job:
             np.bool_,
         )
         return np.asarray(gone[task.shape][self.pieces.line] & ~self.pieces.has_row)
+
+    def _only_compensates(self) -> Flags:
+        """Return the pieces of lines that hold nothing but what is left out of them."""
+        if not self.path.blocks.uncompensated:
+            return np.zeros(len(self.pieces.line), np.bool_)
+        table = self.task.table
+        shapes = zip(table.shapes.shapes, table.meanings, strict=False)  # others are read ahead
+        only = np.array(
+            [m.compensates and all(left_out(item, m) for item in s.block.items) for s, m in shapes],
+            np.bool_,
+        )
+        return np.asarray(only[self.task.shape][self.pieces.line] & ~self.pieces.has_row)
 
     # --- arcs ---
 
@@ -319,6 +332,7 @@ class _Job:
             self.path.axes,
             b" " if self.emitter.gap is None else self.emitter.gap,
             self.path.frames[0].work if self.path.folded else "",
+            self.path.blocks.uncompensated,
         )
         try:
             return writer.write(key)

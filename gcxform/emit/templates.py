@@ -102,6 +102,15 @@ def nothing_left(
     return bool(kept) and all(goes(item) for item in items)
 
 
+def left_out(item: Item, meaning: Meaning) -> bool:
+    """Whether an item turns cutter compensation on, and is left out once that is resolved."""
+    if not isinstance(item, Word) or not meaning.compensates:
+        return False
+    if item.address == "G" and isinstance(item.value, Number):
+        return f"G{round(item.value.value, 6):g}" == meaning.groups["cutter-comp"]
+    return item.address == "D"
+
+
 class TemplateWriter:
     """Makes the templates of one shape."""
 
@@ -113,6 +122,7 @@ class TemplateWriter:
         axes: str,
         gap: bytes,
         folded_to: str = "",
+        uncompensated: bool = False,
     ) -> None:
         self.shape = shape
         self.text = shape.block.text
@@ -122,6 +132,7 @@ class TemplateWriter:
         self.axes = axes
         self.folded = folded_words(meaning, folded_to) if folded_to else frozenset()
         self.gap = self._own_gap(gap)
+        self.uncompensated = uncompensated
 
     def _own_gap(self, usual: bytes) -> bytes:
         """Return what stands between the words of this block, or what is usual in the program."""
@@ -141,6 +152,7 @@ class TemplateWriter:
         if key.role is Role.GONE:
             return self._comments()
         at = slot = 0
+        first: bytes | None = None  # what stands before the words left out at the head
         whole = key.role not in (Role.MIDDLE, Role.LAST)
         self._repairs_wait = True
         for item in self.shape.block.items:
@@ -148,7 +160,10 @@ class TemplateWriter:
             if at and not self.fields:
                 lead = b""  # what stood before is left out, and the blank after it
             at = item.end
-            self._item(item, lead, slot)
+            if self.uncompensated and left_out(item, self.meaning):
+                first = lead if first is None and not self.fields else first
+            else:
+                self._item(item, lead if first is None or self.fields else first, slot)
             slot += isinstance(item, Word) and item.address not in CODES
         self._rest()
         if whole and at < len(self.text):

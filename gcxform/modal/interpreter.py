@@ -129,6 +129,7 @@ class Interpreter:
             "feed-mode": modes.feed_mode,
             "units": modes.inch,
             "frame": modes.work,
+            "cutter-comp": modes.comp,
         }
         self.state.groups = {name: int(column[-1]) for name, column in last.items()}
         self.state.feed = float(modes.feed[-1])

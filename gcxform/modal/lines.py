@@ -233,6 +233,7 @@ class Lines:
             groups["feed-mode"],
             inch,
             groups["frame"],
+            groups["cutter-comp"],
             feed,
             feed_unit,
             self._tool(),

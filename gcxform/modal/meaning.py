@@ -115,10 +115,17 @@ class Meaning:
     assignments: list[Statement] = field(default_factory=list)
     expressions: list[tuple[int, Word]] = field(default_factory=list)
     marked: bool = False
+    changes_tool: bool = False
+    bars_comp: tuple[str, str] = ("", "")
     events: list[EventShape] = field(default_factory=list)
     acts: list[Act] = field(default_factory=list)
     drill_words: str = ""
     refusal: Refusal | None = None
+
+    @property
+    def compensates(self) -> bool:
+        """Whether the block turns cutter compensation on."""
+        return self.groups.get("cutter-comp", "G40") != "G40"
 
 
 def meaning_of(shape: Shape, dialect: type[Dialect]) -> Meaning:
@@ -140,6 +147,7 @@ def _read(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Re
     yield from _m_codes(shape, dialect, meaning)
     yield from _number_first(shape, dialect)
     yield from _words(shape, dialect, meaning)
+    meaning.bars_comp = _bars_comp(shape, dialect, meaning)
     meaning.events.sort(key=lambda event: (event.after, event.order))
     meaning.acts.sort(key=lambda act: ACT_ORDER.index(act.name))
 
@@ -317,6 +325,7 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
             own = code.group == "user"  # of the other codes nobody can say that they move nothing
             meaning.lost_by.add(int(word.value.value) if own else -1)
         meaning.runs_macro |= code is dialect.unknown_m
+        meaning.changes_tool |= code.group == "tool"
         order = {"tool": 30, "spindle": 40, "coolant": 41, "override": 42}.get(code.group, 43)
         taken = _take(code, dialect, meaning)
         if code.act:
@@ -343,6 +352,19 @@ def _lacking(word: Word, dialect: type[Dialect]) -> Refusal | None:
     return None
 
 
+def _bars_comp(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> tuple[str, str]:
+    """Return a code that is refused while compensation is on before the block, and after it."""
+    sorted_codes = [(name, group) for group, name in meaning.groups.items()]
+    for word in shape.block.words:
+        if word.address == "M" and isinstance(word.value, Number):
+            code = dialect.m_codes.get(int(word.value.value), dialect.unknown_m)
+            sorted_codes += [(_code_of(word), code.group)] if code else []
+    rule = dialect.cutter_comp
+    before = [name for name, group in sorted_codes if group in rule.before]
+    after = [name for name, group in sorted_codes if group in rule.after and name != "G4"]
+    return "".join(before[:1]), "".join(after[:1])
+
+
 def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
     """Refuse a sequence number behind something else where the control wants it first."""
     items = [item for item in shape.block.items if not isinstance(item, Mark)]
@@ -350,6 +372,18 @@ def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
         if isinstance(item, Word) and item.address == "N" and dialect.number_first:
             message = f"{dialect.name} takes a sequence number only at the head of a block"
             yield Refusal("GX203", item.start, item.end - item.start, message)
+
+
+def _offset_word(dialect: type[Dialect], meaning: Meaning) -> set[str]:
+    """Return D if it belongs to cutter compensation; it is told as an event, like G41 and G42."""
+    code = meaning.groups.get("cutter-comp", "G40")
+    named = (("D", meaning.slots["D"]),) if "D" in meaning.slots else ()
+    if code != "G40":
+        meaning.events.append(EventShape(45, code, named))
+    elif dialect.cutter_comp.stored and named:
+        meaning.events.append(EventShape(45, "D", named))
+    takes = dialect.codes[code].takes if code in dialect.codes else ""
+    return set("D") if dialect.cutter_comp.stored or "D" in takes else set()
 
 
 def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
@@ -364,8 +398,7 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
     if meaning.dwell and meaning.axes and set(dialect.dwell) & set(dialect.axes):
         yield Refusal("GX203", 0, len(shape.block.text), "a dwell and axis words in one block")
     motion = {*meaning.axes, *meaning.centres, *"FNRST", dialect.turns_address}
-    if "D" in slots and "D" in dialect.words and dialect.last_code_wins:
-        meaning.events.append(EventShape(45, "D", (("D", slots.pop("D")),)))
+    motion |= _offset_word(dialect, meaning)
     for word in shape.block.words:
         address = word.address
         if (lacking := _lacking(word, dialect)) is not None:

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, LINEAR
 from gcxform.modal.arcs import ArcWords, resolve_arcs
+from gcxform.modal.cutter import compensation, refuse_ends
 from gcxform.modal.drilling import Drilling
 from gcxform.modal.events import events_of
 from gcxform.modal.findings import Findings
@@ -48,6 +50,7 @@ class Moves:
         self.track = Track(lines, modes, axes)
         self.drilling = Drilling(self.track)
         self.tied = Tied(self.track)
+        self.side, self.radius = compensation(lines, modes)
 
     def path(self) -> Toolpath:
         """Return the moves as a toolpath."""
@@ -187,8 +190,8 @@ class Moves:
             line + self.lines.window.first_line,
             rows.nth,
             rows.form,
-            constant(0, count, np.int8),
-            constant(np.nan, count),
+            _at(self.side, line),
+            _at(self.radius, line),
             self._lost_before(line, rows.nth),
             self.track.entry,
             tuple(self.track.frames),
@@ -205,8 +208,10 @@ class Moves:
             first=self.state.frames.first,
             after_rapid=self.state.rapid,
         )
+        path = path.replace(after_side=self.state.at_side)
         if count:
             self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
+        refuse_ends(self.lines, self.modes, path.side, path.kind, line)
         if not path.has_arcs:
             return path
         arcs = np.flatnonzero(path.is_arc)
@@ -264,3 +269,10 @@ def turns_only(axes: str, entry: Floats, ends: Floats) -> Flags:
     start = np.vstack([entry, ends[:-1]])
     still = (np.abs(start - ends) < SAME_PLACE) | (np.isnan(start) & np.isnan(ends))
     return np.asarray(still[:, linear].all(axis=1) & ~still[:, rotary].all(axis=1))
+
+
+def _at(column: NDArray[Any], rows: Ints) -> NDArray[Any]:
+    """Return a column of the lines at rows; one that holds one value keeps taking no memory."""
+    if column.strides != (0,) or not len(column):
+        return column[rows]
+    return np.broadcast_to(column[0], (len(rows),))

@@ -70,7 +70,12 @@ class Reading:
 
 @dataclass(slots=True)
 class State:
-    """What one window hands to the next."""
+    """What one window hands to the next.
+
+    side, radius  cutter compensation in force; `at_side`: that of the last move;
+                  `cancelled`: G40 has been in force since
+    selected      the T word; `tool`: the tool in the spindle; `stored`: the D word; nan: not known
+    """
 
     groups: dict[str, int]
     position: Floats
@@ -81,6 +86,13 @@ class State:
     ended: bool = False
     percents: int = 0
     rapid: bool = False
+    side: int = 0
+    radius: float = np.nan
+    selected: float = np.nan
+    tool: float = np.nan
+    stored: float = np.nan
+    at_side: int = 0
+    cancelled: bool = False
     stated: set[str] = field(default_factory=set)
     parameters: dict[int | str, float] = field(default_factory=dict)
     cycles: Cycles | None = None
@@ -103,6 +115,7 @@ class Modes:
     feed_mode: Small
     inch: Flags
     work: Small
+    comp: Small
     feed: Floats
     feed_unit: Floats
     tool: Floats

@@ -9,7 +9,16 @@ from gcxform.dialect import Dialect
 from gcxform.modal.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning, meaning_of
 from gcxform.syntax.shapes import ShapeTable
 
-GROUPS = ("motion", "plane", "distance", "arc-distance", "feed-mode", "units", "frame")
+GROUPS = (
+    "motion",
+    "plane",
+    "distance",
+    "arc-distance",
+    "feed-mode",
+    "units",
+    "frame",
+    "cutter-comp",
+)
 MEMORY = ("cycle", "retract", "spindle")
 """Groups that matter to canned cycles alone."""
 COLUMNS = (*GROUPS, *MEMORY)
@@ -38,6 +47,11 @@ NUMBER = {
     "M5": 0,
     "M3": 1,
     "M4": 2,
+    "G40": 0,
+    "G41": 1,
+    "G42": 2,
+    "G41.1": 3,
+    "G42.1": 4,
 }
 """The number that stands for a code within its group."""
 
@@ -66,6 +80,10 @@ FLAGS = (
     "computes",
     "drills",
     "drill_words",
+    "changes_tool",
+    "bars_comp_before",
+    "bars_comp_after",
+    "compensates",
 )
 
 
@@ -130,6 +148,10 @@ class MeaningTable:
             bool(meaning.assignments or meaning.expressions or meaning.runs_macro),
             bool(set(meaning.slots) & DRILL_WORDS) or _calls(meaning),
             bool(meaning.drill_words),
+            meaning.changes_tool,
+            bool(meaning.bars_comp[0]),
+            bool(meaning.bars_comp[1]),
+            meaning.compensates,
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -70,6 +70,8 @@ class Tied:
         spindle = self.modes.spindle
         still = self.paced & moves & ((spindle == 0) | (spindle == UNKNOWN_SPINDLE))
         yield still, "{code}, but the spindle does not turn", "write M3 or M4 before it"
+        beside = (self.paced | self.probe) & moves & (self.modes.comp > 0)
+        yield beside, "{code} beside cutter compensation", "write G40 before it"
         other = self.probe & moves & (self.modes.feed_mode != FeedMode.PER_MINUTE)
         yield other, "{code} cannot be fed in inverse time or per turn", "write G94"
 

@@ -72,6 +72,11 @@ KNOWN_POSITIONS = Fact(
     "X, Y and Z are known at the end of every move",
     lambda path: not bool(np.isnan(path.end[:, :3]).any()),
 )
+NO_CUTTER_COMP = Fact(
+    "NO_CUTTER_COMP",
+    "positions are those of the tool's centre: G41 and G42 are resolved",
+    lambda path: not bool(path.side.any()),
+)
 NOMINAL = Fact(
     "NOMINAL", "positions are where the tool shall be, not yet compensated commands", _always
 )
@@ -99,4 +104,5 @@ FACTS = (
     COMPENSATED,
     WORKPIECE_FRAME,
     NO_CYCLES,
+    NO_CUTTER_COMP,
 )

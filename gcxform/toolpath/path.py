@@ -92,6 +92,7 @@ class Blocks:
     leaves          whether after the block something else than this program may run: it ends, or
                     calls what may move axes
     apart           whether the block has a slash or a name and is joined with no other
+    uncompensated   cutter compensation has been resolved: G41, G42 and their D are left out
     """
 
     first: int
@@ -101,6 +102,7 @@ class Blocks:
     feed_mode: Small
     leaves: Flags
     apart: Flags
+    uncompensated: bool = False
 
 
 BLOCK_MODES = ("inch", "incremental", "absolute_centre", "feed_mode", "leaves", "apart")
@@ -168,6 +170,7 @@ class Toolpath:
     folded          whether frames are folded into the words: codes that set them are not written
     joined          whether rows may stand for several: blocks left without one are not written
     after_rapid     whether the move before the first row was a rapid
+    after_side      side of cutter compensation of the move before the first row
     refit_centres   whether centres may be moved so that both ends are on the circle as formatted
     """
 
@@ -195,6 +198,7 @@ class Toolpath:
     folded: bool = False
     joined: bool = False
     after_rapid: bool = False
+    after_side: int = 0
     refit_centres: bool = True
 
     def __post_init__(self) -> None:

@@ -2,7 +2,8 @@
 
 `rs274 -g -t TOOLS -v VARIABLES FILE OUT` writes one canon call a line, numbers with four decimals
 in the units in force, to OUT, and messages to stderr. It starts at 0 on all axes, in millimetres,
-G17 G90 G91.1 G94, with no motion mode, all work offsets zero and block delete off. It stops at
+G17 G90 G91.1 G94, with no motion mode, all work offsets zero and block delete off. Tool n has a
+diameter of n mm (the table is in inches). It stops at
 the first refusal. A comment `(gcx k)` put behind line k comes back as a canon call, so each
 call is known to belong to a line.
 
@@ -134,7 +135,8 @@ def _execute(source: bytes) -> _Output:
     with tempfile.TemporaryDirectory() as folder:
         at = Path(folder)
         (at / "in.ngc").write_bytes(source)
-        (at / "tools").write_text("".join(f"T{n} P{n} Z0\n" for n in range(1, 100)))
+        tools = (f"T{n} P{n} Z0 D{n / 25.4:.12f}\n" for n in range(1, 100))
+        (at / "tools").write_text("".join(tools))
         command = ["rs274", "-g", "-t", "tools", "-v", "var", "in.ngc", "out"]
         try:
             home = os.environ | {"HOME": folder}

@@ -15,6 +15,8 @@
 | M5, M9 with a motion | the machine's PLC decides, commonly after it: taken as after |
 | an M code not listed | may run a macro: positions and variables are unknown after it |
 | M codes listed in `[control] inert-m` | move no axis and set no variable |
+| G41, G42 | D stays in force; its radius is the machine file's, D0 is none |
+| G41, G42, G40 with an arc | refused: alarm 34 |
 | tool change | moves axes: positions are unknown after it |
 | canned cycles | R, Z, P, Q stay until the cycle mode ends; K0 stores them without drilling |
 | G73, G83 between pecks | parameters 5114 and 5115: must be given |
@@ -106,7 +108,7 @@ class Fanuc(gx.Dialect):
         "G30": v.frame("non-modal", "home", "P"),
         "G54.1": v.frame("frame", "work", "P"),
         **{code: v.barrier("frame", v.SHIFT, "P") for code in ("G54.2", "G54.4")},
-        **{code: v.barrier("cutter-comp", v.COMP, "DHIJK") for code in ("G41", "G42")},
+        **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
         "G43": v.frame("tool-length", "length", "H"),
         "G44": v.frame("tool-length", "length-negative", "H"),
         **{
@@ -154,6 +156,7 @@ class Fanuc(gx.Dialect):
     length_may_move = True
     g53_is_rapid = True
     last_code_wins = True
+    cutter_comp = gx.CutterComp(stored=True)
     point_required = True
     change_clears_feed = True
     lower_case = False

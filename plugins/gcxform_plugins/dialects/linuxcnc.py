@@ -14,6 +14,11 @@
 | CR without LF | is a blank |
 | M5, M9 | act before the motion of their block |
 | after M2, M30 | nothing is executed |
+| G41 D, G42 D | tool D of the table, or the tool in the spindle; the table is the machine file's |
+| G41.1 D, G42.1 D | the diameter itself; a negative one swaps the side |
+| G41, G42 | refused when on already, and in YZ; on, many codes are refused |
+| G40 | the next move is no arc |
+| outside corners | are joined by arcs; turns below 0.05 rad are taken for none |
 | tool change | the axes stay, as far as the interpreter knows |
 | G98, G99 at start | G99 |
 | canned cycles | R, Z, P, Q stay within one cycle; from below R first up; 0.254 mm between pecks |
@@ -113,8 +118,7 @@ class LinuxCNC(gx.Dialect):
         **{code: v.frame("non-modal", "home") for code in ("G28", "G30")},
         **{code: v.frame("non-modal", "store-home") for code in ("G28.1", "G30.1")},
         "G53": v.frame("non-modal", "machine"),
-        **{code: v.barrier("cutter-comp", v.COMP, "DL") for code in ("G41", "G42")},
-        **{code: v.barrier("cutter-comp", v.COMP, "DL") for code in ("G41.1", "G42.1")},
+        **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42", "G41.1", "G42.1")},
         "G43": v.frame("tool-length", "length", "H"),
         "G43.1": v.frame("tool-length", "length-vector", v.AXES),
         "G43.2": v.frame("tool-length", "length-add", "H"),
@@ -158,6 +162,16 @@ class LinuxCNC(gx.Dialect):
     g52_is_g92 = True
     g43_takes_spindle_tool = True
     g28_without_axes = True
+    cutter_comp = gx.CutterComp(
+        planes=frozenset({"XY", "ZX"}),
+        changes=False,
+        arc_entry=True,
+        corners="arc",
+        entry="own",
+        straight=0.05,
+        before=frozenset({"tool", "override", "output"}),
+        after=frozenset({"non-modal", "tool-length", "frame", "path", "retract"}),
+    )
     feed_mode_clears_feed = True
     feed_before_units = True
     lone_cr_is_blank = True
