@@ -199,7 +199,7 @@ class Pieces:
         feeding = self.feeding
         inverse = path.blocks.feed_mode == FeedMode.INVERSE_TIME
         unit_here = np.where(self._inch_for_feed(), INCH, 1.0)
-        plain = turns_only(path.axes, path.entry, path.end) & (self.kind < Kind.ARC_CW)
+        plain = turns_only(path) & (self.kind < Kind.ARC_CW)
         has_unit = self.of_rows(~plain, True) & ~inverse[self.line]
         unit = np.where(has_unit, unit_here, 1.0)
         given = modes.feed * np.where(inverse, 1.0, modes.feed_unit)

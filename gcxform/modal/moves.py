@@ -174,9 +174,6 @@ class Moves:
     def _path(self, rows: Rows) -> Toolpath:
         """Return the rows as a toolpath; arcs get their centres."""
         count, line = len(rows.line), rows.line
-        feed, mode = self.tied.paced_rows(
-            rows, self._feed_of_rows(rows), self.modes.feed_mode[line]
-        )
         path = Toolpath(
             self.axes,
             rows.kind,
@@ -184,8 +181,8 @@ class Moves:
             np.broadcast_to(np.nan, (count, 3)),
             constant(0.0, count),
             self.modes.plane[line],
-            feed,
-            mode,
+            self.modes.feed[line],
+            self.modes.feed_mode[line],
             rows.frame,
             line + self.lines.window.first_line,
             rows.nth,
@@ -208,7 +205,7 @@ class Moves:
             first=self.state.frames.first,
             after_rapid=self.state.rapid,
         )
-        path = path.replace(after_side=self.state.at_side)
+        path = self._fed(path, rows).replace(after_side=self.state.at_side)
         if count:
             self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
         refuse_ends(self.lines, self.modes, path.side, path.kind, line)
@@ -227,15 +224,19 @@ class Moves:
             lost[place] |= found.axes
         return lost[:-1]
 
-    def _feed_of_rows(self, rows: Rows) -> Floats:
-        """Return feeds in mm/min, 1/min, mm/turn, or deg/min where only rotary axes turn."""
-        line = rows.line
-        feed, unit = self.modes.feed[line], self.modes.feed_unit[line]
-        if (unit == 1.0).all():
-            return feed
-        plain = self.modes.feed_mode[line] == NUMBER["G93"]
-        plain |= turns_only(self.axes, self.track.entry, rows.end) & (rows.kind < 2)
-        return np.where(plain, feed, feed * unit)
+    def _fed(self, path: Toolpath, rows: Rows) -> Toolpath:
+        """Return the path with feeds in mm/min, 1/min, mm/turn, or deg/min for rotary axes alone.
+
+        The path has the numbers that are in force.
+        """
+        unit = self.modes.feed_unit[rows.line]
+        feed, mode = path.feed, path.feed_mode
+        if not (unit == 1.0).all():
+            plain = mode == NUMBER["G93"]
+            plain |= turns_only(path) & (path.kind < Kind.ARC_CW)
+            feed = np.where(plain, feed, feed * unit)
+        feed, mode = self.tied.paced_rows(rows, feed, mode)
+        return path.replace(feed=feed, feed_mode=mode)
 
     def _arc_words(self, lines: Ints) -> ArcWords:
         """Return centre, radius and turns words of arcs, nan where there is none, in mm."""
@@ -260,13 +261,13 @@ class Moves:
         )
 
 
-def turns_only(axes: str, entry: Floats, ends: Floats) -> Flags:
+def turns_only(path: Toolpath) -> Flags:
     """Return the moves (n,) in which no linear axis moves and a rotary one does."""
-    linear = [k for k, axis in enumerate(axes) if axis in LINEAR]
-    rotary = [k for k, axis in enumerate(axes) if axis not in LINEAR]
-    if not rotary or not len(ends):
-        return np.zeros(len(ends), np.bool_)
-    start = np.vstack([entry, ends[:-1]])
+    linear = [k for k, axis in enumerate(path.axes) if axis in LINEAR]
+    rotary = [k for k, axis in enumerate(path.axes) if axis not in LINEAR]
+    if not rotary or not len(path):
+        return np.zeros(len(path), np.bool_)
+    start, ends = path.start, path.end
     still = (np.abs(start - ends) < SAME_PLACE) | (np.isnan(start) & np.isnan(ends))
     return np.asarray(still[:, linear].all(axis=1) & ~still[:, rotary].all(axis=1))
 

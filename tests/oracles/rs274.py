@@ -36,6 +36,7 @@ RESET = b"G80 G21 G17 G90 G91.1 G94 G40 G49 G54 G99 M5 M9\nS0 T0\nG0 X0 Y0 Z0 A0
 RESET += b"G82 X0 Z0 R0 P0 F1\nG80 G94\n"  # a dwell of a cycle would stay
 PLAIN_G = {0, 1, 2, 3, 4, 17, 18, 19, 20, 21, 40, 49, 80, 90, 91, 90.1, 91.1, 93, 94, 95}
 PLAIN_G |= set(range(54, 60)) | {73, 74, 98, 99} | set(range(81, 90))
+PLAIN_G |= {33, 33.1, 38.2, 38.3, 38.4, 38.5}
 PLAIN_M = {0, 1, 3, 4, 5, 6, 7, 8, 9, 60}
 BLOCK = re.compile(r"/?(N\d+)?(?:[ABCFGIJKLMPQRSTXYZ][+-]?[\d.]+)*")
 END = re.compile(rb"[ \t]*([nN]\d+)?[ \t]*[mM]0*2[ \t]*")  # not taken apart by a comment
