@@ -19,9 +19,6 @@ WAITING = {
     "cutter compensation": """
         cutters_arc_beside cutters_inner_corner cutters_left cutters_outer_corner cutters_right
     """,
-    "motion tied to the spindle": """
-        others_constant_speed others_thread
-    """,
     "parameters and expressions": """
         lcnc_expr_float_equal lcnc_expr_left_assoc_power lcnc_number_double_minus
         lcnc_param_assign_after_block lexical_number_double_minus values_and_or
