@@ -43,7 +43,6 @@ if TYPE_CHECKING:
     from gcxform.modal.codes import Code as Code
     from gcxform.modal.codes import CutterComp as CutterComp
     from gcxform.modal.codes import MCode as MCode
-    from gcxform.modal.tables import frame_name as frame_name
     from gcxform.options import Angle as Angle
     from gcxform.options import Length as Length
     from gcxform.options import ModelFile as ModelFile
@@ -98,7 +97,6 @@ _HOMES = {
     "machine.errors": "AxisFunction AxisFunctions ErrorModel Outside check_contraction compensate",
     "machine.formats": "ErrorFormat",
     "modal.codes": "Code CutterComp MCode",
-    "modal.tables": "frame_name",
     "options": "Angle Length ModelFile Option Vector",
     "pipeline": "Pipeline Result",
     "registry": "Registry",

@@ -415,6 +415,12 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "Not a tool number",
         "The tables of tools are called by whole numbers, [tool.1] for T1, each once.",
     ),
+    "GX438": (
+        "Not a line of a tool table",
+        "A line of a LinuxCNC tool table has a tool number (T1) once in the file, and words with a "
+        "number each: P, X, Y, Z, D; I, J and Q are passed over, and offsets of other axes have to "
+        "be 0. What follows a semicolon is a comment.",
+    ),
     # --- 5xx: emission ---
     "GX501": (
         "The target cannot say this",

@@ -111,6 +111,8 @@ class Dialect:
     """Seconds for one unit of each word that G4 takes."""
     dwell_point_is_seconds: ClassVar[bool] = False
     """A dwell that is written with a point is in seconds."""
+    spindle_stands: ClassVar[bool] = False
+    """Whether the spindle stands still, as far as the control knows, when a program starts."""
     starts_in_frame: ClassVar[bool] = False
     """Whether the work offset of `initial` is in force for certain when a program starts."""
     work_names: ClassVar[Mapping[str, str]] = {}
@@ -124,6 +126,8 @@ class Dialect:
     g10_sets_position: ClassVar[bool] = False
     """G10 L20 makes the present position read what is given."""
     g10_ignores_g91: ClassVar[bool] = False
+    g10_rotates: ClassVar[bool] = False
+    """R in G10 L2 turns the work offset about Z."""
     g52_is_g92: ClassVar[bool] = False
     """G52 and G92 set one and the same shift."""
     g52_known: ClassVar[bool] = True
@@ -132,6 +136,8 @@ class Dialect:
     """G43 without H takes the length of the tool in the spindle."""
     length_may_move: ClassVar[bool] = False
     """Another tool length may move the axis by itself; where it stands is then not known."""
+    units_spoil_length: ClassVar[bool] = False
+    """A tool length in force keeps its number when the unit changes, so that it is another one."""
     g53_in_g91: ClassVar[str] = "refused"
     """What G53 does under G91: "absolute", or "refused" by the control or by us."""
     g53_is_rapid: ClassVar[bool] = False

@@ -108,6 +108,11 @@ class Restart:
             raise self.refusal(f"no restart is safe here: in line {line} {reason}")
         if state.ended:
             raise self.refusal("the program has ended before this line")
+        if state.groups["cutter-comp"] or state.side:
+            message = (
+                "no restart is safe here: cutter compensation is on, and looks at moves before"
+            )
+            raise self.refusal(message, "begin at the move that begins compensation")
         if state.memory["cycle"] in CYCLES or state.groups["motion"] in CYCLES:
             message = "no restart is safe here: a canned cycle is in force, whose words stay"
             raise self.refusal(message, "begin at the block that calls the cycle")

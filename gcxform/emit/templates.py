@@ -96,9 +96,11 @@ def nothing_left(
                 item.address == "N"
                 or (_name(item) if item.address in CODES else item.address) in folded
             )
-        return is_foreign(item, target)
+        slash = isinstance(item, Mark) and item.kind == "block_delete"
+        return slash or is_foreign(item, target)
 
     kept = [item for item in items if not (isinstance(item, Word) and item.address == "N")]
+    kept = [item for item in kept if not (isinstance(item, Mark) and item.kind == "block_delete")]
     return bool(kept) and all(goes(item) for item in items)
 
 
@@ -152,18 +154,19 @@ class TemplateWriter:
         if key.role is Role.GONE:
             return self._comments()
         at = slot = 0
-        first: bytes | None = None  # what stands before the words left out at the head
         whole = key.role not in (Role.MIDDLE, Role.LAST)
         self._repairs_wait = True
+        gap: bytes | None = None  # what stood before words that are left out
         for item in self.shape.block.items:
             lead = self.text[at : item.start].encode("latin-1") if whole else b""
             if at and not self.fields:
                 lead = b""  # what stood before is left out, and the blank after it
             at = item.end
-            if self.uncompensated and left_out(item, self.meaning):
-                first = lead if first is None and not self.fields else first
+            if self._goes(item) or (self.uncompensated and left_out(item, self.meaning)):
+                gap = lead if gap is None else gap
             else:
-                self._item(item, lead if first is None or self.fields else first, slot)
+                self._item(item, lead if gap is None else gap, slot)
+                gap = None
             slot += isinstance(item, Word) and item.address not in CODES
         self._rest()
         if whole and at < len(self.text):
@@ -190,6 +193,12 @@ class TemplateWriter:
         self._feed_at_end()
 
     # --- one item ---
+
+    def _goes(self, item: Item) -> bool:
+        """Whether an item is folded into the words of moves."""
+        if not isinstance(item, Word):
+            return False
+        return (_name(item) if item.address in CODES else item.address) in self.folded
 
     def _item(self, item: Item, lead: bytes, slot: int) -> None:
         if isinstance(item, Word):
@@ -243,8 +252,6 @@ class TemplateWriter:
     def _word(self, word: Word, lead: bytes, slot: int) -> None:
         address, verbatim = word.address, self.key.role is Role.VERBATIM
         if self.key.expanded and address in self.meaning.slots and address in DRILL_WORDS + "IJR":
-            return
-        if (address if address not in CODES else _name(word)) in self.folded:
             return
         if address not in "NO" and self._repairs_wait:
             lead = self._repair_before(word, lead)

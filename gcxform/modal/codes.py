@@ -25,7 +25,8 @@ class Effect(Enum):
 class Code:
     """One G code. `takes` are the address letters of the words that are parameters to it.
 
-    `act` names what a code with Effect.FRAME does (`gcxform/modal/acts.py`).
+    `act` names what a code with Effect.FRAME does (`gcxform/modal/acts.py`). `lengths` are those of
+    the words it takes that are in the unit of the program; of a code with an act, all axis words.
     """
 
     group: str
@@ -33,6 +34,7 @@ class Code:
     takes: str = ""
     reason: str = ""
     act: str = ""
+    lengths: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,9 +77,9 @@ class CutterComp:
     after: frozenset[str] = frozenset()
 
 
-def inert(group: str, takes: str = "") -> Code:
+def inert(group: str, takes: str = "", lengths: str = "") -> Code:
     """Return a code that changes no position."""
-    return Code(group, Effect.INERT, takes)
+    return Code(group, Effect.INERT, takes, lengths=lengths)
 
 
 def frame(group: str, act: str, takes: str = "") -> Code:

@@ -93,7 +93,8 @@ class Interpreter:
             control = self.reading.control
             state.cycles = Cycles(rule, *(_length(control, name) for name in PECKS))
         retract = int(rule is None or rule.initial_level)
-        state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": UNKNOWN_SPINDLE}
+        spindle = 0 if self.dialect.spindle_stands else UNKNOWN_SPINDLE
+        state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": spindle}
         return state
 
     def _given(self) -> dict[Key, float]:
@@ -139,3 +140,5 @@ class Interpreter:
                 if name == "feed-mode" and self.state.groups[name] != NUMBER[code]:
                     self.state.feed = np.nan
                 self.state.groups[name] = NUMBER[code]
+                if name == "frame":
+                    self.state.frames = self.state.frames.in_work(code)

@@ -72,7 +72,7 @@ def _turns_without_arc(lines: Lines, modes: Modes) -> None:
     turns = lines.word(address) if address else None
     if turns is None:
         return
-    for line in np.flatnonzero(
-        turns[1] & (modes.motion < Kind.ARC_CW) & (modes.cycle == 80)
-    ).tolist():
+    arc = (modes.motion >= Kind.ARC_CW) & ~lines.flag("own_moves")
+    arc &= lines.flag("moves") | lines.flag("has_centre")
+    for line in np.flatnonzero(turns[1] & ~arc & (modes.cycle == 80)).tolist():
         lines.findings.add(line, "GX203", f"{address} belongs to an arc, and this is none", address)

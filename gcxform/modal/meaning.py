@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from gcxform.dialect import Dialect
+from gcxform.dialect import LINEAR, Dialect
 from gcxform.modal.codes import Code, Effect, MCode
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Mark, Number, Statement, Word
@@ -61,13 +61,13 @@ class Act:
 ACT_ORDER = (
     "change-tool",
     "set-tool",
+    "diameter",
     "length",
     "length-negative",
     "length-vector",
     "length-add",
     "no-length",
     "work",
-    "diameter",
     "polar",
     "no-polar",
     "rotate",
@@ -89,17 +89,23 @@ ACT_ORDER = (
 )
 """The order in which a block's acts are done; those with the name of a move are its motion."""
 OWN_MOVES = frozenset({"home", "machine", "probe"})
-FRAMING = frozenset(ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")])
+FRAMING = frozenset(
+    {"diameter", *ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")]}
+)
 """Acts that folding takes into the words of moves, so that their codes are not written."""
 PRESETS = frozenset({"preset", "set-work", "store-home"})
 """Acts whose effect may depend on where the axes stand."""
-TAKES_MOTION = frozenset({"home", "store-home", "set-work", "local", "preset"})
+TAKES_MOTION = frozenset({"home", "store-home", "set-work", "local", "preset", "length-vector"})
 """Acts whose axis words are theirs, so that the block can have no other motion."""
 
 
 @dataclass(slots=True)
 class Meaning:
-    """What a block of a shape does, but for its numbers."""
+    """What a block of a shape does, but for its numbers.
+
+    `lengths` are the words that codes take for themselves and that are in the unit of the program:
+    code, address, slot.
+    """
 
     groups: dict[str, str] = field(default_factory=dict)
     slots: dict[str, int] = field(default_factory=dict)
@@ -119,6 +125,7 @@ class Meaning:
     bars_comp: tuple[str, str] = ("", "")
     events: list[EventShape] = field(default_factory=list)
     acts: list[Act] = field(default_factory=list)
+    lengths: list[tuple[str, str, int]] = field(default_factory=list)
     drill_words: str = ""
     refusal: Refusal | None = None
 
@@ -261,6 +268,8 @@ def _g_effects(
         if code.effect is Effect.MODAL:
             continue
         taken = _take(code, dialect, meaning)
+        lengths = LINEAR if code.effect is Effect.FRAME else code.lengths
+        meaning.lengths += [(name, a, slot) for a, slot in taken if a in lengths]
         if code.effect is Effect.DWELL:
             meaning.dwell = True
             if not taken:
@@ -282,6 +291,8 @@ def _g_act(
     """Note what a code does to the frame; refuse it beside a motion that wants its words."""
     name, width = _code_of(word), word.end - word.start
     meaning.acts.append(Act(code.act, name, taken, word.start, width))
+    if code.act == "length-add" and any(axis in meaning.slots for axis in dialect.axes):
+        yield Refusal("GX202", word.start, width, f"{name} takes H or axis words, not both")
     if code.act in TAKES_MOTION and dialect.axis_words_once and "motion" in meaning.groups:
         message = f"{name} and {meaning.groups['motion']} both want the axis words"
         yield Refusal("GX202", word.start, width, message)

@@ -24,7 +24,7 @@ from gcxform.modal.home import own_moves
 from gcxform.modal.lines import Lines
 from gcxform.modal.rows import Rows
 from gcxform.modal.state import CYCLE_OFF, Modes
-from gcxform.modal.tables import NUMBER
+from gcxform.modal.tables import MANY_WORK, NUMBER
 from gcxform.modal.tied import Tied
 from gcxform.modal.track import Track
 from gcxform.toolpath.path import Blocks, Kind, Toolpath, constant
@@ -92,7 +92,7 @@ class Moves:
         moves &= self.modes.motion != NUMBER["G80"]
         moves |= centre & arc & ~own
         self.tied.check(moves, own)
-        in_machine = own & (self.modes.motion == Kind.LINE)
+        in_machine = self.lines.flag("in_machine") & (self.modes.motion == Kind.LINE)
         feeding = (moves & ~self.tied.paced) | in_machine
         calls = self.drilling.calls | self.lines.flag("probes")
         self._check_feed(np.flatnonzero(feeding), np.flatnonzero(calls))
@@ -128,13 +128,22 @@ class Moves:
     def _acting(self) -> Ints:
         """Return the lines that act on the frame or move in a way of their own."""
         acts = self.lines.flag("acts")
+        self._reset = self._after_end()
         if not acts.any():
-            return np.empty(0, np.int64)
+            return np.flatnonzero(self._reset)
         work = np.append(np.int8(self.state.groups["frame"]), self.modes.work)
         again = self.lines.flag("work_only") & (work[1:] == work[:-1])
+        again &= (self.modes.work != MANY_WORK) & ~self._reset
         if not self.state.frames.known and again.any():
             again[int(np.argmax(again))] = False
-        return np.flatnonzero(acts & ~again)
+        return np.flatnonzero((acts & ~again) | self._reset)
+
+    def _after_end(self) -> Flags:
+        """Return the lines before which a control that goes on has reset the work offset."""
+        after = np.zeros(self.lines.live, np.bool_)
+        if "frame" in self.dialect.resets_at_end:
+            after[1:] = self.lines.flag("ends")[:-1]
+        return after
 
     def _alone(self, moving: Flags) -> Flags:
         """Return the lines that are a tap or a probe."""
@@ -155,11 +164,15 @@ class Moves:
 
     def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows:
         """Return the rows of a stretch."""
+        self._refuse_other_units(first, first + 1)
+        if first < len(self._reset) and self._reset[first]:
+            self.track.reset_work(first)
         if first in self._acts:
             self.track.act(first)
             own = own_moves(self.track, first)
             if own is not None:
                 return own
+        self._refuse_other_units(first + 1, last)
         if self.drilling.calls[first:last].any():
             return self.drilling.rows(first, last)
         self.drilling.leave(first, last)
@@ -168,6 +181,15 @@ class Moves:
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
         return self.tied.plain(rows, ends, len(self.track.frames) - 1)
+
+    def _refuse_other_units(self, first: int, last: int) -> None:
+        """Refuse a change of units under a tool length that would become another one by it."""
+        if not self.dialect.units_spoil_length or not any(self.state.frames.tool):
+            return
+        before = np.append(self.state.groups["units"] == 1, self.modes.inch)
+        for line in (np.flatnonzero(np.diff(before[first : last + 1])) + first).tolist():
+            message = "another unit under a tool length, whose number this control then keeps"
+            self.findings.add(line, "GX213", message, hint="write G49 before, and G43 after")
 
     # --- the path ---
 
@@ -208,6 +230,7 @@ class Moves:
         path = self._fed(path, rows).replace(after_side=self.state.at_side)
         if count:
             self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
+            self.state.row_frame = self.track.frames[int(path.frame[-1])]
         refuse_ends(self.lines, self.modes, path.side, path.kind, line)
         if not path.has_arcs:
             return path
@@ -216,12 +239,14 @@ class Moves:
 
     def _lost_before(self, line: Ints, nth: Ints) -> Ints:
         """Return of which axes the position was lost between each row and the row before."""
-        if not self.track.breaks:
+        if not self.track.breaks and not self.state.lost:
             return constant(0, len(line), np.int64)
         lost = np.zeros(len(line) + 1, np.int64)
+        lost[0] = self.state.lost
         at = np.searchsorted(line, [found.line for found in self.track.breaks])
         for place, found in zip(at.tolist(), self.track.breaks, strict=True):
             lost[place] |= found.axes
+        self.state.lost = int(lost[-1])
         return lost[:-1]
 
     def _fed(self, path: Toolpath, rows: Rows) -> Toolpath:

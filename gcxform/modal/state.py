@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from gcxform.machine.machine import Machine, Tool
 from gcxform.modal.frames import FrameState
+from gcxform.toolpath.frames import Frame
 
 if TYPE_CHECKING:
     from gcxform.modal.cycles import Cycles
@@ -72,6 +73,9 @@ class Reading:
 class State:
     """What one window hands to the next.
 
+    lost        axes, as bits, whose position was lost since the last row
+    row_frame   the frame of the last row
+    polar       radius and angle last programmed in G16
     side, radius  cutter compensation in force; `at_side`: that of the last move;
                   `cancelled`: G40 has been in force since
     selected      the T word; `tool`: the tool in the spindle; `stored`: the D word; nan: not known
@@ -86,6 +90,9 @@ class State:
     ended: bool = False
     percents: int = 0
     rapid: bool = False
+    lost: int = 0
+    row_frame: Frame | None = None
+    polar: tuple[float, float] = (np.nan, np.nan)
     side: int = 0
     radius: float = np.nan
     selected: float = np.nan

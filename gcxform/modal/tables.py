@@ -42,6 +42,7 @@ NUMBER = {
     "G20": 1,
     **{f"G{54 + n}": n for n in range(6)},
     **{f"G59.{n}": 5 + n for n in (1, 2, 3)},
+    "G54.1": 9,
     "G99": 0,
     "G98": 1,
     "M5": 0,
@@ -56,9 +57,8 @@ NUMBER = {
 """The number that stands for a code within its group."""
 
 
-def frame_name(frame: int) -> str:
-    """Return the code of a work offset by its number: 0 is G54."""
-    return f"G{54 + frame}" if frame < 6 else f"G59.{frame - 5}"
+MANY_WORK = 9
+"""The number of codes that have a P word, so that they name more than one work offset."""
 
 
 FLAGS = (
@@ -74,9 +74,11 @@ FLAGS = (
     "acts",
     "own_moves",
     "probes",
+    "in_machine",
     "work_only",
     "framing",
     "presets",
+    "takes_lengths",
     "computes",
     "drills",
     "drill_words",
@@ -142,9 +144,11 @@ class MeaningTable:
             bool(meaning.acts),
             any(act.name in OWN_MOVES for act in meaning.acts),
             any(act.name == "probe" for act in meaning.acts),
+            any(act.name == "machine" for act in meaning.acts),
             [act.name for act in meaning.acts] == ["work"] and "frame" in meaning.groups,
             any(act.name in FRAMING for act in meaning.acts),
             any(act.name in PRESETS for act in meaning.acts),
+            bool(meaning.lengths),
             bool(meaning.assignments or meaning.expressions or meaning.runs_macro),
             bool(set(meaning.slots) & DRILL_WORDS) or _calls(meaning),
             bool(meaning.drill_words),

@@ -94,6 +94,7 @@ class Builder:
         if self.chance(30):
             modes += self.one((["G40"], ["G49"], ["G80"], [f"G{self.pick(54, 59)}"]))
         self._emit([(code[0], code[1:]) for code in modes], plain=True)
+        self.first_work = modes[-1] if modes[-1][1] == "5" else "G54"
         self.motion = "G0"
         words: Words = [("G", "0")]
         for axis in self.axes:
@@ -104,11 +105,14 @@ class Builder:
         """Write one block, sometimes a comment or an empty line before it."""
         if self.chance(8):
             self.lines.append(self.layout.remark())
+        self.one(self._kinds())()
+
+    def _kinds(self) -> list[Callable[[], None]]:
+        """Return what a block may be, as often as it shall come."""
         kinds: list[Callable[[], None]] = [self._line, self._line, self._line, self._rapid]
         if self.options.arcs:
             kinds += [self._arc] * 4
-        kinds += [self._auxiliary, self._modes, self._modes]
-        self.one(kinds)()
+        return [*kinds, self._auxiliary, self._modes, self._modes]
 
     def _emit(self, words: Words, *, plain: bool = False) -> None:
         """Write a block."""
@@ -226,9 +230,9 @@ class Builder:
         centre, words = [], Words()
         for axis, letter, value in zip(axes[:2], letters[:2], offset, strict=True):
             base = self.position[axis] if self.absolute_centre else 0.0
-            text = number((value + base) / self._unit(axis), self._decimals(axis))
+            text = number((value + base) / self._unit(letter), self._decimals(axis))
             start = 0.0 if self.absolute_centre else self.position[axis]
-            centre.append(start + float(text) * self._unit(axis))
+            centre.append(start + float(text) * self._unit(letter))
             if self.absolute_centre or float(text) or self.chance(50):
                 words.append((letter, self.layout.number(text)))
         return (centre[0], centre[1]), words
@@ -258,7 +262,7 @@ class Builder:
         chord = math.dist(start, (self.position[first], self.position[second]))
         if chord < 1.0:
             return None
-        unit, places = self._unit(first), self._decimals(first)
+        unit, places = self._unit("R"), self._decimals("R")
         stretch = self.one((1.01, 1.1, 1.5, 3.0, 1.0 if self.dialect == "linuxcnc" else 2.0))
         short = stretch == 1.0 and not self.inch  # LinuxCNC lets it end 1.27 um early
         steps = chord / 2 * stretch / unit * 10**places
@@ -299,9 +303,12 @@ class Builder:
             case "stop":
                 words = [("M", self.one(("0", "1")))]
             case _:
-                words = [("T", str(self.pick(1, 20)))]
-                words += [] if self.dialect == "grbl" else [("M", "6")]
+                words = self._tool()
         self._emit(words)
+
+    def _tool(self) -> Words:
+        words: Words = [("T", str(self.pick(1, 20)))]
+        return words if self.dialect == "grbl" else [*words, ("M", "6")]
 
     def _dwell(self) -> tuple[str, str]:
         tenths = self.pick(1, 30)

@@ -262,8 +262,9 @@ class Toolpath:
 
     @property
     def mirrored(self) -> Flags:
-        """(n,) whether left becomes right in the frame of the row."""
-        return np.array([frame.mirrors for frame in self.frames], np.bool_)[self.frame]
+        """(n,) whether left becomes right in the plane of the row, by its frame."""
+        mirrors = [[frame.mirrors(*plane.axes[:2]) for plane in Plane] for frame in self.frames]
+        return np.array(mirrors, np.bool_)[self.frame, self.plane]
 
     @property
     def starts_known(self) -> Flags:

@@ -19,8 +19,10 @@ from oracles.compare import move_difference
 from reference.model import Move
 
 import gcxform as gx
+from gcxform.contract import PassContext
 from gcxform.dialect import INCH
 from gcxform.machine.machine import Tool
+from gcxform.registry import default_registry
 from gcxform.toolpath.path import FeedMode, Form, Kind, Plane, Toolpath
 
 KINDS = {Kind.RAPID: "RAPID", Kind.LINE: "LINE", Kind.ARC_CW: "ARC_CW", Kind.ARC_CCW: "ARC_CCW"}
@@ -44,14 +46,20 @@ def read(text: bytes, tools: Mapping[int, Tool] = OWN_TOOLS) -> Toolpath:
     It starts from zero, with all offsets zero, and executes blocks with a slash.
     """
     told: dict[str, Any] = {"work_offsets": OFFSETS, "homes": HOMES, "tools": tools}
-    return gx.read(text, "linuxcnc", start=START, block_delete="execute", **told).path
+    path = gx.read(text, "linuxcnc", start=START, block_delete="execute", **told).path
+    return resolved(path) if path.side.any() else path
+
+
+def resolved(path: Toolpath) -> Toolpath:
+    """Return the path of the tool's centre, which is what `rs274` prints. Raises InputError."""
+    dialect = default_registry().dialect("linuxcnc")
+    step: Any = default_registry().passes["cutter-comp"]()
+    return step.apply(path, PassContext(dialect, dialect, dialect.numbers))  # type: ignore[no-any-return]
 
 
 def programmed(path: Toolpath) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return start, end (n, axes) and centre (n, 3) in the active program coordinates."""
-    start, end = path.start.copy(), path.end.copy()
-    start[:, :3], end[:, :3] = path.local(path.start[:, :3]), path.local(path.end[:, :3])
-    return start, end, path.local(path.centre)
+    return path.local(path.start), path.local(path.end), path.local(path.centre)
 
 
 def moves_of(path: Toolpath) -> Iterator[Move]:

@@ -97,7 +97,7 @@ class Fanuc(gx.Dialect):
         "G97": v.inert("spindle-mode", "S"),
         "G96": v.inert("spindle-mode", "SP"),
         **{code: v.inert("cancel") for code in ("G67", "G13.1", "G23")},
-        "G22": v.inert("stroke", "XYZIJK"),
+        "G22": v.inert("stroke", "XYZIJK", "XYZIJK"),
         "G10": v.frame("non-modal", "set-work", v.AXES + "LPRQIJK"),
         "G52": v.frame("non-modal", "local", v.AXES),
         "G92": v.frame("non-modal", "preset", v.AXES),

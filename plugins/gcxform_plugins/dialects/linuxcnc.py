@@ -103,7 +103,7 @@ class LinuxCNC(gx.Dialect):
         "G95": gx.Code("feed-mode"),
         **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
         **{code: v.frame("frame", "work") for code in ("G59.1", "G59.2", "G59.3")},
-        **{code: v.inert("path", "PQ") for code in ("G61", "G61.1", "G64")},
+        **{code: v.inert("path", "PQ", "PQ") for code in ("G61", "G61.1", "G64")},
         **{code: v.inert("retract") for code in ("G98", "G99")},
         "G7": v.frame("diameter", "diameter"),
         "G8": v.frame("diameter", "diameter"),
@@ -154,13 +154,16 @@ class LinuxCNC(gx.Dialect):
         **{code: gx.MCode("user", takes="PQ", loses_position=True) for code in range(100, 200)},
     }
     axis_words_once = True
+    spindle_stands = True
     starts_in_frame = True
     g10_offsets = (*gx.Dialect.g10_offsets, "G59.1", "G59.2", "G59.3")
     g10_p0_is_active = True
     g10_sets_position = True
     g10_ignores_g91 = True
+    g10_rotates = True
     g52_is_g92 = True
     g43_takes_spindle_tool = True
+    units_spoil_length = True
     g28_without_axes = True
     cutter_comp = gx.CutterComp(
         planes=frozenset({"XY", "ZX"}),
