@@ -34,6 +34,7 @@ FOUND = "tests/properties/test_found.py"
 CORPUS = "tests/test_corpus.py::test_case"
 OFFSETS = "tests/test_corpus.py"
 SHIFTS = "tests/properties/test_shifts.py::test_gcxform_reads_shifts_as_linuxcnc_does"
+TIED = "tests/properties/test_tied.py"
 CUTTER = "tests/test_cutter_comp.py"
 KIT = "tests/test_kit.py::test_registered_passes"
 LAWS = "tests/properties/test_laws.py"
@@ -53,6 +54,10 @@ class Mutation:
     old: str
     new: str
     tests: str
+
+
+def _tied(name: str, old: str, new: str, tests: str = TIED) -> Mutation:
+    return Mutation(f"tied: {name}", "gcxform/modal/tied.py", old, new, tests)
 
 
 def _offsetting(name: str, old: str, new: str) -> Mutation:
@@ -708,6 +713,36 @@ MUTATIONS = (
         "np.where(_is_m6(lines, changes), selected, np.nan), changes, state.tool",
         "selected, selected == selected, state.tool",
         CUTTER,
+    ),
+    _tied("a tap stays down", "track.state.position = start.copy()", "track.state.position = end"),
+    _tied("threads in the unit of mm", "word[0][rows.line] * unit", "word[0][rows.line]"),
+    _tied("threads without a spindle", "(spindle == 0) |", "(spindle == 9) &"),
+    _tied(
+        "a probe stands at its target",
+        "track.state.position[k] = np.nan",
+        "pass",
+        "tests/test_corpus.py::test_case[tied/probe-then-distance]",
+    ),
+    Mutation(
+        "the proof takes a thread for a line",
+        "gcxform/verify.py",
+        "tied & (form != was)",
+        "tied & (form < 0)",
+        "tests/test_tied.py",
+    ),
+    Mutation(
+        "threads are cut",
+        f"{PASSES}/splitting.py",
+        "(path.form == gx.Form.PLAIN)",
+        "(path.form >= gx.Form.PLAIN)",
+        "tests/test_corpus.py::test_case[tied/thread-not-straight]",
+    ),
+    Mutation(
+        "a user code leaves positions known",
+        "gcxform/modal/lines.py",
+        "return np.asarray(lost & ~known[self.shape])",
+        "return np.asarray(lost & known[self.shape])",
+        "tests/test_corpus.py::test_case[tied/user-code-inert]",
     ),
     _offsetting("the other side", "(at[0] - side * radius", "(at[0] + side * radius"),
     _offsetting(

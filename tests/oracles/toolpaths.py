@@ -95,6 +95,10 @@ def events_of(path: Toolpath) -> list[tuple[int, str, int]]:
         value = event.values[0][1] if event.values else 0.0
         if event.what == "DWELL":
             found.append((event.row, f"DWELL {value:.4f}", event.line + 1))
+        elif (
+            event.what == "M19" and not event.within and not {"R", "P"} & dict(event.values).keys()
+        ):
+            continue  # LinuxCNC says nothing of it where no angle is given
         elif event.what in COMPARED:
             words = f"{event.what}{value:.10g}" if event.what in "ST" else event.what
             found.append((event.row, words, event.line + 1))
