@@ -183,10 +183,10 @@ class Verifier:
         written, owner = trace.written, trace.written_owner
         form, was = written.form, trace.before.form[owner]
         tied = np.isin(form, WHOLE) | np.isin(was, WHOLE)
-        wrong = tied & (form != was)
-        wrong |= tied & (np.bincount(owner, minlength=len(trace.before))[owner] != 1)
-        if wrong.any():
-            output = int(written.source[np.argmax(wrong)])
+        broken = tied & (form != was)
+        broken |= tied & (np.bincount(owner, minlength=len(trace.before))[owner] != 1)
+        if broken.any():
+            output = int(written.source[np.argmax(broken)])
             message = "a move tied to the spindle or to a probe became another, or several"
             self._raise(message, trace.line_of(output), output)
 

@@ -10,7 +10,7 @@ from gcxform.verify import Verifier, _Trace
 
 def test_the_proof_compares_forms():
     written = gx.read(b"G0 X0 Y0 Z5\nS100 M3\nG95 F1.5 G1 Z-5\nM2\n", "linuxcnc").path
-    before = written.replace(form=(written.form + [0, Form.THREAD]).astype("int8"))
+    before = written.replace(form=(written.form + np.array([0, Form.THREAD])).astype("int8"))
     assert before.feed_mode.tolist() == written.feed_mode.tolist()
     verifier = object.__new__(Verifier)
     verifier.file = "-"

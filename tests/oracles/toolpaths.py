@@ -93,6 +93,12 @@ def events_of(path: Toolpath) -> list[tuple[int, str, int]]:
     found = []
     for event in path.events:
         value = event.values[0][1] if event.values else 0.0
+        if (
+            event.what == "M19"
+            and not event.within
+            and not {"R", "P"} & {a for a, _ in event.values}
+        ):
+            continue  # LinuxCNC says nothing of it where no angle is given
         if event.what == "DWELL":
             found.append((event.row, f"DWELL {value:.4f}", event.line + 1))
         elif (
