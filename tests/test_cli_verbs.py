@@ -40,8 +40,8 @@ def test_check_counts_findings(here: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "place"),
     [
-        (b"G0 X1\n", ":1"),
-        (b"%\nG0 X1\n", ":2"),
+        (b"G0 X1\n", ":1:1"),
+        (b"%\nG0 X1\n", ":2:1"),
         (b"G0 X1\n%\n", ":2:1"),
         (b"(part)\n%\nG0 X1\n%\n", ":2:1"),
         (b"", ""),
