@@ -149,6 +149,12 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "that is not whole where one is asked for. Or controls are known to compute this in two "
         "ways, such as the rounding of a half on Fanuc; then write it so that there is one.",
     ),
+    "GX222": (
+        "The program has no end that the control takes",
+        "LinuxCNC refuses a file that neither ends with M2 or M30 nor stands between two percent "
+        "signs, and a percent sign at the end alone. `gcxform check` says so; a piece of a program "
+        "can be read and written all the same.",
+    ),
     "GX230": (
         "Cutter compensation that the control refuses",
         "G41, G42 or G40 stands where the control stops with an alarm, or a code stands between "

@@ -44,6 +44,7 @@ def _check_resolved(passes: Sequence[Pass]) -> None:
             continue
         for other in passes[:number]:
             exact = other.promise == 0 and other.promise_angle == 0
+            exact &= other.feed_mode is None and other.keeps_rows
             if not exact or type(other).undo is not Pass.undo or other.resolves:
                 message = f"{other.name} changes the path that {step.name} is proved against"
                 raise UsageError.one("GX741", message, hint=f"put {step.name} before it")

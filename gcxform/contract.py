@@ -49,6 +49,8 @@ class Pass:
     requires: ClassVar[frozenset[Fact]] = frozenset()
     ensures: ClassVar[frozenset[Fact]] = frozenset()
     clears: ClassVar[frozenset[Fact]] = frozenset()
+    keeps_rows: ClassVar[bool] = True
+    """Whether a pass that moves nothing has the rows of its input in its output, one for one."""
     joins: ClassVar[bool] = False
     """Whether a row may come to stand for several that follow one another: it is the first one's
     line that it keeps. Where a window ends decides then what can be joined."""

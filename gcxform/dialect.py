@@ -47,6 +47,7 @@ class ArcRule:
 
     Accepted if delta <= `absolute`, or if delta <= `relative` * radius and delta <= `largest`.
     `smallest` is the least radius; `r_short` is how much an R may fall short of the half chord.
+    `in_inch`: how many times as large `absolute` and `largest` are in blocks in inches.
     """
 
     absolute: float
@@ -54,6 +55,7 @@ class ArcRule:
     largest: float = float("inf")
     smallest: float = 0.0
     r_short: float = 0.0
+    in_inch: float = 1.0
 
 
 class Dialect:
@@ -146,6 +148,8 @@ class Dialect:
     """G28 without an axis word sends all axes home."""
     block_delete: ClassVar[str] = ""
     """What the control does with `/` blocks: "execute", "skip", or "" when a switch decides."""
+    needs_end: ClassVar[bool] = False
+    """A file without M2 or M30, and not between two percent signs, is refused by the control."""
     stops_at_end: ClassVar[bool] = True
     skips_first_text: ClassVar[bool] = False
     lower_case: ClassVar[bool] = True
@@ -160,10 +164,18 @@ class Dialect:
     """The limit counts neither blanks nor comments."""
     comments: ClassVar[str] = "("
     """How a comment may begin: any of "(" and ";"."""
+    active_comments: ClassVar[tuple[str, ...]] = ()
+    """How comments begin that the control executes, in capitals."""
     has_percent: ClassVar[bool] = True
     has_program_number: ClassVar[bool] = True
     program_number_digits: ClassVar[int] = 0
     """How many digits a program number may have; 0: any number."""
+    most_m_words: ClassVar[int] = 0
+    """How many M words a block may have; 0: any number."""
+    tools_in_table: ClassVar[bool] = False
+    """A tool that the tool table does not have is refused where it is named."""
+    spindle_words: ClassVar[frozenset[str]] = frozenset()
+    """Codes, and S, beside which a word `$` says which spindle is meant."""
     words: ClassVar[str] = "DEFHIJKLNPQRST"
     """Addresses the control knows, besides its axes and G, M, O."""
     arithmetic: ClassVar[Arithmetic | None] = None
@@ -176,6 +188,14 @@ class Dialect:
     arc_rule: ClassVar[ArcRule] = ArcRule(absolute=0.01)
     cycle_rule: ClassVar[CycleRule | None] = None
     """What the control makes of canned cycles; None: it has none, or they are not known."""
+
+    cycles_stop: ClassVar[bool] = False
+    """The moves of a cycle end exactly, also where G64 rounds corners."""
+
+    @classmethod
+    def executes(cls, comment: str) -> bool:
+        """Whether the control does something when it reads a comment."""
+        return comment.lstrip("(; \t").upper().startswith(cls.active_comments)
 
     @classmethod
     def load_grammar(cls) -> Grammar:

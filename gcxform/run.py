@@ -86,6 +86,7 @@ class Run:
                 (pipeline.limit(False), pipeline.limit(True)),
                 pipeline.angle_limit(),
                 self.source.name,
+                any(step.folds for step in self.steps),
             )
 
     def _unresolved(self) -> tuple[Pass, ...]:

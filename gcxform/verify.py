@@ -9,15 +9,16 @@ budget, with the same kinds of moves, feeds and events.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.contract import Pass, PassContext
 from gcxform.diagnostics import Diagnostic, GcxformError, Location, VerificationError
+from gcxform.dialect import INCH
 from gcxform.modal.interpreter import Interpreted, Interpreter
-from gcxform.modal.meaning import FRAMING
+from gcxform.modal.meaning import FRAMING, only_for_cycles
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
@@ -29,6 +30,7 @@ Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
 
+LENGTHS = frozenset("XYZUVWIJKR")
 TIME_ERROR = 1e-3  # relative: what the rounding of the feeds of pieces may change
 
 
@@ -64,8 +66,10 @@ class Verifier:
         budgets: tuple[float, float],
         angle_budget: float,
         file: str = "-",
+        folded: bool = False,
     ) -> None:
         self.passes = passes
+        self.folded = folded
         self.context = context
         self.reader = WindowReader(context.target)
         self.interpreter = Interpreter(context.target, reading, axes, "output")
@@ -104,7 +108,7 @@ class Verifier:
         self._compare(trace)
         if self.feed_modes:
             self._left_modes(read, back, trace)
-        self._events(self._told(read.path.events), self._told(back.path.events), trace)
+        self._events(self._told(read.path), self._told(back.path), trace)
 
     def _count(self, read: Interpreted, window: Window, trace: _Trace) -> None:
         found = self.findings
@@ -236,9 +240,15 @@ class Verifier:
             line = int(trace.before.source[wrong[0]])
             self._raise("the time of a move in G93 has changed", line, 0)
 
-    def _told(self, events: tuple[Event, ...]) -> tuple[Event, ...]:
+    def _told(self, path: Toolpath) -> tuple[Event, ...]:
         """Return the events that have to be in the output too: not those that are folded away."""
-        if not any(step.folds for step in self.passes):
+        source, target = self.context.source, self.context.target
+        events = tuple(
+            _in_mm(event, path)
+            for event in path.events
+            if not only_for_cycles(event.what, source, target)
+        )
+        if not self.folded:
             return events
         codes = self.context.source.codes
         return tuple(e for e in events if e.what not in codes or codes[e.what].act not in FRAMING)
@@ -321,6 +331,14 @@ class Verifier:
             message += f" (output line {output_line + 1})"
         hint = "nothing was written; if the pipeline is right this is a bug of gcxform or a plugin"
         raise VerificationError((Diagnostic("GX601", message, where, hint),))
+
+
+def _in_mm(event: Event, path: Toolpath) -> Event:
+    """Return an event with the lengths among the words of its G code in mm."""
+    if event.what[0] != "G" or not path.blocks.inch[event.line - path.blocks.first]:
+        return event
+    values = tuple((a, v * INCH if a in LENGTHS else v) for a, v in event.values)
+    return replace(event, values=values)
 
 
 class _Trace:

@@ -49,7 +49,8 @@ class Copying:
         old_count = np.bincount(self.original.block, minlength=live)
         self.exact = np.zeros(len(self.path), np.bool_)
         self.believed_exact = believed.exact
-        self.lines = (old_count == 0) & (pieces.count == 0)
+        self.believed_position = believed.position
+        self.lines = (old_count == 0) & (pieces.count == 0) & ~pieces.expanded_line
         stands = self._standing(old_count, pieces)
         self._refuse_changed(stands, pieces)
         self._refuse_presets()
@@ -104,9 +105,10 @@ class Copying:
         for line in np.flatnonzero(self.task.table.flag("presets", self.task.shape)).tolist():
             now = np.searchsorted(self.path.block, line) - 1
             was = np.searchsorted(self.original.block, line) - 1
-            if now < 0 or was < 0 or self.exact[now]:
+            if self.exact[now] if now >= 0 else self.believed_exact:
                 continue
-            gap = np.abs(self.positions.after[now] - self.original.end[was])
+            stands = self.positions.after[now] if now >= 0 else self.believed_position
+            gap = np.abs(stands - (self.original.end[was] if was >= 0 else self.original.entry))
             if (gap > EXACT).any():
                 message = "this block counts from where the axes stand, and they stand elsewhere"
                 hint = 'put the pass "offsets" before'
@@ -124,6 +126,8 @@ class Copying:
                     hint = "leave the block out, or let the CAM system write it so"
                     if (name, address) not in self._lengths_left(line):
                         hint = 'put the pass "offsets" before'
+                    elif address == "D":
+                        hint = 'put the pass "cutter-comp" before'
                     raise InputError.one("GX506", message, self.task.location(line), hint)
 
     def _lengths_left(self, line: int) -> list[tuple[str, str]]:
@@ -137,6 +141,8 @@ class Copying:
         window, first = self.task.window, int(self.task.window.first_number[line])
         meaning = self.task.table.meanings[int(self.task.shape[line])]
         folded = {act.code for act in meaning.acts if act.name in FRAMING and self.path.folded}
+        if self.path.blocks.uncompensated:
+            folded.add(meaning.groups.get("cutter-comp", ""))
         return [
             (name, address)
             for name, address, slot in meaning.lengths

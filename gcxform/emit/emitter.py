@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError
+from gcxform.dialect import Dialect
 from gcxform.emit.arcs import ArcEnds, centre_words
 from gcxform.emit.copying import EXACT, Copying
 from gcxform.emit.fields import Axis, Centre, Computed, Copied, Feed, Field, Key, Literal, Role
@@ -69,6 +70,7 @@ class Emitter:
         self.believed = Believed.at_start(manner, start)
         self.line_end = b""
         self.gap: bytes | None = None
+        self.path_mode = ""
 
     def emit(
         self, window: Window, table: MeaningTable, read: Interpreted, path: Toolpath
@@ -105,6 +107,7 @@ class _Job:
 
     def run(self) -> Emitted:
         copied = self.copying.lines
+        self._refuse_rounding()
         self._arcs()
         empty = self._without_words() | self._foreign() | self._gone() | self._only_compensates()
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
@@ -141,7 +144,7 @@ class _Job:
         work = self.path.frames[0].work if self.path.folded else ""
         gone = np.array(
             [
-                nothing_left(shape.block.items, meaning, task.manner.target, work)
+                nothing_left(shape.block.items, meaning, task.manner, work)
                 for shape, meaning in zip(
                     task.table.shapes.shapes, task.table.meanings, strict=False
                 )
@@ -161,6 +164,23 @@ class _Job:
             np.bool_,
         )
         return np.asarray(only[self.task.shape][self.pieces.line] & ~self.pieces.has_row)
+
+    def _refuse_rounding(self) -> None:
+        """Refuse moves of cycles where corners are rounded: the bottom would not be reached."""
+        manner, path = self.task.manner, self.path
+        modes = [e for e in path.events if _is_path_mode(e.what, manner.source)]
+        if manner.source.cycles_stop and self.pieces.expanded_line.any():
+            rows = np.flatnonzero(self.pieces.expanded_line[path.block])
+            last = np.searchsorted([event.row for event in modes], rows, "right")
+            rounds = np.array(
+                [e == "G64" for e in [self.emitter.path_mode, *(e.what for e in modes)]]
+            )
+            if rounds[last].any():
+                message = "the moves of a cycle end exactly, and G64 would round their ends"
+                first = rows[rounds[last]][:1]
+                self._refuse(first, "GX506", message, "write G61 before the cycle")
+        if modes:
+            self.emitter.path_mode = modes[-1].what
 
     # --- arcs ---
 
@@ -207,6 +227,7 @@ class _Job:
             self.path.sweep[rows],
             np.where(self.path.mirrored[rows], -1.0, 1.0) * self.path.sense[rows],
             self._spiral(rows, axes),
+            inch,
         )
         self.centre[rows], good = centre_words(arcs, manner.target.arc_rule, refit)
         good |= self._full_circles(rows, axes, begin, refit)
@@ -365,7 +386,7 @@ class _Job:
             present = self.positions.write[rows, column]
             if present.any():
                 whole = self.positions.words_of(column, rows)
-                self._check_known(np.isnan(whole) & present, rows, field.address)
+                self._check_known(field.address, whole, present, rows)
                 decimals = manner.decimals_of(field.address, inch)
                 renderer.number(field.gap, field.address, whole, decimals, present)
         elif isinstance(field, Centre):
@@ -394,14 +415,14 @@ class _Job:
             raise InputError.one("GX501", message, where)
         renderer.number(b"", field.address, whole, decimals, np.ones(len(lines), np.bool_), False)
 
-    def _check_known(self, unknown: Flags, rows: Ints, axis: str) -> None:
-        """Refuse distances from a place that is not known."""
-        if unknown.any():
-            message = f"{axis} would be a distance from a place that is not known here"
-            hint = 'put the pass "absolute" before'
-            self._refuse(rows[unknown], "GX506", message, hint)
-
     # --- after ---
+
+    def _check_known(self, address: str, whole: Floats, present: Flags, rows: Ints) -> None:
+        """Refuse increments from where the control only knows: the operator may have moved it."""
+        unknown = rows[present & np.isnan(whole)]
+        if len(unknown):
+            message = f"{address} is incremental, but where {address} stands is not known"
+            self._refuse(unknown, "GX207", message, f"program {address} in G90 before")
 
     def _check_feed(self, feed: Floats, written: Floats, members: Ints) -> None:
         """Refuse feeds that are too small to be written."""
@@ -490,3 +511,7 @@ def _without_blanks(text: bytes, lengths: Ints) -> Ints:
     ends = np.cumsum(lengths)
     lines = [text[int(e - n) : int(e)] for e, n in zip(ends, lengths, strict=True)]
     return np.array([len(re.sub(rb"\([^)]*\)|;.*|\s", b"", line)) for line in lines], np.int64)
+
+
+def _is_path_mode(what: str, source: type[Dialect]) -> bool:
+    return what in source.codes and source.codes[what].group == "path"

@@ -25,8 +25,14 @@ from gcxform.emit.fields import (
     Role,
 )
 from gcxform.emit.manner import Manner
-from gcxform.modal.codes import Code
-from gcxform.modal.meaning import DRILL_WORDS, FRAMING, Meaning, program_number_fits
+from gcxform.modal.codes import Code, MCode
+from gcxform.modal.meaning import (
+    DRILL_WORDS,
+    FRAMING,
+    Meaning,
+    only_for_cycles,
+    program_number_fits,
+)
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import BLANKS, Comment, Expression, Item, Mark, Number, Statement, Word
 from gcxform.toolpath.path import Event
@@ -80,9 +86,7 @@ def event_text(event: Event, target: type[Dialect], gap: bytes) -> bytes | None:
     return None
 
 
-def nothing_left(
-    items: tuple[Item, ...], meaning: Meaning, target: type[Dialect], work: str
-) -> bool:
+def nothing_left(items: tuple[Item, ...], meaning: Meaning, manner: Manner, work: str) -> bool:
     """Whether of a block that has items nothing but its number would be written.
 
     That is so for parts of the program frame that the target has not, and for codes that are folded
@@ -92,12 +96,11 @@ def nothing_left(
 
     def goes(item: Item) -> bool:
         if isinstance(item, Word):
-            return (
-                item.address == "N"
-                or (_name(item) if item.address in CODES else item.address) in folded
-            )
+            name = _name(item) if item.address in CODES else item.address
+            idle = only_for_cycles(name, manner.source, manner.target)
+            return name == "N" or name in folded or idle
         slash = isinstance(item, Mark) and item.kind == "block_delete"
-        return slash or is_foreign(item, target)
+        return slash or is_foreign(item, manner.target)
 
     kept = [item for item in items if not (isinstance(item, Word) and item.address == "N")]
     kept = [item for item in kept if not (isinstance(item, Mark) and item.kind == "block_delete")]
@@ -232,6 +235,12 @@ class TemplateWriter:
 
     def _comment(self, item: Comment) -> str:
         text = self.text[item.start : item.end]
+        executed = self.source.executes(text)
+        if executed and self.source is not self.target and not self.target.executes(text):
+            message = f"{self.target.name} does not execute this comment"
+            raise CannotSayError(item.start, item.end - item.start, message)
+        if not executed and self.target.executes(text):
+            text = f"{text[0]}-{text[1:]}"
         if text[0] in self.target.comments:
             return text
         inner = text[1:-1] if text[0] == "(" else text[1:]
@@ -325,7 +334,10 @@ class TemplateWriter:
                 return
         elif group in self.stated:
             return  # of several codes of a group one has been written
-        if self.key.role in (Role.MIDDLE, Role.LAST):
+        after = code is not None and code.after
+        if self.key.role in ((Role.FIRST, Role.MIDDLE) if after else (Role.MIDDLE, Role.LAST)):
+            return
+        if only_for_cycles(name, self.source, self.target):
             return
         self._check_code(word, name, code)
         self._literal(lead, text)
@@ -342,12 +354,23 @@ class TemplateWriter:
         )
         if not same or (code.takes != other.takes if other else True):
             self._refuse(word, name)
+        if name in TAPPING:
+            self._refuse(word, f"{name} with the spindle tied to the feed in the same way")
+        if code.act == "home" and self._stores_home(self.source) != self._stores_home(self.target):
+            self._refuse(word, f"{name}: it goes to a point of another kind there")
+        if code.act == "local" and self.source.g52_is_g92 != self.target.g52_is_g92:
+            self._refuse(word, f"{name} without changing what G92 has set")
         if (
             self.meaning.dwell
             and code.group == "non-modal"
             and not _same_dwell(self.source, self.target)
         ):
             self._refuse(word, "this dwell")
+
+    @staticmethod
+    def _stores_home(dialect: type[Dialect]) -> bool:
+        """Whether a program can choose the point to which G28 goes."""
+        return any(code.act == "store-home" for code in dialect.codes.values())
 
     def _refuse(self, word: Word, what: str) -> None:
         raise CannotSayError(
@@ -360,12 +383,21 @@ class TemplateWriter:
         code = self.source.m_codes.get(number, self.source.unknown_m)
         if self.source is not self.target:
             other = self.target.m_codes.get(number, self.target.unknown_m)
-            if other is None or code is None or other.after != code.after:
+            if other is None or code is None or not self._same_m(code, other):
                 self._refuse(word, f"M{number}")
         after = code is not None and code.after
         whole = self.key.role is Role.ONLY or self.as_it_stands
         if whole or self.key.role is (Role.LAST if after else Role.FIRST):
             self._literal(self._gap(lead), self._said(word.start, word.end))
+
+    def _same_m(self, code: MCode, other: MCode) -> bool:
+        """Whether an M code does the same in the target; what builders have put there does not."""
+        if "user" in (code.group, other.group) or code.group != other.group:
+            return False
+        words = {word.address for word in self.shape.block.words}
+        if code.takes != other.takes and words & {*code.takes, *other.takes}:
+            return False
+        return code.after == other.after or self.key.role is Role.NONE
 
     # --- what has to be stated ---
 
@@ -489,6 +521,7 @@ def folded_words(meaning: Meaning, work: str) -> frozenset[str]:
     return frozenset(gone)
 
 
+TAPPING = ("G74", "G84")
 STATED: Mapping[str, tuple[str, Mapping[int, str] | tuple[str, ...]]] = {
     "units": ("inch", ("G21", "G20")),
     "distance": ("incremental", ("G90", "G91")),

@@ -134,16 +134,27 @@ def _set_zero(state: FrameState, asked: Asked, name: str) -> FrameState:
 
 
 def _set_zero_here(state: FrameState, asked: Asked, name: str) -> FrameState:
-    """G10 L20: the zero is where the axes come to stand at the numbers given."""
-    if state.rotation.get(name, 0.0) or state.rotation.get(state.work, 0.0):
-        raise ActError("GX213", "G10 L20 in a rotated work offset")
+    """G10 L20: the zero is where the axes come to stand at the numbers given.
+
+    Where the work offset is rotated, X and Y that are not named keep the numbers they have there.
+    """
     inner = np.array(state.preset) + np.array(state.local)
-    zero = list(state.zero_of(name))
+    zero = np.array(state.zero_of(name))
+    here = np.array(asked.position)
+    here[:3] -= state.tool
+    about = np.array(rotation(state.rotation.get(name, 0.0), 0, 1))[:2, :2]
+    turned = about[0, 0] != 1.0 and not {"X", "Y"}.isdisjoint(asked.axes)
+    local = here - zero
+    if turned:
+        local[:2] = about.T @ local[:2]
     for axis, value in asked.axes.items():
         k = asked.column(state, axis)
-        tool = state.tool[k] if k < 3 else 0.0
-        zero[k] = float(asked.position[k]) - tool - inner[k] - value
-    return state.with_zero(name, tuple(zero))
+        local[k] = inner[k] + value
+    if turned:
+        local[:2] = about @ local[:2]
+    named = [asked.column(state, axis) for axis in asked.axes] + [0, 1] * bool(turned)
+    zero[named] = (here - local)[named]
+    return state.with_zero(name, tuple(zero.tolist()))
 
 
 def _set_tool(state: FrameState, asked: Asked, kind: int) -> FrameState:
@@ -199,6 +210,9 @@ def _with_preset(state: FrameState, shift: Vector) -> FrameState:
 
 
 def _refuse_turned(state: FrameState, asked: Asked) -> None:
+    if asked.incremental and not asked.dialect.g10_ignores_g91:
+        message = f"under G91, {asked.code} adds on some controls and does not on others"
+        raise ActError("GX213", message, "write it under G90")
     if state.turns or state.polar:
         raise ActError("GX213", f"{asked.code} in turned or scaled coordinates")
 
@@ -233,6 +247,19 @@ def preset_restore(state: FrameState, asked: Asked) -> FrameState:
 def change_tool(state: FrameState, asked: Asked) -> FrameState:
     """M6: the tool that T has named is in the spindle."""
     return replace(state, in_spindle=int(asked.tool_word))
+
+
+def user_code(state: FrameState, asked: Asked) -> FrameState:
+    """M100 to M199: a program of the machine's maker; where it leaves the axes is not known."""
+    inert = int(asked.code[1:]) in asked.reading.inert_m
+    if not inert and asked.reading.control.get("user-codes") != "keep":
+        raise ActError(
+            "GX214",
+            f"{asked.code} runs a program of this machine, if it has one",
+            'say that it has: [control] user-codes = "keep" in the machine file; positions are '
+            "then lost behind it",
+        )
+    return state
 
 
 def set_tool(state: FrameState, asked: Asked) -> FrameState:
@@ -410,6 +437,7 @@ def store_home(state: FrameState, asked: Asked) -> FrameState:
 ACTS: Mapping[str, Act] = {
     "change-tool": change_tool,
     "set-tool": set_tool,
+    "user-code": user_code,
     "length": length,
     "length-negative": length_negative,
     "length-vector": length_vector,

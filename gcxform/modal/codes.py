@@ -27,6 +27,8 @@ class Code:
 
     `act` names what a code with Effect.FRAME does (`gcxform/modal/acts.py`). `lengths` are those of
     the words it takes that are in the unit of the program; of a code with an act, all axis words.
+    `after`: it acts at the end of its block, which is that of the last piece where the block is
+    cut.
     """
 
     group: str
@@ -35,6 +37,7 @@ class Code:
     reason: str = ""
     act: str = ""
     lengths: str = ""
+    after: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +83,11 @@ class CutterComp:
 def inert(group: str, takes: str = "", lengths: str = "") -> Code:
     """Return a code that changes no position."""
     return Code(group, Effect.INERT, takes, lengths=lengths)
+
+
+def at_end(group: str) -> Code:
+    """Return a code that changes no position and acts at the end of its block."""
+    return Code(group, Effect.INERT, after=True)
 
 
 def frame(group: str, act: str, takes: str = "") -> Code:

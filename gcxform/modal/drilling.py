@@ -62,6 +62,7 @@ class Drilling:
         assert self.cycles is not None
         here = np.arange(first, last)
         calls = self._columns(here)
+        self._refuse_other_count(here)
         steps = self.cycles.expand(calls)
         for refusal in steps.refusals:
             line = int(here[refusal.call])
@@ -73,7 +74,7 @@ class Drilling:
 
     def _word(self, address: str, here: Ints) -> Floats:
         """Return a word on lines, nan where there is none; lengths in mm."""
-        axis, count = address in self.track.axes, address in ("P", self._repeats)
+        axis, count = address in self.track.axes, address in ("P", "L", self._repeats)
         if axis:
             word = self.track.column(address)
         else:
@@ -105,7 +106,7 @@ class Drilling:
             self._word(normal, here),
             self._word("R", here),
             self._word("Q", here),
-            self._word("P", here) * self.lines.dialect.dwell["P"],
+            self._dwell(here),
             self._word(self._repeats, here),
             self._word("I", here),
             self._word("J", here),
@@ -123,6 +124,24 @@ class Drilling:
             INCH if modes.inch[here[0]] else 1.0,
         )
 
+    def _refuse_other_count(self, here: Ints) -> None:
+        """Refuse L where K counts the holes: it would be left out."""
+        if self._repeats != "K":
+            return
+        for line in here[~np.isnan(self._word("L", here))].tolist():
+            message, hint = "L counts nothing here: this control repeats cycles by K", "write K"
+            self.track.findings.add(line, "GX215", message, "L", hint)
+
+    def _dwell(self, here: Ints) -> Floats:
+        """Return the P words as seconds."""
+        dialect, plain = self.lines.dialect, self._word("P", here)
+        if not dialect.dwell_point_is_seconds:
+            return plain * dialect.dwell["P"]
+        slot = self.lines.table.slots[self.lines.shape[here], ord("P") - 65]
+        number = self.lines.first[here] + np.maximum(slot, 0)
+        pointed = (slot >= 0) & (self.lines.window.decimals[number] >= 0)
+        return np.where(pointed, plain, plain * dialect.dwell["P"])
+
     def _placed(self, here: Ints, calls: Calls, steps: Steps) -> Rows:
         """Return the moves as rows, and take over where the tool is after them."""
         track, rows, first_line = self.track, steps.rows, int(here[0])
@@ -134,6 +153,7 @@ class Drilling:
         track.state.position = ends[-1].copy()
         if (calls.code == 88).any():
             track.breaks.append(Break(int(here[-1]) + 1, 1 << axes[2]))
+            track.state.position[axes[2]] = np.nan  # the operator has moved it
         starts = np.searchsorted(rows.call, rows.call)
         self.events.append((first_line, rows.events))
         form = np.where(rows.synchronised, Form.SYNCHRONISED, Form.CYCLE).astype(np.int8)

@@ -61,6 +61,7 @@ class Act:
 ACT_ORDER = (
     "change-tool",
     "set-tool",
+    "user-code",
     "diameter",
     "length",
     "length-negative",
@@ -276,7 +277,7 @@ def _g_effects(
                 yield Refusal("GX204", owners[group].start, 2, f"{name} needs a time")
             meaning.events.append(EventShape(50, "DWELL", taken))
         else:
-            meaning.events.append(EventShape(60, name, taken))
+            meaning.events.append(EventShape(60, name, taken, code.after))
             if code.effect is Effect.FRAME:
                 yield from _g_act(dialect, meaning, code, owners[group], taken)
 
@@ -314,6 +315,7 @@ def _take(
 def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
     """Turn M codes into events."""
     groups: dict[str, str] = {}
+    yield from _too_many(shape, dialect)
     for word in shape.block.words:
         if word.address != "M" or not isinstance(word.value, Number):
             continue
@@ -342,6 +344,36 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         if code.act:
             meaning.acts.append(Act(code.act, name, taken, word.start, width))
         meaning.events.append(EventShape(order, name, taken, code.after))
+
+
+def _too_many(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
+    """Refuse more M words than the control takes in a block."""
+    most = dialect.most_m_words
+    for word in [word for word in shape.block.words if word.address == "M"][most:][:1]:
+        if most:
+            message = f"{dialect.name} takes {most} M words in a block"
+            yield Refusal("GX219", word.start, word.end - word.start, message)
+
+
+def _spindle_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> None:
+    """Turn a word `$` into an event beside what turns a spindle; elsewhere it is left over."""
+    if "$" not in meaning.slots or not dialect.spindle_words:
+        return
+    coded = [w for w in shape.block.words if w.address in CODES and isinstance(w.value, Number)]
+    codes = {_code_of(word) for word in coded}
+    if dialect.spindle_words & {*codes, *meaning.slots}:
+        meaning.events.append(EventShape(9, "$", (("$", meaning.slots.pop("$")),)))
+
+
+def only_for_cycles(name: str, source: type[Dialect], target: type[Dialect]) -> bool:
+    """Whether a code is about cycles alone (G80, G98, G99), and the target gets no cycle.
+
+    That is so where the target has no cycles, or calls them otherwise: those of the source are then
+    refused, or have become plain moves.
+    """
+    if name not in ("G80", "G98", "G99") or source.codes.get(name) == target.codes.get(name):
+        return False
+    return source.codes.get("G81") != target.codes.get("G81")
 
 
 def program_number_fits(word: Word, dialect: type[Dialect]) -> bool:
@@ -394,12 +426,15 @@ def _offset_word(dialect: type[Dialect], meaning: Meaning) -> set[str]:
     elif dialect.cutter_comp.stored and named:
         meaning.events.append(EventShape(45, "D", named))
     takes = dialect.codes[code].takes if code in dialect.codes else ""
+    if named and "D" in dialect.codes[code].lengths:
+        meaning.lengths.append((code, *named[0]))
     return set("D") if dialect.cutter_comp.stored or "D" in takes else set()
 
 
 def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
     """Give the remaining words to motion, feed, spindle and tool; what is left over is refused."""
     slots = meaning.slots
+    _spindle_number(shape, dialect, meaning)
     for address, order in (("S", 10), ("T", 20)):
         if address in slots:
             event = EventShape(order, address, ((address, slots[address]),))

@@ -283,6 +283,7 @@ class Moves:
             column(self.dialect.turns_address),
             np.stack([~np.isnan(column(a)) for a in "XYZ"], axis=1),
             self.modes.absolute_centre[lines],
+            self.modes.inch[lines],
         )
 
 

@@ -27,6 +27,8 @@ from gcxform.toolpath.path import FeedMode, Form, Kind, Plane, Toolpath
 
 KINDS = {Kind.RAPID: "RAPID", Kind.LINE: "LINE", Kind.ARC_CW: "ARC_CW", Kind.ARC_CCW: "ARC_CCW"}
 COMPARED = {f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 19, 30, 60)} | {"S", "T"}
+ORIENTS = {"R", "P"}
+"""An M19 without any of these words says nothing to the spindle of `rs274`."""
 STILL = 1.001e-4  # units of the program: a move that the print shows as none
 START = dict.fromkeys("XYZABCUVW", 0.0)
 OFFSETS = {f"G{n}": START for n in (54, 55, 56, 57, 58, 59)} | {
@@ -93,18 +95,10 @@ def events_of(path: Toolpath) -> list[tuple[int, str, int]]:
     found = []
     for event in path.events:
         value = event.values[0][1] if event.values else 0.0
-        if (
-            event.what == "M19"
-            and not event.within
-            and not {"R", "P"} & {a for a, _ in event.values}
-        ):
-            continue  # LinuxCNC says nothing of it where no angle is given
         if event.what == "DWELL":
             found.append((event.row, f"DWELL {value:.4f}", event.line + 1))
-        elif (
-            event.what == "M19" and not event.within and not {"R", "P"} & dict(event.values).keys()
-        ):
-            continue  # LinuxCNC says nothing of it where no angle is given
+        elif event.what == "M19" and not event.within and not ORIENTS & dict(event.values).keys():
+            continue
         elif event.what in COMPARED:
             words = f"{event.what}{value:.10g}" if event.what in "ST" else event.what
             found.append((event.row, words, event.line + 1))

@@ -89,7 +89,7 @@ class Fanuc(gx.Dialect):
         "G95": gx.Code("feed-mode"),
         **{code: v.inert("path") for code in ("G61", "G62", "G64")},
         "G63": v.barrier("path", v.SYNCHRONISED),
-        "G9": v.inert("non-modal"),
+        "G9": v.at_end("non-modal"),
         "G8": v.inert("non-modal", "P"),
         "G5": v.inert("non-modal", "PQR"),
         "G5.1": v.inert("non-modal", "PQR"),
@@ -162,5 +162,5 @@ class Fanuc(gx.Dialect):
     lower_case = False
     dwell: ClassVar[Mapping[str, float]] = {"X": 1.0, "U": 1.0, "P": 0.001}
     arc_rule = gx.ArcRule(absolute=0.01)
-    cycle_rule = CYCLE_RULE
+    cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE
     arithmetic = v.MACRO_B

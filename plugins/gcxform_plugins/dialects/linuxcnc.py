@@ -7,13 +7,15 @@
 | arc centre | incremental, or absolute (in work coordinates) after G90.1 |
 | full circle | end repeated, or plane words left out |
 | turns of an arc | P n: n - 1 full turns more |
-| start and end radius | refused if they differ by more than 0.0282843 mm and 0.1 % |
+| start and end radius | may differ by 0.0282843 mm, or by 0.1 % and 2.82843 mm |
+| the same in G20 | 0.00282843 in, or 0.1 % and 0.282843 in |
 | G93, G94, G95 | set the feed to zero, also when re-stated |
 | feed | along X Y Z; in degrees where only rotary axes move; in G93 no less than 0.1 per minute |
 | `G20 F10` | F is in the unit before; after G20, G21 the feed in mm/min stays |
 | CR without LF | is a blank |
 | M5, M9 | act before the motion of their block |
 | after M2, M30 | nothing is executed |
+| a file without end | refused (`gcxform check` says so), but if it stands between two % signs |
 | G41 D, G42 D | tool D of the table, or the tool in the spindle; the table is the machine file's |
 | G41.1 D, G42.1 D | the diameter itself; a negative one swaps the side |
 | G41, G42 | refused when on already, and in YZ; on, many codes are refused |
@@ -31,11 +33,16 @@
 | M70, M71, M73 | change nothing that a main program notices |
 | M72 | restores modes, spindle, coolant and overrides: refused |
 | M62 to M68, M66 | outputs and inputs: the axes stand still |
-| M100 to M199 | run a program of the machine: positions are unknown after them, unless `inert-m` |
 | assignments | take effect after their block: `#1=#2 #2=#1` swaps |
 | expressions | a sign binds to its number, `**` goes from the left, numbers within 1e-4 are EQ |
 | a parameter that nothing has set | refused unless given: the control may have a value left |
 | #5001 and above, `#<_x>` and its like | belong to the control: refused |
+| M words in a block | four at most |
+| T, M61 | a tool that is not in the table, where one is given, is refused |
+| `$` | beside S or what turns a spindle; only the first spindle is known |
+| M100 to M199 | run a program of the machine: refused, but for `user-codes` and `inert-m` |
+| @ and ^ | polar words: refused |
+| comments | `(MSG,` `(PRINT,` `(LOG,` `(PROBEOPEN` `(ABORT,` and their like are executed |
 | O-words | refused: code that would have to be run |
 """
 
@@ -90,6 +97,13 @@ CYCLE_RULE = v.CycleRule(
     one_plane=False,
     initial_level=False,
 )
+USER_CODE = gx.MCode("user", takes="PQ", act="user-code", loses_position=True)
+# fmt: off
+ACTIVE = (
+    "MSG,", "DEBUG,", "PRINT,", "LOG,", "LOGOPEN,", "LOGAPPEND,", "LOGCLOSE", "PROBEOPEN",
+    "PROBECLOSE", "ABORT,", "PY,",
+)
+# fmt: on
 
 
 class LinuxCNC(gx.Dialect):
@@ -118,7 +132,8 @@ class LinuxCNC(gx.Dialect):
         **{code: v.frame("non-modal", "home") for code in ("G28", "G30")},
         **{code: v.frame("non-modal", "store-home") for code in ("G28.1", "G30.1")},
         "G53": v.frame("non-modal", "machine"),
-        **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42", "G41.1", "G42.1")},
+        **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
+        **{code: gx.Code("cutter-comp", takes="D", lengths="D") for code in ("G41.1", "G42.1")},
         "G43": v.frame("tool-length", "length", "H"),
         "G43.1": v.frame("tool-length", "length-vector", v.AXES),
         "G43.2": v.frame("tool-length", "length-add", "H"),
@@ -151,7 +166,7 @@ class LinuxCNC(gx.Dialect):
         72: gx.MCode("modal-store", barrier="it restores modes that were stored before"),
         98: gx.MCode("stop", barrier=v.CALL, takes="PL"),
         99: gx.MCode("stop", barrier=v.CALL),
-        **{code: gx.MCode("user", takes="PQ", loses_position=True) for code in range(100, 200)},
+        **{code: USER_CODE for code in range(100, 200)},
     }
     axis_words_once = True
     spindle_stands = True
@@ -179,10 +194,16 @@ class LinuxCNC(gx.Dialect):
     feed_before_units = True
     lone_cr_is_blank = True
     number_first = True
+    needs_end = True
+    most_m_words = 4
+    tools_in_table = True
+    spindle_words = frozenset({"S", "M3", "M4", "M5", "M19", "M51", "G95", "G96", "G97"})
     turns_address = "P"
     cycle_rule = CYCLE_RULE
+    cycles_stop = True
     line_length = 252
     comments = "(;"
+    active_comments = ACTIVE
     words = "DEFHIJKLNPQRST@^$"
     arc_rotary = True
     feed_along_lines = True
@@ -190,5 +211,10 @@ class LinuxCNC(gx.Dialect):
     arithmetic = v.RS274
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     arc_rule = gx.ArcRule(
-        absolute=0.0282843, relative=0.001, largest=2.82843, smallest=0.00127, r_short=0.00127
+        absolute=0.0282843,
+        relative=0.001,
+        largest=2.82843,
+        smallest=0.00127,
+        r_short=0.00127,
+        in_inch=2.54,
     )

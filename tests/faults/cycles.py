@@ -1,9 +1,13 @@
-"""Small faults in the arithmetic of canned cycles, for `mutations.py`: name, file, old, new."""
+"""Faults in the arithmetic of canned cycles."""
+
+from __future__ import annotations
+
+from faults.mutation import CYCLES, Mutation
 
 LEVELS = "gcxform/modal/cycles.py"
 STEPS = "gcxform/modal/cyclesteps.py"
 
-CYCLE_FAULTS = (
+FAULTS = (
     (
         "words of another cycle stay",
         LEVELS,
@@ -171,5 +175,17 @@ CYCLE_FAULTS = (
         STEPS,
         "if len(doubtful):",
         "if False:",
+    ),
+)
+"""Name, file, old, new; the tests are those of cycles."""
+
+MUTATIONS = (
+    *(Mutation(f"cycles: {name}", *where, CYCLES) for name, *where in FAULTS),
+    Mutation(
+        "cycles: a hole above R",
+        "gcxform/modal/cycles.py",
+        "self.bottom > self.clearance",
+        "self.bottom > np.inf",
+        "tests/test_cycle_refusals.py",
     ),
 )
