@@ -23,7 +23,7 @@ MUTATIONS = (
     _verifier("times are ignored", "if len(wrong):"),
     _verifier(
         "events are ignored",
-        "self._events(self._told(read.path.events), self._told(back.path.events), trace)",
+        "self._events(self._told(read.path), self._told(back.path), trace)",
         "",
     ),
     _verifier("missing events are ignored", "if len(old) != len(new):"),
