@@ -177,10 +177,12 @@ class Copying:
         """Return which rows are in frames that turn words as those of the source did."""
         if self.path.frames == self.original.frames:
             return np.asarray(self.path.frame[rows] == self.original.frame[others])
-        turns = [(f.matrix, f.diameter, f.polar) for f in self.path.frames]
-        before = [(f.matrix, f.diameter, f.polar) for f in self.original.frames]
-        alike = np.array([[a == b for b in before] for a in turns], np.bool_)
-        return np.asarray(alike[self.path.frame[rows], self.original.frame[others]])
+        turns: dict[object, int] = {}
+        now, before = (
+            np.array([turns.setdefault((f.matrix, f.diameter, f.polar), len(turns)) for f in some])
+            for some in (self.path.frames, self.original.frames)
+        )
+        return np.asarray(now[self.path.frame[rows]] == before[self.original.frame[others]])
 
     def _starts_alike(self, rows: Ints, others: Ints) -> Flags:
         """Return which rows begin where their source begins, in the axes that the block names."""

@@ -7,11 +7,17 @@ by `gcxform/modal/cycles.py`, in the coordinates of the program.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH
-from gcxform.modal.cycles import UNKNOWN, Calls, Cycles, Steps
+from gcxform.modal.cycles import UNKNOWN, Calls, Cycles
+from gcxform.modal.cyclestretch import Stretch
 from gcxform.modal.rows import Rows
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.modal.track import Break, Track
@@ -25,19 +31,47 @@ SPINDLE = np.array([0, 1, -1, UNKNOWN])
 """How the spindle turns, by the number of its mode: stopped, M3, M4, not known."""
 
 
+MANUAL = 88
+
+
+@dataclass(frozen=True, slots=True)
+class _Common:
+    """Columns of a window that the calls of all its stretches are cut from; see `Calls`."""
+
+    code: Ints
+    initial: Flags
+    spindle: Ints
+    other_axes: Flags
+    inverse: Flags
+    line: Ints
+
+
+@dataclass(frozen=True, slots=True)
+class _Followed:
+    """A stretch: its first line, its columns, the words (axes,) before it, and its frame."""
+
+    first: int
+    stretch: Stretch
+    words: Floats
+    frame: int
+
+
 class Drilling:
     """Reads the cycles of one window; `state.cycles` goes on from window to window.
 
-    `events` are what is done within cycles: the first line of a stretch, and its events, whose rows
-    count from the first of the stretch.
+    Stretches are followed one by one, because each begins where what is before it ends; their moves
+    are made at once, at the end. `events` are what is done within cycles: the first line of a
+    stretch, how many rows behind its first, and what.
     """
 
     def __init__(self, track: Track) -> None:
         self.track = track
         self.lines, self.modes = track.lines, track.modes
         self.cycles: Cycles | None = self.lines.state.cycles
-        self.events: list[tuple[int, tuple[Event, ...]]] = []
+        self.events: list[tuple[int, int, Event]] = []
         self.calls = self._calls()
+        self._words: dict[str, Floats] = {}
+        self._followed: list[_Followed] = []
 
     def _calls(self) -> Flags:
         """Return the lines that call a cycle."""
@@ -57,91 +91,137 @@ class Drilling:
         if self.cycles is not None and (self.modes.cycle[first:last] == CYCLE_OFF).any():
             self.cycles.leave()
 
-    def rows(self, first: int, last: int) -> Rows:
-        """Return the moves of a stretch of calls."""
-        assert self.cycles is not None
-        here = np.arange(first, last)
-        calls = self._columns(here)
-        steps = self.cycles.expand(calls)
-        for refusal in steps.refusals:
-            line = int(here[refusal.call])
-            self.track.findings.add(line, "GX215", refusal.message, hint=refusal.hint)
-        if steps.refusals:
-            nothing = np.empty((0, len(self.track.axes)))
-            return Rows.plain(here[:0], self.modes.motion[:0], nothing, 0)
-        return self._placed(here, calls, steps)
+    # --- stretches, as they come ---
 
-    def _word(self, address: str, here: Ints) -> Floats:
+    def follow(self, first: int, last: int) -> None:
+        """Read a stretch of calls, and take over where the tool is after it."""
+        assert self.cycles is not None
+        here, track = slice(first, last), self.track
+        words = track.frame.words(track.state.position[None, :])[0]
+        calls = self._calls_on(here, words)
+        stretch = self.cycles.follow(calls)
+        self._followed.append(_Followed(first, stretch, words, len(track.frames) - 1))
+        after = words.copy()
+        after[list(calls.plane.axes)] = stretch.after[-1]
+        track.state.position = track.frame.positions(after[None, :])[0].copy()
+        if self._manual and (calls.code == MANUAL).any():
+            track.breaks.append(Break(last, 1 << calls.plane.axes[2]))
+
+    def _word(self, address: str, here: slice) -> Floats:
         """Return a word on lines, nan where there is none; lengths in mm."""
+        if address not in self._words:
+            self._words[address] = self._column(address)
+        return self._words[address][here]
+
+    def _column(self, address: str) -> Floats:
+        """Return a word on all lines of the window, nan where it is none of a call's."""
+        if not address:
+            return constant(np.nan, self.lines.live)
         axis, count = address in self.track.axes, address in ("P", self._repeats)
         if axis:
             word = self.track.column(address)
         else:
             word = self.lines.word(address, self.calls, distance=not count)
         if word is None:
-            return np.full(len(here), np.nan)
-        value = np.where(word[1][here], word[0][here], np.nan)
-        return value if axis or count else value * self._unit(here)
+            return constant(np.nan, self.lines.live)
+        value = np.where(word[1], word[0], np.nan)
+        if address == "P":
+            return value * self.lines.dialect.dwell["P"]
+        inches = not (axis or count) and self.modes.inch.any()
+        return value * np.where(self.modes.inch, INCH, 1.0) if inches else value
 
-    def _unit(self, here: Ints) -> Floats:
-        return np.where(self.modes.inch[here], INCH, 1.0)
+    @cached_property
+    def _common(self) -> _Common:
+        """What the modes of all lines are to cycles."""
+        modes, lines = self.modes, self.lines
+        other_axes = np.zeros(lines.live, np.bool_)
+        for axis in self.track.axes:
+            word = None if axis in "XYZ" else self.track.column(axis)
+            if word is not None:
+                other_axes |= word[1]
+        return _Common(
+            modes.cycle.astype(np.int64),
+            modes.retract == 1,
+            SPINDLE[modes.spindle],
+            other_axes,
+            modes.feed_mode == 93,
+            np.arange(lines.live) + lines.window.first_line,
+        )
 
-    @property
+    @cached_property
+    def _manual(self) -> bool:
+        """Whether there are cycles out of which the operator moves the tool."""
+        return bool((self.modes.cycle == MANUAL).any())
+
+    @cached_property
     def _repeats(self) -> str:
         rule = self.lines.dialect.cycle_rule
         return rule.repeats if rule is not None else ""
 
-    def _columns(self, here: Ints) -> Calls:
-        modes = self.modes
-        plane = Plane(int(modes.plane[here[0]]))
-        first, second, normal = ("XYZ"[axis] for axis in plane.axes)
-        words = self.track.frame.words(self.lines.state.position[None, :])[0]
-        others = [a for a in self.track.axes if a not in "XYZ"]
-        absent = np.full(len(here), np.nan)
+    def _calls_on(self, here: slice, words: Floats) -> Calls:
+        """Return the blocks of a stretch; `words` (axes,) are where the axes stand before it."""
+        modes, first = self.modes, here.start
+        plane = Plane(int(modes.plane[first]))
+        named = [self._word("XYZ"[axis], here) for axis in plane.axes]
+        lettered = [self._word(letter, here) for letter in ("R", "Q", "P", self._repeats, "I", "J")]
+        common = self._common
         return Calls(
-            modes.cycle[here].astype(np.int64),
-            self._word(first, here),
-            self._word(second, here),
-            self._word(normal, here),
-            self._word("R", here),
-            self._word("Q", here),
-            self._word("P", here) * self.lines.dialect.dwell["P"],
-            self._word(self._repeats, here),
-            self._word("I", here),
-            self._word("J", here),
-            absent if self._repeats == "K" else self._word("K", here),
+            common.code[here],
+            *named,
+            *lettered,
+            self._word("" if self._repeats == "K" else "K", here),
             modes.incremental[here],
-            modes.retract[here] == 1,
-            SPINDLE[modes.spindle[here]],
-            np.any([~np.isnan(self._word(a, here)) for a in others], axis=0)
-            if others
-            else np.zeros(len(here), np.bool_),
-            modes.feed_mode[here] == 93,
-            here + self.lines.window.first_line,
+            common.initial[here],
+            common.spindle[here],
+            common.other_axes[here],
+            common.inverse[here],
+            common.line[here],
             words[list(plane.axes)],
             plane,
-            INCH if modes.inch[here[0]] else 1.0,
+            INCH if modes.inch[first] else 1.0,
         )
 
-    def _placed(self, here: Ints, calls: Calls, steps: Steps) -> Rows:
-        """Return the moves as rows, and take over where the tool is after them."""
-        track, rows, first_line = self.track, steps.rows, int(here[0])
-        count, axes = len(rows.call), list(calls.plane.axes)
-        words = np.tile(track.frame.words(track.state.position[None, :]), (count + 1, 1))
-        words[:count, axes] = rows.end
-        words[count, axes] = steps.after[-1]
-        ends = track.frame.positions(words)
-        track.state.position = ends[-1].copy()
-        if (calls.code == 88).any():
-            track.breaks.append(Break(int(here[-1]) + 1, 1 << axes[2]))
-        starts = np.searchsorted(rows.call, rows.call)
-        self.events.append((first_line, rows.events))
+    # --- all stretches of the window ---
+
+    def rows(self) -> list[Rows]:
+        """Return the moves of the stretches, in their order."""
+        found: dict[int, Rows] = {}
+        kinds = [(f.stretch.calls.plane, f.stretch.calls.unit) for f in self._followed]
+        for kind in dict.fromkeys(kinds):
+            numbers = [number for number, other in enumerate(kinds) if other == kind]
+            found.update(zip(numbers, self._rows_of(numbers), strict=True))
+        return [found[number] for number in range(len(kinds))]
+
+    def _rows_of(self, numbers: list[int]) -> Iterator[Rows]:
+        """Yield the moves of stretches of one plane and unit."""
+        assert self.cycles is not None
+        followed = [self._followed[number] for number in numbers]
+        steps = self.cycles.steps([one.stretch for one in followed])
+        line = np.concatenate([one.stretch.calls.line for one in followed])
+        line -= self.lines.window.first_line
+        for refusal in steps.refusals:
+            place = int(line[refusal.call])
+            self.track.findings.add(place, "GX215", refusal.message, hint=refusal.hint)
+        rows = steps.rows
+        bounds = np.cumsum([0, *(len(one.stretch.calls) for one in followed)])
+        bounds = np.searchsorted(rows.call, bounds)
+        self._place_events(rows.events, bounds, [one.first for one in followed])
+        nth = np.arange(len(rows.call)) - np.searchsorted(rows.call, rows.call)
         form = np.where(rows.synchronised, Form.SYNCHRONISED, Form.CYCLE).astype(np.int8)
-        return Rows(
-            here[rows.call],
-            rows.kind,
-            np.asfortranarray(ends[:-1]),
-            np.arange(count) - starts,
-            form,
-            constant(len(track.frames) - 1, count, np.int64),
-        )
+        for one, (begin, end) in zip(followed, pairwise(bounds.tolist()), strict=True):
+            here = slice(begin, end)
+            words = np.empty((len(one.words), end - begin)).T
+            words[:] = one.words
+            words[:, list(one.stretch.calls.plane.axes)] = rows.end[here]
+            ends = self.track.frames[one.frame].positions(words)
+            frame = constant(one.frame, end - begin, np.int64)
+            yield Rows(line[rows.call[here]], rows.kind[here], ends, nth[here], form[here], frame)
+
+    def _place_events(self, events: tuple[Event, ...], bounds: Ints, firsts: list[int]) -> None:
+        """Keep events by stretch, their rows counted from the first of it."""
+        if not events:
+            return
+        lines = [event.line - self.lines.window.first_line for event in events]
+        whose = np.searchsorted(firsts, lines, "right") - 1
+        for number, event in zip(whose.tolist(), events, strict=True):
+            self.events.append((firsts[number], event.row - int(bounds[number]), event))

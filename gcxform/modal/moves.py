@@ -55,7 +55,9 @@ class Moves:
             self._stretch(first, last, moving, lost if lost.any() else None)
             for first, last in self._stretches()
         ]
-        return self._path(Rows.joined(parts, len(self.axes)))
+        drilled = iter(self.drilling.rows())
+        rows = [next(drilled) if part is None else part for part in parts]
+        return self._path(Rows.joined(rows, len(self.axes)))
 
     # --- which lines move ---
 
@@ -140,15 +142,16 @@ class Moves:
             yield 0, 0
         yield from pairwise(borders)
 
-    def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows:
-        """Return the rows of a stretch."""
+    def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows | None:
+        """Return the rows of a stretch, None for one of calls: those are made at the end."""
         if first in self._acts:
             self.track.act(first)
             own = own_moves(self.track, first)
             if own is not None:
                 return own
         if self.drilling.calls[first:last].any():
-            return self.drilling.rows(first, last)
+            self.drilling.follow(first, last)
+            return None
         self.drilling.leave(first, last)
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
