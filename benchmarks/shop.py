@@ -65,8 +65,10 @@ def slot(x: float, y: float, feed: int) -> Lines:
     yield f"G1 Z-4.000 F{feed // 3}"
     for loop in range(LOOPS):
         along = x + 0.35 * loop
-        yield f"G2 X{along:.3f} Y{y + 6.0:.3f} I0. J3. F{feed}" if not loop else (
-            f"G2 X{along:.3f} Y{y + 6.0:.3f} I0. J3."
+        yield (
+            f"G2 X{along:.3f} Y{y + 6.0:.3f} I0. J3. F{feed}"
+            if not loop
+            else (f"G2 X{along:.3f} Y{y + 6.0:.3f} I0. J3.")
         )
         yield f"X{along + 0.35:.3f} Y{y:.3f} I0.175 J-3."
     yield "G0 Z5. (SLOT DONE)"

@@ -60,7 +60,8 @@ class Cycles:
 
     def leave(self) -> None:
         """Forget what stays in force: a block has ended cycle mode."""
-        self.mode = Mode(dwell=self.mode.dwell)
+        if self.mode.code:
+            self.mode = Mode(dwell=self.mode.dwell)
 
     def follow(self, calls: Calls) -> Stretch:
         """Read a stretch, and take over what stays in force after it."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -133,21 +134,20 @@ def joined(stretches: Sequence[Stretch]) -> Stretch:
     """Return stretches of one plane and unit as one, for all that goes by columns."""
     if len(stretches) == 1:
         return stretches[0]
-    one = stretches[0]
     calls = [stretch.calls for stretch in stretches]
-    names = [f.name for f in fields(Calls) if f.name not in SCALARS]
-    columns = {name: np.concatenate([getattr(c, name) for c in calls]) for name in names}
-    together = {
-        name: {key: np.concatenate([getattr(s, name)[key] for s in stretches]) for key in keys}
-        for name, keys in (("words", one.words), ("in_g91", one.in_g91))
+    columns: dict[str, Any] = {
+        f.name: np.concatenate([getattr(some, f.name) for some in calls])
+        for f in fields(Calls)
+        if f.name not in SCALARS
     }
-    done = {"calls", *together}
-    rest = {
-        f.name: np.concatenate([getattr(s, f.name) for s in stretches])
-        for f in fields(Stretch)
-        if f.name not in done
-    }
-    return Stretch(replace(calls[0], **columns), **together, **rest)
+    rest: dict[str, Any] = {"calls": replace(calls[0], **columns)}
+    for name in ("words", "in_g91"):
+        kept = [getattr(stretch, name) for stretch in stretches]
+        rest[name] = {key: np.concatenate([some[key] for some in kept]) for key in kept[0]}
+    for f in fields(Stretch):
+        if f.name not in rest:
+            rest[f.name] = np.concatenate([getattr(stretch, f.name) for stretch in stretches])
+    return Stretch(**rest)
 
 
 def follow(calls: Calls, rule: CycleRule, mode: Mode) -> Stretch:

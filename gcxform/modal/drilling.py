@@ -162,13 +162,19 @@ class Drilling:
         """Return the blocks of a stretch; `words` (axes,) are where the axes stand before it."""
         modes, first = self.modes, here.start
         plane = Plane(int(modes.plane[first]))
-        named = [self._word("XYZ"[axis], here) for axis in plane.axes]
-        lettered = [self._word(letter, here) for letter in ("R", "Q", "P", self._repeats, "I", "J")]
+        first_axis, second_axis, normal = ("XYZ"[axis] for axis in plane.axes)
         common = self._common
         return Calls(
             common.code[here],
-            *named,
-            *lettered,
+            self._word(first_axis, here),
+            self._word(second_axis, here),
+            self._word(normal, here),
+            self._word("R", here),
+            self._word("Q", here),
+            self._word("P", here),
+            self._word(self._repeats, here),
+            self._word("I", here),
+            self._word("J", here),
             self._word("" if self._repeats == "K" else "K", here),
             modes.incremental[here],
             common.initial[here],

@@ -338,4 +338,7 @@ def column_major(rows: int, columns: int) -> Floats:
 
 def constant(value: float, rows: int, dtype: type = np.float64) -> NDArray[Any]:
     """Return a read-only column that holds one value and takes no memory."""
-    return np.broadcast_to(np.array(value, dtype), (rows,))
+    one: NDArray[Any] = np.array(value, dtype)
+    column: NDArray[Any] = np.ndarray((rows,), one.dtype, one, 0, (0,))  # broadcast_to is slow
+    column.flags.writeable = False
+    return column
