@@ -5,7 +5,7 @@
 What CAM systems and hands write for a milling machine: rings of pockets with rounded corners,
 helices down, trochoidal slots, bores in half circles, canned cycles with long lists of holes, rows
 of holes in G91, a pattern shifted by G52 or G92, three work offsets, tool lengths, G28 and G53. A
-part has about a thousand lines; a longer program has more parts, which differ in every number.
+part has about two thousand lines; a longer program has more parts, which differ in every number.
 
 The program is written for LinuxCNC. It has no line that only one of the two would take.
 """
@@ -21,7 +21,7 @@ from pathlib import Path
 PREAMBLE = ("%", "(PLATES)", "G21 G17 G90 G94 G40 G49 G80 G54", "G0 X0. Y0. Z50.")
 POSTAMBLE = ("G80", "G0 Z50.", "M5", "M9", "M30", "%")
 WORKS = ("G54", "G55", "G59.1")
-POCKETS, LEVELS, RINGS = 2, 5, 5
+POCKETS, LEVELS, RINGS = 4, 6, 6
 LOOPS, BORES, HOLES = 90, 8, 60
 Lines = Iterator[str]
 
@@ -117,7 +117,7 @@ def milling(x: float, y: float, feed: int) -> Lines:
     """Yield what the end mill does to a part."""
     for number in range(POCKETS):
         yield f"(POCKET {number + 1})"
-        yield from pocket(x + 50.0 * number, y, feed)
+        yield from pocket(x + 60.0 * number, y, feed)
     yield from slot(x - 10.0, y + 30.0, feed)
     for number in range(BORES):
         yield from bore(x + 12.0 * number, y + 45.0, 4.0 + 0.25 * number, feed)

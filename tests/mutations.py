@@ -65,9 +65,9 @@ MUTATIONS = (
     *(Mutation(f"cycles: {name}", *where, CYCLES) for name, *where in CYCLE_FAULTS),
     Mutation(
         "cycles: a hole above R",
-        "gcxform/modal/cycles.py",
-        "self.bottom > self.clearance",
-        "self.bottom > np.inf",
+        "gcxform/modal/cyclechecks.py",
+        "stretch.bottom > stretch.clearance",
+        "stretch.bottom > np.inf",
         "tests/test_cycle_refusals.py",
     ),
     # times and restarts
@@ -301,7 +301,7 @@ MUTATIONS = (
     ),
     Mutation(
         "writing: the end of a circle in inverse time is written",
-        "gcxform/emit/emitter.py",
+        "gcxform/emit/centres.py",
         "silent |= full & (self.path.feed_mode[rows] == FeedMode.INVERSE_TIME)",
         "silent |= False",
         f"{CORPUS}[feed/full-circle]",
@@ -394,9 +394,9 @@ MUTATIONS = (
     ),
     Mutation(
         "writing: centres count from where the start was before rounding",
-        "gcxform/emit/emitter.py",
-        "self.path.start if not self.path.refit_centres else self._exact_starts()",
-        "self.path.start",
+        "gcxform/emit/centres.py",
+        "np.where(exact[:, None], start, before)",
+        "start",
         LAWS + "::test_centres_count_from_the_start_as_it_is_written",
     ),
     Mutation(

@@ -89,7 +89,7 @@ class Moves:
         moves &= self.modes.motion != NUMBER["G80"]
         moves |= centre & arc & ~own
         in_machine = own & (self.modes.motion == Kind.LINE)
-        self._check_feed(np.flatnonzero(moves | in_machine), np.flatnonzero(self.drilling.calls))
+        self._check_feed(moves | in_machine)
         return moves
 
     def _dwells(self) -> Flags:
@@ -99,16 +99,17 @@ class Moves:
         dwell = np.array([meaning.dwell for meaning in self.lines.table.meanings], np.bool_)
         return np.asarray(dwell[self.lines.shape])
 
-    def _check_feed(self, rows: Ints, calls: Ints) -> None:
+    def _check_feed(self, moves: Flags) -> None:
         """Refuse feed moves without a feed, and blocks in inverse time without a feed word."""
-        feeding = np.union1d(rows[self.modes.motion[rows] != Kind.RAPID], calls)
-        feed = self.modes.feed[feeding]
-        missing = feeding[~(feed > 0)]
-        inverse = feeding[self.modes.feed_mode[feeding] == NUMBER["G93"]]
-        word = self.lines.word("F")
-        if len(inverse):
-            none = inverse if word is None else inverse[~word[1][inverse]]
-            missing = np.union1d(missing, none)
+        feeding = moves & (self.modes.motion != Kind.RAPID)
+        if self.drilling.cycles is not None:
+            feeding |= self.drilling.calls
+        none = ~(self.modes.feed > 0)
+        inverse = self.modes.feed_mode == NUMBER["G93"]
+        if inverse.any():
+            word = self.lines.word("F")
+            none |= inverse if word is None else inverse & ~word[1]
+        missing = np.flatnonzero(feeding & none)
         for line in missing[: Findings.enough].tolist():
             self.findings.add(
                 line,
