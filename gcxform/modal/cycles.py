@@ -16,7 +16,7 @@ import numpy as np
 from gcxform.modal.cyclechecks import MOST, UNKNOWN, Checks, Refusal
 from gcxform.modal.cyclerule import CycleRule, Level
 from gcxform.modal.cyclesteps import Holes, Rows, pecks_of, rows_of
-from gcxform.modal.cyclestretch import Calls, Mode, Stretch, follow, joined
+from gcxform.modal.cyclestretch import Calls, Mode, Stretch, follow, follow_fresh, joined
 from gcxform.toolpath.path import Flags, Floats, Ints
 
 __all__ = ["MOST", "UNKNOWN", "Calls", "Cycles", "Refusal", "Steps"]
@@ -69,6 +69,12 @@ class Cycles:
         if len(calls):
             self.mode = stretch.mode_after()
         return stretch
+
+    def follow_fresh(
+        self, calls: Calls, starts: Ints, positions: Floats, dwells: Floats
+    ) -> Stretch:
+        """Read stretches before and after each of which no cycle is in force."""
+        return follow_fresh(calls, self.rule, starts, positions, dwells)
 
     def steps(self, stretches: Sequence[Stretch]) -> Steps:
         """Return the moves of stretches of one plane and unit, and what speaks against them."""

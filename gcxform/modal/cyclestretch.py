@@ -152,27 +152,60 @@ def joined(stretches: Sequence[Stretch]) -> Stretch:
 
 def follow(calls: Calls, rule: CycleRule, mode: Mode) -> Stretch:
     """Return the columns of a stretch, given what stays in force from before."""
-    return _Follower(calls, rule, mode).stretch()
+    first = np.zeros(min(1, len(calls)), np.int64)
+    dwells = np.array([mode.dwell])
+    return _Follower(calls, rule, mode, first, calls.position[None, :], dwells).stretch()
+
+
+def follow_fresh(
+    calls: Calls, rule: CycleRule, starts: Ints, positions: Floats, dwells: Floats
+) -> Stretch:
+    """Return the columns of stretches before each of which no cycle is in force.
+
+    `starts` (m,) are their first calls, `positions` (m, 3) where the tool is before each: first,
+    second, normal; `dwells` (m,) are those in force before each, s.
+    """
+    return _Follower(calls, rule, Mode(), starts, positions, dwells).stretch()
 
 
 class _Follower:
-    """Fills in the columns of one stretch."""
+    """Fills in the columns of stretches, which begin at the calls `starts`."""
 
-    def __init__(self, calls: Calls, rule: CycleRule, mode: Mode) -> None:
+    def __init__(
+        self,
+        calls: Calls,
+        rule: CycleRule,
+        mode: Mode,
+        starts: Ints,
+        positions: Floats,
+        dwells: Floats,
+    ) -> None:
         self.calls, self.rule, self.mode = calls, rule, mode
+        self.starts, self.positions, self.dwells = starts, positions, dwells
+        self.many = len(starts) > 1
         self.fresh: Flags | None = None
-        if not rule.keeps_words:
-            before = np.append(mode.code, calls.code[:-1])
-            fresh = calls.code != before
+        if not rule.keeps_words or self.many:
+            fresh = calls.code != np.append(mode.code, calls.code[:-1])
+            fresh[starts[1:]] = True
             self.fresh = fresh if fresh.any() else None
-        self.initial = float(mode.initial if mode.code else calls.position[2])
+        lengths = np.diff(np.append(starts, len(calls)))
+        levels = np.array([mode.initial]) if mode.code else positions[:, 2]
+        self.initial = np.repeat(levels[: len(starts)], lengths)
+
+    def _filled(self, values: Floats, present: Flags, before: Floats) -> Floats:
+        """Return a column filled forward; `before` (m,) is what holds before each stretch."""
+        if self.many:
+            absent = ~present[self.starts]
+            values, present = values.copy(), present.copy()
+            values[self.starts[absent]] = before[absent]
+            present[self.starts] = True
+        return np.asarray(fill(values, present, float(before[0])))
 
     def stretch(self) -> Stretch:
         """Return the columns."""
         calls, mode, rule, count = self.calls, self.mode, self.rule, len(self.calls)
         words = {name: self._kept(name) for name in STICKY}
-        absent = np.isnan(calls.repeats)
-        repeats = np.where(absent, 1.0, calls.repeats)
+        repeats = np.where(np.isnan(calls.repeats), 1.0, calls.repeats)
         has_axes = ~(np.isnan(calls.first) & np.isnan(calls.second) & np.isnan(calls.normal))
         wanted = has_axes | ~np.isnan(calls.r) if rule.stores else has_axes
         drilled = wanted & (repeats > 0)
@@ -182,15 +215,15 @@ class _Follower:
             bottom = bottom + np.where(calls.incremental, clearance, 0.0)
         high = np.maximum(self.initial, clearance)
         retract = np.where(calls.initial, high, clearance)
-        ends = fill(retract, drilled, float(calls.position[2]))
-        rises, level = self._arrival(clearance, np.append(calls.position[2], ends[:-1]))
+        ends = self._filled(retract, drilled, self.positions[:, 2])
+        rises, level = self._arrival(clearance, self._before(ends, self.positions[:, 2]))
         start, after, increment = self._positions(drilled, repeats, ends)
         return Stretch(
             calls,
             words,
             {name: self._incremental(name) for name in ("r", "normal")},
             self._dwell(words["p"]),
-            constant(self.initial, count),
+            self.initial,
             repeats,
             has_axes,
             drilled,
@@ -206,6 +239,13 @@ class _Follower:
             constant(bool(mode.code) and mode.plane != calls.plane, count, np.bool_),
         )
 
+    def _before(self, after: Floats, first: Floats) -> Floats:
+        """Return what holds before each call, given what holds after it and before stretches."""
+        before = np.empty_like(after)
+        before[1:] = after[:-1]
+        before[self.starts] = first
+        return before
+
     def _kept(self, name: str) -> Floats:
         """Return a word of each call, or the one that is in force."""
         word, before = getattr(self.calls, name), self.mode.words[name]
@@ -215,9 +255,7 @@ class _Follower:
             if self.fresh is None:
                 return constant(before, len(word))
         present = ~np.isnan(word)
-        return np.asarray(
-            fill(word, present if self.fresh is None else present | self.fresh, before)
-        )
+        return fill(word, present if self.fresh is None else present | self.fresh, before)
 
     def _incremental(self, name: str) -> Flags:
         """Return whether the word in force was given in G91."""
@@ -225,13 +263,15 @@ class _Follower:
         if not self.rule.keeps_words:
             return constant(before, len(self.calls), np.bool_)
         given = ~np.isnan(getattr(self.calls, name))
+        if self.many:
+            given[self.starts] = True
         return np.asarray(fill(self.calls.incremental, given, before))
 
     def _dwell(self, programmed: Floats) -> Floats:
         """Return how long each call dwells where its cycle does."""
         given = self.calls.p
         if self.rule.keeps_dwell:
-            return np.asarray(fill(given, ~np.isnan(given), self.mode.dwell))
+            return self._filled(given, ~np.isnan(given), self.dwells)
         return np.where(np.isnan(programmed), 0.0, programmed)
 
     def _arrival(self, clearance: Floats, standing: Floats) -> tuple[Flags, Floats]:
@@ -252,18 +292,19 @@ class _Follower:
         increment = np.zeros((count, 2))
         steps = drilled & calls.incremental
         any_steps = steps.any()
+        assert not (any_steps and self.many)
         for axis, word in enumerate((calls.first, calls.second)):
-            present, before = drilled & ~np.isnan(word), float(calls.position[axis])
+            present, before = drilled & ~np.isnan(word), self.positions[:, axis]
             if any_steps:
                 stepping = present & steps
                 moved = np.cumsum(np.where(stepping, word * repeats, 0.0))
                 placed = present & ~stepping
-                after[:, axis] = fill(np.where(placed, word - moved, 0.0), placed, before) + moved
+                base = fill(np.where(placed, word - moved, 0.0), placed, float(before[0]))
+                after[:, axis] = base + moved
                 given = calls.incremental & ~np.isnan(word)
                 increment[:, axis] = np.where(given, word, 0.0)
             else:
-                after[:, axis] = fill(word, present, before)
-            start[:1, axis] = before
-            start[1:, axis] = after[:-1, axis]
+                after[:, axis] = self._filled(word, present, before)
+            start[:, axis] = self._before(after[:, axis], before)
         after[:, 2] = ends
         return start, after, increment

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from gcxform.dialect import INCH
 from gcxform.modal.cycles import UNKNOWN, Calls, Cycles
-from gcxform.modal.cyclestretch import Stretch
+from gcxform.modal.cyclestretch import Mode, Stretch
 from gcxform.modal.rows import Rows
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.modal.track import Break, Track
@@ -48,12 +48,19 @@ class _Common:
 
 @dataclass(frozen=True, slots=True)
 class _Followed:
-    """A stretch: its first line, its columns, the words (axes,) before it, and its frame."""
+    """A stretch: its lines, plane, unit; words (axes,), frame and dwell (s) in force before it.
+
+    `stretch` are its columns; None where they are found later, with those of others.
+    """
 
     first: int
-    stretch: Stretch
+    last: int
+    plane: Plane
+    unit: float
     words: Floats
     frame: int
+    dwell: float
+    stretch: Stretch | None
 
 
 class Drilling:
@@ -71,6 +78,7 @@ class Drilling:
         self.events: list[tuple[int, int, Event]] = []
         self.calls = self._calls()
         self._words: dict[str, Floats] = {}
+        self._lasts: dict[str, Ints] = {}
         self._followed: list[_Followed] = []
 
     def _calls(self) -> Flags:
@@ -96,18 +104,75 @@ class Drilling:
     def follow(self, first: int, last: int) -> None:
         """Read a stretch of calls, and take over where the tool is after it."""
         assert self.cycles is not None
-        here, track = slice(first, last), self.track
+        track, plane = self.track, Plane(int(self.modes.plane[first]))
+        unit = INCH if self.modes.inch[first] else 1.0
         words = track.frame.words(track.state.position[None, :])[0]
-        calls = self._calls_on(here, words)
-        stretch = self.cycles.follow(calls)
-        self._followed.append(_Followed(first, stretch, words, len(track.frames) - 1))
         after = words.copy()
-        after[list(calls.plane.axes)] = stretch.after[-1]
+        stretch, dwell = None, self.cycles.mode.dwell
+        if self._is_plain(first, last):
+            after[list(plane.axes)] = self._plain_end(first, last, words, plane)
+        else:
+            calls = self._calls_on(slice(first, last), words[list(plane.axes)], plane, unit)
+            stretch = self.cycles.follow(calls)
+            after[list(plane.axes)] = stretch.after[-1]
+        frame = len(track.frames) - 1
+        self._followed.append(_Followed(first, last, plane, unit, words, frame, dwell, stretch))
         track.state.position = track.frame.positions(after[None, :])[0].copy()
-        if self._manual and (calls.code == MANUAL).any():
-            track.breaks.append(Break(last, 1 << calls.plane.axes[2]))
+        if self._manual.any() and self._manual[first:last].any():
+            track.breaks.append(Break(last, 1 << plane.axes[2]))
 
-    def _word(self, address: str, here: slice) -> Floats:
+    def _is_plain(self, first: int, last: int) -> bool:
+        """Whether a stretch begins without a cycle in force, ends with G80, and has one in G90."""
+        assert self.cycles is not None
+        if self.cycles.mode.code or last == self.lines.live:
+            return False
+        odd = self._odd_until[last] - self._odd_until[first]
+        changes = self._changes_until[last] - self._changes_until[first + 1]
+        return bool(self.modes.cycle[last] == CYCLE_OFF and not odd and not changes)
+
+    @cached_property
+    def _odd_until(self) -> Ints:
+        """How many lines before each line are in G91 or have repeats."""
+        repeated = ~np.isnan(self._word(self._repeats, slice(None)))
+        return np.append(0, np.cumsum(self.modes.incremental | repeated))
+
+    @cached_property
+    def _changes_until(self) -> Ints:
+        """How many lines before each line have another cycle than the line before them."""
+        return np.append(0, np.cumsum(np.diff(self.modes.cycle, prepend=CYCLE_OFF) != 0))
+
+    def _plain_end(self, first: int, last: int, words: Floats, plane: Plane) -> list[float]:
+        """Return where the tool is after a plain stretch; take over the dwell that it leaves."""
+        assert self.cycles is not None
+        end = [float(words[axis]) for axis in plane.axes]
+        place = self._last("P", last - 1)
+        if place >= first:
+            self.cycles.mode = Mode(dwell=float(self._word("P", slice(place, place + 1))[0]))
+        called = -1
+        for nth, axis in enumerate(plane.axes):
+            place = self._last("XYZ"[axis], last - 1)
+            called = max(called, place)
+            if place >= first and nth < 2:
+                end[nth] = float(self._word("XYZ"[axis], slice(place, place + 1))[0])
+        if self.cycles.rule.stores:
+            called = max(called, self._last("R", last - 1))
+        if called >= first:
+            place = self._last("R", called)
+            here = slice(place, place + 1)
+            clearance = float(self._word("R", here)[0]) if place >= first else np.nan
+            initial = bool(self._common.initial[called])
+            end[2] = float(np.maximum(end[2], clearance)) if initial else clearance
+        return end
+
+    def _last(self, address: str, line: int) -> int:
+        """Return the last call with a word, on a line or before it; -1 for none."""
+        if address not in self._lasts:
+            present = ~np.isnan(self._word(address, slice(None)))
+            places = np.where(present & self.calls, np.arange(self.lines.live), -1)
+            self._lasts[address] = np.maximum.accumulate(places)
+        return int(self._lasts[address][line])
+
+    def _word(self, address: str, here: slice | Ints) -> Floats:
         """Return a word on lines, nan where there is none; lengths in mm."""
         if address not in self._words:
             self._words[address] = self._column(address)
@@ -149,19 +214,18 @@ class Drilling:
         )
 
     @cached_property
-    def _manual(self) -> bool:
-        """Whether there are cycles out of which the operator moves the tool."""
-        return bool((self.modes.cycle == MANUAL).any())
+    def _manual(self) -> Flags:
+        """The lines in a cycle out of which the operator moves the tool."""
+        return np.asarray(self.modes.cycle == MANUAL)
 
     @cached_property
     def _repeats(self) -> str:
         rule = self.lines.dialect.cycle_rule
         return rule.repeats if rule is not None else ""
 
-    def _calls_on(self, here: slice, words: Floats) -> Calls:
-        """Return the blocks of a stretch; `words` (axes,) are where the axes stand before it."""
-        modes, first = self.modes, here.start
-        plane = Plane(int(modes.plane[first]))
+    def _calls_on(self, here: slice | Ints, position: Floats, plane: Plane, unit: float) -> Calls:
+        """Return the blocks on lines; `position` (3,) is where the tool stands before them."""
+        modes = self.modes
         first_axis, second_axis, normal = ("XYZ"[axis] for axis in plane.axes)
         common = self._common
         return Calls(
@@ -182,9 +246,9 @@ class Drilling:
             common.other_axes[here],
             common.inverse[here],
             common.line[here],
-            words[list(plane.axes)],
+            position,
             plane,
-            INCH if modes.inch[first] else 1.0,
+            unit,
         )
 
     # --- all stretches of the window ---
@@ -192,24 +256,35 @@ class Drilling:
     def rows(self) -> list[Rows]:
         """Return the moves of the stretches, in their order."""
         found: dict[int, Rows] = {}
-        kinds = [(f.stretch.calls.plane, f.stretch.calls.unit) for f in self._followed]
+        kinds = [(f.plane, f.unit, f.stretch is None) for f in self._followed]
         for kind in dict.fromkeys(kinds):
             numbers = [number for number, other in enumerate(kinds) if other == kind]
             found.update(zip(numbers, self._rows_of(numbers), strict=True))
         return [found[number] for number in range(len(kinds))]
 
+    def _stretches(self, followed: list[_Followed], line: Ints, bounds: Ints) -> list[Stretch]:
+        """Return the columns of stretches, those of plain ones as one."""
+        stretches = [one.stretch for one in followed if one.stretch is not None]
+        if stretches:
+            return stretches
+        assert self.cycles is not None
+        axes = list(followed[0].plane.axes)
+        positions = np.array([one.words[axes] for one in followed])
+        calls = self._calls_on(line, positions[0], followed[0].plane, followed[0].unit)
+        dwells = np.array([one.dwell for one in followed])
+        return [self.cycles.follow_fresh(calls, bounds[:-1], positions, dwells)]
+
     def _rows_of(self, numbers: list[int]) -> Iterator[Rows]:
         """Yield the moves of stretches of one plane and unit."""
         assert self.cycles is not None
         followed = [self._followed[number] for number in numbers]
-        steps = self.cycles.steps([one.stretch for one in followed])
-        line = np.concatenate([one.stretch.calls.line for one in followed])
-        line -= self.lines.window.first_line
+        line = np.concatenate([np.arange(one.first, one.last) for one in followed])
+        bounds = np.cumsum([0, *(one.last - one.first for one in followed)])
+        steps = self.cycles.steps(self._stretches(followed, line, bounds))
         for refusal in steps.refusals:
             place = int(line[refusal.call])
             self.track.findings.add(place, "GX215", refusal.message, hint=refusal.hint)
         rows = steps.rows
-        bounds = np.cumsum([0, *(len(one.stretch.calls) for one in followed)])
         bounds = np.searchsorted(rows.call, bounds)
         self._place_events(rows.events, bounds, [one.first for one in followed])
         nth = np.arange(len(rows.call)) - np.searchsorted(rows.call, rows.call)
@@ -218,7 +293,7 @@ class Drilling:
             here = slice(begin, end)
             words = np.empty((len(one.words), end - begin)).T
             words[:] = one.words
-            words[:, list(one.stretch.calls.plane.axes)] = rows.end[here]
+            words[:, list(one.plane.axes)] = rows.end[here]
             ends = self.track.frames[one.frame].positions(words)
             frame = constant(one.frame, end - begin, np.int64)
             yield Rows(line[rows.call[here]], rows.kind[here], ends, nth[here], form[here], frame)
