@@ -125,14 +125,18 @@ class Copying:
         good &= pieces.kind[rows] == as_written(self.original, self.original.kind)[others]
         plain = self.path.form[rows] == Form.PLAIN
         good &= ~plain | self._same_ends(rows, others)
-        if not plain.all():
-            good &= plain | self._same_words(rows, others)
+        own = np.flatnonzero(~plain)
+        if len(own):
+            good[own] &= self._same_words(rows[own], others[own])
         good &= ~plain | self._same_frames(rows, others)
         starts_exact = self._track_exactness(rows, others, good)
         incremental = self.path.blocks.incremental[self.path.block[rows]]
-        good &= ~plain | ~incremental | starts_exact | self._starts_alike(rows, others)
-        if self.path.has_arcs:
-            good &= ~self.path.is_arc[rows] | self._same_arcs(rows, others, starts_exact)
+        doubtful = np.flatnonzero(good & plain & incremental & ~starts_exact)
+        if len(doubtful):
+            good[doubtful] &= self._starts_alike(rows[doubtful], others[doubtful])
+        arcs = np.flatnonzero(good & self.path.is_arc[rows])
+        if len(arcs):
+            good[arcs] &= self._same_arcs(rows[arcs], others[arcs], starts_exact[arcs])
         stands[self.path.block[rows]] = True
         stands[self.path.block[rows[~good]]] = False
         return stands
@@ -202,15 +206,19 @@ class Copying:
 
     def _same_arcs(self, rows: Ints, others: Ints, starts_exact: Flags) -> Flags:
         """Return which arcs have centre and sweep of their source, seen from where they start."""
-        start = self.original.in_frames(self.original.start)[others]
-        on_grid = (np.abs(self.positions.before[rows] - start) <= EXACT) | np.isnan(start)
+        alike = starts_exact.copy()
+        off = np.flatnonzero(~starts_exact)
+        if len(off):
+            start = self.original.in_frames(self.original.start)[others[off]]
+            on_grid = np.abs(self.positions.before[rows[off]] - start) <= EXACT
+            alike[off] = (on_grid | np.isnan(start)).all(axis=1)
         centre, old = self.path.centre[rows], self.original.centre[others]
         if self.path.blocks.absolute_centre.any():
             centre = self.path.local(self.path.centre)[rows]
             old = self.original.local(self.original.centre)[others]
         same_centre = ((centre == old) | np.isnan(old)).all(axis=1)
         same_sweep = self.path.sweep[rows] == self.original.sweep[others]
-        return np.asarray((starts_exact | on_grid.all(axis=1)) & same_centre & same_sweep)
+        return np.asarray(alike & same_centre & same_sweep)
 
 
 def _take(column: NDArray[Any], rows: Ints) -> NDArray[Any]:
