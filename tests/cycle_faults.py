@@ -32,7 +32,7 @@ CYCLE_FAULTS = (
     (
         "the initial level is taken anew",
         STRETCH,
-        "mode.initial if mode.code else ",
+        "np.array([mode.initial]) if mode.code else ",
         "",
     ),
     (
@@ -172,11 +172,5 @@ CYCLE_FAULTS = (
         STEPS,
         "if len(doubtful):",
         "if False:",
-    ),
-    (
-        "stretches that are made together count events from the first of them",
-        "gcxform/modal/drilling.py",
-        "event.row - int(bounds[number])",
-        "event.row",
     ),
 )

@@ -36,6 +36,7 @@ KIT = "tests/test_kit.py::test_registered_passes"
 LAWS = "tests/properties/test_laws.py"
 ARCS = "tests/test_arcs.py"
 CYCLES = "tests/test_cycles.py"
+STRETCHES = "tests/test_stretches.py"
 LIMITS = "gcxform/modal/limits.py"
 FACTS = "tests/test_dialect_facts.py::test_our_facts"
 READING = "tests/test_verify.py::test_the_proof_reads_as_the_control_does"
@@ -61,8 +62,19 @@ def _computed(name: str, file: str, old: str, new: str) -> Mutation:
     return Mutation(f"computing: {name}", f"gcxform/modal/{file}.py", old, new, tests)
 
 
+def _together(name: str, old: str, new: str) -> Mutation:
+    drilling = "gcxform/modal/drilling.py"
+    return Mutation(f"cycles: stretches made together {name}", drilling, old, new, STRETCHES)
+
+
 MUTATIONS = (
     *(Mutation(f"cycles: {name}", *where, CYCLES) for name, *where in CYCLE_FAULTS),
+    _together(
+        "count events from the first of them", "event.row - int(bounds[number])", "event.row"
+    ),
+    _together("end at R under G98", "if initial else clearance", "if False else clearance"),
+    _together("keep the dwell before them", "if place >= first:\n", "if False:\n"),
+    _together("are one", "bounds[:-1], positions", "bounds[:1], positions[:1]"),
     Mutation(
         "cycles: a hole above R",
         "gcxform/modal/cyclechecks.py",
@@ -316,9 +328,9 @@ MUTATIONS = (
     # reading
     Mutation(
         "reading: inches are millimetres",
-        "gcxform/modal/moves.py",
-        "value = np.where(self.modes.inch, value * INCH, value)",
-        "value = np.where(self.modes.inch, value, value)",
+        "gcxform/modal/track.py",
+        "np.where(self.modes.inch, word[0] * INCH, word[0])",
+        "word[0]",
         READING,
     ),
     Mutation(
@@ -344,16 +356,16 @@ MUTATIONS = (
     ),
     Mutation(
         "reading: distances are added to the last absolute position only",
-        "gcxform/modal/moves.py",
+        "gcxform/modal/track.py",
         "np.where(placed, value - steps, 0.0)",
         "np.where(placed, value, 0.0)",
         READING,
     ),
     Mutation(
         "reading: positions are not carried into the next window",
-        "gcxform/modal/moves.py",
-        "self.state.position[column] = last",
-        "del last",
+        "gcxform/modal/track.py",
+        "end[k] = position[-1]",
+        "pass",
         VERIFY,
     ),
     Mutation(
@@ -366,8 +378,8 @@ MUTATIONS = (
     Mutation(
         "reading: a lost position is ignored",
         "gcxform/toolpath/path.py",
-        "start[self.lost] = np.nan",
-        "start[self.lost] = start[self.lost]",
+        "start[(self.lost >> axis & 1) == 1, axis] = np.nan",
+        "pass",
         FOUND,
     ),
     # writing
@@ -388,7 +400,7 @@ MUTATIONS = (
     Mutation(
         "writing: a motion code that has changed is not stated",
         "gcxform/emit/pieces.py",
-        "changes = self.has_row & (before != self.motion_after)",
+        "changes = moves & (before != self.motion_after)",
         "changes = np.zeros(len(before), np.bool_)",
         LAWS + "::test_a_motion_code_that_no_longer_holds_is_stated",
     ),
@@ -581,7 +593,11 @@ MUTATIONS = (
         "if (mode != read.modes.feed_mode[line]).any():",
     ),
     _verifier("times are ignored", "if len(wrong):"),
-    _verifier("events are ignored", "self._events(read.path.events, back.path.events, trace)", ""),
+    _verifier(
+        "events are ignored",
+        "self._events(self._told(read.path.events), self._told(back.path.events), trace)",
+        "",
+    ),
     _verifier("missing events are ignored", "if len(old) != len(new):"),
     _verifier(
         "the place of events is ignored",
