@@ -19,7 +19,8 @@ from gcxform.toolpath.path import Toolpath
 
 ZERO = dict.fromkeys("XYZ", 0.0)
 OFFSETS = {"G54": ZERO, "G55": {"X": 5.0, "Y": -3.0, "Z": 1.0}}
-CYCLES = ("G81", "G82", "G82 P{p}", "G83 Q{q}", "G73 Q{q}", "G89 P{p}", "G85")
+CYCLES = ("G81", "G82 P{p}", "G83 Q{q}", "G73 Q{q}", "G89 P{p}", "G85", "G84", "G84 P{p}")
+TAPPING = 2  # the last of them are refused outside G17
 BETWEEN = ("G0 X{x}", "G0 X{x} Y{y} Z{z}", "G52 X{x} Y{y}", "G92.1", "G54", "G55")
 
 
@@ -32,7 +33,8 @@ def filled(random: Random, text: str) -> str:
 def stretch(random: Random) -> list[str]:
     """Return the blocks of a stretch of one cycle, and often what ends it."""
     second, deep, plane = random.choice(("Y Z 17", "Y Z 17", "Y Z 17", "Z Y 18")).split()
-    cycle, level = random.choice(CYCLES), random.choice(("G98", "G99"))
+    cycle = random.choice(CYCLES if plane == "17" else CYCLES[:-TAPPING])
+    level = random.choice(("G98", "G99"))
     first = f"{level} X{{x}} {second}{{y}} {cycle} {deep}-3 R{{r}}"
     more = ["X{x}", "X{x} R{r}", "X{x} L2", f"{second}{{y}}"] + ["X{x} P{p}"] * ("P" in cycle)
     blocks = [f"G{plane}", f"G0 {deep}{{z}}", first]
