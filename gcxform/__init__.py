@@ -41,8 +41,8 @@ if TYPE_CHECKING:
     from gcxform.machine.errors import compensate as compensate
     from gcxform.machine.formats import ErrorFormat as ErrorFormat
     from gcxform.modal.codes import Code as Code
+    from gcxform.modal.codes import CutterComp as CutterComp
     from gcxform.modal.codes import MCode as MCode
-    from gcxform.modal.tables import frame_name as frame_name
     from gcxform.options import Angle as Angle
     from gcxform.options import Length as Length
     from gcxform.options import ModelFile as ModelFile
@@ -68,11 +68,13 @@ if TYPE_CHECKING:
     from gcxform.toolpath.facts import KNOWN_POSITIONS as KNOWN_POSITIONS
     from gcxform.toolpath.facts import LINEAR_ONLY as LINEAR_ONLY
     from gcxform.toolpath.facts import METRIC as METRIC
+    from gcxform.toolpath.facts import NO_CUTTER_COMP as NO_CUTTER_COMP
     from gcxform.toolpath.facts import NO_CYCLES as NO_CYCLES
     from gcxform.toolpath.facts import NOMINAL as NOMINAL
     from gcxform.toolpath.facts import WORKPIECE_FRAME as WORKPIECE_FRAME
     from gcxform.toolpath.facts import XY_ARCS as XY_ARCS
     from gcxform.toolpath.facts import Fact as Fact
+    from gcxform.toolpath.facts import inseparable_cycles as inseparable_cycles
     from gcxform.toolpath.frames import Frame as Frame
     from gcxform.toolpath.path import OWN_DISTANCES as OWN_DISTANCES
     from gcxform.toolpath.path import Event as Event
@@ -82,6 +84,9 @@ if TYPE_CHECKING:
     from gcxform.toolpath.path import Plane as Plane
     from gcxform.toolpath.path import Toolpath as Toolpath
     from gcxform.toolpath.path import column_major as column_major
+    from gcxform.toolpath.splines import points_on_splines as points_on_splines
+    from gcxform.toolpath.splines import spline_chords as spline_chords
+    from gcxform.toolpath.splines import splines_as_lines as splines_as_lines
 
 _HOMES = {
     "api": "Comparison Difference Program compare read write",
@@ -93,8 +98,7 @@ _HOMES = {
     "hookspecs": "hookimpl",
     "machine.errors": "AxisFunction AxisFunctions ErrorModel Outside check_contraction compensate",
     "machine.formats": "ErrorFormat",
-    "modal.codes": "Code MCode",
-    "modal.tables": "frame_name",
+    "modal.codes": "Code CutterComp MCode",
     "options": "Angle Length ModelFile Option Vector",
     "pipeline": "Pipeline Result",
     "registry": "Registry",
@@ -103,10 +107,11 @@ _HOMES = {
     "swept_anew",
     "toolpath.crossings": "line_crossings",
     "toolpath.deviation": "deviation",
-    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NO_CYCLES NOMINAL "
-    "WORKPIECE_FRAME XY_ARCS Fact",
+    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NO_CUTTER_COMP "
+    "NO_CYCLES NOMINAL WORKPIECE_FRAME XY_ARCS Fact inseparable_cycles",
     "toolpath.frames": "Frame",
     "toolpath.path": "Event FeedMode Form Kind OWN_DISTANCES Plane Toolpath column_major",
+    "toolpath.splines": "points_on_splines spline_chords splines_as_lines",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 

@@ -26,8 +26,10 @@ from gcxform.registry import default_registry
 from gcxform.source import Source
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.matching import Matching, Pieces, match, measure
-from gcxform.toolpath.path import BLOCK_MODES, COLUMNS, Blocks, Event, FeedMode, Kind, Toolpath
+from gcxform.toolpath.path import BLOCK_MODES, COLUMNS, Event, FeedMode, Kind, Toolpath
+from gcxform.toolpath.splines import straightened
 
+STRAIGHT = 1e-5  # mm; lines that stand for splines are so near
 TOLERANCE = 0.001  # mm: twice what rounding an axis to three decimals can do
 REACH = 1.0  # mm; what is farther apart is not taken for the same place
 FEED_SLIP = 1e-3  # of a feed, or of the time of a move in G93
@@ -97,8 +99,10 @@ def joined(parts: Sequence[Toolpath]) -> Toolpath:
         [part.frame + int(first) for part, first in zip(parts, before[:-1], strict=True)]
     )
     frames = tuple(frame for part in parts for frame in part.frames)
-    modes = [np.concatenate([getattr(p.blocks, name) for p in parts]) for name in BLOCK_MODES]
-    blocks = Blocks(parts[0].blocks.first, *modes)
+    modes: dict[str, Any] = {
+        name: np.concatenate([getattr(p.blocks, name) for p in parts]) for name in BLOCK_MODES
+    }
+    blocks = replace(parts[0].blocks, **modes)
     return parts[0].replace(**columns, events=events, blocks=blocks, frames=frames)
 
 
@@ -162,6 +166,7 @@ def compare(
         context = PassContext(a.dialect, b.dialect, b.dialect.numbers, machine)
         through.begin(context)
         path_b = through.undo(path_b, context)
+    path_a, path_b = (straightened(path, STRAIGHT) for path in (path_a, path_b))
     matching = match(path_a, path_b, tolerance, max(REACH, tolerance))
     found = measure(path_a, path_b, matching)
     worst = int(np.argmax(found.distance)) if len(matching.a) else -1
@@ -219,6 +224,8 @@ class _Manner:
     mode: NDArray[np.int8]
     origin: NDArray[np.str_]
     rapid: NDArray[np.bool_]
+    side: NDArray[np.int8]
+    radius: NDArray[np.float64]
     line: NDArray[np.int64]
 
     @classmethod
@@ -228,7 +235,9 @@ class _Manner:
         part = np.where(mode == FeedMode.INVERSE_TIME, pieces.high - pieces.low, 1.0)
         feed = np.divide(path.feed[row], part, out=np.full(len(row), np.inf), where=part > 0)
         origins = np.array([", ".join(dict.fromkeys(frame.origin)) for frame in path.frames])
-        return cls(feed, mode, origins[path.frame[row]], rapid, path.source[row] + 1)
+        side, radius = path.side[row], np.nan_to_num(path.radius[row])
+        origin = origins[path.frame[row]]
+        return cls(feed, mode, origin, rapid, side, radius, path.source[row] + 1)
 
     def alike(self, other: _Manner, at: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Return whether pieces `at` are travelled as the pieces of the other path."""
@@ -236,6 +245,7 @@ class _Manner:
         with np.errstate(invalid="ignore"):
             near = (feed == other.feed) | (np.abs(feed - other.feed) <= FEED_SLIP * np.abs(feed))
         same = self.rapid[at] | (near & (mode == other.mode))
+        same &= (self.side[at] == other.side) & (self.radius[at] == other.radius)
         return np.asarray(same & (self.origin[at] == other.origin))
 
 
@@ -261,6 +271,8 @@ def _changed(one: _Manner, other: _Manner, k: int) -> str:
     """Return in what a piece is travelled otherwise."""
     if one.origin[k] != other.origin[k]:
         return f"{one.origin[k]} became {other.origin[k]}"
+    if (one.side[k], one.radius[k]) != (other.side[k], other.radius[k]):
+        return "cutter compensation is another"
     if one.mode[k] != other.mode[k]:
         return f"feed mode G{one.mode[k]} became G{other.mode[k]}"
     return f"feed {one.feed[k]:g} became {other.feed[k]:g}"
@@ -294,7 +306,9 @@ def _told(side: Side, other: type[Dialect]) -> list[Event]:
     """
     path, own = side
     plainly = all(set(frame.origin) == {path.first} for frame in path.frames)
-    silent = {code for code, what in other.codes.items() if what.effect is Effect.MODAL}
+    silent = {
+        code for code, what in other.codes.items() if what.effect is Effect.MODAL and not what.takes
+    }
     if plainly:
         silent |= {code for code, what in own.codes.items() if what.act in FRAMING}
     return [event for event in path.events if event.what not in silent]

@@ -73,11 +73,11 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "`start = { X = 0.0 }` in [input], or --start X=0.",
     ),
     "GX208": (
-        "An arc from an unknown position",
+        "An arc or a spline from an unknown position",
         "The circle of an arc follows from its start, its end and its centre, and here the "
-        "start or the end is not known in the plane of the arc. Program both axes of the plane "
-        "before the arc, or give the position at the start: `start = { X = 0.0, Y = 0.0 }` in "
-        "[input], or --start.",
+        "start or the end is not known in the plane of the arc, or of a spline. Program both "
+        "axes of the plane before, or give the position at the start: "
+        "`start = { X = 0.0, Y = 0.0 }` in [input], or --start.",
     ),
     "GX209": (
         "Axis words without a motion code",
@@ -144,6 +144,38 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "that is not whole where one is asked for. Or controls are known to compute this in two "
         "ways, such as the rounding of a half on Fanuc; then write it so that there is one.",
     ),
+    "GX222": (
+        "The program has no end that the control takes",
+        "LinuxCNC refuses a file that neither ends with M2 or M30 nor stands between two percent "
+        "signs, and a percent sign at the end alone. `gcxform check` says so; a piece of a program "
+        "can be read and written all the same.",
+    ),
+    "GX230": (
+        "Cutter compensation that the control refuses",
+        "G41, G42 or G40 stands where the control stops with an alarm, or a code stands between "
+        "them that it does not take there: another plane, work offset or tool, for instance; or "
+        "D says nothing. Cancel compensation with G40 before such blocks, and begin and end it "
+        "with a straight move.",
+    ),
+    "GX231": (
+        "The radius of the tool is not known",
+        "The pass computes the path of the tool's centre, and for that it needs the radius of the "
+        "tool that G41 or G42 names. Programs give a number; the radius is in the tool table of "
+        "the control. Give a machine file with the tool: `[tool.1]` and `radius = 5.0`.",
+    ),
+    "GX232": (
+        "Cutter compensation that cannot be resolved",
+        "Between G41 or G42 and G40 the program does what depends on the control, or what leaves "
+        "open where the tool is: another side or tool without G40 between, an unknown position, "
+        "or an end without G40. Cancel compensation before such blocks.",
+    ),
+    "GX233": (
+        "A contour under cutter compensation would be moved",
+        "In G41 and G42 the blocks are a contour, which the control offsets by the tool's radius. "
+        "Points of it that are moved for another reason would be offset as well, and the moves "
+        "that begin and end compensation must stay whole. Put the pass `cutter-comp` before: then "
+        "there is the path of the centre, and no compensation in the control.",
+    ),
     # --- 3xx: geometry ---
     "GX301": (
         "The end of an arc is off its circle",
@@ -176,6 +208,13 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "In this dialect P counts the turns of an arc, the arc itself included. Zero, negative "
         "and broken numbers have no meaning there. Correct the word, or leave it out for less "
         "than a full turn.",
+    ),
+    "GX306": (
+        "A spline that the control refuses, or that is not certain",
+        "G5 takes X and Y (at least one), P and Q, and I and J, which may be left out directly "
+        "behind another G5; G5.1 takes X and Y, I and J. LinuxCNC refuses other words and other "
+        "planes than G17. In G93 it does not time splines, and a series that is interrupted goes "
+        "on from the last G5 that it met: both are refused here. Correct the block.",
     ),
     "GX309": (
         "The compensated position does not converge",
@@ -223,6 +262,13 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "The pass feed leaves the control in the feed mode in which the source program leaves it, "
         "and states that mode in the block with M2 or M30. This program has none, and what runs "
         "after it would find another feed mode. End the program with M2 or M30.",
+    ),
+    "GX350": (
+        "A contour that the tool cannot follow",
+        "The tool is too large for an inside corner, a concave arc or a move between two inside "
+        "corners, so that it would cut into the contour; or the move that begins compensation is "
+        "not longer than the tool's radius. Use a smaller tool, or change the contour. LinuxCNC "
+        "stops at most of these and cuts into the contour at some.",
     ),
     # --- 4xx: machine and error-model files ---
     "GX401": (
@@ -377,6 +423,12 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "Not a tool number",
         "The tables of tools are called by whole numbers, [tool.1] for T1, each once.",
     ),
+    "GX438": (
+        "Not a line of a tool table",
+        "A line of a LinuxCNC tool table has a tool number (T1) once in the file, and words with a "
+        "number each: P, X, Y, Z, D; I, J and Q are passed over, and offsets of other axes have to "
+        "be 0. What follows a semicolon is a comment.",
+    ),
     # --- 5xx: emission ---
     "GX501": (
         "The target cannot say this",
@@ -437,6 +489,12 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "see `gcxform list passes`.",
     ),
     # --- 7xx: command line and pipeline ---
+    "GX604": (
+        "The centre path is not beside the contour",
+        "The path that `cutter-comp` made was checked against the contour by other means, and is "
+        "not at the tool's radius from it. Nothing was written. This is a bug of gcxform or of a "
+        "plugin; please report it with the program.",
+    ),
     "GX701": (
         "Unknown key in a pipeline",
         "A pipeline file, or an option of a pass, has a key which means nothing there; a misspelt "
@@ -580,6 +638,18 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "that states the arc, before the code that is named.",
     ),
     # --- 8xx: plugins ---
+    "GX740": (
+        "How the control compensates the cutter",
+        "What joins two moves at an outside corner, and where compensation begins, is a parameter "
+        "of some machines and fixed on others. Where it is a parameter, say what it is set to; "
+        "where it is fixed, leave the option out.",
+    ),
+    "GX741": (
+        "A step that changes the path stands before one that resolves it",
+        "`cutter-comp` is proved against the contour as programmed, so only steps that leave the "
+        "contour as it is may come before it: `absolute` and `metric`. Put the other steps after "
+        "it.",
+    ),
     "GX801": (
         "Two plugins offer the same name",
         "Which one a pipeline means would depend on the order of installation. Uninstall one of "

@@ -22,6 +22,7 @@ def check_chain(passes: Sequence[Pass]) -> None:
     """Raise UsageError where a pass requires a fact that the chain does not have there."""
     facts: set[Fact] = set(AT_READING)
     cleared: dict[Fact, str] = {}
+    _check_resolved(passes)
     for number, step in enumerate(passes, 1):
         for fact in sorted(step.requires - facts, key=lambda f: f.name):
             culprit = cleared.get(fact)
@@ -34,6 +35,19 @@ def check_chain(passes: Sequence[Pass]) -> None:
         for fact in step.clears:
             cleared[fact] = f"step {number}, {step.name},"
         facts = (facts - step.clears) | step.ensures
+
+
+def _check_resolved(passes: Sequence[Pass]) -> None:
+    """Raise UsageError for a step that changes the path before one that resolves it."""
+    for number, step in enumerate(passes):
+        if not step.resolves:
+            continue
+        for other in passes[:number]:
+            exact = other.promise == 0 and other.promise_angle == 0
+            exact &= other.feed_mode is None and other.keeps_rows
+            if not exact or type(other).undo is not Pass.undo or other.resolves:
+                message = f"{other.name} changes the path that {step.name} is proved against"
+                raise UsageError.one("GX741", message, hint=f"put {step.name} before it")
 
 
 def _mend(fact: Fact, culprit: str | None, name: str) -> str:

@@ -7,6 +7,10 @@ output. The law, in the tests and on every run, is
     deviation(before, undo(after)) <= promise
 
 along every move. `undo` uses the forward model and shares no code with the search it checks.
+
+A pass that `resolves` gives the program another path on purpose, as the control would do it: the
+centre of the tool in place of the contour. `prove` checks that path against the program as read,
+and what comes after it is compared with that path.
 """
 
 from __future__ import annotations
@@ -45,11 +49,16 @@ class Pass:
     requires: ClassVar[frozenset[Fact]] = frozenset()
     ensures: ClassVar[frozenset[Fact]] = frozenset()
     clears: ClassVar[frozenset[Fact]] = frozenset()
+    keeps_rows: ClassVar[bool] = True
+    """Whether a pass that moves nothing has the rows of its input in its output, one for one."""
     joins: ClassVar[bool] = False
     """Whether a row may come to stand for several that follow one another: it is the first one's
     line that it keeps. Where a window ends decides then what can be joined."""
     folds: ClassVar[bool] = False
     """Whether the codes that shift coordinates are folded into the words of moves."""
+    resolves: ClassVar[bool] = False
+    """Whether its output is what the rest of the run is compared with; then it has to `prove` it.
+    No window ends where cutter compensation is in force for such a pass."""
 
     @property
     def promise(self) -> float:
@@ -76,6 +85,13 @@ class Pass:
     def undo(self, path: Toolpath, context: PassContext) -> Toolpath:
         """Return what the machine does with a path that came from this pass."""
         return path
+
+    def prove(self, before: Toolpath, after: Toolpath, context: PassContext) -> None:
+        """Check what a pass that resolves has made of the path as read; VerificationError if wrong.
+
+        It shares no code with `apply`.
+        """
+        raise NotImplementedError
 
 
 @dataclass(frozen=True)

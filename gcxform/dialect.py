@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from gcxform.modal.arithmetic import Arithmetic
-from gcxform.modal.codes import ISO, ISO_M, Code, MCode
+from gcxform.modal.codes import ISO, ISO_M, Code, CutterComp, MCode
 from gcxform.modal.cyclerule import CycleRule
 from gcxform.syntax.grammar import Grammar, load
 
@@ -47,6 +47,7 @@ class ArcRule:
 
     Accepted if delta <= `absolute`, or if delta <= `relative` * radius and delta <= `largest`.
     `smallest` is the least radius; `r_short` is how much an R may fall short of the half chord.
+    `in_inch`: how many times as large `absolute` and `largest` are in blocks in inches.
     """
 
     absolute: float
@@ -54,6 +55,7 @@ class ArcRule:
     largest: float = float("inf")
     smallest: float = 0.0
     r_short: float = 0.0
+    in_inch: float = 1.0
 
 
 class Dialect:
@@ -74,12 +76,15 @@ class Dialect:
         "feed-mode": "G94",
         "units": "G21",
         "frame": "G54",
+        "cutter-comp": "G40",
     }
     """The modal state a program is taken to start in; the certificate says what was taken."""
     axis_words_once: ClassVar[bool] = False
     """A motion code beside a code that takes the axis words for itself (G92, G28) is refused."""
     last_code_wins: ClassVar[bool] = False
     """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
+    cutter_comp: ClassVar[CutterComp] = CutterComp()
+    """How G41 and G42 are read, where the dialect has them."""
     point_required: ClassVar[bool] = False
     """A distance without a point counts in increments of the control, which must be configured."""
     feed_point_required: ClassVar[bool] = False
@@ -108,6 +113,8 @@ class Dialect:
     """Seconds for one unit of each word that G4 takes."""
     dwell_point_is_seconds: ClassVar[bool] = False
     """A dwell that is written with a point is in seconds."""
+    spindle_stands: ClassVar[bool] = False
+    """Whether the spindle stands still, as far as the control knows, when a program starts."""
     starts_in_frame: ClassVar[bool] = False
     """Whether the work offset of `initial` is in force for certain when a program starts."""
     work_names: ClassVar[Mapping[str, str]] = {}
@@ -121,6 +128,8 @@ class Dialect:
     g10_sets_position: ClassVar[bool] = False
     """G10 L20 makes the present position read what is given."""
     g10_ignores_g91: ClassVar[bool] = False
+    g10_rotates: ClassVar[bool] = False
+    """R in G10 L2 turns the work offset about Z."""
     g52_is_g92: ClassVar[bool] = False
     """G52 and G92 set one and the same shift."""
     g52_known: ClassVar[bool] = True
@@ -129,6 +138,8 @@ class Dialect:
     """G43 without H takes the length of the tool in the spindle."""
     length_may_move: ClassVar[bool] = False
     """Another tool length may move the axis by itself; where it stands is then not known."""
+    units_spoil_length: ClassVar[bool] = False
+    """A tool length in force keeps its number when the unit changes, so that it is another one."""
     g53_in_g91: ClassVar[str] = "refused"
     """What G53 does under G91: "absolute", or "refused" by the control or by us."""
     g53_is_rapid: ClassVar[bool] = False
@@ -137,6 +148,8 @@ class Dialect:
     """G28 without an axis word sends all axes home."""
     block_delete: ClassVar[str] = ""
     """What the control does with `/` blocks: "execute", "skip", or "" when a switch decides."""
+    needs_end: ClassVar[bool] = False
+    """A file without M2 or M30, and not between two percent signs, is refused by the control."""
     stops_at_end: ClassVar[bool] = True
     skips_first_text: ClassVar[bool] = False
     lower_case: ClassVar[bool] = True
@@ -151,10 +164,18 @@ class Dialect:
     """The limit counts neither blanks nor comments."""
     comments: ClassVar[str] = "("
     """How a comment may begin: any of "(" and ";"."""
+    active_comments: ClassVar[tuple[str, ...]] = ()
+    """How comments begin that the control executes, in capitals."""
     has_percent: ClassVar[bool] = True
     has_program_number: ClassVar[bool] = True
     program_number_digits: ClassVar[int] = 0
     """How many digits a program number may have; 0: any number."""
+    most_m_words: ClassVar[int] = 0
+    """How many M words a block may have; 0: any number."""
+    tools_in_table: ClassVar[bool] = False
+    """A tool that the tool table does not have is refused where it is named."""
+    spindle_words: ClassVar[frozenset[str]] = frozenset()
+    """Codes, and S, beside which a word `$` says which spindle is meant."""
     words: ClassVar[str] = "DEFHIJKLNPQRST"
     """Addresses the control knows, besides its axes and G, M, O."""
     arithmetic: ClassVar[Arithmetic | None] = None
@@ -167,6 +188,14 @@ class Dialect:
     arc_rule: ClassVar[ArcRule] = ArcRule(absolute=0.01)
     cycle_rule: ClassVar[CycleRule | None] = None
     """What the control makes of canned cycles; None: it has none, or they are not known."""
+
+    cycles_stop: ClassVar[bool] = False
+    """The moves of a cycle end exactly, also where G64 rounds corners."""
+
+    @classmethod
+    def executes(cls, comment: str) -> bool:
+        """Whether the control does something when it reads a comment."""
+        return comment.lstrip("(; \t").upper().startswith(cls.active_comments)
 
     @classmethod
     def load_grammar(cls) -> Grammar:

@@ -25,7 +25,7 @@ from gcxform.pipelinefile import PipelineSpec, load, parse_chain
 from gcxform.registry import Registry, default_registry
 from gcxform.run import Output, Progress, Run, Sink
 from gcxform.source import Source
-from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY
+from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY, NO_CYCLES
 
 ARC_ROUNDING = 2.0  # of the last decimal: what rounding ends and centre can add along an arc
 VERIFY = ("off", "on", "full")
@@ -138,7 +138,8 @@ class Pipeline:
     def manner(self) -> Manner:
         """How the program is written."""
         numbers = self.numbers or self.target.numbers
-        return Manner(self.source, self.target, numbers, self.words, self.decimals)
+        expands = any(NO_CYCLES in step.ensures for step in self.path_passes)
+        return Manner(self.source, self.target, numbers, self.words, self.decimals, expands)
 
     @property
     def machine_reading(self) -> Reading:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gcxform.certificate import Certificate
+from gcxform.compensated import check_compensated, whole_stretches
 from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
 from gcxform.dialect import LINEAR, Dialect
@@ -78,14 +79,20 @@ class Run:
         self.emitter.believed.inch = int(_first_units(pipeline) == "in")
         if self.verify != "off":
             self.verifier = Verifier(
-                self.steps,
+                self._unresolved(),
                 pipeline.context,
                 replace(reading, units=_first_units(pipeline)),
                 axes,
                 (pipeline.limit(False), pipeline.limit(True)),
                 pipeline.angle_limit(),
                 self.source.name,
+                any(step.folds for step in self.steps),
             )
+
+    def _unresolved(self) -> tuple[Pass, ...]:
+        """Return the passes after the last one that gives the program another path on purpose."""
+        resolving = [number for number, step in enumerate(self.steps, 1) if step.resolves]
+        return self.steps[resolving[-1] :] if resolving else self.steps
 
     def over(self, texts: Iterator[bytes], out: Output, progress: Progress) -> None:
         """Run over the windows of a program.
@@ -99,6 +106,8 @@ class Run:
                 self._copy(text, out)
                 progress(len(text))
             return
+        if any(step.resolves for step in self.steps):
+            texts = whole_stretches(texts)
         with ThreadPoolExecutor(1) as ahead, ThreadPoolExecutor(1) as behind:
             self._transform_all(behind, self._read_ahead(ahead, texts, out), out, progress)
 
@@ -192,15 +201,29 @@ class Run:
         """Interpret one window, run the passes, and write it."""
         assert self.interpreter is not None
         read = self.interpreter.interpret(window, table)
-        path = read.path
+        path = meant = read.path
         for step in self.steps:
             path = self._apply(step, path, window)
+            if step.resolves:
+                self._prove(step, meant, path, window)
+                meant = path
         path = _in_words_of(self.pipeline.target, path)
-        return read, self.emitter.emit(window, table, read, path)
+        return replace(read, path=meant), self.emitter.emit(window, table, read, path)
+
+    def _prove(self, step: Pass, before: Toolpath, after: Toolpath, window: Window) -> None:
+        """Let a pass that resolves prove its path, against the one that the program means."""
+        if self.verify == "off":
+            return
+        try:
+            step.prove(before, after, self.pipeline.context)
+        except GcxformError as error:
+            raise _located(error, window, self.source.name) from None
 
     def _apply(self, step: Pass, path: Toolpath, window: Window) -> Toolpath:
         try:
             after = step.apply(path, self.pipeline.context)
+            if not step.resolves:
+                check_compensated(step, path, after)
         except InputError as error:
             raise _located(error, window, self.source.name) from None
         if self.verify == "full":
@@ -317,7 +340,7 @@ def _budget(pipeline: Pipeline, inch: bool) -> dict[str, object]:
     }
 
 
-def _located(error: InputError, window: Window, file: str) -> GcxformError:
+def _located(error: GcxformError, window: Window, file: str) -> GcxformError:
     """Return an error with the text of the lines it is about."""
     found = []
     for diagnostic in error.diagnostics:
@@ -328,4 +351,4 @@ def _located(error: InputError, window: Window, file: str) -> GcxformError:
             where = Location(file, where.line, start, text, max(1, len(text.strip())))
             diagnostic = diagnostic.at(where)
         found.append(diagnostic)
-    return InputError(tuple(found))
+    return type(error)(tuple(found))

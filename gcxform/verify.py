@@ -9,26 +9,28 @@ budget, with the same kinds of moves, feeds and events.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.contract import Pass, PassContext
 from gcxform.diagnostics import Diagnostic, GcxformError, Location, VerificationError
+from gcxform.dialect import INCH
 from gcxform.modal.interpreter import Interpreted, Interpreter
-from gcxform.modal.meaning import FRAMING
+from gcxform.modal.meaning import FRAMING, only_for_cycles
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Event, FeedMode, Kind, Toolpath
 from gcxform.toolpath.runs import SAME_FEED, Runs, deviation_of_runs, runs_of
-from gcxform.toolpath.travel import lengths
+from gcxform.toolpath.travel import lengths, ways
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
 
+LENGTHS = frozenset("XYZUVWIJKR")
 TIME_ERROR = 1e-3  # relative: what the rounding of the feeds of pieces may change
 
 
@@ -64,8 +66,10 @@ class Verifier:
         budgets: tuple[float, float],
         angle_budget: float,
         file: str = "-",
+        folded: bool = False,
     ) -> None:
         self.passes = passes
+        self.folded = folded
         self.context = context
         self.reader = WindowReader(context.target)
         self.interpreter = Interpreter(context.target, reading, axes, "output")
@@ -104,7 +108,7 @@ class Verifier:
         self._compare(trace)
         if self.feed_modes:
             self._left_modes(read, back, trace)
-        self._events(self._told(read.path.events), self._told(back.path.events), trace)
+        self._events(self._told(read.path), self._told(back.path), trace)
 
     def _count(self, read: Interpreted, window: Window, trace: _Trace) -> None:
         found = self.findings
@@ -136,6 +140,7 @@ class Verifier:
         if not off.angle[turned] <= self.angle_budget:
             self._fail(f"a rotary axis is {off.angle[turned]:.5f} degrees off", trace, turned)
         self._kinds(trace)
+        self._sides(trace)
         self._feeds(trace)
 
     def _note_worst(self, distance: float, trace: _Trace, row: int) -> None:
@@ -163,9 +168,8 @@ class Verifier:
 
     def _missing(self, trace: _Trace, runs: Runs) -> None:
         """Check that rows which no move in the output stands for were too short to write."""
-        for row in runs.left.tolist():
-            way = np.nan_to_num(trace.before.end[row] - trace.before.start[row])
-            length = float(np.sqrt((way**2).sum()))
+        left = ways(trace.before, runs.left).tolist()
+        for row, length in zip(runs.left.tolist(), left, strict=True):
             if trace.before.is_arc[row] or not length <= self.budget:
                 line = int(trace.before.source[row])
                 self._raise("a move of the source is missing in the output", line, 0)
@@ -175,6 +179,16 @@ class Verifier:
         wrong = rapid_before != (trace.after.kind == Kind.RAPID)
         if wrong.any():
             self._fail("a rapid became a feed move, or the reverse", trace, int(np.argmax(wrong)))
+
+    def _sides(self, trace: _Trace) -> None:
+        """Check that cutter compensation is on where it was, on the same side and as far."""
+        before, after, owner = trace.before, trace.after, trace.owner
+        if not before.side.any() and not after.side.any():
+            return
+        radius, old = after.radius, before.radius[owner]
+        changed = (after.side != before.side[owner]) | ~((radius == old) | np.isnan(radius + old))
+        if changed.any():
+            self._fail("cutter compensation has changed", trace, int(np.argmax(changed)))
 
     def _feeds(self, trace: _Trace) -> None:
         """Check that feeds are those of the source; in inverse time, the times must add up."""
@@ -212,9 +226,15 @@ class Verifier:
             line = int(trace.before.source[wrong[0]])
             self._raise("the time of a move in G93 has changed", line, 0)
 
-    def _told(self, events: tuple[Event, ...]) -> tuple[Event, ...]:
+    def _told(self, path: Toolpath) -> tuple[Event, ...]:
         """Return the events that have to be in the output too: not those that are folded away."""
-        if not any(step.folds for step in self.passes):
+        source, target = self.context.source, self.context.target
+        events = tuple(
+            _in_mm(event, path)
+            for event in path.events
+            if not only_for_cycles(event.what, source, target)
+        )
+        if not self.folded:
             return events
         codes = self.context.source.codes
         return tuple(e for e in events if e.what not in codes or codes[e.what].act not in FRAMING)
@@ -299,6 +319,14 @@ class Verifier:
         raise VerificationError((Diagnostic("GX601", message, where, hint),))
 
 
+def _in_mm(event: Event, path: Toolpath) -> Event:
+    """Return an event with the lengths among the words of its G code in mm."""
+    if event.what[0] != "G" or not path.blocks.inch[event.line - path.blocks.first]:
+        return event
+    values = tuple((a, v * INCH if a in LENGTHS else v) for a, v in event.values)
+    return replace(event, values=values)
+
+
 class _Trace:
     """Which move of the output belongs to which move of the input.
 
@@ -366,5 +394,5 @@ class _Trace:
         rest = slice(row, through + 1)
         if int(self.written_owner[written_row]) >= row or self.before.is_arc[rest].any():
             return False
-        way = np.nan_to_num(self.before.end[rest] - self.before.start[rest])
-        return float(np.sqrt((way**2).sum(axis=1)).sum()) <= short
+        rows = np.arange(row, through + 1)
+        return float(ways(self.before, rows).sum()) <= short

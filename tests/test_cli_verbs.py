@@ -29,12 +29,36 @@ def test_check_shows_the_chain(here: Path) -> None:
 
 def test_check_counts_findings(here: Path) -> None:
     assert "no findings" in call("check", "-p", "job.toml", "part.nc").stdout
-    (here / "two.nc").write_bytes(b"G0 G1 X0\nG99.9\n")
+    (here / "two.nc").write_bytes(b"G0 G1 X0\nG99.9\nM2\n")
     found = call("check", "-f", "linuxcnc", "two.nc")
     assert found.exit_code == 1
-    assert "2 lines, 2 findings" in found.stdout
+    assert "3 lines, 2 findings" in found.stdout
     assert "two.nc:1:4: error[GX202]" in found.stderr
     assert "two.nc:2:1: error[GX201]" in found.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        (b"G0 X1\n", ":1"),
+        (b"%\nG0 X1\n", ":2"),
+        (b"G0 X1\n%\n", ":2:1"),
+        (b"(part)\n%\nG0 X1\n%\n", ":2:1"),
+        (b"", ""),
+        (b"G0 X1\nM2\n%\n", None),
+        (b"\n %\nG0 X1\n%\n", None),
+        (b"%\nG0 X1\nM30\n", None),
+        (b"%\n%\n", None),
+    ],
+)
+def test_check_asks_linuxcnc_programs_for_an_end(
+    here: Path, text: bytes, place: str | None
+) -> None:
+    (here / "part.nc").write_bytes(text)
+    found = call("check", "-f", "linuxcnc", "part.nc")
+    assert found.exit_code == (place is not None)
+    assert place is None or f"part.nc{place}: error[GX222]" in found.stderr
+    assert "GX222" not in call("check", "-f", "fanuc", "part.nc").stderr
 
 
 def test_check_finds_what_is_wrong_in_later_windows(here: Path) -> None:
@@ -168,7 +192,7 @@ def test_explain_a_block(here: Path) -> None:
     for words in (
         "word X, number 10",
         "comment (so)",
-        "modal G1 G17 G90 G91.1 G94 G21 G54, F 100",
+        "modal G1 G17 G90 G91.1 G94 G21 G54 G40, F 100",
         "X0 Y0 Z0",
         "first line 1",
         "clockwise arc at 100 mm/min",

@@ -111,7 +111,7 @@ def test_a_good_reading_passes():
         ("X2", "X2 Y3"),
         ("G0 X1\n", ""),
         ("M2", "M9\nM2"),
-        ("M2", "G41\nM2"),
+        ("M2", "G99.9\nM2"),
     ],
 )
 def test_a_wrong_reading_fails(before, after):

@@ -18,6 +18,7 @@ import pytest
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
 from gcxform.cli import VERBS
+from gcxform.machine.machine import load_machine
 from gcxform.modal.codes import Effect
 from gcxform.options import describe
 from gcxform.pipelinefile import KEYS, SECTIONS
@@ -272,7 +273,11 @@ def test_dialect_and_pass_of_the_readme_work():
 def test_toml_snippets_are_right(folder, tmp_path):
     for snippet in blocks("toml"):
         tomllib.loads(snippet)
-        if snippet.startswith("format"):
+        if "tool-table" in snippet:
+            (tmp_path / "tool.tbl").write_text("T1 P1 Z100.0 D10.0 ;end mill\n", "latin-1")
+            (tmp_path / "machine.toml").write_text(snippet, "utf-8")
+            assert sorted(load_machine(tmp_path / "machine.toml").tools) == [1, 7]
+        elif snippet.startswith("format"):
             (folder / "snippet.toml").write_text(snippet, "utf-8")
             gx.Pipeline.load(folder / "snippet.toml")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from gcxform.catalogue import CATALOGUE
-from gcxform.diagnostics import Diagnostic, UsageError
+from gcxform.diagnostics import Diagnostic, FileError, UsageError
 from gcxform.machine.machine import ANGLE, LENGTH, Axis, Tool, load_machine, schema
 
 TRUNNION = """format = 1
@@ -193,3 +193,77 @@ def test_the_schema_lets_strings_with_units_in() -> None:
     assert low["type"] == ["number", "string"]
     assert parts["Axis"]["properties"]["max-speed"]["anyOf"][0] == {"type": "number"}
     assert parts["MachineFile"]["additionalProperties"] is False
+
+
+# --- a tool table of LinuxCNC ---
+
+TABLE = "T1 P1 D50.0 ;face mill\n\n; nothing\nt2 p2 X1.5 Y-2 Z+100.25 I0 J0 Q0\nT7 P3 A0 Z.5\n"
+
+
+def machine_with(folder: Path, table: str, unit: str = '"mm"', more: str = "") -> Path:
+    (folder / "tool.tbl").write_text(table, encoding="latin-1")
+    file = folder / "machine.toml"
+    head = f'format = 1\ntool-table = "tool.tbl"\ntool-table-units = {unit}\n'
+    file.write_text(head + more, encoding="utf-8")
+    return file
+
+
+def test_a_tool_table_gives_the_tools(tmp_path: Path) -> None:
+    machine = load_machine(machine_with(tmp_path, TABLE, more="[tool.3]\nlength = 5.0\n"))
+    assert machine.tools == {
+        1: Tool(radius=25.0),
+        2: Tool(length=100.25, x=1.5, y=-2.0),
+        3: Tool(length=5.0),
+        7: Tool(length=0.5),
+    }
+
+
+def test_a_tool_table_in_inches(tmp_path: Path) -> None:
+    tool = load_machine(machine_with(tmp_path, "T4 Z1 D.5 X-2 Y3\n", '"in"')).tools[4]
+    assert tool.vector == pytest.approx((-50.8, 76.2, 25.4))
+    assert tool.radius == pytest.approx(6.35)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("P1 Z5", "no T word"),
+        ("T1 Z5 Z6", "Z stands here twice"),
+        ("T1.5 Z5", "T is not a whole number"),
+        ("T-1 Z5", "T is not a whole number"),
+        ("T1 Z", "'Z' is not a letter with a number"),
+        ("T1 Z5mm", "'Z5mm' is not"),
+        ("T1 D-5", "negative diameter"),
+        ("T1 W5", "offset of W"),
+        ("T1 R5", "no word R"),
+        ("T9 Z5", "the tool 9 stands twice"),
+    ],
+)
+def test_a_bad_line_of_a_tool_table(tmp_path: Path, line: str, said: str) -> None:
+    with pytest.raises(UsageError, match=said) as caught:
+        load_machine(machine_with(tmp_path, f"T9 Z1\n{line} ; a comment\n"))
+    (found,) = caught.value.diagnostics
+    assert found.code == "GX438"
+    assert found.where is not None
+    assert (found.where.line, Path(found.where.file).name) == (2, "tool.tbl")
+
+
+def test_the_unit_of_a_tool_table_has_to_be_said(tmp_path: Path) -> None:
+    file = machine_with(tmp_path, TABLE)
+    file.write_text('format = 1\ntool-table = "tool.tbl"\n', encoding="utf-8")
+    with pytest.raises(UsageError, match="unit of the tool table is missing"):
+        load_machine(file)
+    with pytest.raises(UsageError, match="tool-table-units"):
+        load_machine(machine_with(tmp_path, TABLE, '"cm"'))
+
+
+def test_a_tool_stands_in_one_of_the_two(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"the tool 2 stands in tool\.tbl as well"):
+        load_machine(machine_with(tmp_path, TABLE, more="[tool.2]\nlength = 5.0\n"))
+
+
+def test_a_tool_table_that_is_not_there(tmp_path: Path) -> None:
+    file = machine_with(tmp_path, TABLE)
+    (tmp_path / "tool.tbl").unlink()
+    with pytest.raises(FileError, match="cannot read"):
+        load_machine(file)

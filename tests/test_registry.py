@@ -73,7 +73,20 @@ def test_the_builtin_dialects_come_through_the_entry_point() -> None:
 def test_the_builtin_plugin_has_no_fault() -> None:
     registry = Registry.load()
     assert registry.diagnostics == []
-    names = {"absolute", "feed", "metric", "plane", "segment", "volumetric", "renumber", "strip"}
+    names = {
+        "absolute",
+        "arcs",
+        "cutter-comp",
+        "cycles",
+        "feed",
+        "metric",
+        "offsets",
+        "plane",
+        "segment",
+        "volumetric",
+        "renumber",
+        "strip",
+    }
     assert set(registry.passes) == names
 
 

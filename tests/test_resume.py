@@ -222,9 +222,8 @@ def test_blocks_in_their_order(tmp_path: Path) -> None:
     found = resumed(tmp_path, text, "linuxcnc", 12, "--clearance", "4in", "--plunge", "254")
     assert found == [
         "(RESTART AT LINE 12)",
-        "G20 G17 G90 G94 G54",
+        "G20 G17 G90 G94 G40 G54",
         "G64 P0.002",
-        "G40",
         "G49",
         "T2 M6",
         "T5",

@@ -15,7 +15,7 @@ from gcxform.cli.tolerant import Tolerant
 from gcxform.diagnostics import UsageError
 from gcxform.dialect import INCH
 from gcxform.modal.state import State
-from gcxform.modal.tables import GROUPS, NUMBER, frame_name
+from gcxform.modal.tables import CYCLES, GROUPS, NUMBER
 from gcxform.registry import default_registry
 from gcxform.source import Source
 from gcxform.syntax.tree import Block, Comment, Mark, Number, Word
@@ -29,12 +29,13 @@ _MOVES = {
     Kind.ARC_CCW: "counter-clockwise arc",
 }
 _FAMILIES = {
-    "motion": ("G0", "G1", "G2", "G3", "G80"),
+    "motion": ("G0", "G1", "G2", "G3", "G80", *(f"G{number}" for number in CYCLES)),
     "plane": ("G17", "G18", "G19"),
     "distance": ("G90", "G91"),
     "arc-distance": ("G91.1", "G90.1"),
     "feed-mode": ("G93", "G94", "G95"),
     "units": ("G21", "G20"),
+    "cutter-comp": ("G40", "G41", "G42", "G41.1", "G42.1"),
 }
 _UNITS = {
     FeedMode.INVERSE_TIME: "1/min",
@@ -109,17 +110,19 @@ def _items(block: Block) -> Iterator[str]:
 
 def _state(state: State, axes: str) -> Iterator[str]:
     """Yield the codes in force and the position."""
-    codes = [_code(group, state.groups[group]) for group in GROUPS]
+    codes = [
+        state.frames.work if group == "frame" else _code(group, state.groups[group])
+        for group in GROUPS
+    ]
     feed = "none" if math.isnan(state.feed) else f"{state.feed:g}"
     unit = " inch" if state.feed_unit == INCH else ""
     yield f"  modal {' '.join(codes)}, F {feed}{unit if feed != 'none' else ''}"
-    yield f"  at    {_point(axes, state.position)}"
+    words = state.frames.frame().words(state.position[None, :])[0]
+    yield f"  at    {_point(axes, words)}"
 
 
 def _code(group: str, number: int) -> str:
     """Return the code of a modal group by its number."""
-    if group == "frame":
-        return frame_name(number)
     return next(code for code in _FAMILIES[group] if NUMBER[code] == number)
 
 
@@ -154,13 +157,19 @@ def _move(path: Toolpath, row: int) -> Iterator[str]:
     kind = Kind(int(path.kind[row]))
     unit = _UNITS[FeedMode(int(path.feed_mode[row]))]
     feed = "" if kind == Kind.RAPID else f" at {path.feed[row]:g} {unit}"
-    yield f"  {_MOVES[kind]}{feed}"
-    yield f"    from {_point(path.axes, path.start[row])}"
-    yield f"    to   {_point(path.axes, path.end[row])}"
+    spline = bool(path.is_spline[row])
+    yield f"  {'spline' if spline else _MOVES[kind]}{feed}"
+    yield f"    from {_point(path.axes, path.in_frames(path.start)[row])}"
+    yield f"    to   {_point(path.axes, path.words[row])}"
+    if spline:
+        first, second = (path.local(path.control[:, k]) for k in range(2))
+        yield f"    by   {_point('XYZ', first[row])}"
+        yield f"    and  {_point('XYZ', second[row])}"
     if path.is_arc[row]:
         plane = Plane(int(path.plane[row]))
         u, v, _ = plane.axes
         first, _, _ = radius_and_angle(path, np.array([row]))
-        centre = f"{'XYZ'[u]}{path.centre[row, u]:.6g} {'XYZ'[v]}{path.centre[row, v]:.6g}"
+        middle = path.local(path.centre)[row]
+        centre = f"{'XYZ'[u]}{middle[u]:.6g} {'XYZ'[v]}{middle[v]:.6g}"
         yield f"    about {centre}, radius {first[0]:.6g} mm, in the plane {plane.name}"
         yield f"    through {math.degrees(path.sweep[row]):.6g} degrees"

@@ -15,6 +15,7 @@ from gcxform.cli.failures import warn
 from gcxform.cli.programs import opened
 from gcxform.contract import Pass
 from gcxform.diagnostics import PRINTED_AT_MOST, Diagnostic, InputError
+from gcxform.modal.ending import Ending
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import windows_of
 from gcxform.pipeline import Pipeline
@@ -113,6 +114,7 @@ def reading_findings(pipeline: Pipeline, source: Source) -> Iterator[Diagnostic]
     letters = source.letters()
     axes = "".join(a for a in pipeline.source.axes if a in letters or a in "XYZ")
     interpreter = Interpreter(pipeline.source, pipeline.reading, axes, source.name)
+    ending = Ending(pipeline.source, source.name)
     refused = False
     for window, reader in windows_of(source, pipeline.source):
         try:
@@ -120,6 +122,10 @@ def reading_findings(pipeline: Pipeline, source: Source) -> Iterator[Diagnostic]
         except InputError as error:
             yield from (d for d in error.diagnostics if not refused or d.code in STATELESS)
             refused = True
+        ending.look(window, reader.table)
+    ending.close()
+    if ending.finding is not None:
+        yield ending.finding
 
 
 def _refusals(pipeline: Pipeline, source: Source) -> list[Diagnostic]:

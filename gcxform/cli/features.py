@@ -65,6 +65,8 @@ def by_path(path: Toolpath) -> set[str]:
             found.add("full circles")
         if (path.plane[arcs] != 0).any():
             found.add("arcs in other planes")
+    if path.has_splines:
+        found.add("splines")
     for axis, end, start in zip(path.axes, path.end.T, path.start.T, strict=True):
         if axis in ROTARY and (np.abs(end - start) > SMALL).any():
             found.add("rotary axes")

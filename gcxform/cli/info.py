@@ -203,8 +203,10 @@ def _meaning(tolerant: Tolerant, codes: dict[str, int], speeds: dict[str, float]
     for _, path in tolerant.windows():
         if path is None:
             continue
-        kinds, numbers = np.unique(path.kind, return_counts=True)
+        splines = int(path.is_spline.sum())
+        kinds, numbers = np.unique(path.kind[~path.is_spline], return_counts=True)
         moves.update({_KINDS[Kind(k)]: int(n) for k, n in zip(kinds, numbers, strict=True)})
+        moves.update({"splines": splines} if splines else {})
         events.update(event.what for event in path.events)
         modes.update(_modes(path))
         rapid = path.kind == Kind.RAPID

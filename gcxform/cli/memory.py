@@ -60,6 +60,7 @@ RESTATED: Final[Mapping[str, tuple[str, ...]]] = {
     "arc-distance": ("G91.1", "G90.1"),
     "feed-mode": ("G93", "G94", "G95"),
     "units": ("G21", "G20"),
+    "cutter-comp": ("G40", "G41", "G42", "G41.1", "G42.1"),
     "frame": (*(f"G{n}" for n in range(54, 60)), "G59.1", "G59.2", "G59.3"),
 }
 """The modal codes that are in the interpreter's state and that a preamble states."""

@@ -14,15 +14,13 @@ from gcxform.cli.memory import RESTATED, Memory
 from gcxform.dialect import INCH, LINEAR, Dialect
 from gcxform.emit.numbers import MOST_DECIMALS, text_of
 from gcxform.modal.state import State
-from gcxform.modal.tables import NUMBER, frame_name
+from gcxform.modal.tables import NUMBER
 
 EXACT = 1e-9  # mm, degrees: closer positions are the same
 
 
 def code_of(group: str, number: int) -> str:
     """Return the code of a modal group by its number."""
-    if group == "frame":
-        return frame_name(number)
     return next(code for code in RESTATED[group] if NUMBER[code] == number)
 
 
@@ -62,7 +60,8 @@ class Preamble:
         yield from self._tail(inch)
 
     def _in(self, group: str) -> str:
-        return code_of(group, self.state.groups[group])
+        work = group == "frame"
+        return self.state.frames.work if work else code_of(group, self.state.groups[group])
 
     def _stated(self, *groups: str) -> list[str]:
         """Return the codes in force of the groups that the program states before the line."""
@@ -73,6 +72,7 @@ class Preamble:
         units = [code_of("units", int(inch))] if "units" in self.state.stated else []
         feed = ["G94"] if "feed-mode" in self.state.stated else []
         codes = [*units, *self._stated("plane"), "G90", *feed, *self._stated("arc-distance")]
+        codes += self._stated("cutter-comp")
         yield " ".join([*codes, *self._stated("frame")])
 
     def _kept(self, inch: bool) -> Iterator[str]:

@@ -23,7 +23,7 @@ from gcxform.toolpath.path import Kind, Toolpath
 CLOSE = 1e-6  # mm, degrees: positions are written with so many decimals
 ARCS = ("G2", "G3")
 COMPARED = ("kind", "plane", "feed_mode", "frame", "source", "nth", "form", "side")
-MEASURED = ("end", "centre", "sweep", "feed", "radius")  # the feed where it cuts
+MEASURED = ("end", "centre", "sweep", "feed", "radius", "control")  # the feed where it cuts
 
 
 @dataclass
@@ -108,6 +108,11 @@ class Restart:
             raise self.refusal(f"no restart is safe here: in line {line} {reason}")
         if state.ended:
             raise self.refusal("the program has ended before this line")
+        if state.groups["cutter-comp"] or state.side:
+            message = (
+                "no restart is safe here: cutter compensation is on, and looks at moves before"
+            )
+            raise self.refusal(message, "begin at the move that begins compensation")
         if state.memory["cycle"] in CYCLES or state.groups["motion"] in CYCLES:
             message = "no restart is safe here: a canned cycle is in force, whose words stay"
             raise self.refusal(message, "begin at the block that calls the cycle")
@@ -291,7 +296,7 @@ def _differences(one: Toolpath, other: Toolpath) -> Iterator[int]:
         close = np.isclose(a, b, rtol=1e-9, atol=INCH * CLOSE, equal_nan=True)
         if name == "feed":
             close |= one.kind == Kind.RAPID
-        wrong |= ~(close.all(axis=1) if close.ndim > 1 else close)
+        wrong |= ~close.all(axis=tuple(range(1, close.ndim)))
     yield from (one.source[np.flatnonzero(wrong)] + 1).tolist()
     yield from (a.line + 1 for a, b in zip(one.events, other.events, strict=False) if a != b)
     if len(one.events) != len(other.events):

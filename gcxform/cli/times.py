@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from gcxform.dialect import LINEAR
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
+from gcxform.toolpath.splines import spline_lengths
 
 Floats = NDArray[np.float64]
 MINUTE = 60.0
@@ -27,6 +28,9 @@ def lengths(path: Toolpath) -> Floats:
         normal = np.array([plane.axes[2] for plane in Plane])[path.plane[arcs]]
         rise = np.nan_to_num(way[arcs, normal])
         length[arcs] = np.hypot((first + last) / 2 * path.sweep[arcs], rise)
+    if path.has_splines:
+        splines = np.flatnonzero(path.is_spline)
+        length[splines] = np.mean(spline_lengths(path, splines), axis=0)
     return np.asarray(length)
 
 

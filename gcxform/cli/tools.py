@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from gcxform.dialect import Dialect
 from gcxform.toolpath.circles import arc_extremes
 from gcxform.toolpath.path import Event, FeedMode, Kind, Toolpath
+from gcxform.toolpath.splines import spline_extremes
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -44,13 +45,18 @@ class Extents:
         self.axes: dict[str, Range] = {}
 
     def add(self, path: Toolpath, rows: Flags) -> None:
-        """Take the ends of moves, and the sides of arcs, into account."""
+        """Take the ends of moves, and the sides of arcs and splines, into account."""
         for axis, column in zip(path.axes, path.end.T, strict=True):
             self.axes.setdefault(axis, Range()).add(column[rows])
         if path.has_arcs:
             points, owners = arc_extremes(path)
             for axis, column in zip("XYZ", points.T, strict=True):
                 self.axes[axis].add(column[rows[owners]])
+
+        if path.has_splines:
+            splines = np.flatnonzero(path.is_spline & rows)
+            for axis, column in zip("XYZ", spline_extremes(path, splines).T, strict=True):
+                self.axes[axis].add(column.ravel())
 
     @property
     def found(self) -> dict[str, list[float]]:

@@ -28,7 +28,8 @@ class ArcEnds:
     """Arcs of one plane, (n, 2) in mm: start and end as formatted, and the centre that is meant.
 
     `base` (n, 2) is what the centre words are counted from, `step` (n,) the last decimal in mm,
-    `spiral` (n,) by how much the radii at start and end differ before rounding.
+    `spiral` (n,) by how much the radii at start and end differ before rounding; `inch` (n,): the
+    block is written in inches.
     """
 
     start: Floats
@@ -39,6 +40,7 @@ class ArcEnds:
     sweep: Floats
     sense: Floats
     spiral: Floats
+    inch: Flags
 
 
 def centre_words(arcs: ArcEnds, rule: ArcRule, refit: bool) -> tuple[Floats, Flags]:
@@ -86,5 +88,5 @@ def _good(arcs: ArcEnds, words: Floats, rule: ArcRule) -> Flags:
     first, last, centre = _radii(arcs, words)
     sweep = swept(arcs.start - centre, arcs.end - centre, arcs.sense)
     slip = np.abs(sweep - (np.mod(arcs.sweep - 1e-12, TURN) + 1e-12))
-    good: Flags = accepts(rule, first, last) & (slip < SWEEP_SLIP)
+    good: Flags = accepts(rule, first, last, arcs.inch) & (slip < SWEEP_SLIP)
     return good

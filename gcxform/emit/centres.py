@@ -76,6 +76,7 @@ class Centres:
             self.path.sweep[rows],
             np.where(self.path.mirrored[rows], -1.0, 1.0) * self.path.sense[rows],
             self._spiral(rows, axes),
+            inch,
         )
         self.centre[rows], good = centre_words(arcs, manner.target.arc_rule, refit)
         good |= self._full_circles(rows, axes, begin, refit)

@@ -8,11 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
+from gcxform.dialect import LINEAR
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, as_written
+from gcxform.modal.meaning import FRAMING
+from gcxform.modal.tables import GROUPS
 from gcxform.toolpath.path import Form
 
+Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
@@ -23,8 +27,12 @@ WHAT = {
     Form.MACHINE: "a move in machine coordinates",
     Form.PROBE: "a probing move",
     Form.SYNCHRONISED: "a move tied to the spindle",
+    Form.SPLINE: "a spline",
 }
-HINTS = {Form.CYCLE: 'put the pass "cycles" before'}
+HINTS = {
+    Form.CYCLE: 'put the pass "cycles" before',
+    Form.SPLINE: 'put the pass "segment" before',
+}
 
 
 class Copying:
@@ -44,10 +52,12 @@ class Copying:
         old_count = np.bincount(self.original.block, minlength=live)
         self.exact = np.zeros(len(self.path), np.bool_)
         self.believed_exact = believed.exact
-        self.lines = (old_count == 0) & (pieces.count == 0)
+        self.believed_position = believed.position
+        self.lines = (old_count == 0) & (pieces.count == 0) & ~pieces.expanded_line
         stands = self._standing(old_count, pieces)
         self._refuse_changed(stands, pieces)
         self._refuse_presets()
+        self._refuse_lengths()
         if task.manner.crossing:
             self.lines &= self._nothing_to_say()
         else:
@@ -55,8 +65,11 @@ class Copying:
             self.lines |= stands
         if self.path.folded:
             self.lines[self.task.table.flag("framing", self.task.shape)] = False
+        if self.path.blocks.uncompensated:
+            self.lines &= ~self.task.table.flag("compensates", self.task.shape)
         self.lines[pieces.line[pieces.repaired]] = False
         self._skipped()
+        self._refuse_unknown()
 
     def _refuse_changed(self, stands: Flags, pieces: Pieces) -> None:
         """Refuse blocks that move in a way of their own and would have to move otherwise."""
@@ -68,6 +81,19 @@ class Copying:
         message = f"{WHAT[form]} would have to be written otherwise than it stands"
         raise InputError.one("GX506", message, self.task.location(int(wrong[0])), hint)
 
+    def _refuse_unknown(self) -> None:
+        """Refuse words that have to be written anew while it is not known what they would be."""
+        unknown = self.positions.programmed & np.isnan(self.positions.held)
+        anew = ~self.lines[self.path.block] & (self.path.form == Form.PLAIN)
+        rows = np.flatnonzero(anew & unknown.any(axis=1))
+        if len(rows):
+            row = int(rows[0])
+            axis = self.path.axes[int(np.argmax(unknown[row]))]
+            where = self.task.location(int(self.path.block[row]))
+            message = f"the block would be written anew, and where {axis} goes is not known"
+            hint = f"program {axis} before, or give a machine file with the offsets"
+            raise InputError.one("GX506", message, where, hint)
+
     def _refuse_presets(self) -> None:
         """Refuse blocks that set coordinates from where the axes stand if they stand elsewhere."""
         if self.path.folded:
@@ -75,13 +101,49 @@ class Copying:
         for line in np.flatnonzero(self.task.table.flag("presets", self.task.shape)).tolist():
             now = np.searchsorted(self.path.block, line) - 1
             was = np.searchsorted(self.original.block, line) - 1
-            if now < 0 or was < 0 or self.exact[now]:
+            if self.exact[now] if now >= 0 else self.believed_exact:
                 continue
-            gap = np.abs(self.positions.after[now] - self.original.end[was])
+            stands = self.positions.after[now] if now >= 0 else self.believed_position
+            gap = np.abs(stands - (self.original.end[was] if was >= 0 else self.original.entry))
             if (gap > EXACT).any():
                 message = "this block counts from where the axes stand, and they stand elsewhere"
                 hint = 'put the pass "offsets" before'
                 raise InputError.one("GX506", message, self.task.location(line), hint)
+
+    def _refuse_lengths(self) -> None:
+        """Refuse lengths that codes take for themselves where another unit would be in force."""
+        takes = self.task.table.flag("takes_lengths", self.task.shape)
+        inch = self.path.blocks.inch != self.original.blocks.inch
+        halved = self.path.folded and any(frame.diameter for frame in self.original.frames)
+        for line in np.flatnonzero(takes & (inch | halved)).tolist():
+            for name, address in self._lengths_kept(line):
+                if inch[line] or address == "X":
+                    message = f"{address} of {name} would have to be written in another unit"
+                    hint = "leave the block out, or let the CAM system write it so"
+                    if (name, address) not in self._lengths_left(line):
+                        hint = 'put the pass "offsets" before'
+                    elif address == "D":
+                        hint = 'put the pass "cutter-comp" before'
+                    raise InputError.one("GX506", message, self.task.location(line), hint)
+
+    def _lengths_left(self, line: int) -> list[tuple[str, str]]:
+        """Return what of those lengths folding would leave."""
+        meaning = self.task.table.meanings[int(self.task.shape[line])]
+        framing = {act.code for act in meaning.acts if act.name in FRAMING}
+        return [(name, address) for name, address, _ in meaning.lengths if name not in framing]
+
+    def _lengths_kept(self, line: int) -> list[tuple[str, str]]:
+        """Return code and address of lengths, not 0, that codes of a line take and that stay."""
+        window, first = self.task.window, int(self.task.window.first_number[line])
+        meaning = self.task.table.meanings[int(self.task.shape[line])]
+        folded = {act.code for act in meaning.acts if act.name in FRAMING and self.path.folded}
+        if self.path.blocks.uncompensated:
+            folded.add(meaning.groups.get("cutter-comp", ""))
+        return [
+            (name, address)
+            for name, address, slot in meaning.lengths
+            if name not in folded and window.value[first + slot]
+        ]
 
     def _skipped(self) -> None:
         """Copy the blocks that the control skips; another control might not skip them."""
@@ -117,7 +179,7 @@ class Copying:
         if not len(rows):
             return stands
         lines = self.path.block[rows]
-        good = self._same_modes()[lines]
+        good = (self._same_modes() | self._without_lengths(special))[lines]
         if not self.task.manner.crossing:
             good &= special[lines] | ~pieces.repaired_in(lines)
         good &= self.path.form[rows] == self.original.form[others]
@@ -128,7 +190,8 @@ class Copying:
         own = np.flatnonzero(~plain)
         if len(own):
             good[own] &= self._same_words(rows[own], others[own])
-        good &= ~plain | self._same_frames(rows, others)
+        turned = plain | (self.path.form[rows] == Form.SPLINE)
+        good &= ~turned | self._same_frames(rows, others)
         starts_exact = self._track_exactness(rows, others, good)
         incremental = self.path.blocks.incremental[self.path.block[rows]]
         doubtful = np.flatnonzero(good & plain & incremental & ~starts_exact)
@@ -141,12 +204,32 @@ class Copying:
         stands[self.path.block[rows[~good]]] = False
         return stands
 
+    def _without_lengths(self, special: Flags) -> Flags:
+        """Return the lines, of those that are special, that only the unit of no length changes."""
+        free = np.zeros(len(special), np.bool_)
+        now, old = self.path.blocks, self.original.blocks
+        mind = special & (now.incremental == old.incremental) & (now.inch != old.inch)
+        window, table = self.task.window, self.task.table
+        mind &= table.groups[self.task.shape, GROUPS.index("units")] < 0
+        for line in np.flatnonzero(mind).tolist():
+            slots = table.meanings[int(self.task.shape[line])].slots
+            first = int(window.first_number[line])
+            free[line] = not any(window.value[first + slots[a]] for a in LINEAR if a in slots)
+        return free
+
+    def _same_diameters(self, rows: Ints, others: Ints) -> Flags:
+        """Return which rows name no X, or are in frames that agree on what X is."""
+        now = np.array([frame.diameter for frame in self.path.frames], np.bool_)
+        was = np.array([frame.diameter for frame in self.original.frames], np.bool_)
+        same = now[self.path.frame[rows]] == was[self.original.frame[others]]
+        return np.asarray(same | ~self.positions.programmed[rows, 0])
+
     def _same_ends(self, rows: Ints, others: Ints) -> Flags:
         """Return which rows end where their source ends and need no word it does not have."""
         good = np.ones(len(rows), np.bool_)
-        words, original = self.positions.end, self.original.words
+        words, original = self.positions.end, self._old_words(rows, others)
         for k in range(len(self.path.axes)):
-            end, old = _take(words[:, k], rows), _take(original[:, k], others)
+            end, old = _take(words[:, k], rows), original[:, k]
             held = _take(self.positions.held[:, k], rows)
             programmed = _take(self.positions.programmed[:, k], rows)
             same = (np.abs(held - old) <= EXACT) | (end == old)
@@ -167,11 +250,12 @@ class Copying:
         same = (np.abs(end - old) <= EXACT) | unknown
         incremental = self.path.blocks.incremental[self.path.block[rows]][:, None]
         still = np.abs(old_way) <= EXACT
-        cycle = (self.path.form[rows] == Form.CYCLE)[:, None]
+        cycle = np.isin(self.path.form[rows], (Form.CYCLE, Form.SPLINE))[:, None]
         as_far = (np.abs(way - old_way) <= EXACT) & (incremental | (still & ~cycle))
         good = (same | as_far).all(axis=1)
         if self.path.frames == self.original.frames:
             return np.asarray(good)
+        good &= self._same_diameters(rows, others)
         words, before = self.positions.end[rows], self.original.words[others]
         alike = (np.abs(words - before) <= EXACT) | (np.isnan(words) & np.isnan(before))
         framed = (self.path.form[rows] == Form.HOME) & (self.path.nth[rows] == 0)
@@ -190,9 +274,25 @@ class Copying:
 
     def _starts_alike(self, rows: Ints, others: Ints) -> Flags:
         """Return which rows begin where their source begins, in the axes that the block names."""
-        start = self.original.in_frames(self.original.start)[others]
+        start = self._in_frames(self.original.start, rows, others)
         same = np.abs(self.positions.before[rows] - start) <= EXACT
         return np.asarray((same | ~self.positions.programmed[rows]).all(axis=1))
+
+    def _old_words(self, rows: Ints, others: Ints) -> Floats:
+        """Return the ends of source rows as programmed; distances count in any frame."""
+        words = _take(self.original.words, others)
+        if self.path.frames == self.original.frames:
+            return words
+        distance = self.path.blocks.incremental[self.path.block[rows]]
+        return np.where(distance[:, None], self._in_frames(self.original.end, rows, others), words)
+
+    def _in_frames(self, positions: Floats, rows: Ints, others: Ints) -> Floats:
+        """Return positions of source rows in the frames of the rows that stand for them."""
+        if self.path.plainly_framed:
+            return _take(positions, others)
+        placed = np.full_like(self.path.end, np.nan)
+        placed[rows] = positions[others]
+        return self.path.in_frames(placed)[rows]
 
     def _track_exactness(self, rows: Ints, others: Ints, good: Flags) -> Flags:
         """Follow how far everything is exactly as in the source; return where rows start so."""
@@ -209,7 +309,7 @@ class Copying:
         alike = starts_exact.copy()
         off = np.flatnonzero(~starts_exact)
         if len(off):
-            start = self.original.in_frames(self.original.start)[others[off]]
+            start = self._in_frames(self.original.start, rows[off], others[off])
             on_grid = np.abs(self.positions.before[rows[off]] - start) <= EXACT
             alike[off] = (on_grid | np.isnan(start)).all(axis=1)
         centre, old = self.path.centre[rows], self.original.centre[others]

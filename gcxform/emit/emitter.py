@@ -9,25 +9,26 @@ written in the same way share a template, and each template is rendered as a mat
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.diagnostics import InputError
+from gcxform.diagnostics import Diagnostic, InputError
+from gcxform.dialect import Dialect
 from gcxform.emit.centres import Centres
 from gcxform.emit.copying import Copying
 from gcxform.emit.fields import Axis, Centre, Computed, Copied, Feed, Field, Key, Literal, Role
 from gcxform.emit.manner import Believed, Manner, Task
-from gcxform.emit.numbers import MOST_DECIMALS, quantise
+from gcxform.emit.numbers import MOST_DECIMALS, decimals_for, decimals_of, quantise
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, motion_kinds
 from gcxform.emit.render import Renderer, interleave
-from gcxform.emit.saying import event_text, gaps_between, nothing_left
-from gcxform.emit.templates import CannotSayError, TemplateWriter
+from gcxform.emit.saying import CannotSayError, event_text, gaps_between, left_out, nothing_left
+from gcxform.emit.templates import TemplateWriter
 from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
+from gcxform.modal.limits import without_blanks
 from gcxform.modal.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.syntax.tree import Comment
@@ -63,6 +64,7 @@ class Emitter:
         self.believed = Believed.at_start(manner, start)
         self.line_end = b""
         self.gap: bytes | None = None
+        self.path_mode = ""
 
     def emit(
         self, window: Window, table: MeaningTable, read: Interpreted, path: Toolpath
@@ -98,8 +100,9 @@ class _Job:
 
     def run(self) -> Emitted:
         copied = self.copying.lines
+        self._refuse_rounding()
         self.centre = Centres(self.task, self.kind, self.positions, self.copying).write()
-        empty = self._without_words() | self._foreign() | self._gone()
+        empty = self._without_words() | self._foreign() | self._gone() | self._only_compensates()
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
         renderer = Renderer(self.task)
         self._render(chosen, renderer)
@@ -114,6 +117,7 @@ class _Job:
         """Return the inner pieces of split blocks that would have no word: nothing moves."""
         still: Flags = ~self.positions.write.any(axis=1) & (self.kind < Kind.ARC_CW)
         inner: Flags = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row
+        inner &= ~self.pieces.expanded_line[self.pieces.line] | (self.pieces.motion < 0)
         return np.asarray(inner & self.pieces.of_rows(still, False))
 
     def _gone(self) -> Flags:
@@ -133,7 +137,7 @@ class _Job:
         work = self.path.frames[0].work if self.path.folded else ""
         gone = np.array(
             [
-                nothing_left(shape.block.items, meaning, task.manner.target, work)
+                nothing_left(shape.block.items, meaning, task.manner, work)
                 for shape, meaning in zip(
                     task.table.shapes.shapes, task.table.meanings, strict=False
                 )
@@ -141,6 +145,35 @@ class _Job:
             np.bool_,
         )
         return np.asarray(gone[task.shape][self.pieces.line] & ~self.pieces.has_row)
+
+    def _only_compensates(self) -> Flags:
+        """Return the pieces of lines that hold nothing but what is left out of them."""
+        if not self.path.blocks.uncompensated:
+            return np.zeros(len(self.pieces.line), np.bool_)
+        table = self.task.table
+        shapes = zip(table.shapes.shapes, table.meanings, strict=False)  # others are read ahead
+        only = np.array(
+            [m.compensates and all(left_out(item, m) for item in s.block.items) for s, m in shapes],
+            np.bool_,
+        )
+        return np.asarray(only[self.task.shape][self.pieces.line] & ~self.pieces.has_row)
+
+    def _refuse_rounding(self) -> None:
+        """Refuse moves of cycles where corners are rounded: the bottom would not be reached."""
+        manner, path = self.task.manner, self.path
+        modes = [e for e in path.events if _is_path_mode(e.what, manner.source)]
+        if manner.source.cycles_stop and self.pieces.expanded_line.any():
+            rows = np.flatnonzero(self.pieces.expanded_line[path.block])
+            last = np.searchsorted([event.row for event in modes], rows, "right")
+            rounds = np.array(
+                [e == "G64" for e in [self.emitter.path_mode, *(e.what for e in modes)]]
+            )
+            if rounds[last].any():
+                message = "the moves of a cycle end exactly, and G64 would round their ends"
+                first = rows[rounds[last]][:1]
+                self._refuse(first, "GX506", message, "write G61 before the cycle")
+        if modes:
+            self.emitter.path_mode = modes[-1].what
 
     # --- rendering ---
 
@@ -216,6 +249,7 @@ class _Job:
             self.path.axes,
             b" " if self.emitter.gap is None else self.emitter.gap,
             self.path.frames[0].work if self.path.folded else "",
+            self.path.blocks.uncompensated,
         )
         try:
             return writer.write(key)
@@ -248,6 +282,7 @@ class _Job:
             present = self.positions.write[rows, column]
             if present.any():
                 whole = self.positions.words_of(column, rows)
+                self._check_known(field.address, whole, present, rows)
                 decimals = manner.decimals_of(field.address, inch)
                 renderer.number(field.gap, field.address, whole, decimals, present)
         elif isinstance(field, Centre):
@@ -257,7 +292,7 @@ class _Job:
             renderer.number(field.gap, field.address, whole, decimals, everywhere)
         else:
             feed = self.pieces.feed_value[members]
-            decimals = _decimals_for(feed, manner.decimals_of("F", inch))
+            decimals = decimals_for(feed, manner.decimals_of("F", inch))
             whole = quantise(feed, decimals)
             self._check_feed(feed, whole / 10.0**decimals, members)
             everywhere = np.ones(len(rows), np.bool_)
@@ -267,7 +302,7 @@ class _Job:
     def _computed(self, field: Computed, lines: Ints, renderer: Renderer) -> None:
         """Write what expressions are worth as plain numbers, to the last bit."""
         value = self.task.read.value[self.task.window.first_number[lines] + field.slot]
-        decimals = _decimals_of(value)
+        decimals = decimals_of(value)
         whole = quantise(value, decimals)
         inexact = whole / 10.0**decimals != value
         if inexact.any():
@@ -277,6 +312,19 @@ class _Job:
         renderer.number(b"", field.address, whole, decimals, np.ones(len(lines), np.bool_), False)
 
     # --- after ---
+
+    def _refuse(self, rows: Ints, code: str, message: str, hint: str) -> None:
+        lines = self.path.block[rows[:20]].tolist()
+        raise InputError(
+            tuple(Diagnostic(code, message, self.task.location(line), hint) for line in lines)
+        )
+
+    def _check_known(self, address: str, whole: Floats, present: Flags, rows: Ints) -> None:
+        """Refuse increments from where the control only knows: the operator may have moved it."""
+        unknown = rows[present & np.isnan(whole)]
+        if len(unknown):
+            message = f"{address} is incremental, but where {address} stands is not known"
+            self._refuse(unknown, "GX207", message, f"program {address} in G90 before")
 
     def _check_feed(self, feed: Floats, written: Floats, members: Ints) -> None:
         """Refuse feeds that are too small to be written."""
@@ -292,7 +340,9 @@ class _Job:
         if not limit or not len(lengths) or int(lengths.max()) <= limit:
             return
         if target.length_without_blanks:
-            lengths = _without_blanks(text, lengths)
+            ends = np.cumsum(lengths)
+            lines = [text[int(e - n) : int(e)] for e, n in zip(ends, lengths, strict=True)]
+            lengths = np.array([without_blanks(line) for line in lines], np.int64)
             if int(lengths.max()) <= limit:
                 return
         worst = int(np.argmax(lengths))
@@ -344,24 +394,5 @@ def _groups(ways: Ints) -> list[Ints]:
     return groups
 
 
-def _decimals_for(value: Floats, usual: int) -> int:
-    """Return as many decimals as keep values to a ten thousandth: small feeds need more."""
-    for decimals in range(usual, MOST_DECIMALS):
-        error = np.abs(quantise(value, decimals) / 10.0**decimals - value)
-        if (error <= 1e-4 * np.abs(value)).all():
-            return decimals
-    return MOST_DECIMALS
-
-
-def _decimals_of(value: Floats) -> int:
-    """Return the least number of decimals with which values are written to the last bit."""
-    few = range(MOST_DECIMALS)
-    exact = (d for d in few if (quantise(value, d) / 10.0**d == value).all())
-    return next(exact, MOST_DECIMALS)
-
-
-def _without_blanks(text: bytes, lengths: Ints) -> Ints:
-    """Return the lengths of lines (given one after another) without blanks and comments."""
-    ends = np.cumsum(lengths)
-    lines = [text[int(e - n) : int(e)] for e, n in zip(ends, lengths, strict=True)]
-    return np.array([len(re.sub(rb"\([^)]*\)|;.*|\s", b"", line)) for line in lines], np.int64)
+def _is_path_mode(what: str, source: type[Dialect]) -> bool:
+    return what in source.codes and source.codes[what].group == "path"

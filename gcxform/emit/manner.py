@@ -26,6 +26,7 @@ class Manner:
 
     words     "changed": what changes or was programmed; "programmed": only that; "all": every axis
     decimals  by address, where they differ from the number format
+    expands   whether canned cycles have become plain moves
     """
 
     source: type[Dialect]
@@ -33,6 +34,7 @@ class Manner:
     numbers: NumberFormat
     words: str = "changed"
     decimals: Mapping[str, int] = field(default_factory=dict)
+    expands: bool = False
 
     @property
     def crossing(self) -> bool:

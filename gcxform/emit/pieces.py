@@ -67,7 +67,8 @@ class Pieces:
         self.count = np.bincount(path.block, minlength=live)
         special = np.zeros(live, np.bool_)
         special[path.block[path.form != Form.PLAIN]] = True
-        self.expanded_line = (self.task.read.modes.cycle != CYCLE_OFF) & ~special
+        drilling = self.task.read.modes.cycle != CYCLE_OFF
+        self.expanded_line = drilling & ~special & self.task.manner.expands
         inner = [e for e in path.events if e.within and self._is_expanded(e)]
         self.events = list({(e.what, e.values): e for e in reversed(inner)}.values())
         pieces = np.where(special, 1, np.maximum(self.count, 1))

@@ -123,6 +123,8 @@ def interleave(
 ) -> tuple[bytes, Ints, Ints]:
     """Return a window's new text and, for each of its lines, the line it came from.
 
+    The third value is the order in which the copied lines and then the written ones stand.
+
     `copied` (live,) says which lines are copied; `written` (k,) are the lines of the pieces whose
     texts, of these lengths, follow one another in `text`. `nth` (k,) says which move of its line
     each piece is, and the same is returned for all lines of the text. Lines the control does not

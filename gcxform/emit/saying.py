@@ -2,14 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 from gcxform.dialect import Dialect
-from gcxform.modal.meaning import FRAMING, Meaning
-from gcxform.syntax.shapes import CODES
+from gcxform.emit.manner import Manner
+from gcxform.modal.codes import Code, MCode
+from gcxform.modal.meaning import FRAMING, Meaning, only_for_cycles
+from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import BLANKS, Item, Mark, Number, Statement, Word
 from gcxform.toolpath.path import Event
+
+STATED: Mapping[str, tuple[str, Mapping[int, str] | tuple[str, ...]]] = {
+    "units": ("inch", ("G21", "G20")),
+    "distance": ("incremental", ("G90", "G91")),
+    "arc-distance": ("absolute_centre", ("G91.1", "G90.1")),
+    "feed-mode": ("feed_mode", {93: "G93", 94: "G94", 95: "G95"}),
+    "motion": ("motion", ("G0", "G1", "G2", "G3")),
+}
+"""Groups whose code may have to be stated: field of the key, and codes by value."""
+TAPPING = ("G74", "G84")
+
+
+class CannotSayError(Exception):
+    """The target dialect has no words for something: column from 0, width, message."""
+
+    def __init__(self, column: int, width: int, message: str) -> None:
+        super().__init__(message)
+        self.column = column
+        self.width = width
+        self.message = message
 
 
 def code_of(word: Word) -> str:
@@ -65,9 +87,7 @@ def event_text(event: Event, target: type[Dialect], gap: bytes) -> bytes | None:
     return None
 
 
-def nothing_left(
-    items: tuple[Item, ...], meaning: Meaning, target: type[Dialect], work: str
-) -> bool:
+def nothing_left(items: tuple[Item, ...], meaning: Meaning, manner: Manner, work: str) -> bool:
     """Whether of a block that has items nothing but its number would be written.
 
     That is so for parts of the program frame that the target has not, and for codes that are folded
@@ -77,14 +97,24 @@ def nothing_left(
 
     def goes(item: Item) -> bool:
         if isinstance(item, Word):
-            return (
-                item.address == "N"
-                or (code_of(item) if item.address in CODES else item.address) in folded
-            )
-        return is_foreign(item, target)
+            name = code_of(item) if item.address in CODES else item.address
+            idle = only_for_cycles(name, manner.source, manner.target)
+            return name == "N" or name in folded or idle
+        slash = isinstance(item, Mark) and item.kind == "block_delete"
+        return slash or is_foreign(item, manner.target)
 
     kept = [item for item in items if not (isinstance(item, Word) and item.address == "N")]
+    kept = [item for item in kept if not (isinstance(item, Mark) and item.kind == "block_delete")]
     return bool(kept) and all(goes(item) for item in items)
+
+
+def left_out(item: Item, meaning: Meaning) -> bool:
+    """Whether an item turns cutter compensation on, and is left out once that is resolved."""
+    if not isinstance(item, Word) or not meaning.compensates:
+        return False
+    if item.address == "G" and isinstance(item.value, Number):
+        return f"G{round(item.value.value, 6):g}" == meaning.groups["cutter-comp"]
+    return item.address == "D"
 
 
 def same_dwell(one: type[Dialect], other: type[Dialect]) -> bool:
@@ -99,3 +129,59 @@ def like(text: str, code: str) -> str:
     if digits[:1] == "0" and len(digits.split(".")[0]) == 2 and len(number.split(".")[0]) == 1:
         number = "0" + number
     return letter + number
+
+
+def other_in(
+    source: type[Dialect], target: type[Dialect], name: str, code: Code, dwells: bool
+) -> str:
+    """Return what the target cannot say, if a G code means something else there, or nothing."""
+    other = target.codes.get(name)
+    if other is None or (other.group, other.effect, other.act, other.takes) != (
+        code.group,
+        code.effect,
+        code.act,
+        code.takes,
+    ):
+        return name
+    if name in TAPPING:
+        return f"{name} with the spindle tied to the feed in the same way"
+    if code.act == "home" and stores_home(source) != stores_home(target):
+        return f"{name}: it goes to a point of another kind there"
+    if code.act == "local" and source.g52_is_g92 != target.g52_is_g92:
+        return f"{name} without changing what G92 has set"
+    if dwells and code.group == "non-modal" and not same_dwell(source, target):
+        return "this dwell"
+    return ""
+
+
+def stores_home(dialect: type[Dialect]) -> bool:
+    """Whether a program can choose the point to which G28 goes."""
+    return any(code.act == "store-home" for code in dialect.codes.values())
+
+
+def same_m(code: MCode, other: MCode, words: set[str]) -> bool:
+    """Whether an M code of a block that has `words` does the same in another dialect.
+
+    What builders have put there does not.
+    """
+    if "user" in (code.group, other.group) or code.group != other.group:
+        return False
+    return code.takes == other.takes or not words & {*code.takes, *other.takes}
+
+
+def comment_in(target: type[Dialect], text: str) -> str:
+    """Return a comment as a dialect writes it."""
+    if text[0] in target.comments:
+        return text
+    inner = text[1:-1] if text[0] == "(" else text[1:]
+    if target.comments.startswith("("):
+        return "(" + inner.replace("(", "[").replace(")", "]") + ")"
+    return ";" + inner
+
+
+def own_gap(shape: Shape, usual: bytes) -> bytes:
+    """Return what stands between the words of a block, or what is usual in the program."""
+    words = list(shape.block.words)
+    if len(words) < 2:
+        return usual
+    return b" " if any(gaps_between(shape.block.text, words)) else b""

@@ -8,7 +8,7 @@ then a matter of whole arrays.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from typing import NoReturn
 
 from gcxform.emit.fields import (
     Axis,
@@ -23,24 +23,30 @@ from gcxform.emit.fields import (
     Role,
 )
 from gcxform.emit.manner import Manner
-from gcxform.emit.saying import code_of, folded_words, gaps_between, is_foreign, like, same_dwell
-from gcxform.modal.codes import Code
-from gcxform.modal.meaning import DRILL_WORDS, Meaning, program_number_fits
+from gcxform.emit.saying import (
+    STATED,
+    CannotSayError,
+    code_of,
+    comment_in,
+    folded_words,
+    is_foreign,
+    left_out,
+    like,
+    other_in,
+    own_gap,
+    same_m,
+)
+from gcxform.modal.meaning import (
+    DRILL_WORDS,
+    Meaning,
+    only_for_cycles,
+    program_number_fits,
+)
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Item, Mark, Number, Statement, Word
 
 PLANE_AXES = ("XY", "ZX", "YZ")
 OFFSETS = {"X": "I", "Y": "J", "Z": "K"}
-
-
-class CannotSayError(Exception):
-    """The target dialect has no words for something: column from 0, width, message."""
-
-    def __init__(self, column: int, width: int, message: str) -> None:
-        super().__init__(message)
-        self.column = column
-        self.width = width
-        self.message = message
 
 
 class TemplateWriter:
@@ -54,6 +60,7 @@ class TemplateWriter:
         axes: str,
         gap: bytes,
         folded_to: str = "",
+        uncompensated: bool = False,
     ) -> None:
         self.shape = shape
         self.text = shape.block.text
@@ -62,14 +69,8 @@ class TemplateWriter:
         self.target = manner.target
         self.axes = axes
         self.folded = folded_words(meaning, folded_to) if folded_to else frozenset()
-        self.gap = self._own_gap(gap)
-
-    def _own_gap(self, usual: bytes) -> bytes:
-        """Return what stands between the words of this block, or what is usual in the program."""
-        words = list(self.shape.block.words)
-        if len(words) < 2:
-            return usual
-        return b" " if any(gaps_between(self.text, words)) else b""
+        self.gap = own_gap(shape, gap)
+        self.uncompensated = uncompensated
 
     def write(self, key: Key) -> tuple[Field, ...]:
         """Return the fields of a piece of the block. Raises CannotSayError."""
@@ -84,12 +85,17 @@ class TemplateWriter:
         at = slot = 0
         whole = key.role not in (Role.MIDDLE, Role.LAST)
         self._repairs_wait = True
+        gap: bytes | None = None  # what stood before words that are left out
         for item in self.shape.block.items:
             lead = self.text[at : item.start].encode("latin-1") if whole else b""
             if at and not self.fields:
                 lead = b""  # what stood before is left out, and the blank after it
             at = item.end
-            self._item(item, lead, slot)
+            if self._goes(item) or (self.uncompensated and left_out(item, self.meaning)):
+                gap = lead if gap is None else gap
+            else:
+                self._item(item, lead if gap is None else gap, slot)
+                gap = None
             slot += isinstance(item, Word) and item.address not in CODES
         self._rest()
         if whole and at < len(self.text):
@@ -116,6 +122,12 @@ class TemplateWriter:
         self._feed_at_end()
 
     # --- one item ---
+
+    def _goes(self, item: Item) -> bool:
+        """Whether an item is folded into the words of moves."""
+        if not isinstance(item, Word):
+            return False
+        return (code_of(item) if item.address in CODES else item.address) in self.folded
 
     def _item(self, item: Item, lead: bytes, slot: int) -> None:
         if isinstance(item, Word):
@@ -149,12 +161,13 @@ class TemplateWriter:
 
     def _comment(self, item: Comment) -> str:
         text = self.text[item.start : item.end]
-        if text[0] in self.target.comments:
-            return text
-        inner = text[1:-1] if text[0] == "(" else text[1:]
-        if self.target.comments.startswith("("):
-            return "(" + inner.replace("(", "[").replace(")", "]") + ")"
-        return ";" + inner
+        executed = self.source.executes(text)
+        if executed and self.source is not self.target and not self.target.executes(text):
+            message = f"{self.target.name} does not execute this comment"
+            raise CannotSayError(item.start, item.end - item.start, message)
+        if not executed and self.target.executes(text):
+            text = f"{text[0]}-{text[1:]}"
+        return comment_in(self.target, text)
 
     def _mark(self, item: Mark, lead: bytes) -> None:
         if item.kind == "block_delete":
@@ -169,8 +182,6 @@ class TemplateWriter:
     def _word(self, word: Word, lead: bytes, slot: int) -> None:
         address, verbatim = word.address, self.key.role is Role.VERBATIM
         if self.key.expanded and address in self.meaning.slots and address in DRILL_WORDS + "IJR":
-            return
-        if (address if address not in CODES else code_of(word)) in self.folded:
             return
         if address not in "NO" and self._repairs_wait:
             lead = self._repair_before(word, lead)
@@ -194,7 +205,8 @@ class TemplateWriter:
         elif word.address in "IJKR":
             self._centre(lead)
         else:
-            return word.address == self.source.turns_address
+            spline = self.meaning.groups.get("motion") in ("G5", "G5.1")
+            return word.address == self.source.turns_address or (spline and word.address in "PQ")
         return True
 
     def _said(self, start: int, end: int) -> str:
@@ -230,42 +242,37 @@ class TemplateWriter:
             lead = self._gap(lead)
         if group == "cycle" and self.key.expanded:
             return
-        if group in STATED and group not in self.stated:
-            wanted = self._wanted(group)
-            self.stated.add(group)
-            if wanted is not None:
-                if not self._goes_without_saying(word, wanted):
-                    self._literal(lead, text if wanted == name else like(text, wanted))
-                return
-            if group == "motion" and (not self.as_it_stands or self.key.silent):
-                return
-        elif group in self.stated:
+        if group in self.stated:
             return  # of several codes of a group one has been written
-        if self.key.role in (Role.MIDDLE, Role.LAST):
+        if group in STATED and self._states(word, name, group, lead):
             return
-        self._check_code(word, name, code)
+        after = code is not None and code.after
+        if self.key.role in ((Role.FIRST, Role.MIDDLE) if after else (Role.MIDDLE, Role.LAST)):
+            return
+        if only_for_cycles(name, self.source, self.target):
+            return
+        if self.source is not self.target and code is not None:
+            what = other_in(self.source, self.target, name, code, self.meaning.dwell)
+            if what:
+                self._refuse(word, what)
         self._literal(lead, text)
 
-    def _check_code(self, word: Word, name: str, code: Code | None) -> None:
-        """Raise CannotSayError unless a G code means the same in the target."""
-        if self.source is self.target or code is None:
-            return
-        other = self.target.codes.get(name)
-        same = other is not None and (other.group, other.effect, other.act) == (
-            code.group,
-            code.effect,
-            code.act,
-        )
-        if not same or (code.takes != other.takes if other else True):
-            self._refuse(word, name)
-        if (
-            self.meaning.dwell
-            and code.group == "non-modal"
-            and not same_dwell(self.source, self.target)
-        ):
-            self._refuse(word, "this dwell")
+    def _states(self, word: Word, name: str, group: str, lead: bytes) -> bool:
+        """Write the code that has to be stated for a group; return whether this settles it."""
+        wanted = self._wanted(group)
+        self.stated.add(group)
+        if wanted is not None:
+            if not self._goes_without_saying(word, wanted):
+                text = self._said(word.start, word.end)
+                self._literal(lead, text if wanted == name else like(text, wanted))
+            return True
+        if group != "motion":
+            return False
+        # A spline that goes nowhere is left out, and its words are.
+        left_out = name in ("G5", "G5.1") and self.key.role is Role.NONE
+        return left_out or not self.as_it_stands or self.key.silent
 
-    def _refuse(self, word: Word, what: str) -> None:
+    def _refuse(self, word: Word, what: str) -> NoReturn:
         raise CannotSayError(
             word.start, word.end - word.start, f"{self.target.name} cannot say {what}"
         )
@@ -276,7 +283,10 @@ class TemplateWriter:
         code = self.source.m_codes.get(number, self.source.unknown_m)
         if self.source is not self.target:
             other = self.target.m_codes.get(number, self.target.unknown_m)
-            if other is None or code is None or other.after != code.after:
+            words = {word.address for word in self.shape.block.words}
+            if other is None or code is None or not same_m(code, other, words):
+                self._refuse(word, f"M{number}")
+            if code.after != other.after and self.key.role is not Role.NONE:
                 self._refuse(word, f"M{number}")
         after = code is not None and code.after
         whole = self.key.role is Role.ONLY or self.as_it_stands
@@ -385,13 +395,3 @@ class TemplateWriter:
         if self.key.feed is Feed.WRITE and "feed" not in self.stated:
             self.stated.add("feed")
             self.fields.append(FeedWord(self._gap(b"")))
-
-
-STATED: Mapping[str, tuple[str, Mapping[int, str] | tuple[str, ...]]] = {
-    "units": ("inch", ("G21", "G20")),
-    "distance": ("incremental", ("G90", "G91")),
-    "arc-distance": ("absolute_centre", ("G91.1", "G90.1")),
-    "feed-mode": ("feed_mode", {93: "G93", 94: "G94", 95: "G95"}),
-    "motion": ("motion", ("G0", "G1", "G2", "G3")),
-}
-"""Groups whose code may have to be stated: field of the key, and codes by value."""

@@ -13,12 +13,13 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import msgspec
 
 from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.machine.modelfile import CODES, FORMAT
+from gcxform.machine.toolfile import read_tools
 from gcxform.tomltext import TomlText, convert, did_you_mean, read_toml
 
 LINEAR_AXES = tuple("XYZUVW")
@@ -150,6 +151,8 @@ class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
     work_offset: dict[str, Offset] = {}
     home: dict[str, Offset] = {}
     tool: dict[str, Tool] = {}
+    tool_table: str | None = None
+    tool_table_units: Literal["mm", "in"] | None = None
     control: dict[str, str | float] = {}
 
 
@@ -194,9 +197,22 @@ def load_machine(path: Path) -> Machine:
         axes={letter: _normalised(axis) for letter, axis in file.axis.items()},
         work_offsets={code: _given(offset) for code, offset in file.work_offset.items()},
         homes={code: _given(place) for code, place in file.home.items()},
-        tools={int(number): tool for number, tool in file.tool.items()},
+        tools=_tools(document, file, path),
         control=dict(file.control),
     )
+
+
+def _tools(document: TomlText, file: MachineFile, path: Path) -> dict[int, Tool]:
+    """Return the tools of the file, and before them those of the table it names."""
+    tools: dict[int, Tool] = {}
+    if file.tool_table is not None and file.tool_table_units is not None:
+        table = read_tools(path.parent / file.tool_table, file.tool_table_units)
+        tools = {number: Tool(**values) for number, values in table.items()}
+    twice = [number for number in file.tool if int(number) in tools]
+    if twice:
+        message = f"the tool {twice[0]} stands in {file.tool_table} as well"
+        raise UsageError.one("GX437", message, document.where("tool", twice[0]))
+    return tools | {int(number): tool for number, tool in file.tool.items()}
 
 
 def _given(offset: Offset) -> dict[str, float]:
@@ -388,6 +404,13 @@ def _offset_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnost
 
 
 def _tool_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
+    if file.tool_table is not None and file.tool_table_units is None:
+        yield Diagnostic(
+            document.codes.missing_key,
+            "the unit of the tool table is missing: the table is in that of its machine",
+            document.where("tool-table"),
+            'add tool-table-units = "mm" or "in"',
+        )
     numbers: set[int] = set()
     for number, tool in file.tool.items():
         where = document.where("tool", number)

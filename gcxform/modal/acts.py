@@ -37,7 +37,7 @@ class Asked:
 
     words     numbers of the words it takes, lengths in mm, by address
     written   the same numbers as they stand in the block
-    axes      the axes it names, with their words in mm or degrees
+    axes      the axes it names, with their words in mm or degrees, X as a radius
     position  (axes,) where the axes stand before the block
     """
 
@@ -84,7 +84,7 @@ def work(state: FrameState, asked: Asked) -> FrameState:
     unmoved = bool(np.isnan(asked.position).all())
     if not state.known and unmoved and name not in asked.reading.work_offsets:
         return state.starting_in(name, asked.reading.work_offsets, True)
-    return replace(state, work=name, known=True)
+    return state.in_work(name)
 
 
 def set_work(state: FrameState, asked: Asked) -> FrameState:
@@ -94,6 +94,10 @@ def set_work(state: FrameState, asked: Asked) -> FrameState:
         return _set_tool(state, asked, int(kind))
     if kind not in (2, 20):
         raise ActError("GX213", "this G10 writes something into the control that is not followed")
+    turns = kind == 2 and asked.dialect.g10_rotates
+    for address in asked.written:
+        if address not in asked.axes and address not in ("LPR" if turns else "LP"):
+            raise ActError("GX213", f"{address} has no meaning in G10 L{kind:g}")
     name = _named_work(state, asked)
     if kind == 2:
         return _set_zero(state, asked, name)
@@ -116,6 +120,9 @@ def _set_zero(state: FrameState, asked: Asked, name: str) -> FrameState:
     """G10 L2: the zero of a work offset in machine coordinates."""
     if asked.incremental and not asked.dialect.g10_ignores_g91:
         raise ActError("GX213", "under G91, G10 adds on some controls and does not on others")
+    turned = "R" in asked.written or state.rotation.get(name, 0.0)
+    if turned and name == state.work and any(state.preset[:2]):
+        raise ActError("GX213", "G10 L2 turns the work offset in force, under G52 or G92")
     zero = list(state.zero_of(name))
     for axis, value in asked.axes.items():
         k = asked.column(state, axis)
@@ -127,17 +134,27 @@ def _set_zero(state: FrameState, asked: Asked, name: str) -> FrameState:
 
 
 def _set_zero_here(state: FrameState, asked: Asked, name: str) -> FrameState:
-    """G10 L20: the zero is where the axes come to stand at the numbers given."""
-    if state.rotation.get(name, 0.0) or state.rotation.get(state.work, 0.0):
-        raise ActError("GX213", "G10 L20 in a rotated work offset")
+    """G10 L20: the zero is where the axes come to stand at the numbers given.
+
+    Where the work offset is rotated, X and Y that are not named keep the numbers they have there.
+    """
     inner = np.array(state.preset) + np.array(state.local)
-    zero = list(state.zero_of(name))
+    zero = np.array(state.zero_of(name))
+    here = np.array(asked.position)
+    here[:3] -= state.tool
+    about = np.array(rotation(state.rotation.get(name, 0.0), 0, 1))[:2, :2]
+    turned = about[0, 0] != 1.0 and not {"X", "Y"}.isdisjoint(asked.axes)
+    local = here - zero
+    if turned:
+        local[:2] = about.T @ local[:2]
     for axis, value in asked.axes.items():
         k = asked.column(state, axis)
-        tool = state.tool[k] if k < 3 else 0.0
-        value = value / 2 if axis == "X" and state.diameter else value
-        zero[k] = float(asked.position[k]) - tool - inner[k] - value
-    return state.with_zero(name, tuple(zero))
+        local[k] = inner[k] + value
+    if turned:
+        local[:2] = about @ local[:2]
+    named = [asked.column(state, axis) for axis in asked.axes] + [0, 1] * bool(turned)
+    zero[named] = (here - local)[named]
+    return state.with_zero(name, tuple(zero.tolist()))
 
 
 def _set_tool(state: FrameState, asked: Asked, kind: int) -> FrameState:
@@ -157,11 +174,13 @@ def _set_tool(state: FrameState, asked: Asked, kind: int) -> FrameState:
 def local(state: FrameState, asked: Asked) -> FrameState:
     """G52: a shift of all work offsets; on some controls the one that G92 sets."""
     _refuse_turned(state, asked)
+    if not asked.axes:
+        raise ActError("GX213", f"{asked.code} names no axis")
     if asked.dialect.g52_is_g92:
-        return replace(state, preset=_halved(state, asked, state.preset))
+        return _with_preset(state, moved_to_names(state, asked, state.preset))
     if not asked.dialect.g52_known and "g52" not in asked.reading.control:
         raise _unset(asked.code, "g52")
-    return replace(state, local=_halved(state, asked, state.local))
+    return replace(state, local=moved_to_names(state, asked, state.local))
 
 
 def preset(state: FrameState, asked: Asked) -> FrameState:
@@ -171,32 +190,31 @@ def preset(state: FrameState, asked: Asked) -> FrameState:
         raise ActError("GX213", f"{asked.code} names no axis")
     if not asked.dialect.g52_known and "g52" not in asked.reading.control:
         raise _unset(asked.code, "g52")
-    words = state.frame().words(np.asarray(asked.position)[None, :])[0]
+    here = state.frame().local(np.asarray(asked.position)[None, :])[0]
     shift = np.array(state.preset)
     for axis, value in asked.axes.items():
         k = asked.column(state, axis)
-        half = 2.0 if axis == "X" and state.diameter else 1.0
-        shift[k] += (words[k] - value) / half
+        shift[k] += here[k] - value
         if np.isnan(shift[k]):
             raise ActError(
                 "GX213",
                 f"{asked.code} counts {axis} from where it stands, and that is not known",
                 f"program {axis} before, or say start = {{ {axis} = ... }} in [input]",
             )
-    return replace(state, preset=tuple(shift.tolist()))
+    return _with_preset(state, tuple(shift.tolist()))
+
+
+def _with_preset(state: FrameState, shift: Vector) -> FrameState:
+    """Return the state with another shift of G92, which is also what G92.3 restores."""
+    return replace(state, preset=shift, held=shift)
 
 
 def _refuse_turned(state: FrameState, asked: Asked) -> None:
-    if state.turns or state.polar or state.rotation.get(state.work, 0.0):
+    if asked.incremental and not asked.dialect.g10_ignores_g91:
+        message = f"under G91, {asked.code} adds on some controls and does not on others"
+        raise ActError("GX213", message, "write it under G90")
+    if state.turns or state.polar:
         raise ActError("GX213", f"{asked.code} in turned or scaled coordinates")
-
-
-def _halved(state: FrameState, asked: Asked, values: Vector) -> Vector:
-    """Return the vector with named axes changed; an X in diameters counts half."""
-    changed = moved_to_names(state, asked, values)
-    if state.diameter and "X" in asked.axes:
-        return (changed[0] / 2, *changed[1:])
-    return changed
 
 
 def _unset(code: str, name: str) -> ActError:
@@ -215,7 +233,7 @@ def preset_clear(state: FrameState, asked: Asked) -> FrameState:
 
 def preset_suspend(state: FrameState, asked: Asked) -> FrameState:
     """G92.2: no shift, but what it was is kept."""
-    return replace(state, preset=(0.0,) * len(state.axes), held=state.preset)
+    return replace(state, preset=(0.0,) * len(state.axes))
 
 
 def preset_restore(state: FrameState, asked: Asked) -> FrameState:
@@ -228,7 +246,19 @@ def preset_restore(state: FrameState, asked: Asked) -> FrameState:
 
 def change_tool(state: FrameState, asked: Asked) -> FrameState:
     """M6: the tool that T has named is in the spindle."""
-    return replace(state, in_spindle=int(asked.tool_word) if asked.tool_word >= 0 else -1)
+    return replace(state, in_spindle=int(asked.tool_word))
+
+
+def user_code(state: FrameState, asked: Asked) -> FrameState:
+    """M100 to M199: a program of the machine's maker; where it leaves the axes is not known."""
+    if asked.reading.control.get("user-codes") != "keep":
+        raise ActError(
+            "GX214",
+            f"{asked.code} runs a program of this machine, if it has one",
+            'say that it has: [control] user-codes = "keep" in the machine file; positions are '
+            "then lost behind it",
+        )
+    return state
 
 
 def set_tool(state: FrameState, asked: Asked) -> FrameState:
@@ -250,6 +280,8 @@ def length_negative(state: FrameState, asked: Asked) -> FrameState:
 
 def length_add(state: FrameState, asked: Asked) -> FrameState:
     """G43.2 H: the length of a tool more."""
+    if "H" not in asked.words:
+        raise ActError("GX213", f"{asked.code} needs an H word")
     vector, name = _tool_vector(state, asked, 1.0)
     total = np.array(state.tool) + np.array(vector)
     return state.with_tool(tuple(total.tolist()), f"{state.tool_name}+{name}")
@@ -260,12 +292,12 @@ def _tool_vector(
 ) -> tuple[tuple[float, float, float], str]:
     """Return the vector of a tool, nan along Z where its length is not known, and its name."""
     number = asked.words.get("H", np.nan)
-    if np.isnan(number):
-        if not asked.dialect.g43_takes_spindle_tool:
-            raise ActError("GX213", f"{asked.code} needs an H word")
-        number = state.in_spindle
+    if asked.dialect.g43_takes_spindle_tool:
+        number = number if number > 0 else float(_tool_in_spindle(state, asked))
+    elif np.isnan(number):
+        raise ActError("GX213", f"{asked.code} needs an H word")
     if number % 1 or number < 0:
-        raise ActError("GX213", "H is not a number of a tool, or no tool has been changed in yet")
+        raise ActError("GX213", "H is not a number of a tool")
     if number == 0:
         return NO_TOOL, ""
     tool = asked.reading.tools.get(int(number))
@@ -275,6 +307,16 @@ def _tool_vector(
         return (0.0, 0.0, np.nan), f"H{number:g}"
     x, y, z = tool.vector
     return (sign * x, sign * y, sign * z), f"H{number:g}"
+
+
+def _tool_in_spindle(state: FrameState, asked: Asked) -> int:
+    """Return the tool that H0, or no H, stands for."""
+    if asked.words.get("H", 0.0) < 0:
+        raise ActError("GX213", "H is not a number of a tool")
+    if state.in_spindle < 1:
+        message = f"{asked.code} takes the tool in the spindle, and which that is is not known"
+        raise ActError("GX213", message, "write H, or the tool change before")
+    return state.in_spindle
 
 
 def length_vector(state: FrameState, asked: Asked) -> FrameState:
@@ -353,11 +395,17 @@ def no_turn(name: str) -> Act:
     """Return the act that ends a kind of turn."""
 
     def ended(state: FrameState, asked: Asked) -> FrameState:
-        if name == "mirror" and asked.axes and state.turns:
-            raise ActError("GX213", f"{asked.code} for some axes only is not followed")
+        if name == "mirror" and asked.axes and not _mirrored(state) <= set(asked.axes):
+            raise ActError("GX213", f"{asked.code} for some of the mirrored axes is not followed")
         return replace(state, turns=tuple(turn for turn in state.turns if turn[0] != name))
 
     return ended
+
+
+def _mirrored(state: FrameState) -> set[str]:
+    """Return the axes that G51.1 has mirrored."""
+    matrices = [turn.matrix for name, turn in state.turns if name == "mirror"]
+    return {axis for matrix in matrices for k, axis in enumerate("XYZ") if matrix[k][k] < 0}
 
 
 def polar(state: FrameState, asked: Asked) -> FrameState:
@@ -388,6 +436,7 @@ def store_home(state: FrameState, asked: Asked) -> FrameState:
 ACTS: Mapping[str, Act] = {
     "change-tool": change_tool,
     "set-tool": set_tool,
+    "user-code": user_code,
     "length": length,
     "length-negative": length_negative,
     "length-vector": length_vector,

@@ -29,7 +29,7 @@ class ArcWords:
     """The words of arcs, in mm; nan where a word is missing.
 
     line (n,) in the window; offset (n, 3) is I, J, K; named (n, 3): which of X, Y, Z stand there;
-    absolute (n,): the centre itself is given.
+    absolute (n,): the centre itself is given; inch (n,): the block is in inches.
     """
 
     line: Ints
@@ -38,6 +38,7 @@ class ArcWords:
     turns: Floats
     named: Flags
     absolute: Flags
+    inch: Flags
 
 
 def resolve_arcs(
@@ -215,7 +216,8 @@ class _Part:
         """Refuse arcs whose start and end are not on one circle, by the control's own rule."""
         first = np.hypot(*(self.a - middle).T)
         last = np.hypot(*(self.b - middle).T)
-        bad = ~accepts(self.rule, first, last) & ~by_radius & ~np.isnan(first + last)
+        bad = ~accepts(self.rule, first, last, self.words.inch)
+        bad &= ~by_radius & ~np.isnan(first + last)
         bad &= ~np.isnan(self.words.offset[:, [self.first, self.second]]).all(axis=1)
         for index in np.flatnonzero(bad)[: Findings.enough].tolist():
             delta = abs(float(first[index] - last[index]))
@@ -228,10 +230,15 @@ class _Part:
             )
 
 
-def accepts(rule: ArcRule, first: Floats, last: Floats) -> Flags:
-    """Return whether a control takes arcs with these radii (mm) at start and end."""
+def accepts(rule: ArcRule, first: Floats, last: Floats, inch: Flags) -> Flags:
+    """Return whether a control takes arcs with these radii (mm) at start and end.
+
+    `inch` (n,): the block is in inches, which changes how far the radii may differ.
+    """
     delta = np.abs(first - last)
     radius = np.maximum(first, last)
-    limit = np.maximum(rule.absolute, np.minimum(rule.relative * radius, rule.largest))
+    unit = np.where(inch, rule.in_inch, 1.0)
+    relative = np.minimum(rule.relative * radius, unit * rule.largest)
+    limit = np.maximum(unit * rule.absolute, relative)
     good = (delta <= limit + 1e-12) & (np.minimum(first, last) > rule.smallest)
     return np.asarray(good)

@@ -25,7 +25,10 @@ class Effect(Enum):
 class Code:
     """One G code. `takes` are the address letters of the words that are parameters to it.
 
-    `act` names what a code with Effect.FRAME does (`gcxform/modal/acts.py`).
+    `act` names what a code with Effect.FRAME does (`gcxform/modal/acts.py`). `lengths` are those of
+    the words it takes that are in the unit of the program; of a code with an act, all axis words.
+    `after`: it acts at the end of its block, which is that of the last piece where the block is
+    cut.
     """
 
     group: str
@@ -33,6 +36,8 @@ class Code:
     takes: str = ""
     reason: str = ""
     act: str = ""
+    lengths: str = ""
+    after: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,9 +53,41 @@ class MCode:
     act: str = ""
 
 
-def inert(group: str, takes: str = "") -> Code:
+@dataclass(frozen=True, slots=True)
+class CutterComp:
+    """How a control reads cutter compensation.
+
+    stored     D is the number of a stored offset that stays in force; otherwise it belongs to its
+               block, and without it G41 takes the tool in the spindle
+    planes     in which it may be on
+    changes    whether a side may be programmed while compensation is on
+    arc_entry  whether the move that begins it may be an arc
+    corners    what joins moves outside: "arc", "linear", or "" where a parameter decides
+    entry      where the move that begins it ends: beside its "own" end, the "next" move, or ""
+    straight   rad; turns below are taken for none; 0 where that is not known
+    before     modal groups of codes that are refused while it is on before their block
+    after      those that are refused while it is on after the codes of their block
+    """
+
+    stored: bool = False
+    planes: frozenset[str] = frozenset({"XY", "ZX", "YZ"})
+    changes: bool = True
+    arc_entry: bool = False
+    corners: str = ""
+    entry: str = ""
+    straight: float = 0.0
+    before: frozenset[str] = frozenset()
+    after: frozenset[str] = frozenset()
+
+
+def inert(group: str, takes: str = "", lengths: str = "") -> Code:
     """Return a code that changes no position."""
-    return Code(group, Effect.INERT, takes)
+    return Code(group, Effect.INERT, takes, lengths=lengths)
+
+
+def at_end(group: str) -> Code:
+    """Return a code that changes no position and acts at the end of its block."""
+    return Code(group, Effect.INERT, after=True)
 
 
 def frame(group: str, act: str, takes: str = "") -> Code:
@@ -70,7 +107,7 @@ ISO: Mapping[str, Code] = {
     **{code: Code("distance") for code in ("G90", "G91")},
     **{code: Code("feed-mode") for code in ("G93", "G94")},
     **{code: Code("units") for code in ("G20", "G21")},
-    "G40": inert("cutter-comp"),
+    "G40": Code("cutter-comp"),
     "G49": frame("tool-length", "no-length"),
     **{code: frame("frame", "work") for code in ("G54", "G55", "G56", "G57", "G58", "G59")},
     "G80": Code("motion"),
@@ -97,7 +134,7 @@ AXES = "XYZABCUVW"
 HOME = "it moves axes to a point that only the control knows"
 SHIFT = "it shifts the coordinates by values that only the control knows"
 LENGTH = "it shifts the tool by a length that only the control knows"
-COMP = "cutter compensation moves the path beside the programmed contour"
+COMP = "it moves the path beside the programmed contour in space"
 TRANSFORM = "it turns, scales or mirrors the coordinates"
 CALL = "it runs a program that is not in this file"
 SYNCHRONISED = "its motion is tied to the spindle"

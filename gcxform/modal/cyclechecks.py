@@ -91,6 +91,9 @@ class Checks:
             )
             yield repeats == 0, "{code} with no repeats at all", "leave out the block"
         count = rule.repeats
+        placed = (repeats == 0) & ~(np.isnan(calls.first) & np.isnan(calls.second))
+        message = f"{{code}} with {count}0: whether it goes to the place given is not certain"
+        yield placed, message, "give the place in a block of its own"
         yield repeats != np.floor(repeats), f"{{code}} with a fraction in {count}", ""
         yield repeats < 0, f"{{code}} with a negative {count}", ""
         yield ~np.isnan(calls.repeats) & ~self._listed(rule.takes, count), *_takes_no(count)

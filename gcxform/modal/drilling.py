@@ -120,6 +120,7 @@ class Drilling:
         track.state.position = track.frame.positions(after[None, :])[0].copy()
         if self._manual.any() and self._manual[first:last].any():
             track.breaks.append(Break(last, 1 << plane.axes[2]))
+            track.state.position[plane.axes[2]] = np.nan  # the operator has moved it
 
     def _is_plain(self, first: int, last: int) -> bool:
         """Whether a stretch begins without a cycle in force, ends with G80, and has one in G90."""
@@ -182,7 +183,7 @@ class Drilling:
         """Return a word on all lines of the window, nan where it is none of a call's."""
         if not address:
             return constant(np.nan, self.lines.live)
-        axis, count = address in self.track.axes, address in ("P", self._repeats)
+        axis, count = address in self.track.axes, address in ("P", "L", self._repeats)
         if axis:
             word = self.track.column(address)
         else:
@@ -191,9 +192,19 @@ class Drilling:
             return constant(np.nan, self.lines.live)
         value = np.where(word[1], word[0], np.nan)
         if address == "P":
-            return value * self.lines.dialect.dwell["P"]
+            return self._seconds(value)
         inches = not (axis or count) and self.modes.inch.any()
         return value * np.where(self.modes.inch, INCH, 1.0) if inches else value
+
+    def _seconds(self, plain: Floats) -> Floats:
+        """Return P words as seconds."""
+        dialect, lines = self.lines.dialect, self.lines
+        if not dialect.dwell_point_is_seconds:
+            return plain * dialect.dwell["P"]
+        slot = lines.table.slots[lines.shape, ord("P") - 65]
+        number = np.where(slot >= 0, lines.first + slot, 0)
+        pointed = (slot >= 0) & (lines.window.decimals[number] >= 0)
+        return np.where(pointed, plain, plain * dialect.dwell["P"])
 
     @cached_property
     def _common(self) -> _Common:
@@ -255,12 +266,22 @@ class Drilling:
 
     def rows(self) -> list[Rows]:
         """Return the moves of the stretches, in their order."""
+        self._refuse_other_count()
         found: dict[int, Rows] = {}
         kinds = [(f.plane, f.unit, f.stretch is None) for f in self._followed]
         for kind in dict.fromkeys(kinds):
             numbers = [number for number, other in enumerate(kinds) if other == kind]
             found.update(zip(numbers, self._rows_of(numbers), strict=True))
         return [found[number] for number in range(len(kinds))]
+
+    def _refuse_other_count(self) -> None:
+        """Refuse L where K counts the holes: it would be left out."""
+        if self._repeats != "K" or not self._followed:
+            return
+        counted = self.calls & ~np.isnan(self._word("L", slice(None)))
+        for line in np.flatnonzero(counted).tolist():
+            message, hint = "L counts nothing here: this control repeats cycles by K", "write K"
+            self.track.findings.add(line, "GX215", message, "L", hint)
 
     def _stretches(self, followed: list[_Followed], line: Ints, bounds: Ints) -> list[Stretch]:
         """Return the columns of stretches, those of plain ones as one."""

@@ -35,7 +35,7 @@ class FrameState:
     zeros         positions of the zeros of work offsets; what is not here is not known
     machine       position of the machine's zero
     rotation      deg, about Z, of work offsets (G10 L2 R)
-    preset, held  the shift of G92, and what G92.2 has put aside
+    preset, held  the shift of G92, and what G92.3 would restore
     local         the shift of G52 where it is not that of G92
     tool          mm, from the tip to the reference point; nan where a length is not known
     tool_name     what the tool vector belongs to: "H3"; "" for none
@@ -57,7 +57,7 @@ class FrameState:
     local: Vector = ()
     tool: tuple[float, float, float] = NO_TOOL
     tool_name: str = ""
-    in_spindle: int = 0
+    in_spindle: int = -1
     turns: tuple[tuple[str, Turn], ...] = ()
     polar: bool = False
     diameter: bool = False
@@ -102,6 +102,10 @@ class FrameState:
     def with_zero(self, work: str, zero: Vector) -> FrameState:
         """Return the state with the zero of a work offset elsewhere."""
         return replace(self, zeros={**self.zeros, work: zero})
+
+    def in_work(self, work: str) -> FrameState:
+        """Return the state in another work offset."""
+        return replace(self, work=work, known=True)
 
     def with_tool(self, vector: tuple[float, float, float], name: str) -> FrameState:
         """Return the state with another tool vector; `name` says whose it is."""

@@ -44,11 +44,28 @@ def _home(track: Track, line: int, code: str) -> Rows:
         )
         return _rows(track, line, Form.HOME, moves)
     home = (moves[-1][1] if moves else track.state.position).copy()
+    _refuse_one_of_turned(track, line, code, words)
     place = track.state.frames.homes.get(code, {})
     for k, axis in enumerate(track.axes):
         if axis in words or not words:
             home[k] = _in_frame(track, k, place.get(axis, np.nan))
     return _rows(track, line, Form.HOME, [*moves, (Kind.RAPID, home)])
+
+
+def _refuse_one_of_turned(track: Track, line: int, code: str, words: dict[str, float]) -> None:
+    """Refuse a return of one of two axes that are turned together.
+
+    LinuxCNC then takes the program's axis home, other controls that of the machine.
+    """
+    if track.frame.matrix is None or not words:
+        return
+    mixed = np.abs(np.array(track.frame.matrix)) > 1e-15
+    for k in range(3):
+        together = {"XYZ"[n] for n in np.flatnonzero(mixed[k])} | {"XYZ"[k]}
+        if together & set(words) and not together <= set(words):
+            message = f"{code} of {' or '.join(sorted(together))} alone, which are turned together"
+            track.findings.add(line, "GX213", message, hint="name both, or none")
+            return
 
 
 def _reached(track: Track, line: int, words: dict[str, float]) -> Floats:

@@ -25,7 +25,7 @@ from gcxform.modal.limits import refuse_limits
 from gcxform.modal.lines import Lines
 from gcxform.modal.moves import Moves
 from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, State
-from gcxform.modal.tables import GROUPS, NUMBER, MeaningTable
+from gcxform.modal.tables import GROUPS, NUMBER, SPLINES, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Toolpath
 
@@ -93,7 +93,8 @@ class Interpreter:
             control = self.reading.control
             state.cycles = Cycles(rule, *(_length(control, name) for name in PECKS))
         retract = int(rule is None or rule.initial_level)
-        state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": UNKNOWN_SPINDLE}
+        spindle = 0 if self.dialect.spindle_stands else UNKNOWN_SPINDLE
+        state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": spindle}
         return state
 
     def _given(self) -> dict[Key, float]:
@@ -129,8 +130,11 @@ class Interpreter:
             "feed-mode": modes.feed_mode,
             "units": modes.inch,
             "frame": modes.work,
+            "cutter-comp": modes.comp,
         }
         self.state.groups = {name: int(column[-1]) for name, column in last.items()}
+        if self.state.groups["motion"] in SPLINES:
+            self.state.groups["motion"] = NUMBER["G80"]
         self.state.feed = float(modes.feed[-1])
         self.state.feed_unit = float(modes.feed_unit[-1])
         if lines.flag("ends")[-1]:
@@ -138,3 +142,5 @@ class Interpreter:
                 if name == "feed-mode" and self.state.groups[name] != NUMBER[code]:
                     self.state.feed = np.nan
                 self.state.groups[name] = NUMBER[code]
+                if name == "frame":
+                    self.state.frames = self.state.frames.in_work(code)

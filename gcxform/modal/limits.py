@@ -13,6 +13,8 @@ from gcxform.modal.state import Modes
 from gcxform.toolpath.path import Event, Kind
 
 NOT_NEGATIVE = {"S": "a speed", "T": "a tool number", "DWELL": "a dwell"}
+NAMES_TOOL = frozenset({"T", "M61"})
+ALL_SPINDLES = -1.0
 SILENT = re.compile(rb"\([^)]*\)|;.*|\s")
 
 
@@ -20,6 +22,8 @@ def refuse_limits(lines: Lines, modes: Modes, events: Iterable[Event]) -> None:
     """Add what is refused to the findings."""
     _too_long(lines)
     _negative(lines, events)
+    _no_such_tool(lines, events)
+    _other_spindle(lines, events)
     _number_too_large(lines)
     _turns_without_arc(lines, modes)
 
@@ -55,6 +59,26 @@ def _negative(lines: Lines, events: Iterable[Event]) -> None:
         lines.findings.add(line, "GX219", "a feed cannot be negative", "F")
 
 
+def _no_such_tool(lines: Lines, events: Iterable[Event]) -> None:
+    """Refuse tools that are not in the table, where a table is given and the control looks."""
+    tools = lines.reading.tools
+    if not tools or not lines.dialect.tools_in_table:
+        return
+    for event in events:
+        named = event.values[0][1] if event.what in NAMES_TOOL and event.values else 0.0
+        if named > 0 and named not in tools:
+            message = f"the tool table has no tool {named:g}"
+            lines.findings.add(event.line - lines.window.first_line, "GX213", message)
+
+
+def _other_spindle(lines: Lines, events: Iterable[Event]) -> None:
+    """Refuse all spindles but the first, which is the only one that every machine has."""
+    for event in events:
+        if event.what == "$" and event.values[0][1] not in (0.0, ALL_SPINDLES):
+            message = f"${event.values[0][1]:g} is another spindle than the first"
+            lines.findings.add(event.line - lines.window.first_line, "GX213", message)
+
+
 def _number_too_large(lines: Lines) -> None:
     """Refuse sequence numbers that the control cannot count to."""
     most = lines.dialect.largest_number
@@ -72,7 +96,7 @@ def _turns_without_arc(lines: Lines, modes: Modes) -> None:
     turns = lines.word(address) if address else None
     if turns is None:
         return
-    for line in np.flatnonzero(
-        turns[1] & (modes.motion < Kind.ARC_CW) & (modes.cycle == 80)
-    ).tolist():
+    arc = (modes.motion >= Kind.ARC_CW) & ~lines.flag("own_moves")
+    arc &= lines.flag("moves") | lines.flag("has_centre")
+    for line in np.flatnonzero(turns[1] & ~arc & (modes.cycle == 80)).tolist():
         lines.findings.add(line, "GX203", f"{address} belongs to an arc, and this is none", address)

@@ -10,7 +10,16 @@ from numpy.typing import NDArray
 from gcxform.dialect import INCH, LINEAR, Dialect
 from gcxform.modal.findings import Findings
 from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
-from gcxform.modal.tables import COLUMNS, CYCLES, FLAGS, GROUPS, MEMORY, NUMBER, MeaningTable
+from gcxform.modal.tables import (
+    COLUMNS,
+    CYCLES,
+    FLAGS,
+    GROUPS,
+    MEMORY,
+    NUMBER,
+    MeaningTable,
+    of_splines,
+)
 from gcxform.syntax.scan import Window
 from gcxform.syntax.tree import COMPUTED
 
@@ -218,6 +227,7 @@ class Lines:
     def modes(self) -> Modes:
         """Return what holds on each line after its words."""
         groups = {name: self._group(name) for name in GROUPS}
+        groups["motion"] = self._without_splines(groups["motion"])
         inch = groups["units"] == 1
         feed, feed_unit = self._feed(groups["feed-mode"], inch)
         return Modes(
@@ -228,6 +238,7 @@ class Lines:
             groups["feed-mode"],
             inch,
             groups["frame"],
+            groups["cutter-comp"],
             feed,
             feed_unit,
             self._tool(),
@@ -235,6 +246,16 @@ class Lines:
             self._remembered("retract"),
             self._remembered("spindle"),
         )
+
+    def _without_splines(self, motion: Small) -> Small:
+        """Return the motion code in force on each line: a spline's is that of its own block alone.
+
+        After it no code is in force, as after G80.
+        """
+        if not self._stated[COLUMNS.index("motion")]:
+            return motion
+        over = of_splines(motion) & ~self.stated("motion")
+        return np.where(over, np.int8(NUMBER["G80"]), motion) if over.any() else motion
 
     def _remembered(self, name: str) -> Small:
         """Return the number in force of a group that matters to cycles alone."""

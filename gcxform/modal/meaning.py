@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from gcxform.dialect import Dialect
+from gcxform.dialect import LINEAR, Dialect
 from gcxform.modal.codes import Code, Effect, MCode
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Mark, Number, Statement, Word
@@ -61,13 +61,14 @@ class Act:
 ACT_ORDER = (
     "change-tool",
     "set-tool",
+    "user-code",
+    "diameter",
     "length",
     "length-negative",
     "length-vector",
     "length-add",
     "no-length",
     "work",
-    "diameter",
     "polar",
     "no-polar",
     "rotate",
@@ -88,17 +89,23 @@ ACT_ORDER = (
 )
 """The order in which a block's acts are done; those with the name of a move are its motion."""
 OWN_MOVES = frozenset({"home", "machine"})
-FRAMING = frozenset(ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")])
+FRAMING = frozenset(
+    {"diameter", *ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")]}
+)
 """Acts that folding takes into the words of moves, so that their codes are not written."""
 PRESETS = frozenset({"preset", "set-work", "store-home"})
 """Acts whose effect may depend on where the axes stand."""
-TAKES_MOTION = frozenset({"home", "store-home", "set-work", "local", "preset"})
+TAKES_MOTION = frozenset({"home", "store-home", "set-work", "local", "preset", "length-vector"})
 """Acts whose axis words are theirs, so that the block can have no other motion."""
 
 
 @dataclass(slots=True)
 class Meaning:
-    """What a block of a shape does, but for its numbers."""
+    """What a block of a shape does, but for its numbers.
+
+    `lengths` are the words that codes take for themselves and that are in the unit of the program:
+    code, address, slot.
+    """
 
     groups: dict[str, str] = field(default_factory=dict)
     slots: dict[str, int] = field(default_factory=dict)
@@ -113,10 +120,18 @@ class Meaning:
     assignments: list[Statement] = field(default_factory=list)
     expressions: list[tuple[int, Word]] = field(default_factory=list)
     marked: bool = False
+    changes_tool: bool = False
+    bars_comp: tuple[str, str] = ("", "")
     events: list[EventShape] = field(default_factory=list)
     acts: list[Act] = field(default_factory=list)
+    lengths: list[tuple[str, str, int]] = field(default_factory=list)
     drill_words: str = ""
     refusal: Refusal | None = None
+
+    @property
+    def compensates(self) -> bool:
+        """Whether the block turns cutter compensation on."""
+        return self.groups.get("cutter-comp", "G40") != "G40"
 
 
 def meaning_of(shape: Shape, dialect: type[Dialect]) -> Meaning:
@@ -138,6 +153,7 @@ def _read(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Re
     yield from _m_codes(shape, dialect, meaning)
     yield from _number_first(shape, dialect)
     yield from _words(shape, dialect, meaning)
+    meaning.bars_comp = _bars_comp(shape, dialect, meaning)
     meaning.events.sort(key=lambda event: (event.after, event.order))
     meaning.acts.sort(key=lambda act: ACT_ORDER.index(act.name))
 
@@ -251,13 +267,15 @@ def _g_effects(
         if code.effect is Effect.MODAL:
             continue
         taken = _take(code, dialect, meaning)
+        lengths = LINEAR if code.effect is Effect.FRAME else code.lengths
+        meaning.lengths += [(name, a, slot) for a, slot in taken if a in lengths]
         if code.effect is Effect.DWELL:
             meaning.dwell = True
             if not taken:
                 yield Refusal("GX204", owners[group].start, 2, f"{name} needs a time")
             meaning.events.append(EventShape(50, "DWELL", taken))
         else:
-            meaning.events.append(EventShape(60, name, taken))
+            meaning.events.append(EventShape(60, name, taken, code.after))
             if code.effect is Effect.FRAME:
                 yield from _g_act(dialect, meaning, code, owners[group], taken)
 
@@ -272,6 +290,8 @@ def _g_act(
     """Note what a code does to the frame; refuse it beside a motion that wants its words."""
     name, width = _code_of(word), word.end - word.start
     meaning.acts.append(Act(code.act, name, taken, word.start, width))
+    if code.act == "length-add" and any(axis in meaning.slots for axis in dialect.axes):
+        yield Refusal("GX202", word.start, width, f"{name} takes H or axis words, not both")
     if code.act in TAKES_MOTION and dialect.axis_words_once and "motion" in meaning.groups:
         message = f"{name} and {meaning.groups['motion']} both want the axis words"
         yield Refusal("GX202", word.start, width, message)
@@ -293,6 +313,7 @@ def _take(
 def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
     """Turn M codes into events."""
     groups: dict[str, str] = {}
+    yield from _too_many(shape, dialect)
     for word in shape.block.words:
         if word.address != "M" or not isinstance(word.value, Number):
             continue
@@ -312,11 +333,42 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         meaning.ends |= code.ends
         meaning.loses_position |= code.loses_position
         meaning.runs_macro |= code is dialect.unknown_m
+        meaning.changes_tool |= code.group == "tool"
         order = {"tool": 30, "spindle": 40, "coolant": 41, "override": 42}.get(code.group, 43)
         taken = _take(code, dialect, meaning)
         if code.act:
             meaning.acts.append(Act(code.act, name, taken, word.start, width))
         meaning.events.append(EventShape(order, name, taken, code.after))
+
+
+def _too_many(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
+    """Refuse more M words than the control takes in a block."""
+    most = dialect.most_m_words
+    for word in [word for word in shape.block.words if word.address == "M"][most:][:1]:
+        if most:
+            message = f"{dialect.name} takes {most} M words in a block"
+            yield Refusal("GX219", word.start, word.end - word.start, message)
+
+
+def _spindle_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> None:
+    """Turn a word `$` into an event beside what turns a spindle; elsewhere it is left over."""
+    if "$" not in meaning.slots or not dialect.spindle_words:
+        return
+    coded = [w for w in shape.block.words if w.address in CODES and isinstance(w.value, Number)]
+    codes = {_code_of(word) for word in coded}
+    if dialect.spindle_words & {*codes, *meaning.slots}:
+        meaning.events.append(EventShape(9, "$", (("$", meaning.slots.pop("$")),)))
+
+
+def only_for_cycles(name: str, source: type[Dialect], target: type[Dialect]) -> bool:
+    """Whether a code is about cycles alone (G80, G98, G99), and the target gets no cycle.
+
+    That is so where the target has no cycles, or calls them otherwise: those of the source are then
+    refused, or have become plain moves.
+    """
+    if name not in ("G80", "G98", "G99") or source.codes.get(name) == target.codes.get(name):
+        return False
+    return source.codes.get("G81") != target.codes.get("G81")
 
 
 def program_number_fits(word: Word, dialect: type[Dialect]) -> bool:
@@ -338,6 +390,19 @@ def _lacking(word: Word, dialect: type[Dialect]) -> Refusal | None:
     return None
 
 
+def _bars_comp(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> tuple[str, str]:
+    """Return a code that is refused while compensation is on before the block, and after it."""
+    sorted_codes = [(name, group) for group, name in meaning.groups.items()]
+    for word in shape.block.words:
+        if word.address == "M" and isinstance(word.value, Number):
+            code = dialect.m_codes.get(int(word.value.value), dialect.unknown_m)
+            sorted_codes += [(_code_of(word), code.group)] if code else []
+    rule = dialect.cutter_comp
+    before = [name for name, group in sorted_codes if group in rule.before]
+    after = [name for name, group in sorted_codes if group in rule.after and name != "G4"]
+    return "".join(before[:1]), "".join(after[:1])
+
+
 def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
     """Refuse a sequence number behind something else where the control wants it first."""
     items = [item for item in shape.block.items if not isinstance(item, Mark)]
@@ -347,9 +412,24 @@ def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
             yield Refusal("GX203", item.start, item.end - item.start, message)
 
 
+def _offset_word(dialect: type[Dialect], meaning: Meaning) -> set[str]:
+    """Return D if it belongs to cutter compensation; it is told as an event, like G41 and G42."""
+    code = meaning.groups.get("cutter-comp", "G40")
+    named = (("D", meaning.slots["D"]),) if "D" in meaning.slots else ()
+    if code != "G40":
+        meaning.events.append(EventShape(45, code, named))
+    elif dialect.cutter_comp.stored and named:
+        meaning.events.append(EventShape(45, "D", named))
+    takes = dialect.codes[code].takes if code in dialect.codes else ""
+    if named and "D" in dialect.codes[code].lengths:
+        meaning.lengths.append((code, *named[0]))
+    return set("D") if dialect.cutter_comp.stored or "D" in takes else set()
+
+
 def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
     """Give the remaining words to motion, feed, spindle and tool; what is left over is refused."""
     slots = meaning.slots
+    _spindle_number(shape, dialect, meaning)
     for address, order in (("S", 10), ("T", 20)):
         if address in slots:
             event = EventShape(order, address, ((address, slots[address]),))
@@ -359,8 +439,7 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
     if meaning.dwell and meaning.axes and set(dialect.dwell) & set(dialect.axes):
         yield Refusal("GX203", 0, len(shape.block.text), "a dwell and axis words in one block")
     motion = {*meaning.axes, *meaning.centres, *"FNRST", dialect.turns_address}
-    if "D" in slots and "D" in dialect.words and dialect.last_code_wins:
-        meaning.events.append(EventShape(45, "D", (("D", slots.pop("D")),)))
+    motion |= _offset_word(dialect, meaning)
     for word in shape.block.words:
         address = word.address
         if (lacking := _lacking(word, dialect)) is not None:

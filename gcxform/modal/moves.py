@@ -9,20 +9,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, LINEAR
 from gcxform.modal.arcs import ArcWords, resolve_arcs
+from gcxform.modal.cutter import compensation, refuse_ends
 from gcxform.modal.drilling import Drilling
 from gcxform.modal.events import events_of
 from gcxform.modal.findings import Findings
 from gcxform.modal.home import own_moves
 from gcxform.modal.lines import Lines
 from gcxform.modal.rows import Rows
+from gcxform.modal.splines import read_splines, with_splines
 from gcxform.modal.state import CYCLE_OFF, Modes
-from gcxform.modal.tables import NUMBER
+from gcxform.modal.tables import MANY_WORK, NUMBER, of_splines
 from gcxform.modal.track import Track
 from gcxform.toolpath.path import Blocks, Kind, Toolpath, constant
 
@@ -46,6 +49,13 @@ class Moves:
         self.findings = lines.findings
         self.track = Track(lines, modes, axes)
         self.drilling = Drilling(self.track)
+        self.side, self.radius = compensation(lines, modes)
+        self.splines = of_splines(modes.motion)
+        self.bends = bool(self.splines.any())
+        self._new_units: list[int] = []  # lines that change it, where that spoils tool lengths
+        if self.dialect.units_spoil_length:
+            before = np.append(self.state.groups["units"] == 1, modes.inch)
+            self._new_units = np.flatnonzero(np.diff(before)).tolist()
 
     def path(self) -> Toolpath:
         """Return the moves as a toolpath."""
@@ -69,11 +79,13 @@ class Moves:
         moves &= ~drilling
         centre = self.lines.flag("has_centre") & ~drilling
         stray = self.lines.flag("drill_words") & ~drilling
+        stray &= ~self.splines
         for line in np.flatnonzero(stray)[: Findings.enough].tolist():
             words = self.lines.table.meanings[int(self.lines.shape[line])].drill_words
             message = f"{words[0]} belongs to no code of this block"
             self.findings.add(line, "GX203", message, words[0])
         arc = (self.modes.motion == 2) | (self.modes.motion == 3)
+        arc |= self.splines
         for line in np.flatnonzero(moves & (self.modes.motion == NUMBER["G80"])).tolist():
             self.findings.add(
                 line,
@@ -88,7 +100,7 @@ class Moves:
             self.findings.add(line, "GX203", message, hint="write the dwell in a block of its own")
         moves &= self.modes.motion != NUMBER["G80"]
         moves |= centre & arc & ~own
-        in_machine = own & (self.modes.motion == Kind.LINE)
+        in_machine = self.lines.flag("in_machine") & (self.modes.motion == Kind.LINE)
         self._check_feed(moves | in_machine)
         return moves
 
@@ -123,13 +135,22 @@ class Moves:
     def _acting(self) -> Ints:
         """Return the lines that act on the frame or move in a way of their own."""
         acts = self.lines.flag("acts")
+        self._reset = self._after_end()
         if not acts.any():
-            return np.empty(0, np.int64)
+            return np.flatnonzero(self._reset)
         work = np.append(np.int8(self.state.groups["frame"]), self.modes.work)
         again = self.lines.flag("work_only") & (work[1:] == work[:-1])
+        again &= (self.modes.work != MANY_WORK) & ~self._reset
         if not self.state.frames.known and again.any():
             again[int(np.argmax(again))] = False
-        return np.flatnonzero(acts & ~again)
+        return np.flatnonzero((acts & ~again) | self._reset)
+
+    def _after_end(self) -> Flags:
+        """Return the lines before which a control that goes on has reset the work offset."""
+        after = np.zeros(self.lines.live, np.bool_)
+        if "frame" in self.dialect.resets_at_end:
+            after[1:] = self.lines.flag("ends")[:-1]
+        return after
 
     def _stretches(self) -> Iterator[tuple[int, int]]:
         """Yield first and last line + 1 of the stretches."""
@@ -145,18 +166,31 @@ class Moves:
 
     def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows | None:
         """Return the rows of a stretch, None for one of calls: those are made at the end."""
+        self._refuse_other_units(first, first + 1)
+        if first < len(self._reset) and self._reset[first]:
+            self.track.reset_work(first)
         if first in self._acts:
             self.track.act(first)
             own = own_moves(self.track, first)
             if own is not None:
                 return own
+        self._refuse_other_units(first + 1, last)
         if self.drilling.calls[first:last].any():
             self.drilling.follow(first, last)
             return None
         self.drilling.leave(first, last)
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
-        return Rows.plain(rows, self.modes.motion[rows], ends, len(self.track.frames) - 1)
+        plain = Rows.plain(rows, self.modes.motion[rows], ends, len(self.track.frames) - 1)
+        return with_splines(plain) if self.bends else plain
+
+    def _refuse_other_units(self, first: int, last: int) -> None:
+        """Refuse a change of units under a tool length that would become another one by it."""
+        if not self._new_units or not any(self.state.frames.tool):
+            return
+        for line in (line for line in self._new_units if first <= line < last):
+            message = "another unit under a tool length, whose number this control then keeps"
+            self.findings.add(line, "GX213", message, hint="write G49 before, and G43 after")
 
     # --- the path ---
 
@@ -176,9 +210,10 @@ class Moves:
             line + self.lines.window.first_line,
             rows.nth,
             rows.form,
-            constant(0, count, np.int8),
-            constant(np.nan, count),
+            _at(self.side, line),
+            _at(self.radius, line),
             self._lost_before(line, rows.nth),
+            np.broadcast_to(np.nan, (count, 2, 3)),
             self.track.entry,
             tuple(self.track.frames),
             Blocks(
@@ -194,8 +229,13 @@ class Moves:
             first=self.state.frames.first,
             after_rapid=self.state.rapid,
         )
+        path = path.replace(after_side=self.state.at_side)
         if count:
             self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
+            self.state.row_frame = self.track.frames[int(path.frame[-1])]
+        refuse_ends(self.lines, self.modes, path.side, path.kind, line)
+        if count and (self.state.pull or self.bends):
+            path = read_splines(path, self.lines, self.modes)
         if not path.has_arcs:
             return path
         arcs = np.flatnonzero(path.is_arc)
@@ -203,12 +243,14 @@ class Moves:
 
     def _lost_before(self, line: Ints, nth: Ints) -> Ints:
         """Return of which axes the position was lost between each row and the row before."""
-        if not self.track.breaks:
+        if not self.track.breaks and not self.state.lost:
             return constant(0, len(line), np.int64)
         lost = np.zeros(len(line) + 1, np.int64)
+        lost[0] = self.state.lost
         at = np.searchsorted(line, [found.line for found in self.track.breaks])
         for place, found in zip(at.tolist(), self.track.breaks, strict=True):
             lost[place] |= found.axes
+        self.state.lost = int(lost[-1])
         return lost[:-1]
 
     def _feed_of_rows(self, rows: Rows) -> Floats:
@@ -241,6 +283,7 @@ class Moves:
             column(self.dialect.turns_address),
             np.stack([~np.isnan(column(a)) for a in "XYZ"], axis=1),
             self.modes.absolute_centre[lines],
+            self.modes.inch[lines],
         )
 
 
@@ -253,3 +296,10 @@ def turns_only(axes: str, entry: Floats, ends: Floats) -> Flags:
     start = np.vstack([entry, ends[:-1]])
     still = (np.abs(start - ends) < SAME_PLACE) | (np.isnan(start) & np.isnan(ends))
     return np.asarray(still[:, linear].all(axis=1) & ~still[:, rotary].all(axis=1))
+
+
+def _at(column: NDArray[Any], rows: Ints) -> NDArray[Any]:
+    """Return a column of the lines at rows; one that holds one value keeps taking no memory."""
+    if column.strides != (0,) or not len(column):
+        return column[rows]
+    return np.broadcast_to(column[0], (len(rows),))

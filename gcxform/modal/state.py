@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from gcxform.machine.machine import Machine, Tool
 from gcxform.modal.frames import FrameState
+from gcxform.toolpath.frames import Frame
 
 if TYPE_CHECKING:
     from gcxform.modal.cycles import Cycles
@@ -67,7 +68,16 @@ class Reading:
 
 @dataclass(slots=True)
 class State:
-    """What one window hands to the next."""
+    """What one window hands to the next.
+
+    lost        axes, as bits, whose position was lost since the last row
+    row_frame   the frame of the last row
+    polar       radius and angle last programmed in G16
+    side, radius  cutter compensation in force; `at_side`: that of the last move;
+                  `cancelled`: G40 has been in force since
+    selected      the T word; `tool`: the tool in the spindle; `stored`: the D word; nan: not known
+    pull   P and Q of the last move if that was a G5, in units of the program
+    """
 
     groups: dict[str, int]
     position: Floats
@@ -78,9 +88,20 @@ class State:
     ended: bool = False
     percents: int = 0
     rapid: bool = False
+    lost: int = 0
+    row_frame: Frame | None = None
+    polar: tuple[float, float] = (np.nan, np.nan)
+    side: int = 0
+    radius: float = np.nan
+    selected: float = np.nan
+    tool: float = np.nan
+    stored: float = np.nan
+    at_side: int = 0
+    cancelled: bool = False
     stated: set[str] = field(default_factory=set)
     parameters: dict[int | str, float] = field(default_factory=dict)
     cycles: Cycles | None = None
+    pull: tuple[float, float] | None = None
     memory: dict[str, int] = field(default_factory=dict)
 
 
@@ -100,6 +121,7 @@ class Modes:
     feed_mode: Small
     inch: Flags
     work: Small
+    comp: Small
     feed: Floats
     feed_unit: Floats
     tool: Floats

@@ -9,13 +9,25 @@ from gcxform.dialect import Dialect
 from gcxform.modal.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning, meaning_of
 from gcxform.syntax.shapes import ShapeTable
 
-GROUPS = ("motion", "plane", "distance", "arc-distance", "feed-mode", "units", "frame")
+GROUPS = (
+    "motion",
+    "plane",
+    "distance",
+    "arc-distance",
+    "feed-mode",
+    "units",
+    "frame",
+    "cutter-comp",
+)
 MEMORY = ("cycle", "retract", "spindle")
 """Groups that matter to canned cycles alone."""
 COLUMNS = (*GROUPS, *MEMORY)
 CYCLES = tuple(n for n in range(73, 90) if n not in (75, 77, 78, 79, 80))
+SPLINES = CUBIC, QUADRATIC = (5, 51)
 NUMBER = {
     **{f"G{n}": n for n in (0, 1, 2, 3, 80, *CYCLES)},
+    "G5": CUBIC,
+    "G5.1": QUADRATIC,
     **{f"G{17 + n}": n for n in range(3)},
     "G90": 0,
     "G91": 1,
@@ -26,18 +38,23 @@ NUMBER = {
     "G20": 1,
     **{f"G{54 + n}": n for n in range(6)},
     **{f"G59.{n}": 5 + n for n in (1, 2, 3)},
+    "G54.1": 9,
     "G99": 0,
     "G98": 1,
     "M5": 0,
     "M3": 1,
     "M4": 2,
+    "G40": 0,
+    "G41": 1,
+    "G42": 2,
+    "G41.1": 3,
+    "G42.1": 4,
 }
 """The number that stands for a code within its group."""
 
 
-def frame_name(frame: int) -> str:
-    """Return the code of a work offset by its number: 0 is G54."""
-    return f"G{54 + frame}" if frame < 6 else f"G59.{frame - 5}"
+MANY_WORK = 9
+"""The number of codes that have a P word, so that they name more than one work offset."""
 
 
 FLAGS = (
@@ -52,13 +69,24 @@ FLAGS = (
     "marked",
     "acts",
     "own_moves",
+    "in_machine",
     "work_only",
     "framing",
     "presets",
+    "takes_lengths",
     "computes",
     "drills",
     "drill_words",
+    "changes_tool",
+    "bars_comp_before",
+    "bars_comp_after",
+    "compensates",
 )
+
+
+def of_splines(motion: NDArray[np.int8]) -> NDArray[np.bool_]:
+    """Return which numbers of motion codes are those of splines."""
+    return np.asarray((motion == CUBIC) | (motion == QUADRATIC))
 
 
 DRILL_WORDS = frozenset("XYZABCUVWRPQLIJK")
@@ -115,12 +143,18 @@ class MeaningTable:
             meaning.marked,
             bool(meaning.acts),
             any(act.name in OWN_MOVES for act in meaning.acts),
+            any(act.name == "machine" for act in meaning.acts),
             [act.name for act in meaning.acts] == ["work"] and "frame" in meaning.groups,
             any(act.name in FRAMING for act in meaning.acts),
             any(act.name in PRESETS for act in meaning.acts),
+            bool(meaning.lengths),
             bool(meaning.assignments or meaning.expressions or meaning.runs_macro),
             bool(set(meaning.slots) & DRILL_WORDS) or _calls(meaning),
             bool(meaning.drill_words),
+            meaning.changes_tool,
+            bool(meaning.bars_comp[0]),
+            bool(meaning.bars_comp[1]),
+            meaning.compensates,
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

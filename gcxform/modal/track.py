@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from gcxform.dialect import INCH
 from gcxform.modal.acts import ACTS, ActError, Asked, is_length
 from gcxform.modal.findings import Findings
+from gcxform.modal.frames import FrameState
 from gcxform.modal.lines import LENGTHS, Lines, fill
 from gcxform.modal.meaning import Act
 from gcxform.modal.state import Modes
@@ -25,8 +26,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-LOST_BY_TURN = frozenset({"rotate", "no-rotate", "scale", "no-scale", "mirror", "no-mirror"})
-LOST_BY_POLAR = frozenset({"polar", "no-polar"})
+LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar", "no-polar"})
 LENGTHENED = frozenset({"length", "length-negative", "length-vector", "length-add", "no-length"})
 
 
@@ -50,6 +50,8 @@ class Track:
         self.findings = lines.findings
         self.entry = lines.state.position.copy()
         self.frames: list[Frame] = [self.state.frames.frame()]
+        if self.state.row_frame not in (None, self.frame):
+            self.frames.insert(0, self.state.row_frame)
         self.breaks: list[Break] = []
         self._columns: dict[str, tuple[Floats, Flags] | None] = {}
 
@@ -94,18 +96,36 @@ class Track:
         self.state.frames = frames = ACTS[act.name](before, asked)
         if act.name == "work" and not before.known:
             self._lose(line, (1 << len(self.axes)) - 1)
-        new = frames.frame()
-        if new == old:
-            return
-        if act.name in LENGTHENED and self.dialect.length_may_move:
+        if act.name in LENGTHENED and self.dialect.length_may_move and frames.frame() != old:
             self._lose(line, 4)
-        if act.name in LOST_BY_TURN and self.dialect.length_may_move:
-            self._lose(line, 7)
-        if act.name in LOST_BY_POLAR:
-            self._lose(line, 7)
-        pairs = enumerate(zip(old.origin, new.origin, strict=True))
-        self._lose(line, sum(1 << k for k, (was, now) in pairs if was != now))
-        self.frames.append(new)
+        if act.name == "polar":
+            self.state.polar = np.nan, np.nan
+        if act.name in LOST_BY_TURN:
+            self._lose(line, self._turned_by(line, before, frames))
+        self._enter(line, old)
+
+    def _turned_by(self, line: int, before: FrameState, after: FrameState) -> int:
+        """Return the axes, as bits, of which controls differ in where a turn leaves them."""
+        if before.polar != after.polar:
+            first, second, _ = Plane(int(self.modes.plane[line])).axes
+            return 1 << first | 1 << second
+        turns = {*before.turns} ^ {*after.turns}
+        matrices = [np.array(turn.matrix) - np.eye(3) for _, turn in turns]
+        return sum({1 << int(k) for matrix in matrices for k in np.flatnonzero(matrix.any(axis=1))})
+
+    def reset_work(self, line: int) -> None:
+        """Enter the work offset that the end of a program leaves, before a line."""
+        old = self.frame
+        self.state.frames = self.state.frames.in_work(self.dialect.resets_at_end["frame"])
+        self._enter(line, old)
+
+    def _enter(self, line: int, old: Frame) -> None:
+        """Note the frame that is now in force, if it is another one."""
+        new = self.state.frames.frame()
+        if new != old:
+            pairs = enumerate(zip(old.origin, new.origin, strict=True))
+            self._lose(line, sum(1 << k for k, (was, now) in pairs if was != now))
+            self.frames.append(new)
 
     def _asked(self, act: Act, line: int) -> Asked:
         window, first = self.lines.window, int(self.lines.first[line])
@@ -118,7 +138,7 @@ class Track:
             act.code,
             words,
             written,
-            {a: v for a, v in words.items() if a in self.axes},
+            self._radial({a: v for a, v in words.items() if a in self.axes}),
             self.state.position,
             bool(self.modes.incremental[line]),
             Plane(int(self.modes.plane[line])),
@@ -126,6 +146,12 @@ class Track:
             self.dialect,
             self.lines.reading,
         )
+
+    def _radial(self, words: dict[str, float]) -> dict[str, float]:
+        """Return axis words with X as a radius."""
+        if self.state.frames.diameter and "X" in words:
+            return {**words, "X": words["X"] / 2}
+        return words
 
     def _lose(self, line: int, axes: int) -> None:
         if not axes:
@@ -219,12 +245,14 @@ class Track:
         columns = []
         count = self.modes.plane[here].shape[0]
         any_word = np.zeros(count, np.bool_)
-        for axis in names:
+        for k, axis in enumerate(names):
             word = self.column(axis)
             value = np.full(count, np.nan) if word is None else word[0][here]
             present = np.zeros(count, np.bool_) if word is None else word[1][here]
-            columns.append(fill(np.where(present, value, np.nan), present, np.nan))
+            columns.append(fill(np.where(present, value, np.nan), present, self.state.polar[k]))
             any_word |= present
+        if count:
+            self.state.polar = float(columns[0][-1]), float(columns[1][-1])
         radius, angle = columns[0], np.deg2rad(columns[1])
         bad = any_word & (np.isnan(radius + angle) | self.modes.incremental[here])
         bad |= len(planes) > 1

@@ -34,6 +34,7 @@ class Options:
     rotary: bool = True
     feed_modes: bool = True
     planes: bool = True
+    splines: bool = False  # G5 and G5.1, which LinuxCNC has
     max_blocks: int = 30
 
 
@@ -56,6 +57,7 @@ class Builder:
         self.inch = self.absolute_centre = self.incremental = False
         self.plane, self.feed_mode, self.motion = "G17", "G94", ""
         self.feed_known = False
+        self.in_series = False  # the move before is a G5
         self.speed = 0
         self.pending: Words = []  # modes that go into the next motion block
         self.lines: list[str] = []
@@ -94,6 +96,7 @@ class Builder:
         if self.chance(30):
             modes += self.one((["G40"], ["G49"], ["G80"], [f"G{self.pick(54, 59)}"]))
         self._emit([(code[0], code[1:]) for code in modes], plain=True)
+        self.first_work = modes[-1] if modes[-1][1] == "5" else "G54"
         self.motion = "G0"
         words: Words = [("G", "0")]
         for axis in self.axes:
@@ -104,11 +107,16 @@ class Builder:
         """Write one block, sometimes a comment or an empty line before it."""
         if self.chance(8):
             self.lines.append(self.layout.remark())
+        self.one(self._kinds())()
+
+    def _kinds(self) -> list[Callable[[], None]]:
+        """Return what a block may be, as often as it shall come."""
         kinds: list[Callable[[], None]] = [self._line, self._line, self._line, self._rapid]
         if self.options.arcs:
             kinds += [self._arc] * 4
-        kinds += [self._auxiliary, self._modes, self._modes]
-        self.one(kinds)()
+        if self.options.splines and self.plane == "G17" and self.feed_mode != "G93":
+            kinds += [self._spline] * 4
+        return [*kinds, self._auxiliary, self._modes, self._modes]
 
     def _emit(self, words: Words, *, plain: bool = False) -> None:
         """Write a block."""
@@ -157,6 +165,7 @@ class Builder:
 
     def _head(self, code: str) -> Words:
         """Return the motion word, which a modal control may do without."""
+        self.in_series = False
         if self.motion == code and self.chance(50):
             return []
         self.motion = code
@@ -226,9 +235,9 @@ class Builder:
         centre, words = [], Words()
         for axis, letter, value in zip(axes[:2], letters[:2], offset, strict=True):
             base = self.position[axis] if self.absolute_centre else 0.0
-            text = number((value + base) / self._unit(axis), self._decimals(axis))
+            text = number((value + base) / self._unit(letter), self._decimals(axis))
             start = 0.0 if self.absolute_centre else self.position[axis]
-            centre.append(start + float(text) * self._unit(axis))
+            centre.append(start + float(text) * self._unit(letter))
             if self.absolute_centre or float(text) or self.chance(50):
                 words.append((letter, self.layout.number(text)))
         return (centre[0], centre[1]), words
@@ -258,7 +267,7 @@ class Builder:
         chord = math.dist(start, (self.position[first], self.position[second]))
         if chord < 1.0:
             return None
-        unit, places = self._unit(first), self._decimals(first)
+        unit, places = self._unit("R"), self._decimals("R")
         stretch = self.one((1.01, 1.1, 1.5, 3.0, 1.0 if self.dialect == "linuxcnc" else 2.0))
         short = stretch == 1.0 and not self.inch  # LinuxCNC lets it end 1.27 um early
         steps = chord / 2 * stretch / unit * 10**places
@@ -282,6 +291,21 @@ class Builder:
     def _helix(self, normal: str) -> Words:
         return [(normal, self._place(normal))] if self.chance(25) else []
 
+    # --- splines
+
+    def _spline(self) -> None:
+        """Write a G5, without I and J at times in a series, or a G5.1."""
+        cubic, goes_on = self.chance(70), self.in_series
+        words: Words = [("G", "5" if cubic else "5.1")]
+        words += [(a, self._place(a)) for a in self.one(("XY", "XY", "X", "Y"))]
+        letters = "IJ" if not (cubic and goes_on and self.chance(50)) else ""
+        words += [(a, self._distance_word()) for a in letters + "PQ" * cubic]
+        self.in_series, self.motion = cubic, ""
+        self._emit_motion(words + self._feed())
+
+    def _distance_word(self) -> str:
+        return self.layout.number(number(self._value("X", 40), self._decimals("X")))
+
     # --- everything else
 
     def _auxiliary(self) -> None:
@@ -299,9 +323,12 @@ class Builder:
             case "stop":
                 words = [("M", self.one(("0", "1")))]
             case _:
-                words = [("T", str(self.pick(1, 20)))]
-                words += [] if self.dialect == "grbl" else [("M", "6")]
+                words = self._tool()
         self._emit(words)
+
+    def _tool(self) -> Words:
+        words: Words = [("T", str(self.pick(1, 20)))]
+        return words if self.dialect == "grbl" else [*words, ("M", "6")]
 
     def _dwell(self) -> tuple[str, str]:
         tenths = self.pick(1, 30)

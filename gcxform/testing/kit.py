@@ -236,7 +236,8 @@ class _PathCheck:
         start, end = trial.before.start[runs.left], trial.before.end[runs.left]
         way = np.where(np.isnan(start) & np.isnan(end), 0.0, np.nan_to_num(end - start, nan=np.inf))
         short = np.sqrt((way**2).sum(axis=1)) <= self.step.promise + SLACK
-        gone = bool((short & ~trial.before.is_arc[runs.left]).all())
+        curved = trial.before.is_arc | trial.before.is_spline
+        gone = bool((short & ~curved[runs.left]).all())
         self._assert(gone, trial, "leaves a move out: a line of the program has no row")
         return runs
 

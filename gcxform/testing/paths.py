@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gcxform.dialect import Dialect
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
-from gcxform.toolpath.path import BLOCK_MODES, COLUMNS, Blocks, Kind, Toolpath
+from gcxform.toolpath.path import BLOCK_MODES, COLUMNS, Kind, Toolpath
 
 HEAD = "G21 G90 G94 G17\n"
 
@@ -94,7 +94,8 @@ def locked(path: Toolpath) -> Toolpath:
         return array
 
     was = path.blocks
-    blocks = Blocks(was.first, *(copy(getattr(was, name)) for name in BLOCK_MODES))
+    modes: dict[str, Any] = {name: copy(getattr(was, name)) for name in BLOCK_MODES}
+    blocks = replace(was, **modes)
     columns = {name: copy(getattr(path, name)) for name in (*COLUMNS, "entry")}
     return path.replace(blocks=blocks, **columns)
 

@@ -44,7 +44,9 @@ def programs(
     mode and, absolutely, every axis used is programmed first. Each keyword set to False leaves that
     part of the language out. GRBL has no rotary axes.
     """
-    options = Options(dialect, arcs, incremental, inches, rotary, feed_modes, planes, max_blocks)
+    options = Options(
+        dialect, arcs, incremental, inches, rotary, feed_modes, planes, max_blocks=max_blocks
+    )
     return _programs(options)
 
 

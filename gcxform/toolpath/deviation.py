@@ -4,7 +4,7 @@ Every row of the second path belongs to one row of the first, its owner. For eac
 gives an upper bound of the distance (mm) of any of its points from the owner's curve, where points
 are paired in order of travel. Where the pairing goes backwards, half the way back is added to the
 account. The bounds are exact for lines beside lines, and for arcs and chords beside arcs of the
-same plane.
+same plane; splines are in `gcxform/toolpath/beside_splines.py`.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from gcxform.dialect import LINEAR
 from gcxform.modal.arcs import TURN, swept
+from gcxform.toolpath.beside_splines import beside_splines
 from gcxform.toolpath.path import Kind, Plane, Toolpath
 
 Floats = NDArray[np.float64]
@@ -64,14 +65,17 @@ class _Comparison:
         unknown = unknown_move[self.owner]
         rapid = before.kind[self.owner] == Kind.RAPID
         ends_only = unknown | rapid
-        other = ~self._same(start_of_owner) | unknown
+        bent = before.is_spline[self.owner] | self.after.is_spline
+        other = ~self._same(start_of_owner) | unknown | bent
         self.distance[~other] = 0.0
         straight = other & ~owner_arc & ~self.after.is_arc
         self._ends(np.flatnonzero(straight & ends_only))
-        self._lines(np.flatnonzero(straight & ~ends_only), start_of_owner)
+        self._lines(np.flatnonzero(straight & ~ends_only & ~bent), start_of_owner)
         arcs = np.flatnonzero(other & owner_arc & ~unknown)
         if len(arcs):
             self._arcs(arcs, start_of_owner)
+        if bent.any():
+            self._splines(np.flatnonzero(bent & ~unknown))
         return Deviation(self.distance + self.after.slack, self.angle, unknown)
 
     def _same(self, starts: Floats) -> Flags:
@@ -148,6 +152,17 @@ class _Comparison:
         previous = np.append(0.0, part[:-1])
         previous[self.first[rows]] = 0.0
         return np.maximum(previous - part, 0.0) * length / 2
+
+    def _splines(self, rows: Ints) -> None:
+        """Compare splines, and lines beside them; other axes stand still along a spline."""
+        owner = self.owner[rows]
+        distance = beside_splines(self.before, self.after, rows, owner)
+        _, self.angle[rows] = self._between(self.after.end[rows], self.before.end[owner])
+        known = np.isnan(self.after.end[rows]) == np.isnan(self.before.end[owner])
+        distance[~known.all(axis=1)] = np.inf
+        others = [k for k in self.linear if k > 2]
+        aside = np.nan_to_num(self.after.end[rows] - self.before.end[owner])[:, others]
+        self.distance[rows] = np.hypot(distance, np.sqrt((aside**2).sum(axis=1)))
 
     # --- arcs ---
 

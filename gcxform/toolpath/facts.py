@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gcxform.toolpath.path import OWN_DISTANCES, Form, Plane, Toolpath
+from gcxform.toolpath.path import OWN_DISTANCES, Flags, Form, Plane, Toolpath
 
 
 @dataclass(frozen=True)
@@ -39,11 +39,33 @@ def _absolute(path: Toolpath) -> bool:
 
 
 ABSOLUTE = Fact("ABSOLUTE", "every block but returns to reference and cycles is in G90", _absolute)
-NO_CYCLES = Fact(
-    "NO_CYCLES", "there is no canned cycle", lambda path: not (path.form == Form.CYCLE).any()
-)
+
+
+def inseparable_cycles(path: Toolpath) -> Flags:
+    """Return the rows (n,) of cycles that cannot be written as plain moves.
+
+    These are tapping, cycles that orient the spindle, and the cycles between which and one of these
+    there is no plain move: what stays in force, the level they began from above all, ties them.
+    """
+    cycle = np.isin(path.form, (Form.CYCLE, Form.SYNCHRONISED))
+    tied = path.form == Form.SYNCHRONISED
+    oriented = [event.row - 1 for event in path.events if event.within and event.what == "M19"]
+    tied[oriented] = True
+    run = np.cumsum(~cycle)
+    return np.asarray(cycle & np.isin(run, np.unique(run[cycle & tied])))
+
+
+def _no_cycles(path: Toolpath) -> bool:
+    return not ((path.form == Form.CYCLE) & ~inseparable_cycles(path)).any()
+
+
+NO_CYCLES = Fact("NO_CYCLES", "there is no canned cycle, but tapping and fine boring", _no_cycles)
 METRIC = Fact("METRIC", "every block is in millimetres", lambda path: not path.blocks.inch.any())
-LINEAR_ONLY = Fact("LINEAR_ONLY", "there is no arc", lambda path: not path.has_arcs)
+LINEAR_ONLY = Fact(
+    "LINEAR_ONLY",
+    "there is no arc and no spline",
+    lambda path: not path.has_arcs and not path.has_splines,
+)
 XY_ARCS = Fact(
     "XY_ARCS",
     "every arc is in the XY plane",
@@ -53,6 +75,11 @@ KNOWN_POSITIONS = Fact(
     "KNOWN_POSITIONS",
     "X, Y and Z are known at the end of every move",
     lambda path: not bool(np.isnan(path.end[:, :3]).any()),
+)
+NO_CUTTER_COMP = Fact(
+    "NO_CUTTER_COMP",
+    "positions are those of the tool's centre: G41 and G42 are resolved",
+    lambda path: not bool(path.side.any()),
 )
 NOMINAL = Fact(
     "NOMINAL", "positions are where the tool shall be, not yet compensated commands", _always
@@ -81,4 +108,5 @@ FACTS = (
     COMPENSATED,
     WORKPIECE_FRAME,
     NO_CYCLES,
+    NO_CUTTER_COMP,
 )

@@ -91,10 +91,12 @@ class Frame:
             return vectors
         return _product(np.linalg.inv(np.array(self.matrix)), vectors)
 
-    @property
-    def mirrors(self) -> bool:
-        """Whether left becomes right."""
-        return self.matrix is not None and bool(np.linalg.det(self.matrix) < 0)
+    def mirrors(self, first: int, second: int) -> bool:
+        """Whether left becomes right in the plane of two axes, which it does not leave."""
+        if self.matrix is None:
+            return False
+        m = self.matrix
+        return m[first][first] * m[second][second] < m[first][second] * m[second][first]
 
 
 def _scaled(words: Floats, factor: float) -> Floats:

@@ -51,7 +51,8 @@ class Form(IntEnum):
     """What a row is a part of; all but PLAIN are written as the block they came from, or refused.
 
     CYCLE: a canned cycle. HOME: G28, G30. MACHINE: a move in machine coordinates (G53). PROBE: it
-    ends where something is touched. SYNCHRONISED: it is tied to the spindle.
+    ends where something is touched. SYNCHRONISED: it is tied to the spindle. SPLINE: a cubic Bezier
+    curve; its kind is LINE, because it cuts.
     """
 
     PLAIN = 0
@@ -60,6 +61,7 @@ class Form(IntEnum):
     MACHINE = 3
     PROBE = 4
     SYNCHRONISED = 5
+    SPLINE = 6
 
 
 OWN_DISTANCES = (Form.CYCLE, Form.HOME, Form.SYNCHRONISED)
@@ -86,6 +88,7 @@ class Blocks:
     leaves          whether after the block something else than this program may run: it ends, or
                     calls what may move axes
     apart           whether the block has a slash or a name and is joined with no other
+    uncompensated   cutter compensation has been resolved: G41, G42 and their D are left out
     """
 
     first: int
@@ -95,6 +98,7 @@ class Blocks:
     feed_mode: Small
     leaves: Flags
     apart: Flags
+    uncompensated: bool = False
 
 
 BLOCK_MODES = ("inch", "incremental", "absolute_centre", "feed_mode", "leaves", "apart")
@@ -130,6 +134,7 @@ COLUMNS = (
     "side",
     "radius",
     "lost",
+    "control",
 )
 
 
@@ -153,6 +158,8 @@ class Toolpath:
     radius          (n,) mm, of the tool that is compensated; nan where it is not known
     lost            (n,) of which axes the position was lost before the move, by a tool change for
                     example: bit k stands for axis k
+    control         (n, 2, 3) mm, the inner control points of splines; nan for other moves. The
+                    outer ones are where the row starts and where it ends
     entry           (axes,) position before the first row
     frames          the frames of the rows
     blocks          how the blocks the rows came from are to be written
@@ -162,6 +169,7 @@ class Toolpath:
     folded          whether frames are folded into the words: codes that set them are not written
     joined          whether rows may stand for several: blocks left without one are not written
     after_rapid     whether the move before the first row was a rapid
+    after_side      side of cutter compensation of the move before the first row
     refit_centres   whether centres may be moved so that both ends are on the circle as formatted
     """
 
@@ -180,6 +188,7 @@ class Toolpath:
     side: Small
     radius: Floats
     lost: Ints
+    control: Floats
     entry: Floats
     frames: tuple[Frame, ...]
     blocks: Blocks
@@ -189,6 +198,7 @@ class Toolpath:
     folded: bool = False
     joined: bool = False
     after_rapid: bool = False
+    after_side: int = 0
     refit_centres: bool = True
 
     def __post_init__(self) -> None:
@@ -265,8 +275,9 @@ class Toolpath:
 
     @property
     def mirrored(self) -> Flags:
-        """(n,) whether left becomes right in the frame of the row."""
-        return np.array([frame.mirrors for frame in self.frames], np.bool_)[self.frame]
+        """(n,) whether left becomes right in the plane of the row, by its frame."""
+        mirrors = [[frame.mirrors(*plane.axes[:2]) for plane in Plane] for frame in self.frames]
+        return np.array(mirrors, np.bool_)[self.frame, self.plane]
 
     @property
     def starts_known(self) -> Flags:
@@ -292,6 +303,16 @@ class Toolpath:
     def block(self) -> Ints:
         """(n,) index into `blocks` of each move."""
         return self.source - self.blocks.first
+
+    @property
+    def is_spline(self) -> Flags:
+        """(n,) whether the move is a spline."""
+        return np.asarray(self.form == Form.SPLINE)
+
+    @property
+    def has_splines(self) -> bool:
+        """Whether there is any spline."""
+        return bool((self.form == Form.SPLINE).any())
 
     def refuse(self, code: str, rows: Ints, message: str, hint: str = "") -> InputError:
         """Return the error that refuses rows; the pipeline adds the text of their lines."""
@@ -325,10 +346,10 @@ class Toolpath:
 
 def _picked(column: NDArray[Any], rows: Ints | Flags) -> NDArray[Any]:
     """Return a column at rows; a column that holds one value keeps taking no memory."""
-    if column.strides != (0,) or not len(column):
+    if any(column.strides) or not len(column):
         return column[rows]
     count = int(np.count_nonzero(rows)) if rows.dtype == np.bool_ else len(rows)
-    return np.broadcast_to(column[0], (count,))
+    return np.broadcast_to(column[0], (count, *column.shape[1:]))
 
 
 def column_major(rows: int, columns: int) -> Floats:

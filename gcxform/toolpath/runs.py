@@ -115,7 +115,7 @@ def deviation_of_runs(
 def _left_over(before: Toolpath, runs: Runs, rows: Ints) -> Floats:
     """Return the lengths (mm) of what rows stand for besides their owners; inf with arcs in it."""
     way = np.nan_to_num(before.end - before.start)
-    length = np.where(before.is_arc, np.inf, np.sqrt((way**2).sum(axis=1)))
+    length = np.where(before.is_arc | before.is_spline, np.inf, np.sqrt((way**2).sum(axis=1)))
     begin = runs.owner[rows] + 1
     whole = np.add.reduceat(
         np.append(length, 0.0), np.stack([begin, runs.through[rows] + 1], 1).ravel()

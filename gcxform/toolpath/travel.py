@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 from gcxform.dialect import LINEAR
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.path import Plane, Toolpath
+from gcxform.toolpath.splines import spline_lengths
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+Ints = NDArray[np.int64]
 
 STILL = 1e-7  # mm; linear axes that move by less stand still
 
@@ -21,8 +23,8 @@ STILL = 1e-7  # mm; linear axes that move by less stand still
 class Lengths:
     """Lengths (n,) of moves: mm along the linear axes, or degrees where only rotary ones turn.
 
-    An arc whose ends are on two circles is between `least` and `most`. `turns` says which moves
-    are those of rotary axes alone. Unknown lengths are nan.
+    An arc whose ends are on two circles, and a spline, are between `least` and `most`. `turns` says
+    which moves are those of rotary axes alone. Unknown lengths are nan.
     """
 
     least: Floats
@@ -44,6 +46,19 @@ def lengths(path: Toolpath) -> Lengths:
         rise = way[arcs, normal]
         least[arcs] = np.hypot(np.minimum(first, last) * path.sweep[arcs], rise)
         most[arcs] = np.hypot(np.maximum(first, last) * path.sweep[arcs], rise)
+    splines = np.flatnonzero(path.is_spline)
+    if len(splines):
+        least[splines], most[splines] = spline_lengths(path, splines)
     turned = np.sqrt((way[:, ~linear] ** 2).sum(axis=1))
     turns = (most < STILL) & (turned > 0)
     return Lengths(np.where(turns, turned, least), np.where(turns, turned, most), turns)
+
+
+def ways(path: Toolpath, rows: Ints) -> Floats:
+    """Return how far lines and splines take all axes (mm, degrees); no less than they go."""
+    way = np.nan_to_num(path.end[rows] - path.start[rows])
+    length = np.sqrt((way**2).sum(axis=1))
+    if path.has_splines:
+        splines = path.is_spline[rows]
+        length[splines] = spline_lengths(path, rows[splines])[1]
+    return np.asarray(length)

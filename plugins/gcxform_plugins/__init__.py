@@ -21,6 +21,7 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
     """Return the passes on toolpaths, then those on text."""
     from gcxform_plugins.passes.absolute import Absolute
     from gcxform_plugins.passes.arcs import Arcs
+    from gcxform_plugins.passes.cutter_comp import CutterComp
     from gcxform_plugins.passes.cycles import ExpandCycles
     from gcxform_plugins.passes.feed import FeedPass
     from gcxform_plugins.passes.metric import Metric
@@ -33,6 +34,7 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
 
     return [
         Absolute,
+        CutterComp,
         ExpandCycles,
         FeedPass,
         Metric,

@@ -19,7 +19,10 @@ from reference.model import Move
 import gcxform as gx
 from gcxform.dialect import INCH
 from gcxform.machine.machine import Tool
+from gcxform.modal.ending import Ending
+from gcxform.modal.reader import windows_of
 from gcxform.registry import default_registry
+from gcxform.source import Source
 from gcxform.toolpath.path import Toolpath
 
 REFUSED = {"refuse", "partial", "tool_refuse"}
@@ -75,6 +78,7 @@ def problem(fact: dict[str, Any], program: bytes) -> str:
         if any(m["type"] == "told" for m in wanted):
             program = DEBUG.sub(_as_rapid, program.decode("latin-1")).encode("latin-1")
         path = gx.read(program, name, **reading(fact)).path
+        refuse_ending(program, name)
     except gx.InputError as error:
         return "" if fact["expect"] in REFUSED else f"refused: {error.diagnostics[0].render()}"
     except KeyError as error:
@@ -84,6 +88,18 @@ def problem(fact: dict[str, Any], program: bytes) -> str:
     if fact["expect"] != "ok":
         return f"the fact cannot be interpreted: expect = {fact['expect']}"
     return _compared(steps(path, wanted), wanted, b"M6" in program.upper()) or _end(fact, path)
+
+
+def refuse_ending(program: bytes, name: str) -> None:
+    """Raise InputError for a file that does not end as its control asks for."""
+    dialect = default_registry().dialect(name)
+    ending = Ending(dialect)
+    for window, reader in windows_of(Source.of_bytes(program), dialect):
+        reader.table.update()
+        ending.look(window, reader.table)
+    ending.close()
+    if ending.finding is not None:
+        raise gx.InputError((ending.finding,))
 
 
 def reading(fact: dict[str, Any]) -> dict[str, Any]:

@@ -42,7 +42,8 @@ class CanonMove:
     the rate that was set: mm/min (G94 and G93, where LinuxCNC has multiplied by the length of the
     path) or mm/rev; its second number is the same in degrees, for moves of rotary axes alone.
     `turns` counts the turns beyond the first. `unit` is the size of the program's unit in mm:
-    positions are rounded to 1e-4 of it.
+    positions are rounded to 1e-4 of it. `machine` says where `start`, `end` and `centre` are in
+    coordinates of the machine.
     """
 
     kind: str
@@ -55,6 +56,7 @@ class CanonMove:
     plane: str = "XY"
     centre: tuple[float, float, float] | None = None
     turns: int = 0
+    machine: tuple[dict[str, float], ...] = ()
 
 
 @dataclass
@@ -172,16 +174,22 @@ class Reader:
         self.position = self.shifts.to_program(at)
 
     def _move(self, line: int, kind: str, end: dict[str, float], **arc: object) -> None:
+        start = self.position
+        machine = self.shifts.to_machine(start), self.shifts.to_machine(end)
+        if "centre" in arc:
+            centre = dict(zip("XYZ", arc["centre"], strict=True))  # type: ignore[call-overload]
+            machine += (self.shifts.to_machine(start | centre),)
         self.program.moves.append(
             CanonMove(
                 kind,
-                self.position,
+                start,
                 end,
                 line,
                 self.unit,
                 None if kind == "RAPID" else self.feed,
                 self.mode,
                 PLANES[self.plane][0],
+                machine=machine,
                 **arc,  # type: ignore[arg-type]
             )
         )

@@ -2,7 +2,8 @@
 
 `rs274 -g -t TOOLS -v VARIABLES FILE OUT` writes one canon call a line, numbers with four decimals
 in the units in force, to OUT, and messages to stderr. It starts at 0 on all axes, in millimetres,
-G17 G90 G91.1 G94, with no motion mode, all work offsets zero and block delete off. It stops at
+G17 G90 G91.1 G94, with no motion mode, all work offsets zero and block delete off. Tool n has a
+diameter of n mm (the table is in inches). It stops at
 the first refusal. A comment `(gcx k)` put behind line k comes back as a canon call, so each
 call is known to belong to a line.
 
@@ -31,12 +32,19 @@ MARK = re.compile(r'"gcx (\d+) (\d+)"')
 NOISE = ("executing", "link (updating")
 TIMEOUT = 10.0  # seconds
 BATCH = 250  # programs in one file
-RESET = b"G80 G21 G17 G90 G91.1 G94 G40 G49 G54 G99 M5 M9\nS0 T0\nG0 X0 Y0 Z0 A0 B0 C0\n"
-RESET += b"G82 X0 Z0 R0 P0 F1\nG80 G94\n"  # a dwell of a cycle would stay
+ZERO = b"X0 Y0 Z0 A0 B0 C0"
+RESET = (
+    b"G80 G21 G17 G90 G91.1 G94 G40 G49 G8 G92.1 G99 M5 M9\nS0 T0\nM61 Q0\n"
+    + b"".join(b"G10 L2 P%d R0 %s\n" % (n, ZERO) for n in range(1, 10))
+    + b"G54\nG0 %s\nG28.1\nG30.1\n" % ZERO
+    + b"G82 X0 Z0 R0 P0 F1\nG80 G94\n"  # a dwell of a cycle would stay
+)
 PLAIN_G = {0, 1, 2, 3, 4, 17, 18, 19, 20, 21, 40, 49, 80, 90, 91, 90.1, 91.1, 93, 94, 95}
-PLAIN_G |= set(range(54, 60)) | {73, 74, 98, 99} | set(range(81, 90))
-PLAIN_M = {0, 1, 3, 4, 5, 6, 7, 8, 9, 60}
-BLOCK = re.compile(r"/?(N\d+)?(?:[ABCFGIJKLMPQRSTXYZ][+-]?[\d.]+)*")
+PLAIN_G |= {*range(54, 60), 59.1, 59.2, 59.3, 52, 53, 92, 92.1, 92.2, 92.3}
+PLAIN_G |= {7, 8, 10, 28, 28.1, 30, 30.1, 43, 43.1, 43.2}
+PLAIN_G |= {73, 74, 98, 99, *range(81, 90)}
+PLAIN_M = {0, 1, 3, 4, 5, 6, 7, 8, 9, 60, 61}
+BLOCK = re.compile(r"/?(N\d+)?(?:[ABCFGHIJKLMPQRSTXYZ][+-]?[\d.]+)*")
 END = re.compile(rb"[ \t]*([nN]\d+)?[ \t]*[mM]0*2[ \t]*")  # not taken apart by a comment
 WORD = re.compile(r"([A-Z])([+-]?[\d.]+)")
 
@@ -134,7 +142,7 @@ def _execute(source: bytes) -> _Output:
     with tempfile.TemporaryDirectory() as folder:
         at = Path(folder)
         (at / "in.ngc").write_bytes(source)
-        (at / "tools").write_text("".join(f"T{n} P{n} Z0\n" for n in range(1, 100)))
+        (at / "tools").write_text("".join(map(_tool_line, range(1, 100))))
         command = ["rs274", "-g", "-t", "tools", "-v", "var", "in.ngc", "out"]
         try:
             home = os.environ | {"HOME": folder}
@@ -146,6 +154,18 @@ def _execute(source: bytes) -> _Output:
     if done.returncode and not said:
         raise RuntimeError(f"rs274 ended with {done.returncode} and no message")
     return _collect(text, said[0] if done.returncode else "")
+
+
+def tool(number: int) -> tuple[float, float, float]:
+    """Return the vector of a tool of the table, X, Y and Z in inches."""
+    x = number / 100 if number % 3 == 0 else 0.0
+    y = -number / 50 if number % 4 == 0 else 0.0
+    return x, y, number / 20
+
+
+def _tool_line(number: int) -> str:
+    x, y, z = tool(number)
+    return f"T{number} P{number} X{x} Y{y} Z{z} D{number / 25.4:.12f}\n"
 
 
 def _collect(text: str, message: str) -> _Output:

@@ -18,12 +18,16 @@ from oracles.compare import move_difference
 from reference.model import Move
 
 import gcxform as gx
+from gcxform.contract import PassContext
 from gcxform.dialect import INCH
 from gcxform.machine.machine import Tool
+from gcxform.registry import default_registry
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 KINDS = {Kind.RAPID: "RAPID", Kind.LINE: "LINE", Kind.ARC_CW: "ARC_CW", Kind.ARC_CCW: "ARC_CCW"}
-COMPARED = {"M0", "M1", "M2", "M3", "M4", "M5", "M6", "M7", "M8", "M9", "M30", "M60", "S", "T"}
+COMPARED = {f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 19, 30, 60)} | {"S", "T"}
+ORIENTS = {"R", "P"}
+"""An M19 without any of these words says nothing to the spindle of `rs274`."""
 STILL = 1.001e-4  # units of the program: a move that the print shows as none
 START = dict.fromkeys("XYZABCUVW", 0.0)
 OFFSETS = {f"G{n}": START for n in (54, 55, 56, 57, 58, 59)} | {
@@ -43,14 +47,20 @@ def read(text: bytes, tools: Mapping[int, Tool] = OWN_TOOLS) -> Toolpath:
     It starts from zero, with all offsets zero, and executes blocks with a slash.
     """
     told: dict[str, Any] = {"work_offsets": OFFSETS, "homes": HOMES, "tools": tools}
-    return gx.read(text, "linuxcnc", start=START, block_delete="execute", **told).path
+    path = gx.read(text, "linuxcnc", start=START, block_delete="execute", **told).path
+    return resolved(path) if path.side.any() else path
+
+
+def resolved(path: Toolpath) -> Toolpath:
+    """Return the path of the tool's centre, which is what `rs274` prints. Raises InputError."""
+    dialect = default_registry().dialect("linuxcnc")
+    step: Any = default_registry().passes["cutter-comp"]()
+    return step.apply(path, PassContext(dialect, dialect, dialect.numbers))  # type: ignore[no-any-return]
 
 
 def programmed(path: Toolpath) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return start, end (n, axes) and centre (n, 3) in the active program coordinates."""
-    start, end = path.start.copy(), path.end.copy()
-    start[:, :3], end[:, :3] = path.local(path.start[:, :3]), path.local(path.end[:, :3])
-    return start, end, path.local(path.centre)
+    return path.local(path.start), path.local(path.end), path.local(path.centre)
 
 
 def moves_of(path: Toolpath) -> Iterator[Move]:
@@ -86,6 +96,8 @@ def events_of(path: Toolpath) -> list[tuple[int, str, int]]:
         value = event.values[0][1] if event.values else 0.0
         if event.what == "DWELL":
             found.append((event.row, f"DWELL {value:.4f}", event.line + 1))
+        elif event.what == "M19" and not event.within and not ORIENTS & dict(event.values).keys():
+            continue
         elif event.what in COMPARED:
             words = f"{event.what}{value:.10g}" if event.what in "ST" else event.what
             found.append((event.row, words, event.line + 1))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import random
+
 import pytest
 from cycle_kit import Drawn, Played, Player, text
 from hypothesis import settings
-from oracles import rs274
+from oracles import rs274, toolpaths
 from oracles.canon import CanonProgram
 
+import gcxform as gx
 from gcxform.registry import default_registry
 
 COUNT = 5 * settings.default.max_examples  # 500; the profile `long` asks for more
@@ -26,12 +29,50 @@ def test_cycles_move_as_linuxcnc_moves() -> None:
         answers = rs274.run_many([text(blocks) for blocks in programs])
         for blocks, answer in zip(programs, answers, strict=True):
             played = Player(rule).play(blocks)
-            problem = difference(played, answer)
+            problem = difference(played, answer) or program_difference(text(blocks), answer)
             assert problem == "", f"{problem}\n{text(blocks).decode()}"
             moves += len(played.moves)
             refused += played.refused > 0
     assert moves > 20 * COUNT
     assert 0.05 * COUNT < refused < 0.5 * COUNT
+
+
+def program_difference(program: bytes, answer: CanonProgram | rs274.Rejected) -> str:
+    """Say how a program as the package reads it differs from what LinuxCNC does."""
+    try:
+        path = read(program)
+    except gx.InputError as error:
+        return "" if isinstance(answer, rs274.Rejected) else f"refused by us alone: {error}"
+    if isinstance(answer, rs274.Rejected):
+        return f"refused by LinuxCNC alone: {answer}"
+    return toolpaths.difference(path, answer)
+
+
+def read(program: bytes) -> gx.Toolpath:
+    return toolpaths.read(program, {})
+
+
+def test_linuxcnc_makes_the_moves_of_expanded_cycles() -> None:
+    """What the pass `cycles` writes, alone and in chains, moves as the program with cycles does."""
+    jobs = []
+    for seed in range(COUNT // 2):
+        program = text(Drawn(seed).blocks())
+        chain = random.Random(seed).choice(CHAINS)
+        try:
+            jobs.append((read(program), chain, gx.Pipeline.parse(chain, "linuxcnc").run(program)))
+        except gx.VerificationError as error:
+            pytest.fail(f"{chain}: {error}\n{program.decode()}")
+        except gx.InputError:
+            continue
+    assert len(jobs) > 0.3 * COUNT
+    answers = rs274.run_many([result.text for _, _, result in jobs])
+    for (path, chain, result), answer in zip(jobs, answers, strict=True):
+        assert isinstance(answer, CanonProgram), f"{answer}\n{result.text.decode()}"
+        problem = toolpaths.difference(path, answer)
+        assert problem == "", f"{chain}: {problem}\n{result.text.decode()}"
+
+
+CHAINS = ("cycles", "cycles | absolute", "absolute | cycles", "cycles | offsets")
 
 
 def difference(played: Played, answer: CanonProgram | rs274.Rejected) -> str:

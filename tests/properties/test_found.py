@@ -112,3 +112,36 @@ def test_the_feed_of_rotary_axes_is_in_degrees_in_every_unit() -> None:
 def test_linuxcnc_reads_a_feed_before_the_units_of_its_block() -> None:
     program = "G20 G1 X1.0514 F1177.6\n"
     assert run("absolute", "linuxcnc", program) == program
+
+
+@pytest.mark.parametrize("block", ["G43.1 Z1", "G92 X1", "G10 L20 P1 X1", "G52 X1"])
+def test_a_length_that_a_code_takes_is_not_left_in_inches(block: str) -> None:
+    with pytest.raises(gx.InputError, match="in another unit"):
+        run("metric", "linuxcnc", f"G20 G90\nG0 X0 Y0 Z0\n{block}\nG0 X2\n")
+
+
+def test_a_return_without_a_length_is_the_same_in_every_unit() -> None:
+    program = "G20 G90\nG0 X1. Y0. Z0.\nG91 G28 Z0.\nG90 G0 X2.\n"
+    assert run("metric", "fanuc", program).splitlines()[2] == "G91 G28 Z0."
+
+
+def test_a_length_in_diameters_does_not_become_a_radius() -> None:
+    with pytest.raises(gx.InputError, match="in another unit"):
+        run("offsets", "linuxcnc", "G21 G90\nG7\nG43.1 X10\nG0 X1\n")
+
+
+def test_a_control_that_goes_on_after_the_end_is_in_its_first_offset() -> None:
+    path = gx.read(b"G21\nG10 L20 P2 X-10\nG55 G0 X1\nM2\nG0 X1\n", "grbl", start={"X": 0.0}).path
+    assert path.end[:, 0].tolist() == [11.0, 1.0]
+
+
+def test_another_unit_under_a_tool_length_is_refused() -> None:
+    with pytest.raises(gx.InputError, match="another unit under a tool length"):
+        run("absolute", "linuxcnc", "G21 G43.1 Z5\nG20 G0 Z1\n")
+
+
+def test_two_offsets_of_one_code_are_two() -> None:
+    offsets = {"G54": {"X": 0.0}, "G54.1 P1": {"X": 10.0}, "G54.1 P2": {"X": 20.0}}
+    program = b"G54 G0 X0. Y0.\nG54.1 P1 X0.\nG54.1 P2 X0.\nG54 X0.\n"
+    path = gx.read(program, "fanuc", work_offsets=offsets).path
+    assert path.end[:, 0].tolist() == [0.0, 10.0, 20.0, 0.0]

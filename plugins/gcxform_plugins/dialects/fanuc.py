@@ -14,6 +14,9 @@
 | M0 M1 M2 M30 M98 M99 | act after the motion of their block |
 | M5, M9 with a motion | the machine's PLC decides, commonly after it: taken as after |
 | an M code not listed | may run a macro: positions and variables are unknown after it |
+| an M code not listed | may move axes: positions are unknown after it |
+| G41, G42 | D stays in force; its radius is the machine file's, D0 is none |
+| G41, G42, G40 with an arc | refused: alarm 34 |
 | tool change | moves axes: positions are unknown after it |
 | canned cycles | R, Z, P, Q stay until the cycle mode ends; K0 stores them without drilling |
 | G73, G83 between pecks | parameters 5114 and 5115: must be given |
@@ -78,7 +81,7 @@ class Fanuc(gx.Dialect):
         "G95": gx.Code("feed-mode"),
         **{code: v.inert("path") for code in ("G61", "G62", "G64")},
         "G63": v.barrier("path", v.SYNCHRONISED),
-        "G9": v.inert("non-modal"),
+        "G9": v.at_end("non-modal"),
         "G8": v.inert("non-modal", "P"),
         "G5": v.inert("non-modal", "PQR"),
         "G5.1": v.inert("non-modal", "PQR"),
@@ -86,7 +89,7 @@ class Fanuc(gx.Dialect):
         "G97": v.inert("spindle-mode", "S"),
         "G96": v.barrier("spindle-mode", v.SYNCHRONISED, "SP"),
         **{code: v.inert("cancel") for code in ("G67", "G13.1", "G23")},
-        "G22": v.inert("stroke", "XYZIJK"),
+        "G22": v.inert("stroke", "XYZIJK", "XYZIJK"),
         "G10": v.frame("non-modal", "set-work", v.AXES + "LPRQIJK"),
         "G52": v.frame("non-modal", "local", v.AXES),
         "G92": v.frame("non-modal", "preset", v.AXES),
@@ -96,7 +99,7 @@ class Fanuc(gx.Dialect):
         **{code: v.barrier("non-modal", v.HOME, "PR") for code in ("G27", "G29", "G30", "G60")},
         "G54.1": v.frame("frame", "work", "P"),
         **{code: v.barrier("frame", v.SHIFT, "P") for code in ("G54.2", "G54.4")},
-        **{code: v.barrier("cutter-comp", v.COMP, "DHIJK") for code in ("G41", "G42")},
+        **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
         "G43": v.frame("tool-length", "length", "H"),
         "G44": v.frame("tool-length", "length-negative", "H"),
         **{
@@ -144,10 +147,11 @@ class Fanuc(gx.Dialect):
     length_may_move = True
     g53_is_rapid = True
     last_code_wins = True
+    cutter_comp = gx.CutterComp(stored=True)
     point_required = True
     change_clears_feed = True
     lower_case = False
     dwell: ClassVar[Mapping[str, float]] = {"X": 1.0, "U": 1.0, "P": 0.001}
     arc_rule = gx.ArcRule(absolute=0.01)
-    cycle_rule = CYCLE_RULE
+    cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE
     arithmetic = v.MACRO_B

@@ -18,6 +18,7 @@ refused. What is not named here is as in `fanuc`.
 | G154, G110 to G129 | more work offsets: as Fanuc's G54.1 | manual |
 | G28 | without axis words every axis goes home at once: refused | known |
 | G52, G92 | Setting 33 decides what they shift: refused unless `[control] g52` is set | manual |
+| canned cycles | L counts the holes, L0 stores; I, J, K, and P of G73, G83: refused | known |
 | G12 G13 G70 G71 G72 G150, drilling | cycles: refused by name | manual |
 | G47 G35 G36 G37 G136 | engraving and probing: refused by name | manual |
 | G68, G101, G100 | as Fanuc's G68, G51.1, G50.1; G51 is refused | manual |
@@ -32,6 +33,7 @@ refused. What is not named here is as in `fanuc`.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import ClassVar
 
 import gcxform as gx
@@ -92,6 +94,12 @@ class Haas(Fanuc):
         **{number: gx.MCode("stop", after=True, barrier=v.CALL, takes="PQ") for number in (46, 96)},
         97: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL"),
     }
+    cycle_rule = replace(
+        Fanuc.cycle_rule,
+        takes={**dict.fromkeys(Fanuc.cycle_rule.takes, "PQL"), 73: "QL", 83: "QL"},
+        open_words={**Fanuc.cycle_rule.open_words, 73: "P", 83: "P"},
+        repeats="L",
+    )
     work_names: ClassVar[Mapping[str, str]] = {
         code: f"G154 P{int(code[1:]) - 109}" for code in MORE_OFFSETS
     }

@@ -7,22 +7,41 @@
 | arc centre | incremental, or absolute (in work coordinates) after G90.1 |
 | full circle | end repeated, or plane words left out |
 | turns of an arc | P n: n - 1 full turns more |
-| start and end radius | refused if they differ by more than 0.0282843 mm and 0.1 % |
+| start and end radius | may differ by 0.0282843 mm, or by 0.1 % and 2.82843 mm |
+| the same in G20 | 0.00282843 in, or 0.1 % and 0.282843 in |
 | G93, G94, G95 | set the feed to zero, also when re-stated |
 | feed | along X Y Z; in degrees where only rotary axes move; in G93 no less than 0.1 per minute |
 | `G20 F10` | F is in the unit before; after G20, G21 the feed in mm/min stays |
 | CR without LF | is a blank |
 | M5, M9 | act before the motion of their block |
 | after M2, M30 | nothing is executed |
+| a file without end | refused (`gcxform check` says so), but if it stands between two % signs |
+| G41 D, G42 D | tool D of the table, or the tool in the spindle; the table is the machine file's |
+| G41.1 D, G42.1 D | the diameter itself; a negative one swaps the side |
+| G41, G42 | refused when on already, and in YZ; on, many codes are refused |
+| G40 | the next move is no arc |
+| outside corners | are joined by arcs; turns below 0.05 rad are taken for none |
 | tool change | the axes stay, as far as the interpreter knows |
 | G98, G99 at start | G99 |
 | canned cycles | R, Z, P, Q stay within one cycle; from below R first up; 0.254 mm between pecks |
 | G74, G84 in G18, G19 | the axes of the feed moves are mixed up: refused |
 | G76 | a thread: refused |
+| G5 | a cubic Bezier curve in G17: I J from its start, P Q from its end, also in G91 and G90.1 |
+| G5 without I J | minus the P Q of the G5 before; with no G5 directly before: refused |
+| G5.1 | a quadratic one: I J from its start |
+| G5, G5.1 | refused: other planes, axes but X and Y, one of two words, neither X nor Y; in G93 |
+| after G5, G5.1 | no motion code is in force |
+| G5.2, G5.3 | NURBS: refused |
 | assignments | take effect after their block: `#1=#2 #2=#1` swaps |
 | expressions | a sign binds to its number, `**` goes from the left, numbers within 1e-4 are EQ |
 | a parameter that nothing has set | refused unless given: the control may have a value left |
 | #5001 and above, `#<_x>` and its like | belong to the control: refused |
+| M words in a block | four at most |
+| T, M61 | a tool that is not in the table, where one is given, is refused |
+| `$` | beside S or what turns a spindle; only the first spindle is known |
+| M100 to M199 | run a program of the machine: refused unless it is said what they are |
+| @ and ^ | polar words: refused |
+| comments | `(MSG,` `(PRINT,` `(LOG,` `(PROBEOPEN` `(ABORT,` and their like are executed |
 | O-words | refused: code that would have to be run |
 """
 
@@ -77,6 +96,13 @@ CYCLE_RULE = v.CycleRule(
     one_plane=False,
     initial_level=False,
 )
+USER_CODE = gx.MCode("user", takes="PQ", act="user-code", loses_position=True)
+# fmt: off
+ACTIVE = (
+    "MSG,", "DEBUG,", "PRINT,", "LOG,", "LOGOPEN,", "LOGAPPEND,", "LOGCLOSE", "PROBEOPEN",
+    "PROBECLOSE", "ABORT,", "PY,",
+)
+# fmt: on
 
 
 class LinuxCNC(gx.Dialect):
@@ -90,7 +116,7 @@ class LinuxCNC(gx.Dialect):
         "G95": gx.Code("feed-mode"),
         **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
         **{code: v.frame("frame", "work") for code in ("G59.1", "G59.2", "G59.3")},
-        **{code: v.inert("path", "PQ") for code in ("G61", "G61.1", "G64")},
+        **{code: v.inert("path", "PQ", "PQ") for code in ("G61", "G61.1", "G64")},
         **{code: v.inert("retract") for code in ("G98", "G99")},
         "G7": v.frame("diameter", "diameter"),
         "G8": v.frame("diameter", "diameter"),
@@ -105,16 +131,17 @@ class LinuxCNC(gx.Dialect):
         **{code: v.frame("non-modal", "home") for code in ("G28", "G30")},
         **{code: v.frame("non-modal", "store-home") for code in ("G28.1", "G30.1")},
         "G53": v.frame("non-modal", "machine"),
-        **{code: v.barrier("cutter-comp", v.COMP, "DL") for code in ("G41", "G42")},
-        **{code: v.barrier("cutter-comp", v.COMP, "DL") for code in ("G41.1", "G42.1")},
+        **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
+        **{code: gx.Code("cutter-comp", takes="D", lengths="D") for code in ("G41.1", "G42.1")},
         "G43": v.frame("tool-length", "length", "H"),
         "G43.1": v.frame("tool-length", "length-vector", v.AXES),
         "G43.2": v.frame("tool-length", "length-add", "H"),
+        **{code: gx.Code("motion") for code in ("G5", "G5.1")},
         **{code: gx.Code("motion") for code in CYCLES if code != "G76"},
         "G76": v.barrier("motion", v.SYNCHRONISED, "EHIJKLPQR"),
         **{
-            code: v.barrier("motion", "it cuts a spline", "IJKPQL")
-            for code in ("G5", "G5.1", "G5.2", "G5.3")
+            code: v.barrier("motion", "it cuts a spline of NURBS", "IJKPQL")
+            for code in ("G5.2", "G5.3")
         },
         **{code: v.barrier("motion", v.SYNCHRONISED, "K") for code in ("G33", "G33.1")},
         **{code: v.barrier("motion", v.PROBE) for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
@@ -142,25 +169,44 @@ class LinuxCNC(gx.Dialect):
         },
         98: gx.MCode("stop", barrier=v.CALL, takes="PL"),
         99: gx.MCode("stop", barrier=v.CALL),
-        **{code: gx.MCode("user", takes="PQ") for code in range(100, 200)},
+        **{code: USER_CODE for code in range(100, 200)},
     }
     axis_words_once = True
+    spindle_stands = True
     starts_in_frame = True
     g10_offsets = (*gx.Dialect.g10_offsets, "G59.1", "G59.2", "G59.3")
     g10_p0_is_active = True
     g10_sets_position = True
     g10_ignores_g91 = True
+    g10_rotates = True
     g52_is_g92 = True
     g43_takes_spindle_tool = True
+    units_spoil_length = True
     g28_without_axes = True
+    cutter_comp = gx.CutterComp(
+        planes=frozenset({"XY", "ZX"}),
+        changes=False,
+        arc_entry=True,
+        corners="arc",
+        entry="own",
+        straight=0.05,
+        before=frozenset({"tool", "override", "output"}),
+        after=frozenset({"non-modal", "tool-length", "frame", "path", "retract"}),
+    )
     feed_mode_clears_feed = True
     feed_before_units = True
     lone_cr_is_blank = True
     number_first = True
+    needs_end = True
+    most_m_words = 4
+    tools_in_table = True
+    spindle_words = frozenset({"S", "M3", "M4", "M5", "M19", "M51", "G95", "G96", "G97"})
     turns_address = "P"
     cycle_rule = CYCLE_RULE
+    cycles_stop = True
     line_length = 252
     comments = "(;"
+    active_comments = ACTIVE
     words = "DEFHIJKLNPQRST@^$"
     arc_rotary = True
     feed_along_lines = True
@@ -168,5 +214,10 @@ class LinuxCNC(gx.Dialect):
     arithmetic = v.RS274
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     arc_rule = gx.ArcRule(
-        absolute=0.0282843, relative=0.001, largest=2.82843, smallest=0.00127, r_short=0.00127
+        absolute=0.0282843,
+        relative=0.001,
+        largest=2.82843,
+        smallest=0.00127,
+        r_short=0.00127,
+        in_inch=2.54,
     )

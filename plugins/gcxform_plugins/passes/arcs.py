@@ -11,7 +11,7 @@ in another one would need codes that the program does not have.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -133,7 +133,7 @@ def _joined(
     np.add.at(inside, last + 1, -1)
     kept = np.flatnonzero(np.cumsum(inside)[:-1] == 0)
     events = tuple(
-        gx.Event(int(np.searchsorted(kept, e.row)), e.what, e.values, e.line) for e in path.events
+        replace(event, row=int(np.searchsorted(kept, event.row))) for event in path.events
     )
     new = path.replace(kind=kind, end=end, centre=centre, sweep=sweep, events=events, joined=True)
     return new.take(kept), follows[kept]

@@ -53,6 +53,7 @@ class Compensation:
 
     def run(self) -> gx.Toolpath:
         """Return the commands."""
+        self._refuse_splines()
         self._check_known()
         self._check_inside()
         self.entry_command = self.step.command(self.start[:1])[0]
@@ -65,6 +66,13 @@ class Compensation:
         self._check_size(commands, self.end, np.arange(len(self.path)))
         end = self._with_others(commands - self.offset)
         return self._arcs(self.path.replace(end=end, entry=self._entry()), np.arange(len(end)))
+
+    def _refuse_splines(self) -> None:
+        """Refuse splines: what the machine makes of their control points is no spline."""
+        rows = np.flatnonzero(self.path.form == gx.Form.SPLINE)
+        if len(rows):
+            message = "a spline is not compensated"
+            raise self.path.refuse("GX506", rows, message, 'put the pass "segment" before')
 
     def _commands(self) -> Floats:
         """Return the commands for the ends of the rows; what G28 and G53 say stays as it is."""

@@ -85,6 +85,7 @@ class FeedPass(gx.Pass):
         arcs = path.is_arc[rows]
         for wrong, why in (
             (path.feed_mode[rows] == gx.FeedMode.PER_TURN, "its speed depends on the spindle"),
+            (path.form[rows] == gx.Form.SPLINE, 'it is a spline, put "segment" before'),
             (path.form[rows] != gx.Form.PLAIN, "it is a part of a cycle, or tied to something"),
             (path.side[rows] != 0, "cutter compensation changes its length"),
             (np.isnan(moves.lengths()), "where it starts is not known"),

@@ -8,8 +8,9 @@ import numpy as np
 
 import gcxform as gx
 
-TOLERANCES = ("G64",)
-"""Codes whose words are lengths that stay as they are written."""
+LENGTHS = frozenset("XYZUVWIJKR")
+FOLDED = frozenset({"set-work", "local", "preset", "rotate", "scale", "mirror"})
+"""What codes do that are not written where they are folded into the words of moves."""
 
 
 @dataclass(frozen=True)
@@ -24,24 +25,31 @@ class Metric(gx.Pass):
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path with every block in millimetres."""
-        _refuse_tolerances(path)
+        _refuse_lengths(path, context.source)
         never = np.zeros(len(path.blocks.inch), np.bool_)
         return path.replace(blocks=replace(path.blocks, inch=never))
 
 
-def _refuse_tolerances(path: gx.Toolpath) -> None:
-    """Raise InputError where a tolerance is given in inches: its number would be one of mm."""
+def _refuse_lengths(path: gx.Toolpath, dialect: type[gx.Dialect]) -> None:
+    """Raise InputError where a code has a length in inches: its number would be one of mm."""
     found = [
         gx.Diagnostic(
             "GX501",
-            f"the tolerance of {event.what} is in inches and would be read as mm",
+            f"the words of {event.what} are in inches, stay, and would be read as mm",
             gx.Location("", event.line + 1),
-            "leave the tolerance out, or write that block in mm (G21)",
+            "leave the block out, or write it in mm (G21)",
         )
         for event in path.events
-        if event.what in TOLERANCES
-        and event.values
-        and path.blocks.inch[event.line - path.blocks.first]
+        if path.blocks.inch[event.line - path.blocks.first] and _has_length(event, path, dialect)
     ]
     if found:
         raise gx.InputError(tuple(found))
+
+
+def _has_length(event: gx.Event, path: gx.Toolpath, dialect: type[gx.Dialect]) -> bool:
+    """Whether an event is written with a word that is a length: that of G64 is a tolerance."""
+    code = dialect.codes.get(event.what)
+    if code is None or (path.folded and code.act in FOLDED):
+        return False
+    letters = {address for address, _ in event.values}
+    return bool(letters & LENGTHS or (event.what == "G64" and letters))

@@ -26,6 +26,7 @@ class Offsets(gx.Pass):
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path with every row in the work offset in which the program starts."""
         self._check_known(path)
+        self._check_turned(path)
         frames = tuple(self._unshifted(frame, path) for frame in path.frames)
         return path.replace(frames=frames, folded=True)
 
@@ -45,3 +46,19 @@ class Offsets(gx.Pass):
                 message = f"how far {unknown[0]} is from {path.first} is not known"
                 hint = "give a machine file with [work-offset.*]"
                 raise path.refuse("GX314", rows, message, hint)
+
+    def _check_turned(self, path: gx.Toolpath) -> None:
+        """Refuse first moves in other coordinates that leave out an axis which is then unknown."""
+        turns = [(frame.matrix, frame.polar, frame.work) for frame in path.frames]
+        before = np.append(0, path.frame[:-1])[: len(path)]
+        changes = np.array([[a != b for b in turns] for a in turns], np.bool_)[before, path.frame]
+        unknown = (np.isnan(path.end) & np.isnan(path.start))[:, :3]
+        lost = np.stack([path.lost >> k & 1 for k in range(3)], axis=1) == 1
+        rows = np.flatnonzero(changes & (unknown & lost).any(axis=1))
+        if len(rows):
+            message = (
+                "a first move in other coordinates leaves out an axis of which it is not known"
+            )
+            message += " where it stands in them"
+            hint = "name the axes in this block, and the work offset at the head of the program"
+            raise path.refuse("GX213", rows, message, hint)

@@ -7,7 +7,11 @@ from typing import Annotated
 
 import gcxform as gx
 
-JUMPS = {("M", 97.0), ("M", 98.0), ("M", 99.0), ("M", 198.0), ("G", 65.0), ("G", 66.0)}
+JUMPS = {("M", number) for number in (96, 97, 98, 99, 198)} | {
+    ("G", number) for number in (65, 66, 66.1)
+}
+CONTOURS = {("G", number) for number in (70, 71, 72, 73, 150)}
+"""Cycles that cut the blocks between two sequence numbers: P and Q."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +31,7 @@ class Renumber(gx.TextPass):
         for item in block.items:
             if not isinstance(item, gx.Word | gx.Comment) and hasattr(item, "tree"):
                 return "blocks may be jumped to by their numbers"
-            if isinstance(item, gx.Word) and _may_jump(item):
+            if isinstance(item, gx.Word) and _may_jump(item, block):
                 return f"{block.text[item.start : item.end]} may refer to sequence numbers"
         return ""
 
@@ -50,5 +54,9 @@ class Renumber(gx.TextPass):
         return block.text[: first.start] + new + gap + block.text[first.start :]
 
 
-def _may_jump(word: gx.Word) -> bool:
-    return isinstance(word.value, gx.Number) and (word.address, word.value.value) in JUMPS
+def _may_jump(word: gx.Word, block: gx.Block) -> bool:
+    if not isinstance(word.value, gx.Number):
+        return False
+    code, letters = (word.address, word.value.value), {w.address for w in block.words}
+    drills = code == ("G", 73) and not {"P", "Q"} <= letters
+    return code in JUMPS or (code in CONTOURS and bool(letters & {"P", "Q"}) and not drills)

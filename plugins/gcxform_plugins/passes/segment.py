@@ -1,4 +1,4 @@
-"""`segment`: long lines and arcs are cut into pieces, arcs into lines or shorter arcs."""
+"""`segment`: long lines, arcs and splines are cut into pieces, arcs into lines or shorter arcs."""
 
 from __future__ import annotations
 
@@ -18,16 +18,19 @@ WIDEST = np.pi / 2
 """The largest angle of a chord: with larger ones the sense of rotation could be lost."""
 ANGLE_ERROR = 0.001
 """How far (deg) a rotary axis may be off on a chord: it turns with the chord, not the arc."""
+MEASURED = 0.01
+"""The part of the chord error that splines leave to the proof, whose bound is an upper one."""
 JUST_WHOLE = 1e-9  # a move that is so little longer than n pieces is cut into n
 
 
 @dataclass(frozen=True)
 class Segment(gx.Pass):
-    """Cut arcs and long lines into pieces.
+    """Cut arcs, splines and long lines into pieces.
 
     With `arcs = "lines"` arcs become chords that stay within `chord-error` of the arc and turn by
     at most 90 degrees each; with `arcs = "split"` they stay G2 and G3. `max-length` limits lines
-    and chords, `arc-step` the angle of the pieces of an arc. Rapids are never cut.
+    and chords, `arc-step` the angle of the pieces of an arc. Rapids are never cut. Splines become
+    lines within `chord-error` and no longer than `max-length`; with `arcs = "split"` they stay.
     """
 
     name = "segment"
@@ -67,12 +70,14 @@ class Segment(gx.Pass):
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path with its arcs and long lines cut."""
+        if path.has_splines and self.arcs == "lines":
+            path = splines_as_lines(path, self.chord_error)
         arcs = path.is_arc
         pieces = np.ones(len(path), np.int64)
         if arcs.any():
             pieces = np.where(arcs, self._pieces_of_arcs(path), 1)
         if self.max_length is not None:
-            lines = path.kind == gx.Kind.LINE
+            lines = (path.kind == gx.Kind.LINE) & (path.form == gx.Form.PLAIN)
             length = np.nan_to_num(_length(path.start, path.end))
             pieces = np.where(lines, _whole(length / self.max_length), pieces)
         pieces = np.where(path.starts_known, pieces, 1)
@@ -93,6 +98,17 @@ class Segment(gx.Pass):
             along = np.hypot(path.sweep * radius(path), _rise(path))
             pieces = np.maximum(pieces, _whole(np.nan_to_num(along) / self.max_length))
         return pieces
+
+
+def splines_as_lines(path: gx.Toolpath, chord_error: float | None) -> gx.Toolpath:
+    """Return the path with lines for its splines, within a chord error (mm)."""
+    rows = np.flatnonzero(path.form == gx.Form.SPLINE)
+    if chord_error is None:
+        message = "a spline becomes lines by their chord error, and none is given"
+        raise path.refuse("GX506", rows, message, 'chord-error = "2 um"')
+    pieces = np.ones(len(path), np.int64)
+    pieces[rows] = gx.spline_chords(path, rows, chord_error * (1.0 - MEASURED))
+    return gx.splines_as_lines(path, pieces)
 
 
 def _whole(value: Floats) -> Ints:

@@ -6,18 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import gcxform as gx
-
-ACTIVE = (
-    "MSG",
-    "DEBUG",
-    "PRINT",
-    "LOG",
-    "PROBEOPEN",
-    "PROBECLOSE",
-    "LOGOPEN",
-    "LOGCLOSE",
-    "LOGAPPEND",
-)
+from gcxform_plugins.dialects.linuxcnc import LinuxCNC
 
 
 @dataclass(frozen=True)
@@ -36,7 +25,7 @@ class Strip(gx.TextPass):
             gap, text = block.text[at : item.start], block.text[item.start : item.end]
             at = item.end
             comment = isinstance(item, gx.Comment)
-            if comment and self.comments and not _is_active(text):
+            if comment and self.comments and not _is_active(text, block):
                 continue
             if self.blanks:
                 gap = "" if not gap.strip(" \t") else gap
@@ -49,10 +38,7 @@ class Strip(gx.TextPass):
         return None if self.empty and not text.strip(" \t") else text
 
 
-def _is_active(comment: str) -> bool:
-    """Whether a control does something when it reads this comment."""
-    inner = comment.lstrip("(; \t").upper()
-    return inner.startswith(tuple(f"{word}," for word in ACTIVE)) or inner in (
-        "PROBECLOSE)",
-        "LOGCLOSE)",
-    )
+def _is_active(comment: str, block: gx.Block) -> bool:
+    """Whether a control does something with a comment: an alarm shows the one in its block."""
+    beside = (item for item in block.items if not isinstance(item, gx.Word | gx.Comment))
+    return LinuxCNC.executes(comment) or any(hasattr(item, "tree") for item in beside)

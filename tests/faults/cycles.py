@@ -1,10 +1,16 @@
-"""Small faults in the arithmetic of canned cycles, for `mutations.py`: name, file, old, new."""
+"""Faults in the arithmetic of canned cycles."""
+
+from __future__ import annotations
+
+from faults.mutation import CYCLES, Mutation
 
 LEVELS = "gcxform/modal/cycles.py"
 STRETCH = "gcxform/modal/cyclestretch.py"
 STEPS = "gcxform/modal/cyclesteps.py"
+DRILLING = "gcxform/modal/drilling.py"
+STRETCHES = "tests/test_stretches.py"
 
-CYCLE_FAULTS = (
+FAULTS = (
     (
         "words of another cycle stay",
         STRETCH,
@@ -172,5 +178,29 @@ CYCLE_FAULTS = (
         STEPS,
         "if len(doubtful):",
         "if False:",
+    ),
+)
+"""Name, file, old, new; the tests are those of cycles."""
+
+TOGETHER = (
+    ("count events from the first of them", "event.row - int(bounds[number])", "event.row"),
+    ("end at R under G98", "if initial else clearance", "if False else clearance"),
+    ("keep the dwell before them", "if place >= first:\n", "if False:\n"),
+    ("are one", "bounds[:-1], positions", "bounds[:1], positions[:1]"),
+)
+"""Name, old, new of faults in stretches that are made together."""
+
+MUTATIONS = (
+    *(Mutation(f"cycles: {name}", *where, CYCLES) for name, *where in FAULTS),
+    *(
+        Mutation(f"cycles: stretches made together {name}", DRILLING, old, new, STRETCHES)
+        for name, old, new in TOGETHER
+    ),
+    Mutation(
+        "cycles: a hole above R",
+        "gcxform/modal/cyclechecks.py",
+        "stretch.bottom > stretch.clearance",
+        "stretch.bottom > np.inf",
+        "tests/test_cycle_refusals.py",
     ),
 )

@@ -1,0 +1,32 @@
+"""Small faults in the arithmetic, a file for each topic; `tests/mutations.py` runs them."""
+
+from __future__ import annotations
+
+from faults import (
+    arcs,
+    commands,
+    computing,
+    cutter,
+    cycles,
+    frames,
+    passes,
+    proof,
+    reading,
+    splines,
+    writing,
+)
+from faults.mutation import Mutation
+
+MUTATIONS: tuple[Mutation, ...] = (
+    *cycles.MUTATIONS,
+    *commands.MUTATIONS,
+    *computing.MUTATIONS,
+    *frames.MUTATIONS,
+    *cutter.MUTATIONS,
+    *passes.MUTATIONS,
+    *reading.MUTATIONS,
+    *writing.MUTATIONS,
+    *arcs.MUTATIONS,
+    *splines.MUTATIONS,
+    *proof.MUTATIONS,
+)

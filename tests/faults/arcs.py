@@ -1,0 +1,134 @@
+"""Faults of the pass `arcs`, and of the proof where a move stands for a run of them."""
+
+from __future__ import annotations
+
+from faults.mutation import ARCS, PASSES, Mutation
+
+MUTATIONS = (
+    Mutation(
+        "arcs: the sense is swapped",
+        f"{PASSES}/fit.py",
+        "np.where(self._sum(y) < 0, 1.0, -1.0)",
+        "np.where(self._sum(y) < 0, -1.0, 1.0)",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: the sagitta of the lines is not looked at",
+        f"{PASSES}/fit.py",
+        "flat = np.maximum(np.abs(size - inside), sagitta)",
+        "flat = np.abs(size - inside)",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: corners are not looked at",
+        f"{PASSES}/fit.py",
+        "flat = np.maximum(np.abs(size - inside), sagitta)",
+        "flat = sagitta",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: lines may go back",
+        f"{PASSES}/fit.py",
+        "good = (angle > 0) & (angle <= WIDEST) & self._points_along(x, y, size, wx, wy, length)",
+        "good = angle <= WIDEST",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: a break between lines is explained away",
+        f"{PASSES}/fit.py",
+        "(angle <= WIDEST) & self._points_along(x, y, size, wx, wy, length)",
+        "(angle <= WIDEST)",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: the axis of a helix is not looked at",
+        f"{PASSES}/fit.py",
+        "axial = self._off_axis(turned / sweep[self.run])",
+        "axial = np.zeros(len(turned))",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: what happens between lines is ignored",
+        f"{PASSES}/arcs.py",
+        "follows[[e.row for e in path.events if e.row < len(path)]] = False",
+        "pass",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: another feed is ignored",
+        f"{PASSES}/arcs.py",
+        "(path.plane, path.feed, path.feed_mode, path.frame)",
+        "(path.plane, path.feed_mode, path.frame)",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: they end inside blocks",
+        f"{PASSES}/reach.py",
+        "return np.where(self._own(first, stop), stop, self.before[stop])",
+        "return stop",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: a way straight ahead is an arc",
+        f"{PASSES}/fit.py",
+        "curved = near & (rises > self.limits.tolerance + self.limits.step)",
+        "curved = near.copy()",
+        ARCS,
+    ),
+    Mutation(
+        "arcs: the motion code of a block that is gone counts",
+        "gcxform/emit/pieces.py",
+        "self.leads & ~self.silent & (self.role != Role.GONE)",
+        "self.leads & ~self.silent",
+        ARCS,
+    ),
+    Mutation(
+        "runs: events may stand inside",
+        "gcxform/verify.py",
+        "through = int(self.through[written_row])",
+        "through = int(self.written_owner[written_row])",
+        ARCS,
+    ),
+    Mutation(
+        "runs: another feed is ignored",
+        "gcxform/toolpath/runs.py",
+        "return np.asarray(same & (np.abs(path.feed - path.feed[base]) <= SAME_FEED * path.feed))",
+        "return np.asarray(same)",
+        ARCS,
+    ),
+    Mutation(
+        "runs: another work offset is ignored",
+        "gcxform/toolpath/runs.py",
+        "same = free & free[base] & (path.frame == path.frame[base])",
+        "same = free & free[base]",
+        ARCS,
+    ),
+    Mutation(
+        "runs: rapids are joined",
+        "gcxform/toolpath/runs.py",
+        "free = (path.kind != Kind.RAPID) & (path.form",
+        "free = (path.kind >= Kind.RAPID) & (path.form",
+        ARCS,
+    ),
+    Mutation(
+        "runs: what lies behind a row that is not alike is joined",
+        "gcxform/toolpath/runs.py",
+        "covered = alike & (stop < base)",
+        "covered = alike",
+        ARCS,
+    ),
+    Mutation(
+        "runs: arcs are compared at their ends alone",
+        "gcxform/toolpath/beside.py",
+        "bound[pieces] = np.maximum(bound[pieces], off)",
+        "pass",
+        ARCS,
+    ),
+    Mutation(
+        "runs: lines are not compared at their ends",
+        "gcxform/toolpath/beside.py",
+        "bound = np.maximum(_apart(one.start, other.start), _apart(one.end, other.end))",
+        "bound = np.zeros(len(one.row))",
+        ARCS,
+    ),
+)

@@ -1,0 +1,99 @@
+"""Faults of cutter compensation: reading, the centre path, its proof."""
+
+from __future__ import annotations
+
+from faults.mutation import CUTTER, PASSES, Mutation
+
+
+def _offsetting(name: str, old: str, new: str) -> Mutation:
+    return Mutation(f"offsetting: {name}", f"{PASSES}/offsetting.py", old, new, CUTTER)
+
+
+def _beside(name: str, old: str, new: str) -> Mutation:
+    return Mutation(f"beside: {name} not looked at", f"{PASSES}/beside.py", old, new, CUTTER)
+
+
+MUTATIONS = (
+    Mutation(
+        "cutter: a negative diameter keeps its side",
+        "gcxform/modal/cutter.py",
+        "np.where(radius < 0, -SIDES[code], SIDES[code])",
+        "SIDES[code]",
+        CUTTER,
+    ),
+    Mutation(
+        "cutter: the diameter is taken for the radius",
+        "gcxform/modal/cutter.py",
+        "value * unit / 2",
+        "value * unit",
+        CUTTER,
+    ),
+    Mutation(
+        "cutter: T counts before it is in the spindle",
+        "gcxform/modal/cutter.py",
+        "np.where(_is_m6(lines, changes), selected, np.nan), changes, state.tool",
+        "selected, selected == selected, state.tool",
+        CUTTER,
+    ),
+    _offsetting("the other side", "(at[0] - side * radius", "(at[0] + side * radius"),
+    _offsetting(
+        "arcs grow inside", "self.radius - side * self.sense", "self.radius + side * self.sense"
+    ),
+    _offsetting("the other crossing", "u[1] * v[0]) >= 0:", "u[1] * v[0]) <= 0:"),
+    _offsetting("moves that go backwards are let through", "if way < -1e-9:", "if False:"),
+    _offsetting("small turns are corners", "abs(turn) <= manner.straight", "abs(turn) <= 1e-9"),
+    _offsetting("the inside is the outside", "elif turn < 0 or", "elif turn > 0 or"),
+    Mutation(
+        "cutter-comp: corners go the wrong way",
+        f"{PASSES}/cutter_comp.py",
+        "gx.Kind.ARC_CW if path.side[row] > 0",
+        "gx.Kind.ARC_CW if path.side[row] < 0",
+        CUTTER,
+    ),
+    Mutation(
+        "cutter-comp: still moves stay on the contour",
+        f"{PASSES}/cutter_comp.py",
+        "            self.end[inside, axis] = self.end[mover, axis]",
+        "            pass",
+        CUTTER,
+    ),
+    Mutation(
+        "cutter-comp: the speed in inverse time is that of the centre",
+        f"{PASSES}/cutter_comp.py",
+        "np.where(change, feed * programmed / np.where(change, mine, 1.0), feed)",
+        "feed",
+        CUTTER,
+    ),
+    Mutation(
+        "compensated: windows end inside a stretch",
+        "gcxform/compensated.py",
+        'on = found[-1][1] != b"0"',
+        "on = False",
+        CUTTER,
+    ),
+    Mutation(
+        "compensated: contours may be moved",
+        "gcxform/compensated.py",
+        "if type(step).undo is not Pass.undo and len(rows):",
+        "if False:",
+        "tests/test_corpus.py::test_case",
+    ),
+    Mutation(
+        "compensated: the first move may be cut",
+        "gcxform/compensated.py",
+        "if len(lines) and (_pieces(after, lines) != _pieces(before, lines)).any():",
+        "if False:",
+        CUTTER,
+    ),
+    _beside("begins", 'self._fail(wrong & ~self.entry, "the centre is not', 'str("'),
+    _beside("ends", 'self._fail(wrong, "the centre is not', 'str("'),
+    _beside("backwards", 'self._fail(back, "', 'str("'),
+    _beside("sweeps", 'self._fail(self.arc & (off > slack), "', 'str("'),
+    _beside("centres", 'self._fail(self.arc & (_size(self.c - self.d) > CLOSE), "', 'str("'),
+    _beside("missing corners", 'self._fail(missing, "', 'str("'),
+    _beside("round corners", "self.row[k][round_it & wrong]", "self.row[k][:0]"),
+    _beside("other axes", "rows[~same.all(axis=1)]", "rows[:0]"),
+    _beside("still moves", "on[~moves & (np.abs(a - b).sum(axis=1) > CLOSE)]", "on[:0]"),
+    _beside("rising corners", "self.row[k][rises]", "self.row[k][:0]"),
+    _beside("feeds", "mode & ~feed", "mode & False"),
+)

@@ -1,0 +1,78 @@
+"""Faults of frames: offsets, shifts, turns, tool lengths."""
+
+from __future__ import annotations
+
+from faults.mutation import FOUND, OFFSETS, SHIFTS, Mutation
+
+MUTATIONS = (
+    Mutation(
+        "frames: the sign of G92 is swapped",
+        "gcxform/modal/acts.py",
+        "shift[k] += here[k] - value",
+        "shift[k] += value - here[k]",
+        OFFSETS,
+    ),
+    Mutation(
+        "frames: a shift is taken off",
+        "gcxform/toolpath/frames.py",
+        "np.asarray(self.turned(local) + np.array",
+        "np.asarray(self.turned(local) - np.array",
+        OFFSETS,
+    ),
+    Mutation(
+        "frames: G92 is added behind the rotation",
+        "gcxform/modal/frames.py",
+        "matrix, shift = about @ matrix, about @ shift",
+        "matrix = about @ matrix",
+        SHIFTS,
+    ),
+    Mutation(
+        "frames: the centre of a turn is forgotten",
+        "gcxform/modal/frames.py",
+        "step @ (shift - centre) + centre",
+        "step @ shift",
+        OFFSETS,
+    ),
+    Mutation(
+        "frames: a mirror keeps the sense of arcs",
+        "gcxform/toolpath/frames.py",
+        "return m[first][first] * m[second][second] <",
+        "return False and m[first][first] * m[second][second] <",
+        OFFSETS,
+    ),
+    Mutation(
+        "frames: a tool is added twice",
+        "gcxform/modal/frames.py",
+        "shift[k] += length\n",
+        "shift[k] += 2.0 * length\n",
+        SHIFTS,
+    ),
+    Mutation(
+        "frames: G92.3 restores nothing",
+        "gcxform/modal/acts.py",
+        "return replace(state, preset=shift, held=shift)",
+        "return replace(state, preset=shift)",
+        SHIFTS,
+    ),
+    Mutation(
+        "frames: diameters are radii in what acts",
+        "gcxform/modal/track.py",
+        'return {**words, "X": words["X"] / 2}',
+        "return words",
+        SHIFTS,
+    ),
+    Mutation(
+        "frames: G54.1 is taken for the offset before",
+        "gcxform/modal/moves.py",
+        "again &= (self.modes.work != MANY_WORK) & ~self._reset",
+        "again &= ~self._reset",
+        FOUND,
+    ),
+    Mutation(
+        "frames: radius and angle are not carried into the next window",
+        "gcxform/modal/track.py",
+        "self.state.polar = float(columns[0][-1]), float(columns[1][-1])",
+        "pass",
+        "tests/test_corpus.py::test_windows_make_no_difference",
+    ),
+)

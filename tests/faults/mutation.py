@@ -1,0 +1,32 @@
+"""What a mutation is, and the names that their tables share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+PASSES = "plugins/gcxform_plugins/passes"
+VERIFY = "tests/test_verify.py"
+FIGURES = "tests/test_volumetric.py"
+FOUND = "tests/properties/test_found.py"
+CORPUS = "tests/test_corpus.py::test_case"
+OFFSETS = "tests/test_corpus.py"
+SHIFTS = "tests/properties/test_shifts.py::test_gcxform_reads_shifts_as_linuxcnc_does"
+CUTTER = "tests/test_cutter_comp.py"
+KIT = "tests/test_kit.py::test_registered_passes"
+LAWS = "tests/properties/test_laws.py"
+ARCS = "tests/test_arcs.py"
+CYCLES = "tests/test_cycles.py"
+LIMITS = "gcxform/modal/limits.py"
+FACTS = "tests/test_dialect_facts.py::test_our_facts"
+READING = "tests/test_verify.py::test_the_proof_reads_as_the_control_does"
+
+
+@dataclass(frozen=True)
+class Mutation:
+    """A fault: `old`, which stands once in `file`, becomes `new`; a test of `tests` must fail."""
+
+    name: str
+    file: str
+    old: str
+    new: str
+    tests: str

@@ -1,0 +1,72 @@
+"""Faults of splines, and of the bound beside which their lines are proved."""
+
+from __future__ import annotations
+
+from faults.mutation import Mutation
+
+SPLINES = "tests/test_corpus.py::test_case"
+SPLINE_LAWS = "tests/properties/test_splines.py"
+
+MUTATIONS = (
+    *(
+        Mutation(f"splines: {name}", f"gcxform/{file}.py", old, new, tests)
+        for name, file, old, new, tests in (
+            (
+                "minus the P and Q before is plus",
+                "modal/splines",
+                "np.isnan(words.offset), -in_series,",
+                "np.isnan(words.offset), in_series,",
+                SPLINES,
+            ),
+            (
+                "P and Q from the start",
+                "modal/splines",
+                "second = end + np.where(cubic, pull,",
+                "second = start + np.where(cubic, pull,",
+                SPLINES,
+            ),
+            (
+                "a quadratic is cubic",
+                "modal/splines",
+                "offset, THIRDS * offset)",
+                "offset, offset)",
+                SPLINES,
+            ),
+            (
+                "the series goes on after a line",
+                "modal/splines",
+                "(np.diff(words.row) == 1) & words.cubic[:-1]",
+                "(np.diff(words.row) >= 1) & words.cubic[:-1]",
+                SPLINES,
+            ),
+            (
+                "half as many chords",
+                "toolpath/splines",
+                "np.sqrt(0.75 * second",
+                "0.5 * np.sqrt(0.75 * second",
+                SPLINE_LAWS,
+            ),
+            (
+                "the bound is a quarter",
+                "toolpath/beside_splines",
+                "np.maximum.at(worst, self.group, bound)",
+                "np.maximum.at(worst, self.group, bound / 4)",
+                SPLINE_LAWS,
+            ),
+            (
+                "the bound forgets a part of each line",
+                "toolpath/beside_splines",
+                "for k in range(2**HALVINGS):",
+                "for k in range(2**HALVINGS - 1, 2**HALVINGS):",
+                SPLINE_LAWS,
+            ),
+            (
+                "a spline for a line is no matter",
+                "toolpath/deviation",
+                "bent = before.is_spline[self.owner] | self.after.is_spline",
+                "bent = before.is_spline[self.owner]",
+                SPLINE_LAWS,
+            ),
+        )
+    ),
+)

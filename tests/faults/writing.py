@@ -1,0 +1,57 @@
+"""Faults of writing."""
+
+from __future__ import annotations
+
+from faults.mutation import FIGURES, FOUND, LAWS, VERIFY, Mutation
+
+MUTATIONS = (
+    Mutation(
+        "writing: numbers are cut off, not rounded",
+        "gcxform/emit/numbers.py",
+        "(0.5 + TIE))\n    return np.copysign",
+        "TIE)\n    return np.copysign",
+        FIGURES,
+    ),
+    Mutation(
+        "writing: an axis that the block does not name stays behind",
+        "gcxform/emit/positions.py",
+        "moved = ~(np.abs(held - self.before[:, column]) < 0.5 * self.step[column])",
+        "moved = np.zeros(len(held), np.bool_)",
+        FIGURES,
+    ),
+    Mutation(
+        "writing: a motion code that has changed is not stated",
+        "gcxform/emit/pieces.py",
+        "changes = moves & (before != self.motion_after)",
+        "changes = np.zeros(len(before), np.bool_)",
+        LAWS + "::test_a_motion_code_that_no_longer_holds_is_stated",
+    ),
+    Mutation(
+        "writing: centres count from where the start was before rounding",
+        "gcxform/emit/centres.py",
+        "return np.where(exact[:, None], start, before)",
+        "return start",
+        LAWS + "::test_centres_count_from_the_start_as_it_is_written",
+    ),
+    Mutation(
+        "writing: distances are rounded one by one",
+        "gcxform/emit/positions.py",
+        "value - self.before[rows, column], value)",
+        "(self.task.path.end - self.task.path.start)[rows, column], value)",
+        LAWS + "::test_distances_do_not_drift",
+    ),
+    Mutation(
+        "writing: what the control believes is not carried into the next window",
+        "gcxform/emit/emitter.py",
+        "believed.position = np.array(held)",
+        "del held",
+        VERIFY,
+    ),
+    Mutation(
+        "writing: lengths in another unit are kept",
+        "gcxform/emit/copying.py",
+        'if inch[line] or address == "X":',
+        "if False:",
+        FOUND,
+    ),
+)
