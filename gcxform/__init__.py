@@ -76,6 +76,7 @@ if TYPE_CHECKING:
     from gcxform.toolpath.facts import Fact as Fact
     from gcxform.toolpath.facts import inseparable_cycles as inseparable_cycles
     from gcxform.toolpath.frames import Frame as Frame
+    from gcxform.toolpath.path import FREE as FREE
     from gcxform.toolpath.path import OWN_DISTANCES as OWN_DISTANCES
     from gcxform.toolpath.path import Event as Event
     from gcxform.toolpath.path import FeedMode as FeedMode
@@ -110,7 +111,7 @@ _HOMES = {
     "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NO_CUTTER_COMP "
     "NO_CYCLES NOMINAL WORKPIECE_FRAME XY_ARCS Fact inseparable_cycles",
     "toolpath.frames": "Frame",
-    "toolpath.path": "Event FeedMode Form Kind OWN_DISTANCES Plane Toolpath column_major",
+    "toolpath.path": "Event FREE FeedMode Form Kind OWN_DISTANCES Plane Toolpath column_major",
     "toolpath.splines": "points_on_splines spline_chords splines_as_lines",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}

@@ -124,6 +124,11 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "Settings go to [control] of the machine file: peck-return for G73, peck-clearance for "
         "G83.",
     ),
+    "GX216": (
+        "A thread, a tap or a probe that the control refuses",
+        "G33 and G33.1 need a turning spindle, an axis word and K, and take no F; a probing move "
+        "needs a target and a feed per minute. The message says what is missing.",
+    ),
     "GX219": (
         "A line or a number beyond what the control takes",
         "The block is longer than the control reads, or has a number that its word cannot have: a "

@@ -22,7 +22,7 @@ from gcxform.modal.meaning import FRAMING, only_for_cycles
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
-from gcxform.toolpath.path import Event, FeedMode, Kind, Toolpath
+from gcxform.toolpath.path import WHOLE, Event, FeedMode, Kind, Toolpath
 from gcxform.toolpath.runs import SAME_FEED, Runs, deviation_of_runs, runs_of
 from gcxform.toolpath.travel import lengths, ways
 
@@ -140,6 +140,7 @@ class Verifier:
         if not off.angle[turned] <= self.angle_budget:
             self._fail(f"a rotary axis is {off.angle[turned]:.5f} degrees off", trace, turned)
         self._kinds(trace)
+        self._forms(trace)
         self._sides(trace)
         self._feeds(trace)
 
@@ -179,6 +180,18 @@ class Verifier:
         wrong = rapid_before != (trace.after.kind == Kind.RAPID)
         if wrong.any():
             self._fail("a rapid became a feed move, or the reverse", trace, int(np.argmax(wrong)))
+
+    def _forms(self, trace: _Trace) -> None:
+        """Check that what is tied to the spindle or to a probe is still that, and in one piece."""
+        written, owner = trace.written, trace.written_owner
+        form, was = written.form, trace.before.form[owner]
+        tied = np.isin(form, WHOLE) | np.isin(was, WHOLE)
+        broken = tied & (form != was)
+        broken |= tied & (np.bincount(owner, minlength=len(trace.before))[owner] != 1)
+        if broken.any():
+            output = int(written.source[np.argmax(broken)])
+            message = "a move tied to the spindle or to a probe became another, or several"
+            self._raise(message, trace.line_of(output), output)
 
     def _sides(self, trace: _Trace) -> None:
         """Check that cutter compensation is on where it was, on the same side and as far."""

@@ -40,8 +40,8 @@ def test_check_counts_findings(here: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "place"),
     [
-        (b"G0 X1\n", ":1"),
-        (b"%\nG0 X1\n", ":2"),
+        (b"G0 X1\n", ":1:1"),
+        (b"%\nG0 X1\n", ":2:1"),
         (b"G0 X1\n%\n", ":2:1"),
         (b"(part)\n%\nG0 X1\n%\n", ":2:1"),
         (b"", ""),
@@ -63,9 +63,9 @@ def test_check_asks_linuxcnc_programs_for_an_end(
 
 def test_check_finds_what_is_wrong_in_later_windows(here: Path) -> None:
     line = b"G1 F100 X1 (as long as a comment can be, so that a window is soon full)\n"
-    text = b"G91.5\n" + line * (2 * WINDOW // len(line)) + b"G38.2 X1\n"
+    text = b"G91.5\n" + line * (2 * WINDOW // len(line)) + b"M72\n"
     (here / "long.nc").write_bytes(text)
-    found = call("check", "-f", "grbl", "long.nc")
+    found = call("check", "-f", "linuxcnc", "long.nc")
     assert found.exit_code == 1
     assert "GX201" in found.stderr
     assert f"long.nc:{text.count(bytes([10]))}:1: error[GX210]" in found.stderr
@@ -132,7 +132,7 @@ def test_info_of_words(here: Path) -> None:
 
 
 def test_info_of_meaning(here: Path) -> None:
-    text = b"T3 M6\nG0 X0 Y0 Z5\nG1 F100 Z0\nG2 X0 Y0 I5 J0\nG4 P1\nG38.2 X1\nM2\n"
+    text = b"T3 M6\nG0 X0 Y0 Z5\nG1 F100 Z0\nG2 X0 Y0 I5 J0\nG4 P1\nG38.2 X0\nM2\n"
     (here / "p.nc").write_bytes(text)
     words = ["info", "-f", "linuxcnc", "p.nc"]
     found = json.loads(call(*words, "--json").stdout)
@@ -145,11 +145,11 @@ def test_info_of_meaning(here: Path) -> None:
     assert (found["time_s"]["dwell"], found["time_without"]) == (1.0, {"rapid moves": 1})
     assert found["features"] == ["arcs", "full circles", "probing (G38.2)"]
     assert found["refused"] == 1
-    assert found["first_refused"]["6"].startswith("GX210")
+    assert found["first_refused"]["6"].startswith("GX216")
     shown = call(*words).stdout
     assert "arcs cw 1" in shown
     assert "T3  3 moves" in shown
-    assert "line 6: GX210" in shown
+    assert "line 6: GX216" in shown
 
 
 @pytest.mark.parametrize(
@@ -187,7 +187,7 @@ def test_explain_a_code() -> None:
 
 
 def test_explain_a_block(here: Path) -> None:
-    (here / "p.nc").write_bytes(b"G38.2 X1\nG1 F100 X0 Y0 Z0\nN7 G2 X10 I5 M8 (so)\nM2\n")
+    (here / "p.nc").write_bytes(b"M72\nG1 F100 X0 Y0 Z0\nN7 G2 X10 I5 M8 (so)\nM2\n")
     found = call("explain", "-f", "linuxcnc", "p.nc:3").stdout
     for words in (
         "word X, number 10",

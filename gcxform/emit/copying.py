@@ -14,7 +14,7 @@ from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, as_written
 from gcxform.modal.meaning import FRAMING
 from gcxform.modal.tables import GROUPS
-from gcxform.toolpath.path import Form
+from gcxform.toolpath.path import FREE, Form
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -28,6 +28,7 @@ WHAT = {
     Form.PROBE: "a probing move",
     Form.SYNCHRONISED: "a move tied to the spindle",
     Form.SPLINE: "a spline",
+    Form.THREAD: "a thread",
 }
 HINTS = {
     Form.CYCLE: 'put the pass "cycles" before',
@@ -72,8 +73,15 @@ class Copying:
         self._refuse_unknown()
 
     def _refuse_changed(self, stands: Flags, pieces: Pieces) -> None:
-        """Refuse blocks that move in a way of their own and would have to move otherwise."""
+        """Refuse blocks that move in a way of their own and would have to move otherwise.
+
+        A thread may end elsewhere, but it stays one block in its unit.
+        """
         wrong = np.unique(pieces.line[pieces.special & ~stands[pieces.line]])
+        threads = np.unique(self.path.block[self.path.form == Form.THREAD])
+        if len(threads):
+            other = (pieces.count[threads] != 1) | ~self._same_units()[threads]
+            wrong = np.union1d(wrong, threads[other])
         if not len(wrong):
             return
         form = Form(int(self.path.form[np.searchsorted(self.path.block, wrong[0])]))
@@ -160,10 +168,13 @@ class Copying:
         empty = np.array([not shape.block.items for shape in shapes], np.bool_)
         return np.asarray(empty[self.task.shape])
 
+    def _same_units(self) -> Flags:
+        return np.asarray(self.path.blocks.inch == self.original.blocks.inch)
+
     def _same_modes(self) -> Flags:
         now, old = self.path.blocks, self.original.blocks
         return np.asarray(
-            (now.inch == old.inch)
+            self._same_units()
             & (now.incremental == old.incremental)
             & (now.absolute_centre == old.absolute_centre)
         )
@@ -172,7 +183,7 @@ class Copying:
         """Return the lines whose rows are those of the source and need no other words."""
         stands = np.zeros(len(old_count), np.bool_)
         special = np.zeros(len(old_count), np.bool_)
-        special[self.original.block[self.original.form != Form.PLAIN]] = True
+        special[self.original.block[~np.isin(self.original.form, FREE)]] = True
         paired = (old_count == pieces.count) & ((old_count == 1) | special) & (old_count > 0)
         rows = np.flatnonzero(paired[self.path.block])
         others = np.flatnonzero(paired[self.original.block])
@@ -185,7 +196,7 @@ class Copying:
         good &= self.path.form[rows] == self.original.form[others]
         good &= self.path.kind[rows] == self.original.kind[others]
         good &= pieces.kind[rows] == as_written(self.original, self.original.kind)[others]
-        plain = self.path.form[rows] == Form.PLAIN
+        plain = np.isin(self.path.form[rows], FREE)
         good &= ~plain | self._same_ends(rows, others)
         own = np.flatnonzero(~plain)
         if len(own):

@@ -197,6 +197,7 @@ class _Job:
             (pieces.absolute_centre + 1, 3),
             (pieces.feed_mode + 1, 128),
             (pieces.silent, 2),
+            (pieces.thread, 2),
             (pieces.feed, 3),
             (inch, 2),
         ]
@@ -238,6 +239,7 @@ class _Job:
             bool(pieces.silent[piece]),
             Feed(int(pieces.feed[piece])),
             bool(pieces.expanded_line[line]),
+            bool(pieces.thread[piece]),
             arc,
             int(self.path.plane[row]) if arc else 0,
             int(self._turns()[row]) if arc else 0,

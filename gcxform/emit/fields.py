@@ -38,8 +38,9 @@ class Key:
 
     `motion`, `inch`, `incremental`, `absolute_centre`, `feed_mode`: what has to be stated; -1:
     nothing. `silent`: a motion code that moves nothing is left out.
-    `expanded`: the block called a canned cycle, of which this is a move. `arc`: whether centre
-    words are written, in `plane`; `turns`: full turns beyond the arc.
+    `expanded`: the block called a canned cycle, of which this is a move. `thread`: it is one whose
+    code and K stay. `arc`: whether centre words are written, in `plane`; `turns`: full turns beyond
+    the arc.
     """
 
     role: Role
@@ -51,6 +52,7 @@ class Key:
     silent: bool
     feed: Feed
     expanded: bool
+    thread: bool
     arc: bool
     plane: int
     turns: int

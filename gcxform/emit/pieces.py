@@ -15,8 +15,8 @@ from gcxform.emit.manner import Believed, Task
 from gcxform.modal.lines import fill
 from gcxform.modal.moves import turns_only
 from gcxform.modal.state import CYCLE_OFF
-from gcxform.modal.tables import GROUPS, NUMBER
-from gcxform.toolpath.path import Event, FeedMode, Form, Kind
+from gcxform.modal.tables import GROUPS, NUMBER, TAP, THREAD
+from gcxform.toolpath.path import FREE, Event, FeedMode, Form, Kind
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -36,6 +36,7 @@ class Pieces:
     motion, inch, incremental, absolute_centre, feed_mode
               (pieces,) code to be stated, -1 for none
     silent    (pieces,) whether a motion code that moves nothing is left out
+    thread    (pieces,) whether it is a move whose code and K stay as they stand
     feed      (pieces,) `Feed`; `feed_value` is the number to write
     special   (pieces,) whether it stands for all moves of a block that is written as it stands
     event     (pieces,) index into `events`, one of each kind, -1 for none: what a cycle does
@@ -66,7 +67,7 @@ class Pieces:
         path, live = self.task.path, self.task.read.live
         self.count = np.bincount(path.block, minlength=live)
         special = np.zeros(live, np.bool_)
-        special[path.block[path.form != Form.PLAIN]] = True
+        special[path.block[~np.isin(path.form, FREE)]] = True
         drilling = self.task.read.modes.cycle != CYCLE_OFF
         self.expanded_line = drilling & ~special & self.task.manner.expands
         inner = [e for e in path.events if e.within and self._is_expanded(e)]
@@ -162,7 +163,8 @@ class Pieces:
         """
         blocks = self.task.path.blocks
         wanted, before = blocks.feed_mode, self.task.read.modes.feed_mode
-        self.feeding = self.of_rows(self.kind != Kind.RAPID, False)
+        paced = np.isin(self.task.read.modes.motion, (THREAD, TAP))
+        self.feeding = self.of_rows(self.kind != Kind.RAPID, False) & ~paced[self.line]
         needs = self.feeding | (blocks.leaves[self.line] & self.ends)
         self.feed_mode = self._mode("feed-mode", wanted, self.believed.feed_mode, needs)
         self.other_mode = (wanted != before)[self.line]
@@ -188,6 +190,7 @@ class Pieces:
         changes = moves & (before != self.motion_after)
         self.repaired |= changes & ~explicit
         self.motion = np.where(moves & (explicit | changes), self.motion_after, NOTHING)
+        self.thread = self.has_row & (form == Form.THREAD)
 
     def _feeds(self) -> None:
         """State a feed where the source stated one, where it changes, and always in G93.
@@ -201,7 +204,7 @@ class Pieces:
         feeding = self.feeding
         inverse = path.blocks.feed_mode == FeedMode.INVERSE_TIME
         unit_here = np.where(self._inch_for_feed(), INCH, 1.0)
-        plain = turns_only(path.axes, path.entry, path.end) & (self.kind < Kind.ARC_CW)
+        plain = turns_only(path) & (self.kind < Kind.ARC_CW)
         has_unit = self.of_rows(~plain, True) & ~inverse[self.line]
         unit = np.where(has_unit, unit_here, 1.0)
         given = modes.feed * np.where(inverse, 1.0, modes.feed_unit)

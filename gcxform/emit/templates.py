@@ -202,6 +202,8 @@ class TemplateWriter:
         """Write what a word of the motion stands for; return whether it is one."""
         if word.address in self.axes:
             self._axes(lead)
+        elif self.key.thread:
+            return False
         elif word.address in "IJKR":
             self._centre(lead)
         else:
@@ -270,7 +272,7 @@ class TemplateWriter:
             return False
         # A spline that goes nowhere is left out, and its words are.
         left_out = name in ("G5", "G5.1") and self.key.role is Role.NONE
-        return left_out or not self.as_it_stands or self.key.silent
+        return left_out or not (self.as_it_stands or self.key.thread) or self.key.silent
 
     def _refuse(self, word: Word, what: str) -> NoReturn:
         raise CannotSayError(

@@ -88,6 +88,8 @@ def quantity_of(axis: str) -> Quantity:
     return ANGLE if axis in ROTARY_AXES else LENGTH
 
 
+INERT = "inert-m"
+"""The setting of the control that lists M codes which move nothing."""
 Keys = tuple[str | int, ...]
 _MARK = "a number, or a string with a unit"
 Value = Annotated[float, msgspec.Meta(description=_MARK)]
@@ -153,7 +155,7 @@ class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
     tool: dict[str, Tool] = {}
     tool_table: str | None = None
     tool_table_units: Literal["mm", "in"] | None = None
-    control: dict[str, str | float] = {}
+    control: dict[str, str | float | list[int]] = {}
 
 
 class Machine(msgspec.Struct, frozen=True, kw_only=True):
@@ -161,7 +163,8 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True):
 
     `table` and `head` name the rotary axes from the base to the workpiece and to the spindle;
     `gauge_point` (mm) is that of the spindle with all axes at 0; `errors` is a file. `homes` are
-    the machine positions of G28 and G30; `control` has settings that codes depend on.
+    the machine positions of G28 and G30; `control` has settings that codes depend on; `inert_m` are
+    M codes of the machine's own that move no axis and set no variable.
     """
 
     file: Path
@@ -175,6 +178,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True):
     homes: dict[str, dict[str, float]] = {}
     tools: dict[int, Tool] = {}
     control: dict[str, str | float] = {}
+    inert_m: frozenset[int] = frozenset()
 
 
 def load_machine(path: Path) -> Machine:
@@ -198,7 +202,8 @@ def load_machine(path: Path) -> Machine:
         work_offsets={code: _given(offset) for code, offset in file.work_offset.items()},
         homes={code: _given(place) for code, place in file.home.items()},
         tools=_tools(document, file, path),
-        control=dict(file.control),
+        control={k: v for k, v in file.control.items() if not isinstance(v, list)},
+        inert_m=_listed(file.control.get(INERT, [])),
     )
 
 
@@ -213,6 +218,10 @@ def _tools(document: TomlText, file: MachineFile, path: Path) -> dict[int, Tool]
         message = f"the tool {twice[0]} stands in {file.tool_table} as well"
         raise UsageError.one("GX437", message, document.where("tool", twice[0]))
     return tools | {int(number): tool for number, tool in file.tool.items()}
+
+
+def _listed(codes: str | float | list[int]) -> frozenset[int]:
+    return frozenset(codes) if isinstance(codes, list) else frozenset()
 
 
 def _given(offset: Offset) -> dict[str, float]:
@@ -345,6 +354,11 @@ def _findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
     yield from _chain_findings(document, file)
     yield from _offset_findings(document, file)
     yield from _tool_findings(document, file)
+    for name, value in file.control.items():
+        if isinstance(value, list) != (name == INERT):
+            wanted = "a list of M codes, such as [100, 101]" if name == INERT else "one value"
+            message = f"{name}: expected {wanted}"
+            yield Diagnostic(document.codes.wrong_value, message, document.where("control", name))
 
 
 def _axis_findings(

@@ -251,7 +251,8 @@ def change_tool(state: FrameState, asked: Asked) -> FrameState:
 
 def user_code(state: FrameState, asked: Asked) -> FrameState:
     """M100 to M199: a program of the machine's maker; where it leaves the axes is not known."""
-    if asked.reading.control.get("user-codes") != "keep":
+    inert = int(asked.code[1:]) in asked.reading.inert_m
+    if not inert and asked.reading.control.get("user-codes") != "keep":
         raise ActError(
             "GX214",
             f"{asked.code} runs a program of this machine, if it has one",

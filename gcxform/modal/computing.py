@@ -56,7 +56,7 @@ class _Block:
             self.value[first + slot] = self._word(word)
         changes = [self._assigned(statement) for statement in self.meaning.assignments]
         self.lines.parameters.update(change for change in changes if change is not None)
-        if self.meaning.runs_macro:
+        if self.meaning.runs_macro and not self.meaning.lost_by <= self.lines.reading.inert_m:
             self.lines.parameters = dict.fromkeys(self.lines.parameters, UNKNOWN)
 
     def _word(self, word: Word) -> float:

@@ -1,11 +1,16 @@
-"""Blocks that move in a way of their own: G28 and G30 over a point to home, G53 in the machine."""
+"""Blocks that move in a way of their own: G28 and G30 over a point to home, G53 in the machine.
+
+So does G31, which is a probing move for its block alone.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.modal.meaning import Act
 from gcxform.modal.rows import Rows
+from gcxform.modal.tied import probe
 from gcxform.modal.track import Track
 from gcxform.toolpath.path import Form, Kind
 
@@ -17,10 +22,24 @@ def own_moves(track: Track, line: int) -> Rows | None:
     meaning = track.lines.table.meanings[int(track.lines.shape[line])]
     for act in meaning.acts:
         if act.name == "home":
-            return _home(track, line, act.code)
+            return _home(track, line, _reference(track, line, act))
+        if act.name == "probe":
+            return probe(track, line)
         if act.name == "machine":
             return _in_machine(track, line)
     return None
+
+
+def _reference(track: Track, line: int, act: Act) -> str:
+    """Return the name of a reference point: G28, G30, or "G30 P3" where P is given."""
+    first, slots = int(track.lines.first[line]), dict(act.slots)
+    if "P" not in slots:
+        return act.code
+    number = float(track.lines.window.value[first + slots["P"]])
+    if number not in (2, 3, 4):
+        message = f"{act.code} P{number:g} is no reference point"
+        track.findings.add(line, "GX213", message, hint="P2, P3 and P4 are")
+    return f"{act.code} P{number:g}"
 
 
 def _rows(track: Track, line: int, form: Form, moves: list[tuple[int, Floats]]) -> Rows:

@@ -85,6 +85,14 @@ class Lines:
             return np.zeros(self.live, np.bool_)
         return self.table.flag(name, self.shape)
 
+    def loses_position(self) -> Flags:
+        """Return the lines after which no position is known: not those that the machine excepts."""
+        lost, inert = self.flag("loses_position"), self.reading.inert_m
+        if not inert or not lost.any():
+            return lost
+        known = np.array([meaning.lost_by <= inert for meaning in self.table.meanings], np.bool_)
+        return np.asarray(lost & ~known[self.shape])
+
     def stated(self, group: str) -> Flags:
         """Return which lines have a code of a group."""
         return np.asarray(self.table.groups[self.shape, COLUMNS.index(group)] >= 0)

@@ -86,9 +86,10 @@ ACT_ORDER = (
     "store-home",
     "home",
     "machine",
+    "probe",
 )
 """The order in which a block's acts are done; those with the name of a move are its motion."""
-OWN_MOVES = frozenset({"home", "machine"})
+OWN_MOVES = frozenset({"home", "machine", "probe"})
 FRAMING = frozenset(
     {"diameter", *ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")]}
 )
@@ -115,6 +116,7 @@ class Meaning:
     deleted: bool = False
     ends: bool = False
     loses_position: bool = False
+    lost_by: set[int] = field(default_factory=set)
     percent: bool = False
     runs_macro: bool = False
     assignments: list[Statement] = field(default_factory=list)
@@ -331,7 +333,10 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         if code.barrier:
             yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.barrier}")
         meaning.ends |= code.ends
-        meaning.loses_position |= code.loses_position
+        if code.loses_position:
+            meaning.loses_position = True
+            own = code.group == "user"  # of the other codes nobody can say that they move nothing
+            meaning.lost_by.add(int(word.value.value) if own else -1)
         meaning.runs_macro |= code is dialect.unknown_m
         meaning.changes_tool |= code.group == "tool"
         order = {"tool": 30, "spindle": 40, "coolant": 41, "override": 42}.get(code.group, 43)

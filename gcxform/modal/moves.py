@@ -2,7 +2,7 @@
 
 Lines become rows in stretches of one frame (`gcxform/modal/track.py`). A plain line is one row; G28
 and G53 move in a way of their own (`gcxform/modal/home.py`), and so do canned cycles
-(`gcxform/modal/drilling.py`).
+(`gcxform/modal/drilling.py`), threads, taps and probes (`gcxform/modal/tied.py`).
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from gcxform.modal.rows import Rows
 from gcxform.modal.splines import read_splines, with_splines
 from gcxform.modal.state import CYCLE_OFF, Modes
 from gcxform.modal.tables import MANY_WORK, NUMBER, of_splines
+from gcxform.modal.tied import Tied
 from gcxform.modal.track import Track
 from gcxform.toolpath.path import Blocks, Kind, Toolpath, constant
 
@@ -49,6 +50,7 @@ class Moves:
         self.findings = lines.findings
         self.track = Track(lines, modes, axes)
         self.drilling = Drilling(self.track)
+        self.tied = Tied(self.track)
         self.side, self.radius = compensation(lines, modes)
         self.splines = of_splines(modes.motion)
         self.bends = bool(self.splines.any())
@@ -60,10 +62,10 @@ class Moves:
     def path(self) -> Toolpath:
         """Return the moves as a toolpath."""
         moving = self._moving()
-        lost = self.lines.flag("loses_position")
+        lost = self.lines.loses_position()
         parts = [
             self._stretch(first, last, moving, lost if lost.any() else None)
-            for first, last in self._stretches()
+            for first, last in self._stretches(moving)
         ]
         drilled = iter(self.drilling.rows())
         rows = [next(drilled) if part is None else part for part in parts]
@@ -93,15 +95,18 @@ class Moves:
                 "axis words, but no motion code is in force",
                 hint="write G0 or G1 in this block",
             )
-        for line in np.flatnonzero(centre & ~(arc & ~own)).tolist():
+        for line in np.flatnonzero(centre & ~((arc | self.tied.paced) & ~own)).tolist():
             self.findings.add(line, "GX203", "I, J, K and R belong to arcs, and this is none")
         for line in np.flatnonzero(centre & arc & self._dwells()).tolist():
             message = "a dwell and an arc: the control takes some words for both"
             self.findings.add(line, "GX203", message, hint="write the dwell in a block of its own")
         moves &= self.modes.motion != NUMBER["G80"]
         moves |= centre & arc & ~own
+        self.tied.check(moves, own)
         in_machine = self.lines.flag("in_machine") & (self.modes.motion == Kind.LINE)
-        self._check_feed(moves | in_machine)
+        feeding = (moves & ~self.tied.paced) | in_machine
+        calls = self.drilling.calls | self.lines.flag("probes")
+        self._check_feed(feeding, calls)
         return moves
 
     def _dwells(self) -> Flags:
@@ -111,11 +116,9 @@ class Moves:
         dwell = np.array([meaning.dwell for meaning in self.lines.table.meanings], np.bool_)
         return np.asarray(dwell[self.lines.shape])
 
-    def _check_feed(self, moves: Flags) -> None:
+    def _check_feed(self, moves: Flags, calls: Flags) -> None:
         """Refuse feed moves without a feed, and blocks in inverse time without a feed word."""
-        feeding = moves & (self.modes.motion != Kind.RAPID)
-        if self.drilling.cycles is not None:
-            feeding |= self.drilling.calls
+        feeding = (moves & (self.modes.motion != Kind.RAPID)) | calls
         none = ~(self.modes.feed > 0)
         inverse = self.modes.feed_mode == NUMBER["G93"]
         if inverse.any():
@@ -152,12 +155,17 @@ class Moves:
             after[1:] = self.lines.flag("ends")[:-1]
         return after
 
-    def _stretches(self) -> Iterator[tuple[int, int]]:
+    def _alone(self, moving: Flags) -> Flags:
+        """Return the lines that are a tap or a probe."""
+        return np.asarray(moving & self.tied.single) if self.tied.any else moving[:0]
+
+    def _stretches(self, moving: Flags) -> Iterator[tuple[int, int]]:
         """Yield first and last line + 1 of the stretches."""
         acting = self._acting()
         own = self.lines.flag("own_moves")[acting]
         drills = self.drilling.borders()
-        borders = np.concatenate([[0], acting, acting[own] + 1, drills, [self.lines.live]])
+        alone = np.concatenate([acting[own], np.flatnonzero(self._alone(moving))])
+        borders = np.concatenate([[0], acting, alone, alone + 1, drills, [self.lines.live]])
         borders = np.unique(borders).tolist()
         self._acts = set(acting.tolist())
         if len(borders) == 1:
@@ -179,9 +187,11 @@ class Moves:
             self.drilling.follow(first, last)
             return None
         self.drilling.leave(first, last)
+        if self._alone(moving)[first : first + 1].any():
+            return self.tied.row(first)
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
-        plain = Rows.plain(rows, self.modes.motion[rows], ends, len(self.track.frames) - 1)
+        plain = self.tied.plain(rows, ends, len(self.track.frames) - 1)
         return with_splines(plain) if self.bends else plain
 
     def _refuse_other_units(self, first: int, last: int) -> None:
@@ -204,7 +214,7 @@ class Moves:
             np.broadcast_to(np.nan, (count, 3)),
             constant(0.0, count),
             self.modes.plane[line],
-            self._feed_of_rows(rows),
+            self.modes.feed[line],
             self.modes.feed_mode[line],
             rows.frame,
             line + self.lines.window.first_line,
@@ -229,7 +239,7 @@ class Moves:
             first=self.state.frames.first,
             after_rapid=self.state.rapid,
         )
-        path = path.replace(after_side=self.state.at_side)
+        path = self._fed(path, rows).replace(after_side=self.state.at_side)
         if count:
             self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
             self.state.row_frame = self.track.frames[int(path.frame[-1])]
@@ -253,15 +263,19 @@ class Moves:
         self.state.lost = int(lost[-1])
         return lost[:-1]
 
-    def _feed_of_rows(self, rows: Rows) -> Floats:
-        """Return feeds in mm/min, 1/min, mm/turn, or deg/min where only rotary axes turn."""
-        line = rows.line
-        feed, unit = self.modes.feed[line], self.modes.feed_unit[line]
-        if (unit == 1.0).all():
-            return feed
-        plain = self.modes.feed_mode[line] == NUMBER["G93"]
-        plain |= turns_only(self.axes, self.track.entry, rows.end) & (rows.kind < 2)
-        return np.where(plain, feed, feed * unit)
+    def _fed(self, path: Toolpath, rows: Rows) -> Toolpath:
+        """Return the path with feeds in mm/min, 1/min, mm/turn, or deg/min for rotary axes alone.
+
+        The path has the numbers that are in force.
+        """
+        unit = self.modes.feed_unit[rows.line]
+        feed, mode = path.feed, path.feed_mode
+        if not (unit == 1.0).all():
+            plain = mode == NUMBER["G93"]
+            plain |= turns_only(path) & (path.kind < Kind.ARC_CW)
+            feed = np.where(plain, feed, feed * unit)
+        feed, mode = self.tied.paced_rows(rows, feed, mode)
+        return path.replace(feed=feed, feed_mode=mode)
 
     def _arc_words(self, lines: Ints) -> ArcWords:
         """Return centre, radius and turns words of arcs, nan where there is none, in mm."""
@@ -287,13 +301,13 @@ class Moves:
         )
 
 
-def turns_only(axes: str, entry: Floats, ends: Floats) -> Flags:
+def turns_only(path: Toolpath) -> Flags:
     """Return the moves (n,) in which no linear axis moves and a rotary one does."""
-    linear = [k for k, axis in enumerate(axes) if axis in LINEAR]
-    rotary = [k for k, axis in enumerate(axes) if axis not in LINEAR]
-    if not rotary or not len(ends):
-        return np.zeros(len(ends), np.bool_)
-    start = np.vstack([entry, ends[:-1]])
+    linear = [k for k, axis in enumerate(path.axes) if axis in LINEAR]
+    rotary = [k for k, axis in enumerate(path.axes) if axis not in LINEAR]
+    if not rotary or not len(path):
+        return np.zeros(len(path), np.bool_)
+    start, ends = path.start, path.end
     still = (np.abs(start - ends) < SAME_PLACE) | (np.isnan(start) & np.isnan(ends))
     return np.asarray(still[:, linear].all(axis=1) & ~still[:, rotary].all(axis=1))
 

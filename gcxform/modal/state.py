@@ -38,6 +38,7 @@ class Reading:
     homes         machine positions of G28 and G30
     tools         the tool table
     control       settings of the control on which the meaning of codes depends
+    inert_m       M codes of the machine's own that move no axis and set no variable
     feed_increment   what 1 means in an F without a point, in units per minute; None: such an F is
                   refused where the dialect asks for a point
     parameters    values of parameters before the first block, by number ("100") or name ("<a>")
@@ -54,6 +55,7 @@ class Reading:
     homes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     tools: Mapping[int, Tool] = field(default_factory=dict)
     control: Mapping[str, str | float] = field(default_factory=dict)
+    inert_m: frozenset[int] = frozenset()
 
     def on(self, machine: Machine) -> Reading:
         """Return what is known when the program runs on a machine."""
@@ -63,6 +65,7 @@ class Reading:
             homes=machine.homes,
             tools=machine.tools,
             control=machine.control,
+            inert_m=machine.inert_m,
         )
 
 

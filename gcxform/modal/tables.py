@@ -22,12 +22,19 @@ GROUPS = (
 MEMORY = ("cycle", "retract", "spindle")
 """Groups that matter to canned cycles alone."""
 COLUMNS = (*GROUPS, *MEMORY)
+THREAD, TAP = 33, 34
+"""The numbers of G33 and G33.1, whose moves are tied to the spindle."""
+PROBES = (38, 39, 40, 41)
+"""The numbers of G38.2 to G38.5."""
 CYCLES = tuple(n for n in range(73, 90) if n not in (75, 77, 78, 79, 80))
 SPLINES = CUBIC, QUADRATIC = (5, 51)
 NUMBER = {
     **{f"G{n}": n for n in (0, 1, 2, 3, 80, *CYCLES)},
     "G5": CUBIC,
     "G5.1": QUADRATIC,
+    "G33": THREAD,
+    "G33.1": TAP,
+    **{f"G38.{2 + k}": n for k, n in enumerate(PROBES)},
     **{f"G{17 + n}": n for n in range(3)},
     "G90": 0,
     "G91": 1,
@@ -69,6 +76,7 @@ FLAGS = (
     "marked",
     "acts",
     "own_moves",
+    "probes",
     "in_machine",
     "work_only",
     "framing",
@@ -143,6 +151,7 @@ class MeaningTable:
             meaning.marked,
             bool(meaning.acts),
             any(act.name in OWN_MOVES for act in meaning.acts),
+            any(act.name == "probe" for act in meaning.acts),
             any(act.name == "machine" for act in meaning.acts),
             [act.name for act in meaning.acts] == ["work"] and "frame" in meaning.groups,
             any(act.name in FRAMING for act in meaning.acts),

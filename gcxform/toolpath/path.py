@@ -51,8 +51,9 @@ class Form(IntEnum):
     """What a row is a part of; all but PLAIN are written as the block they came from, or refused.
 
     CYCLE: a canned cycle. HOME: G28, G30. MACHINE: a move in machine coordinates (G53). PROBE: it
-    ends where something is touched. SYNCHRONISED: it is tied to the spindle. SPLINE: a cubic Bezier
-    curve; its kind is LINE, because it cuts.
+    ends where something is touched, its target at the latest. SYNCHRONISED: it is tied to the
+    spindle. SPLINE: a cubic Bezier curve; its kind is LINE, because it cuts. THREAD: tied to the
+    spindle as well, one straight move (G33), which is written anew if its ends move.
     """
 
     PLAIN = 0
@@ -62,9 +63,14 @@ class Form(IntEnum):
     PROBE = 4
     SYNCHRONISED = 5
     SPLINE = 6
+    THREAD = 7
 
 
-OWN_DISTANCES = (Form.CYCLE, Form.HOME, Form.SYNCHRONISED)
+FREE = (Form.PLAIN, Form.THREAD)
+"""Forms whose blocks may be written anew."""
+WHOLE = (Form.PROBE, Form.SYNCHRONISED, Form.THREAD)
+"""Forms that stay one move, as they are."""
+OWN_DISTANCES = (Form.CYCLE, Form.HOME, Form.PROBE, Form.SYNCHRONISED)
 """Forms whose blocks may stay in G91 where all others are written in G90."""
 
 

@@ -5,9 +5,6 @@ WAITING = {
         lcnc_comp_entry_too_short_refused cutters_entry_short
         cutters_arc_beside cutters_inner_corner cutters_left cutters_outer_corner cutters_right
     """,
-    "motion tied to the spindle": """
-        others_constant_speed others_thread
-    """,
     "parameters and expressions": """
         values_code_by_expression values_code_by_parameter values_position_of_the_machine
         values_undefined_is_zero

@@ -61,6 +61,22 @@ FRAMES = {
     "g10_l2_twice": ("L2 in G91 is absolute", "G91|G10 L2 P1 X5|G10 L2 P1 X5|G90 G0 X0|G53 X0"),
     "g10_l2_active": ("P0 is the active one", "G55|G10 L2 P0 X5|G0 X0|G53 G0 X0|G0 X0"),
     "g10_l2_rotated": ("R turns about Z", "G10 L2 P1 R90|G0 X10|G53 G0 X0 Y0|G0 X1"),
+    "g92_rotated": (
+        "G92 is inside the rotation",
+        "G10 L2 P1 R30|G0 X10 Y5|G92 X1|G0 X2 Y7|G53 G0 X0",
+    ),
+    "g52_rotated": ("so is G52", "G10 L2 P1 R30|G52 X10 Y5|G0 X1|G53 G0 X0 Y0|G0 Y2"),
+    "l20_rotated": ("L20 says where", "G10 L2 P1 R30|G0 X10 Y5|G10 L20 P1 X3 Y1|G0 X2|G53 G0 X0"),
+    "l20_rotated_x": (
+        "Y keeps its number",
+        "G10 L2 P1 R30|G92 X3 Y4|G0 X9|G10 L20 P1 X3|G53 G0 X0",
+    ),
+    "l20_of_another": (
+        "its rotation",
+        "G10 L2 P2 X1 Y2 R30|G0 X9 Y5|G10 L20 P2 X3|G55 G0 X2|G53 X0",
+    ),
+    "l20_from_rotated": ("of no other", "G10 L2 P1 R30|G0 X9 Y5|G10 L20 P2 X3|G55 G0 X2|G53 X0 Y0"),
+    "l20_with_r": ("R is refused", "G10 L20 P1 X1 R30"),
     "g10_l20": ("L20 says where it stands", "G0 X10|G10 L20 P1 X4|G0 X4|G53 G0 X4"),
     "g10_p10": ("there are nine", "G10 L2 P10 X1"),
     "g10_l3": ("L3 is refused", "G10 L3 P1 X1"),
@@ -109,6 +125,9 @@ LENGTHS = {
     "g49": ("nothing moves at G49", "G43 H1|G49|G0 Z1", TOOLS),
     "g53_length": ("G53 is of the spindle", "G43.1 Z5|G53 G0 Z1|G0 Z1", TOOLS),
     "t_m6": ("a change leaves the place", "G0 X5|T1 M6|G91 G0 X1", TOOLS),
+    "t_named": ("a tool is looked for when it is named", "T9", TOOLS),
+    "m61_unknown": ("M61 looks as well", "M61 Q9", TOOLS),
+    "t_none": ("T0 empties the spindle", "T1 M6|T0 M6|G0 X1", TOOLS),
     "t_unknown": ("a tool that is not there", "T9 M6", TOOLS),
 }
 

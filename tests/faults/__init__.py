@@ -13,6 +13,7 @@ from faults import (
     proof,
     reading,
     splines,
+    tied,
     writing,
 )
 from faults.mutation import Mutation
@@ -28,5 +29,6 @@ MUTATIONS: tuple[Mutation, ...] = (
     *writing.MUTATIONS,
     *arcs.MUTATIONS,
     *splines.MUTATIONS,
+    *tied.MUTATIONS,
     *proof.MUTATIONS,
 )

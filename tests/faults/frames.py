@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import FOUND, OFFSETS, SHIFTS, Mutation
+from faults.mutation import FACTS, FOUND, OFFSETS, SHIFTS, Mutation
 
 MUTATIONS = (
     Mutation(
@@ -74,5 +74,19 @@ MUTATIONS = (
         "self.state.polar = float(columns[0][-1]), float(columns[1][-1])",
         "pass",
         "tests/test_corpus.py::test_windows_make_no_difference",
+    ),
+    Mutation(
+        "frames: G10 L20 forgets the rotation",
+        "gcxform/modal/acts.py",
+        "local[:2] = about @ local[:2]",
+        "pass",
+        FACTS,
+    ),
+    Mutation(
+        "frames: G10 L20 moves the axis that is not named",
+        "gcxform/modal/acts.py",
+        "+ [0, 1] * bool(turned)",
+        "+ []",
+        FACTS,
     ),
 )

@@ -91,4 +91,25 @@ MUTATIONS = (
         "arc = (modes.motion > Kind.ARC_CCW)",
         FACTS,
     ),
+    Mutation(
+        "limits: arcs in inches are held to the tolerance of mm",
+        "gcxform/modal/arcs.py",
+        "np.where(inch, rule.in_inch, 1.0)",
+        "np.where(inch, 1.0, 1.0)",
+        FACTS,
+    ),
+    Mutation(
+        "limits: one M word more",
+        "gcxform/modal/meaning.py",
+        'word.address == "M"][most:][:1]',
+        'word.address == "M"][most + 1 :][:1]',
+        FACTS,
+    ),
+    Mutation(
+        "limits: any tool is in the table",
+        LIMITS,
+        "named not in tools",
+        "False",
+        FACTS,
+    ),
 )

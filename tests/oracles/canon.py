@@ -115,6 +115,7 @@ class Reader:
         self.plane = "XY"
         self.mode = "G94"
         self.feed = (0.0, 0.0)  # mm, degrees
+        self.pitch: float | None = None  # mm per turn of the spindle, in a thread or a tap
         self.changing = False  # inside a tool change, which stops the spindle
         self.shuttled = False
         self.ending = False  # inside M2 or M30, which stop spindle and coolant
@@ -132,6 +133,8 @@ class Reader:
             self._arc(line, self._numbers(text))
         elif name in TOUCHING:
             self._touch(line, TOUCHING[name], self._numbers(text))
+        elif name in ("START_SPEED_FEED_SYNC", "STOP_SPEED_FEED_SYNCH"):
+            self.pitch = float(text.split(",")[0]) * self.unit if text else None
         elif name == "NURBS_FEED":
             self._move(line, "SPLINE", self.position)
         elif name in SHIFTS:
@@ -174,6 +177,9 @@ class Reader:
         self.position = self.shifts.to_program(at)
 
     def _move(self, line: int, kind: str, end: dict[str, float], **arc: object) -> None:
+        feed, mode = self.feed, self.mode
+        if self.pitch is not None:
+            feed, mode = (self.pitch, self.pitch), "G95"
         start = self.position
         machine = self.shifts.to_machine(start), self.shifts.to_machine(end)
         if "centre" in arc:
@@ -186,8 +192,8 @@ class Reader:
                 end,
                 line,
                 self.unit,
-                None if kind == "RAPID" else self.feed,
-                self.mode,
+                None if kind == "RAPID" else feed,
+                mode,
                 PLANES[self.plane][0],
                 machine=machine,
                 **arc,  # type: ignore[arg-type]

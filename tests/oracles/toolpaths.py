@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from itertools import zip_longest
 from typing import Any
 
@@ -22,7 +23,7 @@ from gcxform.contract import PassContext
 from gcxform.dialect import INCH
 from gcxform.machine.machine import Tool
 from gcxform.registry import default_registry
-from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
+from gcxform.toolpath.path import FeedMode, Form, Kind, Plane, Toolpath
 
 KINDS = {Kind.RAPID: "RAPID", Kind.LINE: "LINE", Kind.ARC_CW: "ARC_CW", Kind.ARC_CCW: "ARC_CCW"}
 COMPARED = {f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 19, 30, 60)} | {"S", "T"}
@@ -72,7 +73,7 @@ def moves_of(path: Toolpath) -> Iterator[Move]:
     ):
         arc = kind >= Kind.ARC_CW
         yield Move(
-            KINDS[Kind(kind)],
+            "PROBE" if path.form[row] == Form.PROBE else KINDS[Kind(kind)],
             _known(path.axes, start[row]),
             _known(path.axes, end[row]),
             int(path.source[row]) + 1,
@@ -94,6 +95,12 @@ def events_of(path: Toolpath) -> list[tuple[int, str, int]]:
     found = []
     for event in path.events:
         value = event.values[0][1] if event.values else 0.0
+        if (
+            event.what == "M19"
+            and not event.within
+            and not {"R", "P"} & {a for a, _ in event.values}
+        ):
+            continue  # LinuxCNC says nothing of it where no angle is given
         if event.what == "DWELL":
             found.append((event.row, f"DWELL {value:.4f}", event.line + 1))
         elif event.what == "M19" and not event.within and not ORIENTS & dict(event.values).keys():
@@ -106,9 +113,23 @@ def events_of(path: Toolpath) -> list[tuple[int, str, int]]:
 
 def difference(path: Toolpath, canon: CanonProgram) -> str:
     """Return the first difference in words, with its line; nothing if there is none."""
-    ours, theirs = list(moves_of(path)), canon.moves
+    ours, theirs = list(moves_of(path)), [*_there_and_back(canon.moves)]
     pairs, problem = _paired(ours, theirs)
-    return problem or _events_differ(events_of(path), canon.events, pairs)
+    if problem:
+        return problem
+    extra = np.append(0, np.cumsum([move.kind == "TAP" for move in canon.moves]))
+    events = [(at + int(extra[at]), text) for at, text in canon.events]
+    return _events_differ(events_of(path), events, pairs)
+
+
+def _there_and_back(moves: list[CanonMove]) -> Iterator[CanonMove]:
+    """Yield the moves with two lines in the place of each tap."""
+    for move in moves:
+        if move.kind == "TAP":
+            yield replace(move, kind="LINE")
+            yield replace(move, kind="LINE", start=move.end, end=move.start)
+        else:
+            yield move
 
 
 def _paired(ours: list[Move], theirs: list[CanonMove]) -> tuple[list[tuple[int, int]], str]:

@@ -14,13 +14,21 @@
 | M0 M1 M2 M30 M98 M99 | act after the motion of their block |
 | M5, M9 with a motion | the machine's PLC decides, commonly after it: taken as after |
 | an M code not listed | may run a macro: positions and variables are unknown after it |
-| an M code not listed | may move axes: positions are unknown after it |
+| M codes listed in `[control] inert-m` | move no axis and set no variable |
 | G41, G42 | D stays in force; its radius is the machine file's, D0 is none |
 | G41, G42, G40 with an arc | refused: alarm 34 |
 | tool change | moves axes: positions are unknown after it |
 | canned cycles | R, Z, P, Q stay until the cycle mode ends; K0 stores them without drilling |
 | G73, G83 between pecks | parameters 5114 and 5115: must be given |
 | G76, G87, G88 | depend on parameters or on the operator: refused |
+| M29 | the tap that follows is in step with the spindle: it moves nothing itself |
+| G96 | changes the speed of the spindle and no path |
+| G30 | as G28, to the point that `[home."G30 P2"]` names, or to one that is not known |
+| G31 | ends at its target at the latest; the axes named then stand nowhere known |
+| G36, G37 | measure a tool and write its offset: refused |
+| G33, G34, G63 | threads and taps with a feed whose meaning changes: refused |
+| G27, G29, G60 | over, from or past points that the program does not tell: refused |
+| M98 M198 M99 G65 G66 | calls: modes, offsets and positions of the other program leak: refused |
 | a variable that nothing has set | is null: refused, unless given |
 | a computed distance | in mm, rounded to `[input] increment`, which must be given |
 | an assignment beside words | when it acts is not certain: refused |
@@ -30,7 +38,7 @@
 | ROUND in a word | rounds to the increment of the word: refused |
 | computed S T F D H L P | must be whole numbers |
 | #1000 and above | belong to the control: refused |
-| IF WHILE GOTO G65 | refused: code that would have to be run |
+| IF WHILE GOTO | refused: code that would have to be run |
 """
 
 from __future__ import annotations
@@ -87,7 +95,7 @@ class Fanuc(gx.Dialect):
         "G5.1": v.inert("non-modal", "PQR"),
         **{code: v.inert("retract") for code in ("G98", "G99")},
         "G97": v.inert("spindle-mode", "S"),
-        "G96": v.barrier("spindle-mode", v.SYNCHRONISED, "SP"),
+        "G96": v.inert("spindle-mode", "SP"),
         **{code: v.inert("cancel") for code in ("G67", "G13.1", "G23")},
         "G22": v.inert("stroke", "XYZIJK", "XYZIJK"),
         "G10": v.frame("non-modal", "set-work", v.AXES + "LPRQIJK"),
@@ -96,7 +104,8 @@ class Fanuc(gx.Dialect):
         **{code: v.barrier("non-modal", v.SHIFT, "LPRQ") for code in ("G10.6", "G11", "G92.1")},
         "G28": v.frame("non-modal", "home"),
         "G53": v.frame("non-modal", "machine"),
-        **{code: v.barrier("non-modal", v.HOME, "PR") for code in ("G27", "G29", "G30", "G60")},
+        **{code: v.barrier("non-modal", v.HOME, "PR") for code in ("G27", "G29", "G60")},
+        "G30": v.frame("non-modal", "home", "P"),
         "G54.1": v.frame("frame", "work", "P"),
         **{code: v.barrier("frame", v.SHIFT, "P") for code in ("G54.2", "G54.4")},
         **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
@@ -125,7 +134,7 @@ class Fanuc(gx.Dialect):
         **{code: v.barrier("motion", v.SYNCHRONISED, "PQR") for code in ("G33", "G34")},
         **{code: v.barrier("motion", "it cuts a spline", "PRK") for code in ("G6.2",)},
         **{code: v.barrier("motion", "it cuts a spiral", "IJKRLPQ") for code in ("G2.2", "G3.2")},
-        "G31": v.barrier("non-modal", v.PROBE, "PQ"),
+        "G31": v.frame("non-modal", "probe", "PQ"),
         **{code: v.barrier("non-modal", v.PROBE, "PQRIJKH") for code in ("G36", "G37")},
         **{
             code: v.barrier("macro", v.CALL, "ABCDEFHIJKLMPQRSTUVW")
@@ -139,7 +148,7 @@ class Fanuc(gx.Dialect):
         6: gx.MCode("tool", loses_position=True),
         **{code: gx.MCode("override") for code in (48, 49)},
         19: gx.MCode("spindle"),
-        29: gx.MCode("spindle", barrier=v.SYNCHRONISED),
+        29: gx.MCode("tapping"),
         **{code: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL") for code in (98, 198)},
         99: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL"),
     }

@@ -12,6 +12,7 @@
 | after M2, M30 | modes are G1 G17 G90 G94 G54 and execution goes on |
 | G93 on an arc | its source takes F as mm/min there: refused where feeds are converted |
 | another feed mode | the feed is not known until it is programmed |
+| G38.2 to G38.5 | end at the target at the latest; the axes named then stand nowhere known |
 | block | at most 79 characters after comments and blanks |
 """
 
@@ -41,7 +42,7 @@ class Grbl(gx.Dialect):
         **{code: v.frame("non-modal", "store-home") for code in ("G28.1", "G30.1")},
         "G53": v.frame("non-modal", "machine"),
         "G43.1": v.frame("tool-length", "length-vector", "XYZ"),
-        **{code: v.barrier("motion", v.PROBE) for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
+        **{code: gx.Code("motion") for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
         code: code_of

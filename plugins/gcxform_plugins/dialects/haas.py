@@ -20,6 +20,7 @@ refused. What is not named here is as in `fanuc`.
 | G52, G92 | Setting 33 decides what they shift: refused unless `[control] g52` is set | manual |
 | canned cycles | L counts the holes, L0 stores; I, J, K, and P of G73, G83: refused | known |
 | G12 G13 G70 G71 G72 G150, drilling | cycles: refused by name | manual |
+| G31 | as Fanuc's | manual |
 | G47 G35 G36 G37 G136 | engraving and probing: refused by name | manual |
 | G68, G101, G100 | as Fanuc's G68, G51.1, G50.1; G51 is refused | manual |
 | G107 G112 G113 G234 G253 to G255 G268 G269 | another frame: refused | manual |

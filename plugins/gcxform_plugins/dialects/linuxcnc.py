@@ -32,6 +32,14 @@
 | G5, G5.1 | refused: other planes, axes but X and Y, one of two words, neither X nor Y; in G93 |
 | after G5, G5.1 | no motion code is in force |
 | G5.2, G5.3 | NURBS: refused |
+| G33 | needs a turning spindle, an axis word and K in every block; F beside it is refused |
+| G33.1 | to the end and back to the start; no rotary words |
+| G38.2 to G38.5 | end at the target at the latest; the axes named then stand nowhere known |
+| G96 | changes the speed of the spindle and no path |
+| M70, M71, M73 | change nothing that a main program notices |
+| M72 | restores modes, spindle, coolant and overrides: refused |
+| M62 to M68, M66 | outputs and inputs: the axes stand still |
+| M100 to M199 | run a program of the machine: positions are unknown after them, unless `inert-m` |
 | assignments | take effect after their block: `#1=#2 #2=#1` swaps |
 | expressions | a sign binds to its number, `**` goes from the left, numbers within 1e-4 are EQ |
 | a parameter that nothing has set | refused unless given: the control may have a value left |
@@ -121,7 +129,7 @@ class LinuxCNC(gx.Dialect):
         "G7": v.frame("diameter", "diameter"),
         "G8": v.frame("diameter", "diameter"),
         "G97": v.inert("spindle-mode", "S"),
-        "G96": v.barrier("spindle-mode", v.SYNCHRONISED, "DS"),
+        "G96": v.inert("spindle-mode", "DS"),
         "G10": v.frame("non-modal", "set-work", v.AXES + "LPRIJQ"),
         "G52": v.frame("non-modal", "local", v.AXES),
         "G92": v.frame("non-modal", "preset", v.AXES),
@@ -143,8 +151,8 @@ class LinuxCNC(gx.Dialect):
             code: v.barrier("motion", "it cuts a spline of NURBS", "IJKPQL")
             for code in ("G5.2", "G5.3")
         },
-        **{code: v.barrier("motion", v.SYNCHRONISED, "K") for code in ("G33", "G33.1")},
-        **{code: v.barrier("motion", v.PROBE) for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
+        **{code: gx.Code("motion") for code in ("G33", "G33.1")},
+        **{code: gx.Code("motion") for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
         **{
             code: v.barrier("motion", v.CYCLE, "DEIJKLPQR")
             for code in ("G70", "G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2")
@@ -162,11 +170,8 @@ class LinuxCNC(gx.Dialect):
         61: gx.MCode("tool", takes="Q", act="set-tool"),
         **{code: gx.MCode("override", takes="P") for code in (48, 49, 50, 51, 52, 53)},
         **{code: gx.MCode("output", takes="PQELR") for code in (62, 63, 64, 65, 66, 67, 68)},
-        **{code: gx.MCode("modal-store") for code in (71,)},
-        **{
-            code: gx.MCode("modal-store", barrier="it restores modes that were stored before")
-            for code in (70, 72, 73)
-        },
+        **{code: gx.MCode("modal-store") for code in (70, 71, 73)},
+        72: gx.MCode("modal-store", barrier="it restores modes that were stored before"),
         98: gx.MCode("stop", barrier=v.CALL, takes="PL"),
         99: gx.MCode("stop", barrier=v.CALL),
         **{code: USER_CODE for code in range(100, 200)},

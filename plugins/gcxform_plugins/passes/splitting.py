@@ -24,7 +24,8 @@ def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
     step, path = work.step, work.path
     points = np.empty((3, len(path) + 1)).T
     points[0], points[1:] = work.entry_command, commands
-    lines = (path.kind == gx.Kind.LINE) & path.starts_known & ~work.left
+    lines = (path.kind == gx.Kind.LINE) & (path.form == gx.Form.PLAIN)
+    lines &= path.starts_known & ~work.left
     row, part, axis, plane = gx.line_crossings(points, lines, step.nodes())
     if not len(row):
         return row, part

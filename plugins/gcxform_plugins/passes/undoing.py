@@ -80,7 +80,7 @@ class Machine:
     def _crossings(self) -> tuple[Ints, Floats]:
         """Return where lines and arcs are cut: at nodes, and arcs also where they turn far."""
         path = self.path
-        plain = path.form == gx.Form.PLAIN
+        plain = np.isin(path.form, gx.FREE)
         lines = np.flatnonzero((path.kind == gx.Kind.LINE) & path.starts_known & plain)
         row, part = self._bends(lines)
         if path.has_arcs:
