@@ -63,6 +63,9 @@ class Moves:
         """Return the moves as a toolpath."""
         moving = self._moving()
         lost = self.lines.loses_position()
+        self._busy_until = np.append(0, np.cumsum(moving | lost | self.track.worded))
+        none = np.empty((0, len(self.axes)))
+        self._nothing = Rows.plain(np.empty(0, np.int64), self.modes.motion[:0], none, 0)
         parts = [
             self._stretch(first, last, moving, lost if lost.any() else None)
             for first, last in self._stretches(moving)
@@ -164,7 +167,9 @@ class Moves:
         acting = self._acting()
         own = self.lines.flag("own_moves")[acting]
         drills = self.drilling.borders()
-        alone = np.concatenate([acting[own], np.flatnonzero(self._alone(moving))])
+        alone = np.flatnonzero(self._alone(moving))
+        self._singles = set(alone.tolist())
+        alone = np.concatenate([acting[own], alone])
         borders = np.concatenate([[0], acting, alone, alone + 1, drills, [self.lines.live]])
         borders = np.unique(borders).tolist()
         self._acts = set(acting.tolist())
@@ -187,8 +192,10 @@ class Moves:
             self.drilling.follow(first, last)
             return None
         self.drilling.leave(first, last)
-        if self._alone(moving)[first : first + 1].any():
+        if first in self._singles:
             return self.tied.row(first)
+        if self._busy_until[last] == self._busy_until[first]:
+            return self._nothing
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
         plain = self.tied.plain(rows, ends, len(self.track.frames) - 1)

@@ -190,14 +190,19 @@ class Track:
         return self.frame.positions(words)
 
     @cached_property
-    def _words_until(self) -> Ints:
-        """How many lines before each line have axis words."""
-        named = np.zeros(self.lines.live + 1, np.int64)
+    def worded(self) -> Flags:
+        """The lines with axis words."""
+        named = np.zeros(self.lines.live, np.bool_)
         for axis in self.axes:
             word = self.column(axis)
             if word is not None:
-                named[1:] |= word[1]
-        return np.asarray(np.cumsum(named))
+                named |= word[1]
+        return named
+
+    @cached_property
+    def _words_until(self) -> Ints:
+        """How many lines before each line have axis words."""
+        return np.append(0, np.cumsum(self.worded))
 
     @cached_property
     def _any_incremental(self) -> bool:
