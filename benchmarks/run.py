@@ -2,10 +2,11 @@
 
     python benchmarks/run.py [--lines N] [--rounds N] [--ten-million] [--check [--slack F]]
 
-Builds ``baseline.c``, writes the surfacing program and runs the programs in turn, round by round,
-so that a slow spell of the computer meets all of them. Prints the medians as Markdown, with the
-limits. Only the standard library is imported here: a child's peak memory is counted from the size
-of the process that starts it, so this one stays small and NumPy runs in a child.
+Builds ``baseline.c``, writes the surfacing and the shop program, and runs the programs in turn,
+round by round, so that a slow spell of the computer meets all of them. Prints the medians as
+Markdown, with the limits. Only the standard library is imported here: a child's peak memory is
+counted from the size of the process that starts it, so this one stays small and NumPy runs in a
+child.
 """
 
 from __future__ import annotations
@@ -35,7 +36,11 @@ MISSING = "not installed"
 READ, PLAIN = "`rs274 -g`", "plain C"
 VERIFIED, UNVERIFIED = "gcxform, verified", "gcxform, `--verify off`"
 TENFOLD = "gcxform, verified, ten times the lines"
+SHOP_READ, SHOP_COPIED = "shop: `rs274 -g`", "shop: gcxform, verified"
+SHOP_REWRITTEN, SHOP_UNVERIFIED = "shop: gcxform, rewritten", "shop: gcxform, `--verify off`"
+SHOP_TENFOLD = "shop: gcxform, rewritten, ten times the lines"
 HELP, LDDM = "`gcxform --help`", "LDDM example"
+COPIED, REWRITTEN = "absolute", "cycles | offsets | absolute"
 
 
 @dataclass(frozen=True)
@@ -189,6 +194,36 @@ def main_jobs(scratch: Path, lines: int) -> list[Job]:
     ]
 
 
+def shop(scratch: Path, lines: int) -> tuple[Path, int]:
+    """Write a shop program of about so many lines; return where it is, and how many it has."""
+    path = scratch / f"shop-{lines}.ngc"
+    command = [sys.executable, str(HERE / "shop.py"), "--lines", str(lines), str(path)]
+    written = subprocess.run(command, check=True, stdout=subprocess.PIPE)
+    return path, int(written.stdout)
+
+
+def shop_job(name: str, program: tuple[Path, int], scratch: Path, chain: str, *more: str) -> Job:
+    """Return a job on the shop program: copied, or written without cycles and offsets."""
+    source, lines = program
+    out = scratch / "shop-out.ngc"
+    machine = str(HERE / "shop-machine.toml")
+    options = ["-q", "-f", "linuxcnc", "-m", machine, "-x", chain, "-o", str(out), *more]
+    return Job(name, [str(GCXFORM), "run", *options, str(source)], out, lines, b"M30")
+
+
+def shop_jobs(scratch: Path, lines: int) -> list[Job]:
+    """Return the jobs that are compared with each other on the shop program."""
+    program = shop(scratch, lines)
+    reading = reading_job(program[0], scratch, program[1])
+    reading.name = SHOP_READ
+    return [
+        reading,
+        shop_job(SHOP_COPIED, program, scratch, COPIED),
+        shop_job(SHOP_REWRITTEN, program, scratch, REWRITTEN),
+        shop_job(SHOP_UNVERIFIED, program, scratch, COPIED, "--verify", "off"),
+    ]
+
+
 def small_jobs(scratch: Path) -> list[tuple[Job, int]]:
     """Return the jobs that measure the start, each with the number of its runs."""
     out = scratch / "linear_out.nc"
@@ -208,12 +243,16 @@ def measure(scratch: Path, lines: int, rounds: int, tenfold: bool) -> list[Job]:
         repeat([job], runs, scratch)
     repeat(jobs, rounds, scratch)
     demand_same_output(jobs)
-    jobs += [job for job, _ in small]
+    parts = shop_jobs(scratch, lines // 2)
+    repeat(parts, rounds, scratch)
+    jobs += [*parts, *(job for job, _ in small)]
     if tenfold:
         source = surfacing(scratch, 10 * lines)
         big = gcxform_job(TENFOLD, source, scratch / "tenfold.nc", 10 * lines)
         repeat([big], 1, scratch)
-        jobs.append(big)
+        more = shop_job(SHOP_TENFOLD, shop(scratch, 5 * lines), scratch, REWRITTEN)
+        repeat([more], 1, scratch)
+        jobs += [big, more]
     return jobs
 
 
@@ -253,11 +292,18 @@ def limits(jobs: list[Job]) -> list[Limit]:
     def wall(name: str) -> float | None:
         return find(jobs, name).middle("wall")
 
-    peak, tenfold = (find(jobs, name).middle("peak") for name in (VERIFIED, TENFOLD))
+    peak, tenfold, shop_peak, shop_tenfold = (
+        find(jobs, name).middle("peak")
+        for name in (VERIFIED, TENFOLD, SHOP_REWRITTEN, SHOP_TENFOLD)
+    )
     return [
         Limit(f"{VERIFIED} / {READ}", ratio(wall(VERIFIED), wall(READ)), 1.0),
         Limit(f"{UNVERIFIED} / {READ}", ratio(wall(UNVERIFIED), wall(READ)), 0.5),
         Limit(f"{UNVERIFIED} / {PLAIN}", ratio(wall(UNVERIFIED), wall(PLAIN)), 2.0),
+        Limit(f"{SHOP_COPIED} / {READ}", ratio(wall(SHOP_COPIED), wall(SHOP_READ)), 1.0),
+        Limit(f"{SHOP_REWRITTEN} / {READ}", ratio(wall(SHOP_REWRITTEN), wall(SHOP_READ)), 1.0),
+        Limit(f"peak memory, {SHOP_REWRITTEN}", shop_peak, 400.0, " MB"),
+        Limit("shop: peak memory, ten times the lines / once", ratio(shop_tenfold, shop_peak), 1.1),
         Limit(f"peak memory, {VERIFIED}", peak, 400.0, " MB"),
         Limit("peak memory, ten times the lines / once", ratio(tenfold, peak), 1.1),
         Limit(HELP, wall(HELP), 0.15, " s"),
@@ -278,14 +324,15 @@ def time_table(jobs: list[Job]) -> Iterator[str]:
     """Yield the table of medians; ratios are of wall time, those of user + sys in brackets."""
     yield "| program | lines | runs | wall s | user+sys s | peak MB | / rs274 | / C |"
     yield "|---|--:|--:|--:|--:|--:|--:|--:|"
-    reading, plain = find(jobs, READ), find(jobs, PLAIN)
+    readings = [find(jobs, READ), find(jobs, SHOP_READ)]
     for job in jobs:
         lines = f"{job.lines:,}" if job.lines else ""
         if job.failure:
             yield f"| {job.name} | {lines} | {job.failure} | | | | | |"
             continue
-        comparable = job.lines == reading.lines
-        against = [ratio_cell(job, other) if comparable else "" for other in (reading, plain)]
+        shop = job.name.startswith("shop")
+        others = (readings[shop], Job(PLAIN, []) if shop else find(jobs, PLAIN))
+        against = [ratio_cell(job, other) if job.lines == other.lines else "" for other in others]
         times = [f"{job.middle(quantity):.3f}" for quantity in ("wall", "cpu")]
         cells = [job.name, lines, str(len(job.samples)), *times, peak_cell(job), *against]
         yield f"| {' | '.join(cells)} |"

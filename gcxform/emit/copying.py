@@ -198,15 +198,19 @@ class Copying:
         good &= pieces.kind[rows] == as_written(self.original, self.original.kind)[others]
         plain = np.isin(self.path.form[rows], FREE)
         good &= ~plain | self._same_ends(rows, others)
-        if not plain.all():
-            good &= plain | self._same_words(rows, others)
+        own = np.flatnonzero(~plain)
+        if len(own):
+            good[own] &= self._same_words(rows[own], others[own])
         turned = plain | (self.path.form[rows] == Form.SPLINE)
         good &= ~turned | self._same_frames(rows, others)
         starts_exact = self._track_exactness(rows, others, good)
         incremental = self.path.blocks.incremental[self.path.block[rows]]
-        good &= ~plain | ~incremental | starts_exact | self._starts_alike(rows, others)
-        if self.path.has_arcs:
-            good &= ~self.path.is_arc[rows] | self._same_arcs(rows, others, starts_exact)
+        doubtful = np.flatnonzero(good & plain & incremental & ~starts_exact)
+        if len(doubtful):
+            good[doubtful] &= self._starts_alike(rows[doubtful], others[doubtful])
+        arcs = np.flatnonzero(good & self.path.is_arc[rows])
+        if len(arcs):
+            good[arcs] &= self._same_arcs(rows[arcs], others[arcs], starts_exact[arcs])
         stands[self.path.block[rows]] = True
         stands[self.path.block[rows[~good]]] = False
         return stands
@@ -272,10 +276,12 @@ class Copying:
         """Return which rows are in frames that turn words as those of the source did."""
         if self.path.frames == self.original.frames:
             return np.asarray(self.path.frame[rows] == self.original.frame[others])
-        turns = [(f.matrix, f.diameter, f.polar) for f in self.path.frames]
-        before = [(f.matrix, f.diameter, f.polar) for f in self.original.frames]
-        alike = np.array([[a == b for b in before] for a in turns], np.bool_)
-        return np.asarray(alike[self.path.frame[rows], self.original.frame[others]])
+        turns: dict[object, int] = {}
+        now, before = (
+            np.array([turns.setdefault((f.matrix, f.diameter, f.polar), len(turns)) for f in some])
+            for some in (self.path.frames, self.original.frames)
+        )
+        return np.asarray(now[self.path.frame[rows]] == before[self.original.frame[others]])
 
     def _starts_alike(self, rows: Ints, others: Ints) -> Flags:
         """Return which rows begin where their source begins, in the axes that the block names."""
@@ -311,15 +317,19 @@ class Copying:
 
     def _same_arcs(self, rows: Ints, others: Ints, starts_exact: Flags) -> Flags:
         """Return which arcs have centre and sweep of their source, seen from where they start."""
-        start = self._in_frames(self.original.start, rows, others)
-        on_grid = (np.abs(self.positions.before[rows] - start) <= EXACT) | np.isnan(start)
+        alike = starts_exact.copy()
+        off = np.flatnonzero(~starts_exact)
+        if len(off):
+            start = self._in_frames(self.original.start, rows[off], others[off])
+            on_grid = np.abs(self.positions.before[rows[off]] - start) <= EXACT
+            alike[off] = (on_grid | np.isnan(start)).all(axis=1)
         centre, old = self.path.centre[rows], self.original.centre[others]
         if self.path.blocks.absolute_centre.any():
             centre = self.path.local(self.path.centre)[rows]
             old = self.original.local(self.original.centre)[others]
         same_centre = ((centre == old) | np.isnan(old)).all(axis=1)
         same_sweep = self.path.sweep[rows] == self.original.sweep[others]
-        return np.asarray((starts_exact | on_grid.all(axis=1)) & same_centre & same_sweep)
+        return np.asarray(alike & same_centre & same_sweep)
 
 
 def _take(column: NDArray[Any], rows: Ints) -> NDArray[Any]:

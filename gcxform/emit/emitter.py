@@ -9,7 +9,6 @@ written in the same way share a template, and each template is rendered as a mat
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,28 +16,23 @@ from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError
 from gcxform.dialect import Dialect
-from gcxform.emit.arcs import ArcEnds, centre_words
-from gcxform.emit.copying import EXACT, Copying
+from gcxform.emit.centres import Centres
+from gcxform.emit.copying import Copying
 from gcxform.emit.fields import Axis, Centre, Computed, Copied, Feed, Field, Key, Literal, Role
 from gcxform.emit.manner import Believed, Manner, Task
-from gcxform.emit.numbers import MOST_DECIMALS, quantise
+from gcxform.emit.numbers import MOST_DECIMALS, decimals_for, decimals_of, quantise
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, motion_kinds
 from gcxform.emit.render import Renderer, interleave
-from gcxform.emit.templates import (
-    CannotSayError,
-    TemplateWriter,
-    event_text,
-    gaps_between,
-    left_out,
-    nothing_left,
-)
+from gcxform.emit.saying import CannotSayError, event_text, gaps_between, left_out, nothing_left
+from gcxform.emit.templates import TemplateWriter
 from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
+from gcxform.modal.limits import without_blanks
 from gcxform.modal.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.syntax.tree import Comment
-from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
+from gcxform.toolpath.path import Kind, Toolpath
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -103,12 +97,11 @@ class _Job:
         self.kind = motion_kinds(task, self.positions)
         self.pieces = Pieces(task, self.kind, emitter.believed)
         self.copying = Copying(task, self.pieces, self.positions, emitter.believed)
-        self.centre = np.zeros((len(self.path), 2))
 
     def run(self) -> Emitted:
         copied = self.copying.lines
         self._refuse_rounding()
-        self._arcs()
+        self.centre = Centres(self.task, self.kind, self.positions, self.copying).write()
         empty = self._without_words() | self._foreign() | self._gone() | self._only_compensates()
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
         renderer = Renderer(self.task)
@@ -181,101 +174,6 @@ class _Job:
                 self._refuse(first, "GX506", message, "write G61 before the cycle")
         if modes:
             self.emitter.path_mode = modes[-1].what
-
-    # --- arcs ---
-
-    def _arcs(self) -> None:
-        """Compute the centre words of the arcs that are written anew."""
-        anew = ~self.copying.lines[self.path.block] & (self.kind >= Kind.ARC_CW)
-        if not anew.any():
-            return
-        start = self._starts()
-        for plane in Plane:
-            rows = np.flatnonzero(anew & (self.path.plane == plane))
-            if len(rows):
-                self._arcs_in_plane(plane, rows, start)
-
-    def _starts(self) -> Floats:
-        """Return where rows start in the control (n, 3): off the grid after copied blocks.
-
-        Like all geometry of arcs, in coordinates of the frames of the rows.
-        """
-        start = self.path.local(self.path.start[:, :3])
-        if not self.path.refit_centres:
-            return start
-        exact = np.append(self.copying.believed_exact, self.copying.exact[:-1])
-        before = self.positions.local(self.positions.before[:, :3])
-        return np.where(exact[:, None], start, before)
-
-    def _arcs_in_plane(self, plane: Plane, rows: Ints, start: Floats) -> None:
-        manner = self.task.manner
-        if plane.name not in manner.target.arc_planes:
-            message = f"{manner.target.name} has no arcs in {plane.name}"
-            self._refuse(rows, "GX501", message, 'put the pass "plane" before')
-        axes = np.array(plane.axes[:2])
-        refit = self.path.refit_centres
-        begin = start[np.ix_(rows, axes)]
-        absolute = self.path.blocks.absolute_centre[self.path.block[rows]]
-        inch = self.positions.inch[rows]
-        letter = "IJK"[plane.axes[0]]
-        arcs = ArcEnds(
-            begin,
-            self._ends(refit)[np.ix_(rows, axes)],
-            self.path.local(self.path.centre)[np.ix_(rows, axes)],
-            np.where(absolute[:, None], 0.0, begin),
-            np.where(inch, manner.step(letter, True), manner.step(letter, False)),
-            self.path.sweep[rows],
-            np.where(self.path.mirrored[rows], -1.0, 1.0) * self.path.sense[rows],
-            self._spiral(rows, axes),
-            inch,
-        )
-        self.centre[rows], good = centre_words(arcs, manner.target.arc_rule, refit)
-        good |= self._full_circles(rows, axes, begin, refit)
-        if refit and not good.all():
-            message = f"rounded, this arc is another one, or one that {manner.target.name} refuses"
-            hint = 'give more decimals, or turn arcs into lines with the pass "segment"'
-            self._refuse(rows[~good], "GX504", message, hint)
-
-    def _ends(self, refit: bool) -> Floats:
-        """Return where rows end (n, 3): as formatted, or exactly."""
-        if refit:
-            return self.positions.local(self.positions.held[:, :3])
-        return self.path.local(self.path.end[:, :3])
-
-    def _full_circles(self, rows: Ints, axes: Ints, begin: Floats, refit: bool) -> Flags:
-        """Settle the end words of full circles; return which of them are good for that.
-
-        The end is written where it is the start to the letter, as every control reads it. A start
-        off the grid, in a block that was copied, cannot be written: the words are left out.
-        """
-        full = np.mod(self.path.sweep[rows] + 1e-9, TURN) < 2e-9
-        said = np.full((len(self.path), 3), np.nan)
-        for axis in axes.tolist():
-            said[rows, axis] = self.positions.said(axis, rows)
-        said = self.positions.local(said)[np.ix_(rows, axes)]
-        on_grid = (np.abs(said - begin) < EXACT).all(axis=1)
-        silent = full & ~on_grid & refit
-        # LinuxCNC counts a circle that closes but for the last bit as no way at all in G93.
-        silent |= full & (self.path.feed_mode[rows] == FeedMode.INVERSE_TIME)
-        if self.task.manner.target.circle_needs_axis_word:
-            silent[:] = False
-        for axis in axes.tolist():
-            self.positions.write[rows[full], axis] = True
-            self.positions.write[rows[silent], axis] = False
-        return np.asarray(silent)
-
-    def _spiral(self, rows: Ints, axes: Ints) -> Floats:
-        """Return by how much (mm) the radii of arcs at start and end differ before rounding."""
-        centre = self.path.centre[np.ix_(rows, axes)]
-        first = self.path.start[np.ix_(rows, axes)] - centre
-        last = self.path.end[np.ix_(rows, axes)] - centre
-        return np.asarray(np.abs(np.hypot(*first.T) - np.hypot(*last.T)))
-
-    def _refuse(self, rows: Ints, code: str, message: str, hint: str) -> None:
-        lines = self.path.block[rows[:20]].tolist()
-        raise InputError(
-            tuple(Diagnostic(code, message, self.task.location(line), hint) for line in lines)
-        )
 
     # --- rendering ---
 
@@ -396,7 +294,7 @@ class _Job:
             renderer.number(field.gap, field.address, whole, decimals, everywhere)
         else:
             feed = self.pieces.feed_value[members]
-            decimals = _decimals_for(feed, manner.decimals_of("F", inch))
+            decimals = decimals_for(feed, manner.decimals_of("F", inch))
             whole = quantise(feed, decimals)
             self._check_feed(feed, whole / 10.0**decimals, members)
             everywhere = np.ones(len(rows), np.bool_)
@@ -406,7 +304,7 @@ class _Job:
     def _computed(self, field: Computed, lines: Ints, renderer: Renderer) -> None:
         """Write what expressions are worth as plain numbers, to the last bit."""
         value = self.task.read.value[self.task.window.first_number[lines] + field.slot]
-        decimals = _decimals_of(value)
+        decimals = decimals_of(value)
         whole = quantise(value, decimals)
         inexact = whole / 10.0**decimals != value
         if inexact.any():
@@ -416,6 +314,12 @@ class _Job:
         renderer.number(b"", field.address, whole, decimals, np.ones(len(lines), np.bool_), False)
 
     # --- after ---
+
+    def _refuse(self, rows: Ints, code: str, message: str, hint: str) -> None:
+        lines = self.path.block[rows[:20]].tolist()
+        raise InputError(
+            tuple(Diagnostic(code, message, self.task.location(line), hint) for line in lines)
+        )
 
     def _check_known(self, address: str, whole: Floats, present: Flags, rows: Ints) -> None:
         """Refuse increments from where the control only knows: the operator may have moved it."""
@@ -438,7 +342,9 @@ class _Job:
         if not limit or not len(lengths) or int(lengths.max()) <= limit:
             return
         if target.length_without_blanks:
-            lengths = _without_blanks(text, lengths)
+            ends = np.cumsum(lengths)
+            lines = [text[int(e - n) : int(e)] for e, n in zip(ends, lengths, strict=True)]
+            lengths = np.array([without_blanks(line) for line in lines], np.int64)
             if int(lengths.max()) <= limit:
                 return
         worst = int(np.argmax(lengths))
@@ -488,29 +394,6 @@ def _groups(ways: Ints) -> list[Ints]:
         order = left[np.argsort(ways[left], kind="stable")]
         groups += np.split(order, np.flatnonzero(np.diff(ways[order])) + 1)
     return groups
-
-
-def _decimals_for(value: Floats, usual: int) -> int:
-    """Return as many decimals as keep values to a ten thousandth: small feeds need more."""
-    for decimals in range(usual, MOST_DECIMALS):
-        error = np.abs(quantise(value, decimals) / 10.0**decimals - value)
-        if (error <= 1e-4 * np.abs(value)).all():
-            return decimals
-    return MOST_DECIMALS
-
-
-def _decimals_of(value: Floats) -> int:
-    """Return the least number of decimals with which values are written to the last bit."""
-    few = range(MOST_DECIMALS)
-    exact = (d for d in few if (quantise(value, d) / 10.0**d == value).all())
-    return next(exact, MOST_DECIMALS)
-
-
-def _without_blanks(text: bytes, lengths: Ints) -> Ints:
-    """Return the lengths of lines (given one after another) without blanks and comments."""
-    ends = np.cumsum(lengths)
-    lines = [text[int(e - n) : int(e)] for e, n in zip(ends, lengths, strict=True)]
-    return np.array([len(re.sub(rb"\([^)]*\)|;.*|\s", b"", line)) for line in lines], np.int64)
 
 
 def _is_path_mode(what: str, source: type[Dialect]) -> bool:

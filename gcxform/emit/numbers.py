@@ -28,6 +28,22 @@ def quantise(value: Floats, decimals: int) -> Floats:
     return np.copysign(whole, scaled)
 
 
+def decimals_for(value: Floats, usual: int) -> int:
+    """Return as many decimals as keep values to a ten thousandth: small feeds need more."""
+    for decimals in range(usual, MOST_DECIMALS):
+        error = np.abs(quantise(value, decimals) / 10.0**decimals - value)
+        if (error <= 1e-4 * np.abs(value)).all():
+            return decimals
+    return MOST_DECIMALS
+
+
+def decimals_of(value: Floats) -> int:
+    """Return the least number of decimals with which values are written to the last bit."""
+    few = range(MOST_DECIMALS)
+    exact = (d for d in few if (quantise(value, d) / 10.0**d == value).all())
+    return next(exact, MOST_DECIMALS)
+
+
 @cache
 def _whole_digits() -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
     """Return the text of 0 ... 9999, without and with leading zeros, as four bytes each."""

@@ -39,7 +39,8 @@ class Pieces:
     thread    (pieces,) whether it is a move whose code and K stay as they stand
     feed      (pieces,) `Feed`; `feed_value` is the number to write
     special   (pieces,) whether it stands for all moves of a block that is written as it stands
-    event     (pieces,) index into `events`, -1 for none: what a cycle does between its moves
+    event     (pieces,) index into `events`, one of each kind, -1 for none: what a cycle does
+              between its moves
     repaired  (pieces,) whether something is stated that the source line did not state
     """
 
@@ -69,26 +70,29 @@ class Pieces:
         special[path.block[~np.isin(path.form, FREE)]] = True
         drilling = self.task.read.modes.cycle != CYCLE_OFF
         self.expanded_line = drilling & ~special & self.task.manner.expands
-        self.events = [e for e in path.events if e.within and self._is_expanded(e)]
+        inner = [e for e in path.events if e.within and self._is_expanded(e)]
+        self.events = list({(e.what, e.values): e for e in reversed(inner)}.values())
         pieces = np.where(special, 1, np.maximum(self.count, 1))
         self.line = np.repeat(np.arange(live), pieces)
         nth = np.arange(len(self.line)) - (np.cumsum(pieces) - pieces)[self.line]
         self.row = (np.cumsum(self.count) - self.count)[self.line] + nth
         self.event = np.full(len(self.line), -1)
-        if self.events:
-            self._put_events_between()
+        if inner:
+            self._put_events_between(inner)
         self.has_row = (self.count[self.line] > 0) & (self.event < 0)
         self._give_roles(special)
 
-    def _put_events_between(self) -> None:
+    def _put_events_between(self, inner: list[Event]) -> None:
         """Give what cycles do between their moves pieces of their own."""
-        line = np.array([e.line - self.task.path.blocks.first for e in self.events], np.int64)
-        before = np.array([2 * e.row for e in self.events], np.int64)
+        number = {(e.what, e.values): n for n, e in enumerate(self.events)}
+        which = np.array([number[e.what, e.values] for e in inner], np.int64)
+        line = np.array([e.line - self.task.path.blocks.first for e in inner], np.int64)
+        before = np.array([2 * e.row for e in inner], np.int64)
         all_lines = np.concatenate([self.line, line])
         order = np.lexsort((np.concatenate([2 * self.row + 1, before]), all_lines))
         nothing = np.zeros(len(line), np.int64)
         self.line, self.row = all_lines[order], np.concatenate([self.row, nothing])[order]
-        self.event = np.concatenate([self.event, np.arange(len(line))])[order]
+        self.event = np.concatenate([self.event, which])[order]
 
     def _is_expanded(self, event: Event) -> bool:
         return bool(self.expanded_line[event.line - self.task.path.blocks.first])

@@ -8,10 +8,8 @@ then a matter of whole arrays.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from itertools import pairwise
+from typing import NoReturn
 
-from gcxform.dialect import Dialect
 from gcxform.emit.fields import (
     Axis,
     Centre,
@@ -25,95 +23,30 @@ from gcxform.emit.fields import (
     Role,
 )
 from gcxform.emit.manner import Manner
-from gcxform.modal.codes import Code, MCode
+from gcxform.emit.saying import (
+    STATED,
+    CannotSayError,
+    code_of,
+    comment_in,
+    folded_words,
+    is_foreign,
+    left_out,
+    like,
+    other_in,
+    own_gap,
+    same_m,
+)
 from gcxform.modal.meaning import (
     DRILL_WORDS,
-    FRAMING,
     Meaning,
     only_for_cycles,
     program_number_fits,
 )
 from gcxform.syntax.shapes import CODES, Shape
-from gcxform.syntax.tree import BLANKS, Comment, Expression, Item, Mark, Number, Statement, Word
-from gcxform.toolpath.path import Event
+from gcxform.syntax.tree import Comment, Expression, Item, Mark, Number, Statement, Word
 
 PLANE_AXES = ("XY", "ZX", "YZ")
 OFFSETS = {"X": "I", "Y": "J", "Z": "K"}
-
-
-class CannotSayError(Exception):
-    """The target dialect has no words for something: column from 0, width, message."""
-
-    def __init__(self, column: int, width: int, message: str) -> None:
-        super().__init__(message)
-        self.column = column
-        self.width = width
-        self.message = message
-
-
-def gaps_between(text: str, words: list[Word]) -> Iterator[bool]:
-    """Yield, for each two words that follow one another, whether blanks are between them."""
-    for one, other in pairwise(words):
-        between = text[one.end : other.start]
-        if not between.strip(" \t"):
-            yield bool(between)
-
-
-def is_foreign(item: Item, target: type[Dialect]) -> bool:
-    """Whether an item has no place in another dialect: assignments, frames that it has not."""
-    if isinstance(item, Statement):
-        return item.kind == "assignment"
-    if not isinstance(item, Mark):
-        return False
-    if item.kind == "percent":
-        return not target.has_percent
-    return item.kind.startswith("program") and not target.has_program_number
-
-
-def event_text(event: Event, target: type[Dialect], gap: bytes) -> bytes | None:
-    """Return the block that does what a cycle does between its moves; None if there is none."""
-    if event.what != "DWELL":
-        known = event.what[0] == "M" and int(event.what[1:]) in target.m_codes
-        return event.what.encode() if known else None
-    seconds = event.values[0][1]
-    for address, unit in target.dwell.items():
-        count = seconds / unit
-        whole = abs(count - round(count)) < 1e-9
-        if unit != 1.0 and (not whole or (target.dwell_point_is_seconds and not whole)):
-            continue
-        number = f"{round(count)}" if unit != 1.0 else f"{seconds:.6f}".rstrip("0")
-        return b"G4" + gap + f"{address}{number}".encode()
-    return None
-
-
-def nothing_left(items: tuple[Item, ...], meaning: Meaning, manner: Manner, work: str) -> bool:
-    """Whether of a block that has items nothing but its number would be written.
-
-    That is so for parts of the program frame that the target has not, and for codes that are folded
-    into the words of moves (`work`, if it is not "", is where the program then stays).
-    """
-    folded = folded_words(meaning, work) if work else frozenset()
-
-    def goes(item: Item) -> bool:
-        if isinstance(item, Word):
-            name = _name(item) if item.address in CODES else item.address
-            idle = only_for_cycles(name, manner.source, manner.target)
-            return name == "N" or name in folded or idle
-        slash = isinstance(item, Mark) and item.kind == "block_delete"
-        return slash or is_foreign(item, manner.target)
-
-    kept = [item for item in items if not (isinstance(item, Word) and item.address == "N")]
-    kept = [item for item in kept if not (isinstance(item, Mark) and item.kind == "block_delete")]
-    return bool(kept) and all(goes(item) for item in items)
-
-
-def left_out(item: Item, meaning: Meaning) -> bool:
-    """Whether an item turns cutter compensation on, and is left out once that is resolved."""
-    if not isinstance(item, Word) or not meaning.compensates:
-        return False
-    if item.address == "G" and isinstance(item.value, Number):
-        return f"G{round(item.value.value, 6):g}" == meaning.groups["cutter-comp"]
-    return item.address == "D"
 
 
 class TemplateWriter:
@@ -136,15 +69,8 @@ class TemplateWriter:
         self.target = manner.target
         self.axes = axes
         self.folded = folded_words(meaning, folded_to) if folded_to else frozenset()
-        self.gap = self._own_gap(gap)
+        self.gap = own_gap(shape, gap)
         self.uncompensated = uncompensated
-
-    def _own_gap(self, usual: bytes) -> bytes:
-        """Return what stands between the words of this block, or what is usual in the program."""
-        words = list(self.shape.block.words)
-        if len(words) < 2:
-            return usual
-        return b" " if any(gaps_between(self.text, words)) else b""
 
     def write(self, key: Key) -> tuple[Field, ...]:
         """Return the fields of a piece of the block. Raises CannotSayError."""
@@ -201,7 +127,7 @@ class TemplateWriter:
         """Whether an item is folded into the words of moves."""
         if not isinstance(item, Word):
             return False
-        return (_name(item) if item.address in CODES else item.address) in self.folded
+        return (code_of(item) if item.address in CODES else item.address) in self.folded
 
     def _item(self, item: Item, lead: bytes, slot: int) -> None:
         if isinstance(item, Word):
@@ -241,12 +167,7 @@ class TemplateWriter:
             raise CannotSayError(item.start, item.end - item.start, message)
         if not executed and self.target.executes(text):
             text = f"{text[0]}-{text[1:]}"
-        if text[0] in self.target.comments:
-            return text
-        inner = text[1:-1] if text[0] == "(" else text[1:]
-        if self.target.comments.startswith("("):
-            return "(" + inner.replace("(", "[").replace(")", "]") + ")"
-        return ";" + inner
+        return comment_in(self.target, text)
 
     def _mark(self, item: Mark, lead: bytes) -> None:
         if item.kind == "block_delete":
@@ -332,7 +253,10 @@ class TemplateWriter:
             return
         if only_for_cycles(name, self.source, self.target):
             return
-        self._check_code(word, name, code)
+        if self.source is not self.target and code is not None:
+            what = other_in(self.source, self.target, name, code, self.meaning.dwell)
+            if what:
+                self._refuse(word, what)
         self._literal(lead, text)
 
     def _states(self, word: Word, name: str, group: str, lead: bytes) -> bool:
@@ -342,7 +266,7 @@ class TemplateWriter:
         if wanted is not None:
             if not self._goes_without_saying(word, wanted):
                 text = self._said(word.start, word.end)
-                self._literal(lead, text if wanted == name else _like(text, wanted))
+                self._literal(lead, text if wanted == name else like(text, wanted))
             return True
         if group != "motion":
             return False
@@ -350,37 +274,7 @@ class TemplateWriter:
         left_out = name in ("G5", "G5.1") and self.key.role is Role.NONE
         return left_out or not (self.as_it_stands or self.key.thread) or self.key.silent
 
-    def _check_code(self, word: Word, name: str, code: Code | None) -> None:
-        """Raise CannotSayError unless a G code means the same in the target."""
-        if self.source is self.target or code is None:
-            return
-        other = self.target.codes.get(name)
-        same = other is not None and (other.group, other.effect, other.act) == (
-            code.group,
-            code.effect,
-            code.act,
-        )
-        if not same or (code.takes != other.takes if other else True):
-            self._refuse(word, name)
-        if name in TAPPING:
-            self._refuse(word, f"{name} with the spindle tied to the feed in the same way")
-        if code.act == "home" and self._stores_home(self.source) != self._stores_home(self.target):
-            self._refuse(word, f"{name}: it goes to a point of another kind there")
-        if code.act == "local" and self.source.g52_is_g92 != self.target.g52_is_g92:
-            self._refuse(word, f"{name} without changing what G92 has set")
-        if (
-            self.meaning.dwell
-            and code.group == "non-modal"
-            and not _same_dwell(self.source, self.target)
-        ):
-            self._refuse(word, "this dwell")
-
-    @staticmethod
-    def _stores_home(dialect: type[Dialect]) -> bool:
-        """Whether a program can choose the point to which G28 goes."""
-        return any(code.act == "store-home" for code in dialect.codes.values())
-
-    def _refuse(self, word: Word, what: str) -> None:
+    def _refuse(self, word: Word, what: str) -> NoReturn:
         raise CannotSayError(
             word.start, word.end - word.start, f"{self.target.name} cannot say {what}"
         )
@@ -391,21 +285,15 @@ class TemplateWriter:
         code = self.source.m_codes.get(number, self.source.unknown_m)
         if self.source is not self.target:
             other = self.target.m_codes.get(number, self.target.unknown_m)
-            if other is None or code is None or not self._same_m(code, other):
+            words = {word.address for word in self.shape.block.words}
+            if other is None or code is None or not same_m(code, other, words):
+                self._refuse(word, f"M{number}")
+            if code.after != other.after and self.key.role is not Role.NONE:
                 self._refuse(word, f"M{number}")
         after = code is not None and code.after
         whole = self.key.role is Role.ONLY or self.as_it_stands
         if whole or self.key.role is (Role.LAST if after else Role.FIRST):
             self._literal(self._gap(lead), self._said(word.start, word.end))
-
-    def _same_m(self, code: MCode, other: MCode) -> bool:
-        """Whether an M code does the same in the target; what builders have put there does not."""
-        if "user" in (code.group, other.group) or code.group != other.group:
-            return False
-        words = {word.address for word in self.shape.block.words}
-        if code.takes != other.takes and words & {*code.takes, *other.takes}:
-            return False
-        return code.after == other.after or self.key.role is Role.NONE
 
     # --- what has to be stated ---
 
@@ -509,46 +397,3 @@ class TemplateWriter:
         if self.key.feed is Feed.WRITE and "feed" not in self.stated:
             self.stated.add("feed")
             self.fields.append(FeedWord(self._gap(b"")))
-
-
-def _name(word: Word) -> str:
-    """Return the code of a G, M or O word."""
-    assert isinstance(word.value, Number)
-    return f"{word.address}{round(word.value.value, 6):g}"
-
-
-def folded_words(meaning: Meaning, work: str) -> frozenset[str]:
-    """Return codes and addresses that are not written where frames are folded into the words.
-
-    The code of the work offset in which the program stays is written as it was.
-    """
-    gone: set[str] = set()
-    for act in meaning.acts:
-        if act.name in FRAMING and act.code != work:
-            gone |= {act.code, *(address for address, _ in act.slots)}
-    return frozenset(gone)
-
-
-TAPPING = ("G74", "G84")
-STATED: Mapping[str, tuple[str, Mapping[int, str] | tuple[str, ...]]] = {
-    "units": ("inch", ("G21", "G20")),
-    "distance": ("incremental", ("G90", "G91")),
-    "arc-distance": ("absolute_centre", ("G91.1", "G90.1")),
-    "feed-mode": ("feed_mode", {93: "G93", 94: "G94", 95: "G95"}),
-    "motion": ("motion", ("G0", "G1", "G2", "G3")),
-}
-"""Groups whose code may have to be stated: field of the key, and codes by value."""
-
-
-def _same_dwell(one: type[Dialect], other: type[Dialect]) -> bool:
-    """Whether a dwell of one dialect is as long in the other, however it is written."""
-    return one.dwell == other.dwell and one.dwell_point_is_seconds == other.dwell_point_is_seconds
-
-
-def _like(text: str, code: str) -> str:
-    """Return a code written like another: `g01` for G3 gives `g03`."""
-    letter, digits = text[0], text[1:].translate(BLANKS)
-    number = code[1:]
-    if digits[:1] == "0" and len(digits.split(".")[0]) == 2 and len(number.split(".")[0]) == 1:
-        number = "0" + number
-    return letter + number

@@ -7,11 +7,17 @@ by `gcxform/modal/cycles.py`, in the coordinates of the program.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH
-from gcxform.modal.cycles import UNKNOWN, Calls, Cycles, Steps
+from gcxform.modal.cycles import UNKNOWN, Calls, Cycles
+from gcxform.modal.cyclestretch import Mode, Stretch
 from gcxform.modal.rows import Rows
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.modal.track import Break, Track
@@ -25,19 +31,55 @@ SPINDLE = np.array([0, 1, -1, UNKNOWN])
 """How the spindle turns, by the number of its mode: stopped, M3, M4, not known."""
 
 
+MANUAL = 88
+
+
+@dataclass(frozen=True, slots=True)
+class _Common:
+    """Columns of a window that the calls of all its stretches are cut from; see `Calls`."""
+
+    code: Ints
+    initial: Flags
+    spindle: Ints
+    other_axes: Flags
+    inverse: Flags
+    line: Ints
+
+
+@dataclass(frozen=True, slots=True)
+class _Followed:
+    """A stretch: its lines, plane, unit; words (axes,), frame and dwell (s) in force before it.
+
+    `stretch` are its columns; None where they are found later, with those of others.
+    """
+
+    first: int
+    last: int
+    plane: Plane
+    unit: float
+    words: Floats
+    frame: int
+    dwell: float
+    stretch: Stretch | None
+
+
 class Drilling:
     """Reads the cycles of one window; `state.cycles` goes on from window to window.
 
-    `events` are what is done within cycles: the first line of a stretch, and its events, whose rows
-    count from the first of the stretch.
+    Stretches are followed one by one, because each begins where what is before it ends; their moves
+    are made at once, at the end. `events` are what is done within cycles: the first line of a
+    stretch, how many rows behind its first, and what.
     """
 
     def __init__(self, track: Track) -> None:
         self.track = track
         self.lines, self.modes = track.lines, track.modes
         self.cycles: Cycles | None = self.lines.state.cycles
-        self.events: list[tuple[int, tuple[Event, ...]]] = []
+        self.events: list[tuple[int, int, Event]] = []
         self.calls = self._calls()
+        self._words: dict[str, Floats] = {}
+        self._lasts: dict[str, Ints] = {}
+        self._followed: list[_Followed] = []
 
     def _calls(self) -> Flags:
         """Return the lines that call a cycle."""
@@ -57,111 +99,231 @@ class Drilling:
         if self.cycles is not None and (self.modes.cycle[first:last] == CYCLE_OFF).any():
             self.cycles.leave()
 
-    def rows(self, first: int, last: int) -> Rows:
-        """Return the moves of a stretch of calls."""
-        assert self.cycles is not None
-        here = np.arange(first, last)
-        calls = self._columns(here)
-        self._refuse_other_count(here)
-        steps = self.cycles.expand(calls)
-        for refusal in steps.refusals:
-            line = int(here[refusal.call])
-            self.track.findings.add(line, "GX215", refusal.message, hint=refusal.hint)
-        if steps.refusals:
-            nothing = np.empty((0, len(self.track.axes)))
-            return Rows.plain(here[:0], self.modes.motion[:0], nothing, 0)
-        return self._placed(here, calls, steps)
+    # --- stretches, as they come ---
 
-    def _word(self, address: str, here: Ints) -> Floats:
+    def follow(self, first: int, last: int) -> None:
+        """Read a stretch of calls, and take over where the tool is after it."""
+        assert self.cycles is not None
+        track, plane = self.track, Plane(int(self.modes.plane[first]))
+        unit = INCH if self.modes.inch[first] else 1.0
+        words = track.frame.words(track.state.position[None, :])[0]
+        after = words.copy()
+        stretch, dwell = None, self.cycles.mode.dwell
+        if self._is_plain(first, last):
+            after[list(plane.axes)] = self._plain_end(first, last, words, plane)
+        else:
+            calls = self._calls_on(slice(first, last), words[list(plane.axes)], plane, unit)
+            stretch = self.cycles.follow(calls)
+            after[list(plane.axes)] = stretch.after[-1]
+        frame = len(track.frames) - 1
+        self._followed.append(_Followed(first, last, plane, unit, words, frame, dwell, stretch))
+        track.state.position = track.frame.positions(after[None, :])[0].copy()
+        if self._manual.any() and self._manual[first:last].any():
+            track.breaks.append(Break(last, 1 << plane.axes[2]))
+            track.state.position[plane.axes[2]] = np.nan  # the operator has moved it
+
+    def _is_plain(self, first: int, last: int) -> bool:
+        """Whether a stretch begins without a cycle in force, ends with G80, and has one in G90."""
+        assert self.cycles is not None
+        if self.cycles.mode.code or last == self.lines.live:
+            return False
+        odd = self._odd_until[last] - self._odd_until[first]
+        changes = self._changes_until[last] - self._changes_until[first + 1]
+        return bool(self.modes.cycle[last] == CYCLE_OFF and not odd and not changes)
+
+    @cached_property
+    def _odd_until(self) -> Ints:
+        """How many lines before each line are in G91 or have repeats."""
+        repeated = ~np.isnan(self._word(self._repeats, slice(None)))
+        return np.append(0, np.cumsum(self.modes.incremental | repeated))
+
+    @cached_property
+    def _changes_until(self) -> Ints:
+        """How many lines before each line have another cycle than the line before them."""
+        return np.append(0, np.cumsum(np.diff(self.modes.cycle, prepend=CYCLE_OFF) != 0))
+
+    def _plain_end(self, first: int, last: int, words: Floats, plane: Plane) -> list[float]:
+        """Return where the tool is after a plain stretch; take over the dwell that it leaves."""
+        assert self.cycles is not None
+        end = [float(words[axis]) for axis in plane.axes]
+        place = self._last("P", last - 1)
+        if place >= first:
+            self.cycles.mode = Mode(dwell=float(self._word("P", slice(place, place + 1))[0]))
+        called = -1
+        for nth, axis in enumerate(plane.axes):
+            place = self._last("XYZ"[axis], last - 1)
+            called = max(called, place)
+            if place >= first and nth < 2:
+                end[nth] = float(self._word("XYZ"[axis], slice(place, place + 1))[0])
+        if self.cycles.rule.stores:
+            called = max(called, self._last("R", last - 1))
+        if called >= first:
+            place = self._last("R", called)
+            here = slice(place, place + 1)
+            clearance = float(self._word("R", here)[0]) if place >= first else np.nan
+            initial = bool(self._common.initial[called])
+            end[2] = float(np.maximum(end[2], clearance)) if initial else clearance
+        return end
+
+    def _last(self, address: str, line: int) -> int:
+        """Return the last call with a word, on a line or before it; -1 for none."""
+        if address not in self._lasts:
+            present = ~np.isnan(self._word(address, slice(None)))
+            places = np.where(present & self.calls, np.arange(self.lines.live), -1)
+            self._lasts[address] = np.maximum.accumulate(places)
+        return int(self._lasts[address][line])
+
+    def _word(self, address: str, here: slice | Ints) -> Floats:
         """Return a word on lines, nan where there is none; lengths in mm."""
+        if address not in self._words:
+            self._words[address] = self._column(address)
+        return self._words[address][here]
+
+    def _column(self, address: str) -> Floats:
+        """Return a word on all lines of the window, nan where it is none of a call's."""
+        if not address:
+            return constant(np.nan, self.lines.live)
         axis, count = address in self.track.axes, address in ("P", "L", self._repeats)
         if axis:
             word = self.track.column(address)
         else:
             word = self.lines.word(address, self.calls, distance=not count)
         if word is None:
-            return np.full(len(here), np.nan)
-        value = np.where(word[1][here], word[0][here], np.nan)
-        return value if axis or count else value * self._unit(here)
+            return constant(np.nan, self.lines.live)
+        value = np.where(word[1], word[0], np.nan)
+        if address == "P":
+            return self._seconds(value)
+        inches = not (axis or count) and self.modes.inch.any()
+        return value * np.where(self.modes.inch, INCH, 1.0) if inches else value
 
-    def _unit(self, here: Ints) -> Floats:
-        return np.where(self.modes.inch[here], INCH, 1.0)
+    def _seconds(self, plain: Floats) -> Floats:
+        """Return P words as seconds."""
+        dialect, lines = self.lines.dialect, self.lines
+        if not dialect.dwell_point_is_seconds:
+            return plain * dialect.dwell["P"]
+        slot = lines.table.slots[lines.shape, ord("P") - 65]
+        number = np.where(slot >= 0, lines.first + slot, 0)
+        pointed = (slot >= 0) & (lines.window.decimals[number] >= 0)
+        return np.where(pointed, plain, plain * dialect.dwell["P"])
 
-    @property
+    @cached_property
+    def _common(self) -> _Common:
+        """What the modes of all lines are to cycles."""
+        modes, lines = self.modes, self.lines
+        other_axes = np.zeros(lines.live, np.bool_)
+        for axis in self.track.axes:
+            word = None if axis in "XYZ" else self.track.column(axis)
+            if word is not None:
+                other_axes |= word[1]
+        return _Common(
+            modes.cycle.astype(np.int64),
+            modes.retract == 1,
+            SPINDLE[modes.spindle],
+            other_axes,
+            modes.feed_mode == 93,
+            np.arange(lines.live) + lines.window.first_line,
+        )
+
+    @cached_property
+    def _manual(self) -> Flags:
+        """The lines in a cycle out of which the operator moves the tool."""
+        return np.asarray(self.modes.cycle == MANUAL)
+
+    @cached_property
     def _repeats(self) -> str:
         rule = self.lines.dialect.cycle_rule
         return rule.repeats if rule is not None else ""
 
-    def _columns(self, here: Ints) -> Calls:
+    def _calls_on(self, here: slice | Ints, position: Floats, plane: Plane, unit: float) -> Calls:
+        """Return the blocks on lines; `position` (3,) is where the tool stands before them."""
         modes = self.modes
-        plane = Plane(int(modes.plane[here[0]]))
-        first, second, normal = ("XYZ"[axis] for axis in plane.axes)
-        words = self.track.frame.words(self.lines.state.position[None, :])[0]
-        others = [a for a in self.track.axes if a not in "XYZ"]
-        absent = np.full(len(here), np.nan)
+        first_axis, second_axis, normal = ("XYZ"[axis] for axis in plane.axes)
+        common = self._common
         return Calls(
-            modes.cycle[here].astype(np.int64),
-            self._word(first, here),
-            self._word(second, here),
+            common.code[here],
+            self._word(first_axis, here),
+            self._word(second_axis, here),
             self._word(normal, here),
             self._word("R", here),
             self._word("Q", here),
-            self._dwell(here),
+            self._word("P", here),
             self._word(self._repeats, here),
             self._word("I", here),
             self._word("J", here),
-            absent if self._repeats == "K" else self._word("K", here),
+            self._word("" if self._repeats == "K" else "K", here),
             modes.incremental[here],
-            modes.retract[here] == 1,
-            SPINDLE[modes.spindle[here]],
-            np.any([~np.isnan(self._word(a, here)) for a in others], axis=0)
-            if others
-            else np.zeros(len(here), np.bool_),
-            modes.feed_mode[here] == 93,
-            here + self.lines.window.first_line,
-            words[list(plane.axes)],
+            common.initial[here],
+            common.spindle[here],
+            common.other_axes[here],
+            common.inverse[here],
+            common.line[here],
+            position,
             plane,
-            INCH if modes.inch[here[0]] else 1.0,
+            unit,
         )
 
-    def _refuse_other_count(self, here: Ints) -> None:
+    # --- all stretches of the window ---
+
+    def rows(self) -> list[Rows]:
+        """Return the moves of the stretches, in their order."""
+        self._refuse_other_count()
+        found: dict[int, Rows] = {}
+        kinds = [(f.plane, f.unit, f.stretch is None) for f in self._followed]
+        for kind in dict.fromkeys(kinds):
+            numbers = [number for number, other in enumerate(kinds) if other == kind]
+            found.update(zip(numbers, self._rows_of(numbers), strict=True))
+        return [found[number] for number in range(len(kinds))]
+
+    def _refuse_other_count(self) -> None:
         """Refuse L where K counts the holes: it would be left out."""
-        if self._repeats != "K":
+        if self._repeats != "K" or not self._followed:
             return
-        for line in here[~np.isnan(self._word("L", here))].tolist():
+        counted = self.calls & ~np.isnan(self._word("L", slice(None)))
+        for line in np.flatnonzero(counted).tolist():
             message, hint = "L counts nothing here: this control repeats cycles by K", "write K"
             self.track.findings.add(line, "GX215", message, "L", hint)
 
-    def _dwell(self, here: Ints) -> Floats:
-        """Return the P words as seconds."""
-        dialect, plain = self.lines.dialect, self._word("P", here)
-        if not dialect.dwell_point_is_seconds:
-            return plain * dialect.dwell["P"]
-        slot = self.lines.table.slots[self.lines.shape[here], ord("P") - 65]
-        number = self.lines.first[here] + np.maximum(slot, 0)
-        pointed = (slot >= 0) & (self.lines.window.decimals[number] >= 0)
-        return np.where(pointed, plain, plain * dialect.dwell["P"])
+    def _stretches(self, followed: list[_Followed], line: Ints, bounds: Ints) -> list[Stretch]:
+        """Return the columns of stretches, those of plain ones as one."""
+        stretches = [one.stretch for one in followed if one.stretch is not None]
+        if stretches:
+            return stretches
+        assert self.cycles is not None
+        axes = list(followed[0].plane.axes)
+        positions = np.array([one.words[axes] for one in followed])
+        calls = self._calls_on(line, positions[0], followed[0].plane, followed[0].unit)
+        dwells = np.array([one.dwell for one in followed])
+        return [self.cycles.follow_fresh(calls, bounds[:-1], positions, dwells)]
 
-    def _placed(self, here: Ints, calls: Calls, steps: Steps) -> Rows:
-        """Return the moves as rows, and take over where the tool is after them."""
-        track, rows, first_line = self.track, steps.rows, int(here[0])
-        count, axes = len(rows.call), list(calls.plane.axes)
-        words = np.tile(track.frame.words(track.state.position[None, :]), (count + 1, 1))
-        words[:count, axes] = rows.end
-        words[count, axes] = steps.after[-1]
-        ends = track.frame.positions(words)
-        track.state.position = ends[-1].copy()
-        if (calls.code == 88).any():
-            track.breaks.append(Break(int(here[-1]) + 1, 1 << axes[2]))
-            track.state.position[axes[2]] = np.nan  # the operator has moved it
-        starts = np.searchsorted(rows.call, rows.call)
-        self.events.append((first_line, rows.events))
+    def _rows_of(self, numbers: list[int]) -> Iterator[Rows]:
+        """Yield the moves of stretches of one plane and unit."""
+        assert self.cycles is not None
+        followed = [self._followed[number] for number in numbers]
+        line = np.concatenate([np.arange(one.first, one.last) for one in followed])
+        bounds = np.cumsum([0, *(one.last - one.first for one in followed)])
+        steps = self.cycles.steps(self._stretches(followed, line, bounds))
+        for refusal in steps.refusals:
+            place = int(line[refusal.call])
+            self.track.findings.add(place, "GX215", refusal.message, hint=refusal.hint)
+        rows = steps.rows
+        bounds = np.searchsorted(rows.call, bounds)
+        self._place_events(rows.events, bounds, [one.first for one in followed])
+        nth = np.arange(len(rows.call)) - np.searchsorted(rows.call, rows.call)
         form = np.where(rows.synchronised, Form.SYNCHRONISED, Form.CYCLE).astype(np.int8)
-        return Rows(
-            here[rows.call],
-            rows.kind,
-            np.asfortranarray(ends[:-1]),
-            np.arange(count) - starts,
-            form,
-            constant(len(track.frames) - 1, count, np.int64),
-        )
+        for one, (begin, end) in zip(followed, pairwise(bounds.tolist()), strict=True):
+            here = slice(begin, end)
+            words = np.empty((len(one.words), end - begin)).T
+            words[:] = one.words
+            words[:, list(one.plane.axes)] = rows.end[here]
+            ends = self.track.frames[one.frame].positions(words)
+            frame = constant(one.frame, end - begin, np.int64)
+            yield Rows(line[rows.call[here]], rows.kind[here], ends, nth[here], form[here], frame)
+
+    def _place_events(self, events: tuple[Event, ...], bounds: Ints, firsts: list[int]) -> None:
+        """Keep events by stretch, their rows counted from the first of it."""
+        if not events:
+            return
+        lines = [event.line - self.lines.window.first_line for event in events]
+        whose = np.searchsorted(firsts, lines, "right") - 1
+        for number, event in zip(whose.tolist(), events, strict=True):
+            self.events.append((firsts[number], event.row - int(bounds[number]), event))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +14,12 @@ Ints = NDArray[np.int64]
 
 
 def events_of(
-    lines: Lines, rows: Ints, within: Sequence[tuple[int, tuple[Event, ...]]] = ()
+    lines: Lines, rows: Ints, within: Sequence[tuple[int, int, Event]] = ()
 ) -> tuple[Event, ...]:
     """Return what happens between the moves, in the order of execution.
 
-    `rows` (n,) are the lines of the moves. `within` is what happens within canned cycles: the first
-    line of a stretch, and its events, whose rows count from the first move of the stretch.
+    `rows` (n,) are the lines of the moves. `within` is what happens within canned cycles: the
+    first line of a stretch, how many moves behind its first, and what.
     """
     events: list[tuple[tuple[int, int, int], Event]] = []
     having = np.flatnonzero(lines.flag("has_events"))
@@ -37,10 +36,11 @@ def events_of(
             events.append(((where, event.line, 2 * shape.after), event))
     if not within:
         return tuple(event for _, event in events)
-    for line, inner in within:
-        offset = int(np.searchsorted(rows, line))
-        moved = (replace(event, row=event.row + offset, within=True) for event in inner)
-        events += [((event.row, event.line, 1), event) for event in moved]
+    offsets = np.searchsorted(rows, [line for line, _, _ in within]).tolist()
+    for offset, (_, behind, event) in zip(offsets, within, strict=True):
+        row = offset + behind
+        moved = Event(row, event.what, event.values, event.line, True)
+        events.append(((row, event.line, 1), moved))
     return tuple(event for _, event in sorted(events, key=lambda item: item[0]))
 
 

@@ -6,8 +6,9 @@ positions (see `gcxform/toolpath/frames.py`), nan where they are not known.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,42 +113,33 @@ class FrameState:
 
     def frame(self) -> Frame:
         """Return the frame in force."""
-        zero = np.array(self.zero_of(self.work))
-        inner = np.array(self.preset) + np.array(self.local)
-        tool = np.zeros(len(self.axes))
-        tool[:3] = self.tool
+        zero = self.zero_of(self.work)
         away = self.work if self.work != self.first else f"{self.work} as set by G10"
-        origin = [self.first if known else away for known in np.isfinite(zero)]
-        for k, axis in enumerate("XYZ"):
-            if np.isnan(self.tool[k]):
+        origin = [self.first if isfinite(place) else away for place in zero]
+        shift = [place if isfinite(place) else 0.0 for place in zero]
+        assert self.axes[:3] == "XYZ"
+        for k, length in enumerate(self.tool):
+            if isfinite(length):
+                shift[k] += length
+            else:
                 origin[k] += f" + {self.tool_name}"
-            assert self.axes[k] == axis
         matrix, offset = self._matrix()
-        offset_all = np.zeros(len(self.axes))
-        offset_all[:3] = offset
-        shift = np.nan_to_num(zero) + np.nan_to_num(tool) + offset_all
-        if matrix is None:
-            shift = shift + inner
-        else:
-            shift[3:] += inner[3:]
+        for k, value in enumerate(offset):
+            shift[k] += value
+        for k in range(0 if matrix is None else 3, len(shift)):
+            shift[k] += self.preset[k] + self.local[k]
         return Frame(
-            self.work,
-            _vector(shift),
-            tuple(origin),
-            matrix,
-            self.diameter,
-            self.polar,
-            self.tool,
+            self.work, tuple(shift), tuple(origin), matrix, self.diameter, self.polar, self.tool
         )
 
-    def _matrix(self) -> tuple[Matrix | None, NDArray[np.float64]]:
+    def _matrix(self) -> tuple[Matrix | None, Sequence[float]]:
         """Return matrix and shift (3,) of what is done to words before the work offset is added.
 
         The turns of the program first, then G52 and G92, then the rotation of the work offset.
         """
         angle = self.rotation.get(self.work, 0.0)
         if not self.turns and not angle:
-            return None, np.zeros(3)
+            return None, ()
         matrix, shift = np.eye(3), np.zeros(3)
         for _, turn in self.turns:
             step, centre = np.array(turn.matrix), np.array(turn.centre)
@@ -155,7 +147,7 @@ class FrameState:
         shift = shift + np.array(self.preset[:3]) + np.array(self.local[:3])
         about = np.array(rotation(angle, 0, 1))
         matrix, shift = about @ matrix, about @ shift
-        return _matrix(matrix), shift
+        return _matrix(matrix), shift.tolist()
 
 
 def rotation(angle: float, first: int, second: int) -> Matrix:

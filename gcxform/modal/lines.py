@@ -13,6 +13,7 @@ from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
 from gcxform.modal.tables import (
     COLUMNS,
     CYCLES,
+    FLAGS,
     GROUPS,
     MEMORY,
     NUMBER,
@@ -73,12 +74,15 @@ class Lines:
         self.live = self._live()
         self.shape = window.shape[: self.live]
         self.first = window.first_number[: self.live]
-        used = np.unique(self.shape)
+        used = np.flatnonzero(np.bincount(self.shape))
         self._used = table.slots[used].max(axis=0, initial=-1) >= 0
         self._stated = table.groups[used].max(axis=0, initial=-1) >= 0
+        self._flagged = np.asarray(table.flags[used].any(axis=0))
 
     def flag(self, name: str) -> Flags:
         """Return a flag of the meaning of each line."""
+        if not self._flagged[FLAGS.index(name)]:
+            return np.zeros(self.live, np.bool_)
         return self.table.flag(name, self.shape)
 
     def loses_position(self) -> Flags:

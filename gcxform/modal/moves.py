@@ -54,16 +54,25 @@ class Moves:
         self.side, self.radius = compensation(lines, modes)
         self.splines = of_splines(modes.motion)
         self.bends = bool(self.splines.any())
+        self._new_units: list[int] = []  # lines that change it, where that spoils tool lengths
+        if self.dialect.units_spoil_length:
+            before = np.append(self.state.groups["units"] == 1, modes.inch)
+            self._new_units = np.flatnonzero(np.diff(before)).tolist()
 
     def path(self) -> Toolpath:
         """Return the moves as a toolpath."""
         moving = self._moving()
         lost = self.lines.loses_position()
+        self._busy_until = np.append(0, np.cumsum(moving | lost | self.track.worded))
+        none = np.empty((0, len(self.axes)))
+        self._nothing = Rows.plain(np.empty(0, np.int64), self.modes.motion[:0], none, 0)
         parts = [
             self._stretch(first, last, moving, lost if lost.any() else None)
             for first, last in self._stretches(moving)
         ]
-        return self._path(Rows.joined(parts, len(self.axes)))
+        drilled = iter(self.drilling.rows())
+        rows = [next(drilled) if part is None else part for part in parts]
+        return self._path(Rows.joined(rows, len(self.axes)))
 
     # --- which lines move ---
 
@@ -100,7 +109,7 @@ class Moves:
         in_machine = self.lines.flag("in_machine") & (self.modes.motion == Kind.LINE)
         feeding = (moves & ~self.tied.paced) | in_machine
         calls = self.drilling.calls | self.lines.flag("probes")
-        self._check_feed(np.flatnonzero(feeding), np.flatnonzero(calls))
+        self._check_feed(feeding, calls)
         return moves
 
     def _dwells(self) -> Flags:
@@ -110,16 +119,15 @@ class Moves:
         dwell = np.array([meaning.dwell for meaning in self.lines.table.meanings], np.bool_)
         return np.asarray(dwell[self.lines.shape])
 
-    def _check_feed(self, rows: Ints, calls: Ints) -> None:
+    def _check_feed(self, moves: Flags, calls: Flags) -> None:
         """Refuse feed moves without a feed, and blocks in inverse time without a feed word."""
-        feeding = np.union1d(rows[self.modes.motion[rows] != Kind.RAPID], calls)
-        feed = self.modes.feed[feeding]
-        missing = feeding[~(feed > 0)]
-        inverse = feeding[self.modes.feed_mode[feeding] == NUMBER["G93"]]
-        word = self.lines.word("F")
-        if len(inverse):
-            none = inverse if word is None else inverse[~word[1][inverse]]
-            missing = np.union1d(missing, none)
+        feeding = (moves & (self.modes.motion != Kind.RAPID)) | calls
+        none = ~(self.modes.feed > 0)
+        inverse = self.modes.feed_mode == NUMBER["G93"]
+        if inverse.any():
+            word = self.lines.word("F")
+            none |= inverse if word is None else inverse & ~word[1]
+        missing = np.flatnonzero(feeding & none)
         for line in missing[: Findings.enough].tolist():
             self.findings.add(
                 line,
@@ -159,7 +167,9 @@ class Moves:
         acting = self._acting()
         own = self.lines.flag("own_moves")[acting]
         drills = self.drilling.borders()
-        alone = np.concatenate([acting[own], np.flatnonzero(self._alone(moving))])
+        alone = np.flatnonzero(self._alone(moving))
+        self._singles = set(alone.tolist())
+        alone = np.concatenate([acting[own], alone])
         borders = np.concatenate([[0], acting, alone, alone + 1, drills, [self.lines.live]])
         borders = np.unique(borders).tolist()
         self._acts = set(acting.tolist())
@@ -167,8 +177,8 @@ class Moves:
             yield 0, 0
         yield from pairwise(borders)
 
-    def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows:
-        """Return the rows of a stretch."""
+    def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows | None:
+        """Return the rows of a stretch, None for one of calls: those are made at the end."""
         self._refuse_other_units(first, first + 1)
         if first < len(self._reset) and self._reset[first]:
             self.track.reset_work(first)
@@ -179,10 +189,13 @@ class Moves:
                 return own
         self._refuse_other_units(first + 1, last)
         if self.drilling.calls[first:last].any():
-            return self.drilling.rows(first, last)
+            self.drilling.follow(first, last)
+            return None
         self.drilling.leave(first, last)
-        if self._alone(moving)[first : first + 1].any():
+        if first in self._singles:
             return self.tied.row(first)
+        if self._busy_until[last] == self._busy_until[first]:
+            return self._nothing
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
         plain = self.tied.plain(rows, ends, len(self.track.frames) - 1)
@@ -190,10 +203,9 @@ class Moves:
 
     def _refuse_other_units(self, first: int, last: int) -> None:
         """Refuse a change of units under a tool length that would become another one by it."""
-        if not self.dialect.units_spoil_length or not any(self.state.frames.tool):
+        if not self._new_units or not any(self.state.frames.tool):
             return
-        before = np.append(self.state.groups["units"] == 1, self.modes.inch)
-        for line in (np.flatnonzero(np.diff(before[first : last + 1])) + first).tolist():
+        for line in (line for line in self._new_units if first <= line < last):
             message = "another unit under a tool length, whose number this control then keeps"
             self.findings.add(line, "GX213", message, hint="write G49 before, and G43 after")
 

@@ -7,6 +7,7 @@ block that begins a stretch may act on the frame first.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -171,23 +172,41 @@ class Track:
         before = self.frame.words(self.state.position[None, :])[0]
         lost_here = None if lost is None or not lost[here].any() else lost[here]
         words = np.empty((len(self.axes), len(rows))).T
+        words[:] = before
+        if lost_here is None and not self._words_until[last] > self._words_until[first]:
+            return self.frame.positions(words)
         end = np.array(before)
         polar = self._polar(here) if self.frame.polar else {}
-        moved = lost_here is not None
         for k, axis in enumerate(self.axes):
+            if lost_here is None and axis not in polar and self.column(axis) is None:
+                continue
             position = self._axis(axis, float(before[k]), here, lost_here, polar.get(axis))
-            if isinstance(position, np.ndarray):
-                moved = True
-                words[:, k] = position[rows - first]
-                end[k] = position[-1] if len(position) else before[k]
-            else:
-                words[:, k] = position
-        if moved:
-            self.state.position = np.array(self.frame.positions(end[None, :])[0])
+            words[:, k] = position[rows - first]
+            end[k] = position[-1]
+        self.state.position = np.array(self.frame.positions(end[None, :])[0])
         if lost_here is not None:
             axes = (1 << len(self.axes)) - 1
             self.breaks += [Break(first + int(n), axes) for n in np.flatnonzero(lost_here)]
         return self.frame.positions(words)
+
+    @cached_property
+    def worded(self) -> Flags:
+        """The lines with axis words."""
+        named = np.zeros(self.lines.live, np.bool_)
+        for axis in self.axes:
+            word = self.column(axis)
+            if word is not None:
+                named |= word[1]
+        return named
+
+    @cached_property
+    def _words_until(self) -> Ints:
+        """How many lines before each line have axis words."""
+        return np.append(0, np.cumsum(self.worded))
+
+    @cached_property
+    def _any_incremental(self) -> bool:
+        return bool(self.modes.incremental.any())
 
     def _axis(
         self,
@@ -196,14 +215,15 @@ class Track:
         here: slice,
         lost: Flags | None,
         instead: tuple[Floats, Flags] | None,
-    ) -> Floats | float:
-        """Return where an axis is after each line of a stretch; one number if it never changes."""
+    ) -> Floats:
+        """Return where an axis is after each line of a stretch."""
         word = instead or self.column(axis)
         if word is None:
-            if lost is None:
-                return before
+            assert lost is not None
             return fill(np.full(len(lost), np.nan), lost, before)
         value, present = word if instead else (word[0][here], word[1][here])
+        if lost is None and not self._any_incremental:
+            return fill(value, present, before)
         incremental = self.modes.incremental[here] & present
         placed = present & ~incremental
         if lost is not None:

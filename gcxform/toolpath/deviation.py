@@ -65,16 +65,37 @@ class _Comparison:
         unknown = unknown_move[self.owner]
         rapid = before.kind[self.owner] == Kind.RAPID
         ends_only = unknown | rapid
-        lines = ~owner_arc & ~ends_only & ~self.after.is_arc
         bent = before.is_spline[self.owner] | self.after.is_spline
-        lines &= ~bent
-        self._ends(np.flatnonzero(ends_only & ~owner_arc & ~self.after.is_arc))
-        self._lines(np.flatnonzero(lines), start_of_owner)
-        if owner_arc.any():
-            self._arcs(np.flatnonzero(owner_arc & ~unknown), start_of_owner)
+        other = ~self._same(start_of_owner) | unknown | bent
+        self.distance[~other] = 0.0
+        straight = other & ~owner_arc & ~self.after.is_arc
+        self._ends(np.flatnonzero(straight & ends_only))
+        self._lines(np.flatnonzero(straight & ~ends_only & ~bent), start_of_owner)
+        arcs = np.flatnonzero(other & owner_arc & ~unknown)
+        if len(arcs):
+            self._arcs(arcs, start_of_owner)
         if bent.any():
             self._splines(np.flatnonzero(bent & ~unknown))
         return Deviation(self.distance + self.after.slack, self.angle, unknown)
+
+    def _same(self, starts: Floats) -> Flags:
+        """Return the rows that are their owner to the last bit, where these are many."""
+        before, after, owner = self.before, self.after, self.owner
+        same: Flags = self.first & self.last & (after.end[:, 0] == before.end[owner, 0])
+        if 2 * np.count_nonzero(same) < len(same):
+            return np.zeros(len(same), np.bool_)
+        own_starts = after.start
+        for mine, theirs in ((own_starts, starts), (after.end, before.end)):
+            for axis in range(mine.shape[1]):
+                one, other = mine[:, axis], theirs[owner, axis]
+                same &= (one == other) | (np.isnan(one) & np.isnan(other))
+        same &= after.kind == before.kind[owner]
+        if before.has_arcs:
+            round_same = (after.centre == before.centre[owner]).all(axis=1)
+            round_same &= after.sweep == before.sweep[owner]
+            round_same &= after.plane == before.plane[owner]
+            same &= round_same | ~after.is_arc
+        return same
 
     def _between(self, ends: Floats, others: Floats) -> tuple[Floats, Floats]:
         """Return distances and angles between positions; inf where only one of them is known."""

@@ -51,9 +51,14 @@ class Frame:
         return cls(work, (0.0,) * len(axes), (work,) * len(axes))
 
     @property
+    def shifts_only(self) -> bool:
+        """Whether words are positions but for a shift."""
+        return self.matrix is None and not self.diameter
+
+    @property
     def plain(self) -> bool:
         """Whether words are positions."""
-        return self.matrix is None and not self.diameter and not any(self.shift)
+        return self.shifts_only and not any(self.shift)
 
     def positions(self, words: Floats) -> Floats:
         """Return the positions (n, axes) of words (n, axes)."""

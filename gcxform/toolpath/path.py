@@ -241,29 +241,42 @@ class Toolpath:
 
     def in_frames(self, positions: Floats) -> Floats:
         """Return positions (n, axes), one a row, as words in the frames of the rows."""
-        return self._by_frame(Frame.words, positions)
+        return self._by_frame(Frame.words, positions, -1.0)
 
     def from_frames(self, words: Floats) -> Floats:
         """Return words (n, axes), one a row in its frame, as positions."""
-        return self._by_frame(Frame.positions, words)
+        return self._by_frame(Frame.positions, words, 1.0)
 
     def local(self, positions: Floats) -> Floats:
         """Return positions (n, 3), one a row, as coordinates in the frames of the rows."""
-        return self._by_frame(Frame.local, positions)
+        return self._by_frame(Frame.local, positions, -1.0)
 
     def placed(self, local: Floats) -> Floats:
         """Return coordinates (n, 3), one a row in its frame, as positions."""
-        return self._by_frame(Frame.placed, local)
+        return self._by_frame(Frame.placed, local, 1.0)
 
-    def _by_frame(self, change: Callable[[Frame, Floats], Floats], values: Floats) -> Floats:
+    def _by_frame(
+        self, change: Callable[[Frame, Floats], Floats], values: Floats, sign: float
+    ) -> Floats:
+        """Return values (n, k) changed, each in the frame of its row; `sign` is that of the shift.
+
+        Frames that only shift are done at once, however many they are: every tool has its own.
+        """
         if self.plainly_framed:
             return values
         if len(self.frames) == 1:
             return change(self.frames[0], values)
-        changed = np.array(values, order="F")
-        for number in np.unique(self.frame).tolist():
-            rows = self.frame == number
-            changed[rows] = change(self.frames[number], values[rows])
+        changed = column_major(*values.shape)
+        shifts = sign * np.array([frame.shift for frame in self.frames])
+        for axis in range(values.shape[1]):
+            shift = shifts[:, axis]
+            changed[:, axis] = (
+                values[:, axis] + shift[self.frame] if shift.any() else values[:, axis]
+            )
+        for number, frame in enumerate(self.frames):
+            if not frame.shifts_only:
+                rows = np.flatnonzero(self.frame == number)
+                changed[rows] = change(frame, values[rows])
         return changed
 
     @property
@@ -352,4 +365,7 @@ def column_major(rows: int, columns: int) -> Floats:
 
 def constant(value: float, rows: int, dtype: type = np.float64) -> NDArray[Any]:
     """Return a read-only column that holds one value and takes no memory."""
-    return np.broadcast_to(np.array(value, dtype), (rows,))
+    one: NDArray[Any] = np.array(value, dtype)
+    column: NDArray[Any] = np.ndarray((rows,), one.dtype, one, 0, (0,))  # broadcast_to is slow
+    column.flags.writeable = False
+    return column

@@ -5,61 +5,64 @@ from __future__ import annotations
 from faults.mutation import CYCLES, Mutation
 
 LEVELS = "gcxform/modal/cycles.py"
+STRETCH = "gcxform/modal/cyclestretch.py"
 STEPS = "gcxform/modal/cyclesteps.py"
+DRILLING = "gcxform/modal/drilling.py"
+STRETCHES = "tests/test_stretches.py"
 
 FAULTS = (
     (
         "words of another cycle stay",
-        LEVELS,
-        "& (not rule.keeps_words)",
-        "& False",
+        STRETCH,
+        "fresh if fresh.any() else None",
+        "None",
     ),
     (
         "words do not stay",
-        LEVELS,
-        "~np.isnan(word) | self.fresh, self",
-        "self.fresh | True, self",
+        STRETCH,
+        "present = ~np.isnan(word)\n        return",
+        "present = np.ones(len(word), np.bool_)\n        return",
     ),
     (
         "G98 goes back to R",
-        LEVELS,
-        "np.maximum(initial, self.clearance), self",
-        "self.clearance, self",
+        STRETCH,
+        "np.where(calls.initial, high, clearance)",
+        "clearance",
     ),
     (
         "G98 goes back to the initial level, even below R",
-        LEVELS,
-        "np.maximum(initial, self.clearance)",
-        "initial",
+        STRETCH,
+        "np.maximum(self.initial, clearance)",
+        "self.initial",
     ),
     (
         "the initial level is taken anew",
-        LEVELS,
-        "mode.initial if mode.code else ",
+        STRETCH,
+        "np.array([mode.initial]) if mode.code else ",
         "",
     ),
     (
         "over the hole before up to R",
-        LEVELS,
-        "self.rises = initial < self.clearance",
-        "pass",
+        STRETCH,
+        "rises = self.initial < clearance",
+        "rises = clearance < clearance",
     ),
     (
         "over the hole at R",
-        LEVELS,
-        "level = np.where(standing > self.clearance, standing, low)",
+        STRETCH,
+        "level = np.where(standing > clearance, standing, low)",
         "level = low",
     ),
     (
         "under G98 over the hole at R",
-        LEVELS,
-        "low = np.where(calls.initial, initial, self.clearance)",
-        "low = self.clearance",
+        STRETCH,
+        "low = np.where(self.calls.initial, self.initial, clearance)",
+        "low = clearance",
     ),
     (
         "increments are made once",
-        LEVELS,
-        "word * self.repeats",
+        STRETCH,
+        "word * repeats",
         "word",
     ),
     (
@@ -70,51 +73,51 @@ FAULTS = (
     ),
     (
         "R is a distance from nowhere",
-        LEVELS,
-        "np.where(calls.incremental, initial, 0.0)",
+        STRETCH,
+        "np.where(calls.incremental, self.initial, 0.0)",
         "0.0",
     ),
     (
         "the bottom is a distance from nowhere",
-        LEVELS,
-        "np.where(calls.incremental, self.clearance, 0.0)",
+        STRETCH,
+        "np.where(calls.incremental, clearance, 0.0)",
         "0.0",
     ),
     (
         "the middle is no distance",
         LEVELS,
-        "middle + np.where(calls.incremental, self.bottom, 0.0)",
+        "middle + np.where(calls.incremental, stretch.bottom, 0.0)",
         "middle + 0.0",
     ),
     (
         "blocks that store words drill",
-        LEVELS,
-        "wanted & (self.repeats > 0)",
-        "self.repeats > -1",
+        STRETCH,
+        "wanted & (repeats > 0)",
+        "repeats > -1",
     ),
     (
         "inches are counted in mm",
         LEVELS,
-        "lengths if unit == 1.0 else",
-        "lengths if unit > 0.0 else",
+        "lengths if calls.unit == 1.0 else",
+        "lengths if calls.unit > 0.0 else",
     ),
     (
         "every repeat rises",
         LEVELS,
-        "self.rises[call] & (number == 0)",
-        "self.rises[call]",
+        "stretch.rises[call] & (number == 0)",
+        "stretch.rises[call]",
     ),
     (
         "repeats come from where the first came",
         LEVELS,
-        "np.where(number == 0, self.level[call], self.retract[call])",
-        "self.level[call]",
+        "np.where(number == 0, stretch.level[call], stretch.retract[call])",
+        "stretch.level[call]",
     ),
     (
         "the dwell is forgotten",
         LEVELS,
-        "_Mode(dwell=self.mode.dwell)",
-        "_Mode()",
+        "Mode(dwell=self.mode.dwell)",
+        "Mode()",
     ),
     (
         "pecks begin at the last depth",
@@ -179,13 +182,25 @@ FAULTS = (
 )
 """Name, file, old, new; the tests are those of cycles."""
 
+TOGETHER = (
+    ("count events from the first of them", "event.row - int(bounds[number])", "event.row"),
+    ("end at R under G98", "if initial else clearance", "if False else clearance"),
+    ("keep the dwell before them", "if place >= first:\n", "if False:\n"),
+    ("are one", "bounds[:-1], positions", "bounds[:1], positions[:1]"),
+)
+"""Name, old, new of faults in stretches that are made together."""
+
 MUTATIONS = (
     *(Mutation(f"cycles: {name}", *where, CYCLES) for name, *where in FAULTS),
+    *(
+        Mutation(f"cycles: stretches made together {name}", DRILLING, old, new, STRETCHES)
+        for name, old, new in TOGETHER
+    ),
     Mutation(
         "cycles: a hole above R",
-        "gcxform/modal/cycles.py",
-        "self.bottom > self.clearance",
-        "self.bottom > np.inf",
+        "gcxform/modal/cyclechecks.py",
+        "stretch.bottom > stretch.clearance",
+        "stretch.bottom > np.inf",
         "tests/test_cycle_refusals.py",
     ),
 )

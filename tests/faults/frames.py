@@ -43,8 +43,8 @@ MUTATIONS = (
     Mutation(
         "frames: a tool is added twice",
         "gcxform/modal/frames.py",
-        "tool[:3] = self.tool\n",
-        "tool[:3] = 2.0 * np.array(self.tool)\n",
+        "shift[k] += length\n",
+        "shift[k] += 2.0 * length\n",
         SHIFTS,
     ),
     Mutation(

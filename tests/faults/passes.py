@@ -150,7 +150,7 @@ MUTATIONS = (
     ),
     Mutation(
         "writing: the end of a circle in inverse time is written",
-        "gcxform/emit/emitter.py",
+        "gcxform/emit/centres.py",
         "silent |= full & (self.path.feed_mode[rows] == FeedMode.INVERSE_TIME)",
         "silent |= False",
         f"{CORPUS}[feed/full-circle]",

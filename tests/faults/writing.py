@@ -28,7 +28,7 @@ MUTATIONS = (
     ),
     Mutation(
         "writing: centres count from where the start was before rounding",
-        "gcxform/emit/emitter.py",
+        "gcxform/emit/centres.py",
         "return np.where(exact[:, None], start, before)",
         "return start",
         LAWS + "::test_centres_count_from_the_start_as_it_is_written",
