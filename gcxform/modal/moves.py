@@ -251,12 +251,21 @@ class Moves:
             self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
             self.state.row_frame = self.track.frames[int(path.frame[-1])]
         refuse_ends(self.lines, self.modes, path.side, path.kind, line)
+        if self.side.any():
+            self._refuse_mirrored(path)
         if count and (self.state.pull or self.bends):
             path = read_splines(path, self.lines, self.modes)
         if not path.has_arcs:
             return path
         arcs = np.flatnonzero(path.is_arc)
         return resolve_arcs(path, self._arc_words(line[arcs]), self.dialect, self.findings)
+
+    def _refuse_mirrored(self, path: Toolpath) -> None:
+        """Refuse cutter compensation in a mirror: controls differ in the side it is then on."""
+        wrong = (path.side != 0) & path.mirrored
+        for row in np.flatnonzero(wrong)[: Findings.enough].tolist():
+            message = "cutter compensation in a mirror: which side is meant is not certain"
+            self.findings.add(int(path.block[row]), "GX230", message)
 
     def _lost_before(self, line: Ints, nth: Ints) -> Ints:
         """Return of which axes the position was lost between each row and the row before."""
