@@ -92,7 +92,7 @@ class Copying:
     def _refuse_unknown(self) -> None:
         """Refuse words that have to be written anew while it is not known what they would be."""
         unknown = self.positions.programmed & np.isnan(self.positions.held)
-        anew = ~self.lines[self.path.block] & (self.path.form == Form.PLAIN)
+        anew = ~self.lines[self.path.block] & np.isin(self.path.form, FREE)
         rows = np.flatnonzero(anew & unknown.any(axis=1))
         if len(rows):
             row = int(rows[0])

@@ -120,7 +120,6 @@ class Drilling:
         track.state.position = track.frame.positions(after[None, :])[0].copy()
         if self._manual.any() and self._manual[first:last].any():
             track.breaks.append(Break(last, 1 << plane.axes[2]))
-            track.state.position[plane.axes[2]] = np.nan  # the operator has moved it
 
     def _is_plain(self, first: int, last: int) -> bool:
         """Whether a stretch begins without a cycle in force, ends with G80, and has one in G90."""

@@ -1,10 +1,6 @@
 """Facts that do not hold yet, by what they wait for: a fact that holds must leave the list."""
 
 WAITING = {
-    "cutter compensation": """
-        lcnc_comp_entry_too_short_refused cutters_entry_short
-        cutters_arc_beside cutters_inner_corner cutters_left cutters_outer_corner cutters_right
-    """,
     "parameters and expressions": """
         values_code_by_expression values_code_by_parameter values_position_of_the_machine
         values_undefined_is_zero
@@ -20,3 +16,10 @@ WAITING = {
     """,
 }
 KNOWN = {name: reason for reason, names in WAITING.items() for name in names.split()}
+
+UNFINISHED = {
+    "is code that would have to be run": "subprograms and loops",
+    "it runs a program that is not in this file": "subprograms and loops",
+    "polar words": "polar words",
+}
+"""What refusals say that name a feature which is not there yet, and the feature."""

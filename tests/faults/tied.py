@@ -1,4 +1,4 @@
-"""Faults of moves that the spindle paces or a probe ends."""
+"""Faults of threads, taps, probes and the codes that the machine file excepts."""
 
 from __future__ import annotations
 

@@ -39,7 +39,6 @@
 | M70, M71, M73 | change nothing that a main program notices |
 | M72 | restores modes, spindle, coolant and overrides: refused |
 | M62 to M68, M66 | outputs and inputs: the axes stand still |
-| M100 to M199 | run a program of the machine: positions are unknown after them, unless `inert-m` |
 | assignments | take effect after their block: `#1=#2 #2=#1` swaps |
 | expressions | a sign binds to its number, `**` goes from the left, numbers within 1e-4 are EQ |
 | a parameter that nothing has set | refused unless given: the control may have a value left |
@@ -47,7 +46,7 @@
 | M words in a block | four at most |
 | T, M61 | a tool that is not in the table, where one is given, is refused |
 | `$` | beside S or what turns a spindle; only the first spindle is known |
-| M100 to M199 | run a program of the machine: refused unless it is said what they are |
+| M100 to M199 | run a program of the machine: refused, but for `user-codes` and `inert-m` |
 | @ and ^ | polar words: refused |
 | comments | `(MSG,` `(PRINT,` `(LOG,` `(PROBEOPEN` `(ABORT,` and their like are executed |
 | O-words | refused: code that would have to be run |
