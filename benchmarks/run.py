@@ -29,6 +29,8 @@ from time import perf_counter
 HERE = Path(__file__).resolve().parent
 EXAMPLE = HERE.parent / "examples" / "lddm"
 GCXFORM = Path(sys.executable).parent / "gcxform"
+# modules stay compiled from run to run, as they are where pip installed the package
+ENVIRONMENT = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
 HELP_RUNS = 10
 EXAMPLE_RUNS = 5
 MISSING = "not installed"
@@ -125,7 +127,9 @@ def timed(command: list[str], cwd: Path, stdout: Path, stderr: Path) -> tuple[in
     """Run a command to its end and return its exit code with what it took."""
     with stdout.open("wb") as out, stderr.open("wb") as err:
         start = perf_counter()
-        child = subprocess.Popen(command, cwd=cwd, stdin=subprocess.DEVNULL, stdout=out, stderr=err)
+        child = subprocess.Popen(
+            command, cwd=cwd, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=ENVIRONMENT
+        )
         _, status, used = os.wait4(child.pid, 0)
         wall = perf_counter() - start
     child.returncode = os.waitstatus_to_exitcode(status)
