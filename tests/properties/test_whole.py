@@ -35,7 +35,7 @@ STEPS = (
     "feed mode=inverse-time",
     "feed mode=per-minute",
 )
-REFUSALS = {"GX233", "GX314", "GX320", "GX506", "GX350", "GX504"}
+REFUSALS = {"GX233", "GX314", "GX320", "GX501", "GX506", "GX350", "GX504"}
 """What a chain may refuse of a program that is right."""
 
 pytestmark = pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
