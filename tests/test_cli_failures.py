@@ -127,8 +127,9 @@ def test_an_empty_program(here: Path) -> None:
     found = call(*RUN, "empty.nc")
     assert found.exit_code == 0, found.stderr
     assert (here / "out.nc").read_bytes() == b""
-    for verb in ("check", "info"):
-        assert call(verb, "-f", "linuxcnc", "empty.nc").exit_code == 0
+    assert call("info", "-f", "linuxcnc", "empty.nc").exit_code == 0
+    assert call("check", "-f", "fanuc", "empty.nc").exit_code == 0
+    assert "GX222" in call("check", "-f", "linuxcnc", "empty.nc").stderr  # as rs274 does
 
 
 # --- failures on the way ---

@@ -144,7 +144,6 @@ HEAD = "G21 G90 G94 G17\nG0 X0. Y0. Z5.\nG1 Z1. F100.\n"  # three lines
         ("linuxcnc", "M2\nG1 X1.\n", 5, "has ended"),
         ("linuxcnc", "M64 P1\nX1.\n", 5, "in line 4 M64 switched"),
         ("linuxcnc", "M71\nX1.\n", 5, "in line 4 M71 switched"),
-        ("linuxcnc", "M100 P1\nX1.\n", 5, "in line 4 M100 switched"),
         ("fanuc", "T1 M6\nX1. Y1.\n", 5, "where X, Y, Z stands is not known"),
         ("fanuc", "T1 M6\nX1. Y1.\nZ3.\nX2.\n", 6, "where Z stands is not known"),
         ("fanuc", "M77\nX1. Y1.\n", 5, "M77 switched"),
@@ -161,6 +160,14 @@ def test_where_no_restart_is_safe(
     assert (found.exit_code, found.stdout) == (3, "")
     assert "GX732" in found.stderr
     assert why in found.stderr
+
+
+def test_no_restart_behind_a_program_of_the_machine(tmp_path: Path) -> None:
+    (tmp_path / "p.nc").write_text(HEAD + "M100 P1\nX1. Y1. Z1.\n")
+    words = ["resume", "-f", "linuxcnc", "--line", "5", "--clearance", "50mm"]
+    found = call(*words, str(tmp_path / "p.nc"))
+    assert (found.exit_code, found.stdout) == (3, "")
+    assert "p.nc:4:1: error[GX214]: M100" in found.stderr
 
 
 @pytest.mark.parametrize("dialect", NAMES)
