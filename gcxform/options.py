@@ -32,9 +32,11 @@ import msgspec
 
 from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.machine import modelfile
-from gcxform.machine.errors import AxisFunctions, ErrorModel
+from gcxform.machine.errors import ErrorModel
 from gcxform.machine.formats import ErrorFormat
 from gcxform.machine.machine import ANGLE, AXIS_LETTERS, LENGTH, Quantity, quantity_of
+from gcxform.machine.modeltext import fingerprint
+from gcxform.machine.modeltext import to_toml as model_text
 from gcxform.tomltext import did_you_mean
 
 Built = TypeVar("Built")
@@ -81,10 +83,9 @@ class ModelFile:
     def load(cls, path: Path, formats: Iterable[type[ErrorFormat]] = ()) -> ModelFile:
         """Return the model of a file; raises UsageError as `load_model` does."""
         model = modelfile.load_model(path, tuple(formats))
-        if path.suffix.lower() == modelfile.SUFFIX or not isinstance(model, AxisFunctions):
-            data = path.read_bytes()
-        else:
-            data = modelfile.to_toml(model).encode()
+        native = path.suffix.lower() == modelfile.SUFFIX
+        data = path.read_bytes() if native else model_text(model).encode()
+        data += fingerprint(model) if model.composed else b""
         return cls(path, model, hashlib.sha256(data).hexdigest())
 
 

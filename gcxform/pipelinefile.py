@@ -19,12 +19,9 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar
 
-import msgspec
-
 from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import Diagnostic, Location, UsageError
-from gcxform.machine import machine
-from gcxform.machine.modelfile import AxisFunctionsFile
+from gcxform.machine import machine, modelfile
 from gcxform.options import (
     Argument,
     Coordinates,
@@ -325,7 +322,7 @@ def schema(
     if kind == "machine":
         return machine.schema()
     if kind == "model":
-        return msgspec.json.schema(AxisFunctionsFile)
+        return modelfile.schema()
     return _pipeline_schema((registry or default_registry()).passes)
 
 

@@ -18,7 +18,7 @@ from typing import Annotated, Any, Literal
 import msgspec
 
 from gcxform.diagnostics import Diagnostic, Location, UsageError
-from gcxform.machine.modelfile import CODES, FORMAT
+from gcxform.machine.modelfile import CODES, check_format
 from gcxform.machine.toolfile import read_tools
 from gcxform.tomltext import TomlText, convert, did_you_mean, read_toml
 
@@ -187,7 +187,7 @@ def load_machine(path: Path) -> Machine:
     Raises UsageError, with the place in the file, for all that is wrong with it.
     """
     document = read_toml(path, CODES)
-    _check_version(document)
+    check_format(document, "machines")
     file = _converted(_without_units(document))
     if found := tuple(_findings(document, file)):
         raise UsageError(found)
@@ -245,15 +245,6 @@ def _admit_strings(node: Any) -> None:
                 part["type"] = ["number", "string"]
     for child in children:
         _admit_strings(child)
-
-
-def _check_version(document: TomlText) -> None:
-    version = document.values.get("format")
-    if version is None:
-        raise document.missing_key(("format",))
-    if version != FORMAT or isinstance(version, bool):
-        message = f"format {version!r} of machines is not known, only format = {FORMAT} is"
-        raise UsageError.one("GX406", message, document.where("format"))
 
 
 @dataclass(frozen=True)
