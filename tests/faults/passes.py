@@ -79,8 +79,8 @@ MUTATIONS = (
     Mutation(
         "volumetric: the tool points the other way",
         f"{PASSES}/volumetric.py",
-        "tip = -tools[0]",
-        "tip = tools[0]",
+        "tip = -tools\n",
+        "tip = +tools\n",
         RIGID_PASS,
     ),
     Mutation(

@@ -121,7 +121,8 @@ class Volumetric(gx.Pass):
         zero = [table[path.first].get(axis, 0.0) for axis in "XYZ"]
         tip = None
         if self.model.model.needs_tool:
-            tip = -tools[0] if len(tools) == 1 else -tools[path.frame]
+            tip = -tools
+            tip = tip[0] if len(tip) == 1 else tip[path.frame]
         return Place(np.array([zero]) - origin, tip)
 
     def _check_frames(self, path: gx.Toolpath, message: str, tools: bool) -> None:
