@@ -23,7 +23,7 @@ import re
 import types
 import typing
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import MISSING, dataclass, field
+from dataclasses import MISSING, dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeVar
@@ -87,6 +87,20 @@ class ModelFile:
         data = path.read_bytes() if native else model_text(model).encode()
         data += fingerprint(model) if model.composed else b""
         return cls(path, model, hashlib.sha256(data).hexdigest())
+
+    def at_time(self, time: str) -> ModelFile:
+        """Return the model in its state at a time (ISO 8601). Raises UsageError.
+
+        A model that is in that state stays as it is, so that a pass may ask again.
+        """
+        if not self.model.states:
+            message = f"{self.path.name} holds at any time: it has no thermal model"
+            raise UsageError.one("GX426", message, hint="leave `time` out")
+        model = self.model.at_time(time)
+        content = fingerprint(model)
+        if content == fingerprint(self.model):
+            return self
+        return replace(self, model=model, sha256=hashlib.sha256(content).hexdigest())
 
 
 class OptionDoc(NamedTuple):

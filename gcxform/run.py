@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from dataclasses import asdict, dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -319,12 +319,14 @@ def _first_units(pipeline: Pipeline) -> str:
     return "in" if pipeline.target.initial["units"] == "G20" else "mm"
 
 
-def _described(step: Pass | TextPass) -> dict[str, object]:
+def _described(step: Pass | TextPass) -> dict[str, Any]:
     """Return a step's name, options and promise for the certificate."""
-    entry: dict[str, object] = {"use": step.name, **to_toml(step)}
+    entry: dict[str, Any] = {"use": step.name, **to_toml(step)}
     for key, value in vars(step).items():
         if isinstance(value, ModelFile):
             entry[key] = {"file": value.path.name, "sha256": value.sha256}
+            if value.model.states:
+                entry[key] |= {"states": [asdict(state) for state in value.model.states]}
     if isinstance(step, Pass):
         entry["promise"] = step.promise if np.isfinite(step.promise) else None
     return entry

@@ -70,6 +70,14 @@ class Volumetric(gx.Pass):
     max_extrapolation: Annotated[
         float, gx.Option("cells by which the table may be extrapolated", above=0.0)
     ] = 1.0
+    time: Annotated[
+        str | None, gx.Option("time (ISO 8601) whose temperatures hold; absent: as the model says")
+    ] = None
+
+    def __post_init__(self) -> None:
+        """Take the model in its state at the time."""
+        if self.time is not None:
+            object.__setattr__(self, "model", self.model.at_time(self.time))
 
     @property
     def promise(self) -> float:
