@@ -69,12 +69,12 @@ class Track:
 
     def on(self, line: int) -> FloatArray:
         """Return the actual points (k, 3) in mm on the moves of a line."""
-        return self.actual[self.line == line]
+        return np.asarray(self.actual[self.line == line])
 
     def stops(self, lines: tuple[int, ...]) -> FloatArray:
         """Return where the tool stands (k, 3) in mm at the end of each line; they ascend."""
         last = np.searchsorted(self.line, lines, side="right") - 1
-        return self.actual[last]
+        return np.asarray(self.actual[last])
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,8 @@ class Chain:
             "max_correction": CORRECTION,
             "max_extrapolation": math.inf,
         }
-        step = default_registry().pass_(PASS)(**options)
+        chosen: Any = default_registry().pass_(PASS)
+        step = chosen(**options)
         return Pipeline(self.dialect, self.dialect, (step,), numbers=self.numbers)
 
     def before(self, program: StandardProgram, spacing: float) -> Track:
