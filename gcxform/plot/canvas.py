@@ -111,6 +111,7 @@ def triad(axes: Axes, corner: FloatArray, length: float) -> None:
         way = np.zeros(3)
         way[k] = length
         end = isometric(corner + way)
+        axes.update_datalim([tuple(start.tolist()), tuple(end.tolist())])
         axes.annotate(
             letter,
             xy=(float(start[0]), float(start[1])),

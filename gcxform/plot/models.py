@@ -19,7 +19,7 @@ UM = 1000.0  # per mm
 TURNS = "ABC"
 PLACES = 5  # of the errors shown, along each axis
 FINE = 41  # points of a line of the distorted volume
-SHOWN = 0.12  # part of the volume's diagonal that the largest error is drawn as
+SHOWN = 0.06  # part of the volume's diagonal that the largest error is drawn as
 
 Curves = dict[str, tuple[FloatArray, FloatArray]]
 """Functions by ISO 230-1 name: position in mm, value in mm or rad."""

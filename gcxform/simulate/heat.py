@@ -1,7 +1,7 @@
 """How far the tool of a machine with errors is from the programmed path, along all of it.
 
-The machine is that of the pass: `undo` of `volumetric`, by which every run is proved. Which piece
-of the machine's path belongs to which piece of the program is found as `compare` finds it.
+The machine is that of the pass: `undo` of `volumetric`, by which every run is proved. Which move of
+the compensated program belongs to which move of the program says its source map.
 """
 
 from __future__ import annotations
@@ -11,16 +11,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.api import REACH, STRAIGHT, TOLERANCE, Program
-from gcxform.contract import Pass
-from gcxform.diagnostics import InputError
+from gcxform.api import Program
+from gcxform.diagnostics import UsageError
 from gcxform.machine.errors import FloatArray
 from gcxform.pipeline import Pipeline, Result
-from gcxform.toolpath.matching import Matching, Pieces, cut, match, measure
+from gcxform.simulate.positions import parts_of
+from gcxform.toolpath.deviation import deviation
+from gcxform.toolpath.matching import Pieces, cut, moving_rows
 from gcxform.toolpath.path import Kind, Toolpath
-from gcxform.toolpath.splines import straightened
+
+Ints = NDArray[np.int64]
 
 PIECES = 4000  # the path is divided into about so many, at least
+APART = 1e6  # mm; a rapid is never taken for a feed move
+NEAR = 0.1  # mm; ends that are so much farther off than the nearest may be the same end
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,59 +50,95 @@ class Heat:
 def before_and_after(program: Program, pipeline: Pipeline) -> tuple[Heat, Heat, Result]:
     """Return the deviations of a program as it is and as the pipeline writes it, and that.
 
-    The last step of the pipeline is the one that compensates. Raises InputError.
+    The last step of the pipeline is the one that compensates. Raises GcxformError.
     """
+    if any(step.joins for step in pipeline.path_passes):
+        message = "moves that were joined cannot be compared one by one"
+        raise UsageError.one("GX713", message, hint="leave out the pass that joins moves")
     result = pipeline.run(program.text)
-    written = Program(result.text, pipeline.target, program.reading, program.name)
-    step = pipeline.path_passes[-1]
-    before = deviations(program.path, step.undo(program.path, pipeline.context))
-    after = deviations(program.path, _machine(written, step, pipeline))
-    return before, after, result
+    nominal, context = program.path, pipeline.context
+    bare = nominal
+    for step in pipeline.path_passes[:-1]:
+        bare = step.apply(bare, context)
+    bare = pipeline.path_passes[-1].undo(bare, context)
+    written = Program(result.text, pipeline.target, program.reading, program.name).path
+    line = np.array(result.source_map, dtype=np.int64)
+    for step in reversed(pipeline.path_passes):
+        written = step.undo(written, context)
+    before = deviations(nominal, bare, _same_moves(nominal, bare))
+    return before, deviations(nominal, written, owners(nominal, written, line)), result
 
 
-def _machine(written: Program, step: Pass, pipeline: Pipeline) -> Toolpath:
-    return step.undo(written.path, pipeline.context)
+def deviations(nominal: Toolpath, actual: Toolpath, owner: Ints) -> Heat:
+    """Return how far a machine's path is from the programmed one.
+
+    `owner` (len(actual),) is the row of the programmed path that each move belongs to, or -1.
+    """
+    rows = np.flatnonzero(owner >= 0)
+    nominal, actual, owner = _linear(nominal), _linear(actual), owner[rows]
+    spacing = max(_length(nominal) / PIECES, 1e-6)
+    row, high = parts_of(actual, spacing)
+    low = np.where(np.append(True, row[1:] != row[:-1]), 0.0, np.append(0.0, high[:-1]))
+    which = np.searchsorted(rows, row)
+    fine = cut(actual, Pieces(row, low, high))
+    found = deviation(nominal, fine, owner[which]).distance
+    start, end = fine.start, fine.end
+    known = np.isfinite(start).all(axis=1) & np.isfinite(end).all(axis=1) & np.isfinite(found)
+    rapid = nominal.kind[owner[which]] == Kind.RAPID
+    return Heat(start[known], end[known], found[known], rapid[known])
 
 
-def deviations(nominal: Toolpath, actual: Toolpath) -> Heat:
-    """Return how far a machine's path is from the programmed one. Raises InputError if not near."""
-    axes = nominal.axes
-    assert axes == actual.axes
-    nominal, actual = straightened(nominal, STRAIGHT), straightened(actual, STRAIGHT)
-    found = match(nominal, actual, TOLERANCE, REACH)
-    if found.parted is not None:
-        line = int(nominal.source[max(found.parted[0], 0)]) + 1
-        message = f"the machine is more than {REACH:g} mm from the program after line {line}"
-        raise InputError.one("GX313", message)
-    length = float(np.nan_to_num(np.abs(nominal.end - nominal.start)[:, :3]).sum())
-    fine = divided(found, nominal, max(length, 1e-6) / PIECES)
-    distance = measure(nominal, actual, fine).distance
-    pieces = cut(nominal, fine.a)
-    start, end = pieces.start[:, :3], pieces.end[:, :3]
-    known = ~np.isnan(start).any(axis=1) & ~np.isnan(end).any(axis=1) & ~np.isnan(distance)
-    rapid = pieces.kind == Kind.RAPID
-    return Heat(start[known], end[known], distance[known], rapid[known])
+def _linear(path: Toolpath) -> Toolpath:
+    """Return a path in X, Y and Z alone."""
+    end = np.asfortranarray(path.end[:, :3])
+    return path.replace(axes="XYZ", end=end, entry=path.entry[:3].copy())
 
 
-def divided(found: Matching, nominal: Toolpath, spacing: float) -> Matching:
-    """Return the same pairs in parts, so that pieces of the nominal path are `spacing` mm long."""
-    way = np.nan_to_num(nominal.end - nominal.start)[:, :3]
-    length = np.sqrt((way**2).sum(axis=1))
-    if nominal.has_arcs:
-        arcs = np.flatnonzero(nominal.is_arc)
-        around = nominal.end[arcs, :3] - nominal.centre[arcs]
-        radius = np.sqrt((np.nan_to_num(around) ** 2).sum(axis=1))
-        length[arcs] = np.maximum(length[arcs], radius * nominal.sweep[arcs])
-    size = length[found.a.row] * (found.a.high - found.a.low)
-    count = np.maximum(np.ceil(size / spacing), 1.0).astype(np.int64)
-    owner = np.repeat(np.arange(len(count)), count)
-    nth = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
-    low, high = nth / count[owner], (nth + 1) / count[owner]
-    return Matching(_parts(found.a, owner, low, high), _parts(found.b, owner, low, high))
+def _length(path: Toolpath) -> float:
+    return float(np.nan_to_num(np.abs(path.end - path.start)).sum())
 
 
-def _parts(side: Pieces, owner: NDArray[np.int64], low: FloatArray, high: FloatArray) -> Pieces:
-    """Return parts of pieces, from 0 to 1 of each; the last ends where its piece does."""
-    first, width = side.low[owner], (side.high - side.low)[owner]
-    last = np.where(high == 1.0, side.high[owner], first + high * width)
-    return Pieces(side.row[owner], first + low * width, last)
+def _same_moves(nominal: Toolpath, cut_up: Toolpath) -> Ints:
+    """Return the row of a path that each row belongs to of the same path cut up by passes."""
+    first = np.searchsorted(nominal.source, cut_up.source, side="left")
+    return np.asarray(first + cut_up.nth)
+
+
+def owners(nominal: Toolpath, written: Toolpath, line_of: Ints) -> Ints:
+    """Return the row of the nominal path (n,) that each row of a written path belongs to, or -1.
+
+    `line_of` holds the line of the program for each line that was written. Mostly a line is one
+    move. Where it is several, a canned cycle for instance, their ends are looked for in order.
+    """
+    line = line_of[written.source]
+    first = np.searchsorted(nominal.source, line, side="left")
+    count = np.searchsorted(nominal.source, line, side="right") - first
+    owner = np.where(count > 0, first, -1)
+    moving = moving_rows(nominal)
+    for several in np.unique(line[count > 1]).tolist():
+        theirs = np.flatnonzero(line == several)
+        ours = moving[nominal.source[moving] == several]
+        if len(ours):
+            owner[theirs] = ours[_in_order(_marked(nominal, ours), _marked(written, theirs))]
+    return owner
+
+
+def _marked(path: Toolpath, rows: Ints) -> FloatArray:
+    """Return the ends (n, 4) in mm of rows, of rapids far away in a dimension of their own."""
+    rapid = path.kind[rows] == Kind.RAPID
+    return np.column_stack([path.end[rows, :3], np.where(rapid, APART, 0.0)])
+
+
+def _in_order(ends: FloatArray, others: FloatArray) -> Ints:
+    """Return to which of the ends (m, 4) each of the others (n, 4) belongs or leads, in order."""
+    found = np.full(len(others), len(ends) - 1)
+    begin = 0
+    for k, end in enumerate(ends):
+        stop = len(others) - (len(ends) - 1 - k)
+        far = np.nan_to_num(np.abs(others[begin:stop] - end)).max(axis=1)
+        if not len(far):
+            break
+        after = begin + int(np.argmax(far <= far.min() + NEAR)) + 1
+        found[begin:after] = k
+        begin = after
+    return found
