@@ -8,5 +8,5 @@ from gcxform.plot.canvas import rendered as rendered
 from gcxform.plot.diagrams import circles as circles
 from gcxform.plot.diagrams import diagonals as diagonals
 from gcxform.plot.diagrams import positioning as positioning
-from gcxform.plot.heat import heat as heat
 from gcxform.plot.models import model as model
+from gcxform.plot.paths import heat as heat

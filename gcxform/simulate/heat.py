@@ -19,10 +19,13 @@ from gcxform.simulate.positions import parts_of
 from gcxform.toolpath.deviation import deviation
 from gcxform.toolpath.matching import Pieces, cut, moving_rows
 from gcxform.toolpath.path import Kind, Toolpath
+from gcxform.toolpath.splines import points_on_splines
 
 Ints = NDArray[np.int64]
 
 PIECES = 4000  # the path is divided into about so many, at least
+MANY = 1000  # splines
+SPLINE = 500  # points of a spline to which others are compared
 APART = 1e6  # mm; a rapid is never taken for a feed move
 NEAR = 0.1  # mm; ends that are so much farther off than the nearest may be the same end
 
@@ -82,10 +85,37 @@ def deviations(nominal: Toolpath, actual: Toolpath, owner: Ints) -> Heat:
     which = np.searchsorted(rows, row)
     fine = cut(actual, Pieces(row, low, high))
     found = deviation(nominal, fine, owner[which]).distance
+    _see_splines(nominal, fine, owner[which], found)
     start, end = fine.start, fine.end
     known = np.isfinite(start).all(axis=1) & np.isfinite(end).all(axis=1) & np.isfinite(found)
     rapid = nominal.kind[owner[which]] == Kind.RAPID
     return Heat(start[known], end[known], found[known], rapid[known])
+
+
+def _see_splines(nominal: Toolpath, fine: Toolpath, owner: Ints, found: FloatArray) -> None:
+    """Lower the deviations of moves along splines, in place, to those of their own ends.
+
+    What is proved of a spline is one figure for all of it; a picture shows where on it. Of very
+    many splines each is short, and the one figure is good enough.
+    """
+    splines = np.unique(owner[nominal.is_spline[owner]])
+    for row in splines.tolist() if len(splines) <= MANY else ():
+        rows = np.flatnonzero(owner == row)
+        part = np.linspace(0.0, 1.0, SPLINE)
+        curve = points_on_splines(nominal, np.full(SPLINE, row), part)
+        for some in np.array_split(rows, 1 + len(rows) // SPLINE):
+            away = [_distance(points[some], curve) for points in (fine.start, fine.end)]
+            found[some] = np.minimum(found[some], np.maximum(*away))
+
+
+def _distance(points: FloatArray, curve: FloatArray) -> FloatArray:
+    """Return how far points (n, 3) are from a curve of short lines (k, 3), mm."""
+    start, way = curve[:-1], np.diff(curve, axis=0)
+    from_start = points[:, None] - start
+    square = np.maximum((way**2).sum(axis=1), 1e-30)
+    part = np.clip((from_start * way).sum(axis=2) / square, 0.0, 1.0)
+    away = from_start - part[:, :, None] * way
+    return np.asarray(np.sqrt((away**2).sum(axis=2).min(axis=1)))
 
 
 def _linear(path: Toolpath) -> Toolpath:
