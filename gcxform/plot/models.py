@@ -45,7 +45,7 @@ def squareness(found: Curves) -> dict[str, float]:
     """Return C0Y, B0Z and A0Z (rad) between the lines through the ends of the straightness curves.
 
     The angle between two axes is the sum of the slopes of one in the direction of the other
-    (ISO 230-1:2012, 3.6): C0Y turns Y about Z, so that EXY has the slope -C0Y, and so on.
+    (names of ISO 230-1:2012): C0Y turns Y about Z, so that EXY has the slope -C0Y, and so on.
     """
     pairs = {"C0Y": ("EXY", "EYX", -1.0), "B0Z": ("EXZ", "EZX", 1.0), "A0Z": ("EYZ", "EZY", -1.0)}
     return {

@@ -138,7 +138,7 @@ class Line:
 def linear_cycles(
     dialect: type[Dialect], decimals: int, lines: Sequence[Line], runs: int, feed: float
 ) -> StandardProgram:
-    """Return the program of the standard linear cycle on each line (ISO 230-2:2014, 5.3).
+    """Return the program of the standard linear cycle on each line (ISO 230-2:2014, clause 5).
 
     Every run goes up through all targets, beyond the last one, and down through all of them, so
     that each is approached from both sides. Lines are `NAME up` and `NAME down`, run by run.

@@ -183,7 +183,7 @@ def axis_line(
     """Return the targets of an axis between `low` and `high`, the overtravel included, in mm.
 
     The interval is even plus a random amount up to `scatter` for each target, so that the pitch of
-    a screw or scale is not hidden (ISO 230-2:2014, 5.3.2).
+    a screw or scale is not hidden (ISO 230-2:2014, clause 5).
     """
     random = np.random.default_rng([seed, axis])
     inner = beyond + scatter
@@ -199,7 +199,7 @@ FACES = ("PP0", "NP0", "0PP", "0NP", "P0P", "N0P")
 
 
 def diagonal_line(name: str, box: FloatArray, count: int, beyond: float = 0.0) -> Line:
-    """Return a diagonal of a box (3, 2) in mm by its name in the manner of ISO 230-6.
+    """Return a diagonal of a box (3, 2) in mm by its name in the manner of ISO 230-6:2002.
 
     The letters are the senses of X, Y and Z on the way up: P positive, N negative; 0 for an axis
     that stands in the middle of the box, of a face diagonal.
@@ -224,5 +224,5 @@ def possible(names: Sequence[str], box: FloatArray) -> tuple[str, ...]:
 
 
 def largest(readings: Mapping[str, Positioning], names: Sequence[str], symbol: str) -> float:
-    """Return the largest figure of some diagonals, mm: E_D and B_D of ISO 230-6."""
+    """Return the largest figure of some diagonals, mm: E_D and B_D of ISO 230-6:2002."""
     return max(itertools.chain([0.0], (readings[n].figures[symbol] for n in names)))
