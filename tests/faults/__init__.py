@@ -12,6 +12,7 @@ from faults import (
     passes,
     proof,
     reading,
+    simulating,
     splines,
     tied,
     writing,
@@ -31,4 +32,5 @@ MUTATIONS: tuple[Mutation, ...] = (
     *splines.MUTATIONS,
     *tied.MUTATIONS,
     *proof.MUTATIONS,
+    *simulating.MUTATIONS,
 )
