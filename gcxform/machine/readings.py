@@ -74,7 +74,8 @@ class Readings:
         age = (time - row.time).total_seconds()
         if age > oldest:
             message = f"the last readings before {time.isoformat()} are {age:g} s old"
-            hint = f"max-age = {oldest:g} (s) is what may pass; they are in line {row.line}"
+            place = f"line {row.line} of {Path(self.file).name}"
+            hint = f"max-age = {oldest:g} (s) is what may pass; they are in {place}"
             raise UsageError.one("GX426", message, where, hint)
         return row
 
