@@ -14,6 +14,7 @@ from faults import (
     reading,
     simulating,
     splines,
+    thermal,
     tied,
     writing,
 )
@@ -30,6 +31,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     *writing.MUTATIONS,
     *arcs.MUTATIONS,
     *splines.MUTATIONS,
+    *thermal.MUTATIONS,
     *tied.MUTATIONS,
     *proof.MUTATIONS,
     *simulating.MUTATIONS,
