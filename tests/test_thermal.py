@@ -199,6 +199,17 @@ def test_a_stretch_is_the_error_of_its_rod(seed, sense, held):
     assert slope[-1] == pytest.approx(near[0], abs=np.abs(found.bend).max() * step + 1e-12)
 
 
+def test_bounds_that_are_reached():
+    """Warmest at the far end: the steepest place is there, and all axes are farthest off there."""
+    far = stretch(Rod(AT, ALPHA), np.linspace(0, 33, 12), (0.0, 1221.0))
+    model = ThermalScrew((far, far, far))
+    assert model.lipschitz() == pytest.approx(ALPHA * 33, rel=1e-9)
+    assert model.curvature() == pytest.approx(np.eye(3) * ALPHA * 3 / PITCH, rel=1e-9)
+    corner = model.error(np.full((1, 3), 1221.0))[0]
+    assert corner == pytest.approx([ALPHA * 33 * 1221 / 2] * 3, rel=1e-9)
+    assert model.largest() == pytest.approx(np.linalg.norm(corner), rel=1e-9)
+
+
 @pytest.mark.parametrize("policy", Outside)
 def test_policies_outside(policy):
     model = warm(3)

@@ -44,7 +44,7 @@ MUTATIONS = (
         "inside = np.clip(coordinate, self.position[0], self.position[-1])",
         "inside = coordinate",
     ),
-    _fault("the steepest place is at the left", ROD, "np.abs(right).max()", "0.0", RIGID),
+    _fault("the steepest place is at the left", ROD, "np.abs(right).max()", "0.0"),
     _fault("a smaller bend", ROD, "np.abs(axis.bend).max()", "np.abs(axis.bend).mean()", RIGID),
     _fault("the largest error at nodes only", ROD, "np.append(self.value, between)", "self.value"),
     _fault("the axes take turns", ROD, "math.hypot(*(0.0 if", "max(*(0.0 if"),
