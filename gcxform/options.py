@@ -34,7 +34,7 @@ from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.machine import modelfile
 from gcxform.machine.errors import AxisFunctions, ErrorModel
 from gcxform.machine.formats import ErrorFormat
-from gcxform.machine.machine import ANGLE, AXIS_LETTERS, LENGTH, Quantity, quantity_of
+from gcxform.machine.quantities import ANGLE, AXIS_LETTERS, LENGTH, Quantity, quantity_of
 from gcxform.tomltext import did_you_mean
 
 Built = TypeVar("Built")

@@ -23,7 +23,7 @@ import msgspec
 
 from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import Diagnostic, Location, UsageError
-from gcxform.machine import machine
+from gcxform.machine import machinefile
 from gcxform.machine.modelfile import AxisFunctionsFile
 from gcxform.options import (
     Argument,
@@ -323,7 +323,7 @@ def schema(
 ) -> dict[str, Any]:
     """Return the JSON Schema of a kind of files; that of pipelines has the passes' options."""
     if kind == "machine":
-        return machine.schema()
+        return machinefile.schema()
     if kind == "model":
         return msgspec.json.schema(AxisFunctionsFile)
     return _pipeline_schema((registry or default_registry()).passes)

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from gcxform.cli.options import ENVIRONMENT
 from gcxform.diagnostics import Location, UsageError
-from gcxform.machine.machine import Machine, load_machine
+from gcxform.machine.machine import Machine
+from gcxform.machine.machinefile import load_machine
 from gcxform.modal.state import Reading
 from gcxform.options import Argument, build
 from gcxform.pipeline import Pipeline

@@ -14,7 +14,7 @@ from gcxform.cli.outputs import STDOUT
 from gcxform.cli.programs import opened
 from gcxform.contract import Pass
 from gcxform.diagnostics import Location, UsageError
-from gcxform.machine.machine import LENGTH
+from gcxform.machine.quantities import LENGTH
 from gcxform.options import Argument, build
 from gcxform.registry import default_registry
 
