@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.cli.memory import Memory, shapes_seen
-from gcxform.cli.preamble import Approach, Preamble, code_of
+from gcxform.cli.preamble import Approach, Preamble
 from gcxform.diagnostics import Diagnostic, InputError, Location, UsageError, VerificationError
 from gcxform.dialect import INCH, Dialect
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading, State
-from gcxform.modal.tables import CYCLES, GROUPS, NUMBER
+from gcxform.modal.tables import CYCLES, GROUPS, NUMBER, code_of
 from gcxform.source import Source
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Kind, Toolpath

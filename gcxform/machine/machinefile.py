@@ -18,7 +18,7 @@ import msgspec
 
 from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.machine.machine import MARK, Axis, Machine, MachineFile, Offset, Tool
-from gcxform.machine.modelfile import CODES, FORMAT
+from gcxform.machine.modelfile import CODES, check_version
 from gcxform.machine.quantities import (
     ANGLE,
     AXIS_LETTERS,
@@ -43,7 +43,7 @@ def load_machine(path: Path) -> Machine:
     Raises UsageError, with the place in the file, for all that is wrong with it.
     """
     document = read_toml(path, CODES)
-    _check_version(document)
+    check_version(document, "machines")
     file = _converted(_without_units(document))
     if found := tuple(_findings(document, file)):
         raise UsageError(found)
@@ -101,15 +101,6 @@ def _admit_strings(node: Any) -> None:
                 part["type"] = ["number", "string"]
     for child in children:
         _admit_strings(child)
-
-
-def _check_version(document: TomlText) -> None:
-    version = document.values.get("format")
-    if version is None:
-        raise document.missing_key(("format",))
-    if version != FORMAT or isinstance(version, bool):
-        message = f"format {version!r} of machines is not known, only format = {FORMAT} is"
-        raise UsageError.one("GX406", message, document.where("format"))
 
 
 @dataclass(frozen=True)

@@ -119,7 +119,7 @@ def _foreign(path: Path, formats: Sequence[type[ErrorFormat]]) -> ErrorModel:
 
 def _native(path: Path) -> ErrorModel:
     document = read_toml(path, CODES)
-    _check_version(document)
+    check_version(document, "error models")
     kind = document.values.get("kind")
     if kind is None:
         raise document.missing_key(("kind",))
@@ -133,12 +133,13 @@ def _native(path: Path) -> ErrorModel:
     return KINDS[kind](document)
 
 
-def _check_version(document: TomlText) -> None:
+def check_version(document: TomlText, what: str) -> None:
+    """Raise UsageError unless a file of machines or their errors has the format of today."""
     version = document.values.get("format")
     if version is None:
         raise document.missing_key(("format",))
     if version != FORMAT or isinstance(version, bool):
-        message = f"format {version!r} of error models is not known, only format = {FORMAT} is"
+        message = f"format {version!r} of {what} is not known, only format = {FORMAT} is"
         raise UsageError.one("GX406", message, document.where("format"))
 
 
