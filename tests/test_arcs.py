@@ -22,9 +22,9 @@ from oracles import rs274
 from properties.test_laws import at, point_of
 from reference.interpreter import Move, interpret
 from test_verify import Change, dropped, inserted, said, swapped
+from test_verify import run as lie
 
 import gcxform as gx
-from gcxform.emit.emitter import Emitted
 from gcxform.run import Output, Run
 from gcxform.source import Source
 from gcxform.toolpath.runs import Runs, deviation_of_runs, runs_of
@@ -266,21 +266,7 @@ TAMPERED: dict[str, tuple[Change, str]] = {
 
 
 def tampered(change: Change, program: bytes) -> None:
-    source = Source.of_bytes(program)
-    job = Run(gx.Pipeline.parse("arcs tolerance=0.02", "linuxcnc"), source, "full")
-    emit, texts = job.emitter.emit, list[bytes]()
-
-    def lying(*task: object) -> Emitted:
-        emitted = emit(*task)  # type: ignore[arg-type]
-        lines = emitted.text.splitlines(keepends=True)
-        changed = list(change(list(zip(lines, emitted.source.tolist(), strict=True))))
-        several = [(t, n) for text, n in changed for t in text.splitlines(keepends=True)]
-        text = b"".join(line for line, _ in several)
-        source = np.array([number for _, number in several], np.int64)
-        return Emitted(text, source, np.zeros(len(source), np.int64))
-
-    job.emitter.emit = lying  # type: ignore[method-assign]
-    job.over(source.windows(), Output(texts.append, None), lambda _: None)
+    lie(change, "arcs tolerance=0.02", program)
 
 
 def test_nothing_is_wrong_with_the_program_itself() -> None:
