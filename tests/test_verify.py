@@ -53,8 +53,9 @@ def run(
         emitted = emit(*task)  # type: ignore[arg-type]
         lines = emitted.text.splitlines(keepends=True)
         changed = list(change(list(zip(lines, emitted.source.tolist(), strict=True))))
-        text = b"".join(line for line, _ in changed)
-        source = np.array([number for _, number in changed], np.int64)
+        several = [(part, n) for text, n in changed for part in text.splitlines(keepends=True)]
+        text = b"".join(line for line, _ in several)
+        source = np.array([number for _, number in several], np.int64)
         return Emitted(text, source, np.zeros(len(source), np.int64))
 
     job.emitter.emit = lying  # type: ignore[method-assign]

@@ -58,6 +58,25 @@ NUMBER = {
     "G42.1": 4,
 }
 """The number that stands for a code within its group."""
+FAMILIES = {
+    "motion": (
+        *("G0", "G1", "G2", "G3", "G80", "G5", "G5.1", "G33", "G33.1"),
+        *(f"G38.{2 + k}" for k in range(len(PROBES))),
+        *(f"G{n}" for n in CYCLES),
+    ),
+    "plane": ("G17", "G18", "G19"),
+    "distance": ("G90", "G91"),
+    "arc-distance": ("G91.1", "G90.1"),
+    "feed-mode": ("G93", "G94", "G95"),
+    "units": ("G21", "G20"),
+    "cutter-comp": ("G40", "G41", "G42", "G41.1", "G42.1"),
+}
+"""The codes of each of the groups, but for work offsets, which have names."""
+
+
+def code_of(group: str, number: int) -> str:
+    """Return the code of a group by its number."""
+    return next(code for code in FAMILIES[group] if NUMBER[code] == number)
 
 
 MANY_WORK = 9
