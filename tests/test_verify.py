@@ -118,6 +118,16 @@ def inserted(text: str, number: int) -> Change:
     return change
 
 
+def led_by(text: str, number: int) -> Change:
+    """Write one line more before what was written for a line of the input."""
+
+    def change(lines: list[Line]) -> Iterable[Line]:
+        place = next(k for k, line in enumerate(lines) if line[1] == number)
+        return [*lines[:place], (text.encode() + b"\n", number), *lines[place:]]
+
+    return change
+
+
 TAMPERED = {
     "the sign of a position": (said("Y-10", "Y10"), "off"),
     "another depth": (said("Z-1.5 F100", "Z-1.6 F100"), "off"),
@@ -135,6 +145,8 @@ TAMPERED = {
     "a feed is dropped": (said(" F300", ""), "feed"),
     "another time in G93": (said("F2\n", "F2.01\n"), "time"),
     "another feed mode": (said("G93 G1", "G1"), "feed mode"),
+    "a rapid goes astray on its way": (led_by("G0 Z-9", 14), "off"),
+    "the first rapid goes astray": (led_by("G0 Z-9", 2), "off"),
     "a rapid cuts": (said("G0 Z5", "G1 Z5"), "rapid"),
     "a cut becomes a rapid": (said("G1 X60", "G0 X60"), "rapid"),
     "the sense of an arc": (said("G2 X60", "G3 X60"), "."),
