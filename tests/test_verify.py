@@ -221,6 +221,22 @@ def test_nodes_that_are_not_stopped_at_are_seen() -> None:
         run(change, COMPENSATED, program)
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        said("(LOG,X)\n", "\n"),
+        said("(LOG,X)", "(LOG,Y)"),
+        said("(plain)", "(MSG,plain)"),
+        moved_on("(LOG,X)"),
+    ],
+)
+def test_comments_that_act_are_events(change: Change) -> None:
+    program = b"G21 G90 G94 G17\nG0 X0 Y0 Z0\n(LOG,X)\nX5\nG1 X10 F100 (plain)\nM2\n"
+    run(program=program)
+    with pytest.raises(gx.VerificationError, match="became|moved|missing"):
+        run(change, program=program)
+
+
 def test_an_event_stays_before_the_first_piece_of_its_move() -> None:
     program = b"G21 G90 G94\nG0 X0 Y0 Z0\nG1 X9 F100 M8\nM2\n"
 

@@ -15,6 +15,8 @@ from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Mark, Number, Statement, Word
 
 CENTRE = "IJK"
+COMMENT = 0
+"""The order of comments that are executed: LinuxCNC does so before all else in the block."""
 DRILL_WORDS = "PQLK"
 """Words that only a canned cycle in force may want."""
 UNTOUCHED_STATEMENTS: frozenset[str] = frozenset()
@@ -184,6 +186,9 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
             text = shape.block.text[item.start : item.end]
             if text[0] not in dialect.comments:
                 yield Refusal("GX101", item.start, 1, f"{dialect.name} has no such comments")
+            if dialect.executes(text):
+                inner = text[1:].removesuffix(")") if text[0] == "(" else text[1:]
+                meaning.events.append(EventShape(COMMENT, f"({inner})"))
 
 
 def _expression(word: Word, dialect: type[Dialect]) -> Iterator[Refusal]:
