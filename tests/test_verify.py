@@ -233,7 +233,7 @@ def test_nodes_that_are_not_stopped_at_are_seen() -> None:
 def test_comments_that_act_are_events(change: Change) -> None:
     program = b"G21 G90 G94 G17\nG0 X0 Y0 Z0\n(LOG,X)\nX5\nG1 X10 F100 (plain)\nM2\n"
     run(program=program)
-    with pytest.raises(gx.VerificationError, match="became|moved|missing"):
+    with pytest.raises(gx.VerificationError, match=r"became|moved|missing"):
         run(change, program=program)
 
 

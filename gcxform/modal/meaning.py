@@ -183,12 +183,19 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
             meaning.deleted |= item.kind == "block_delete"
             meaning.percent |= item.kind == "percent"
         elif isinstance(item, Comment):
-            text = shape.block.text[item.start : item.end]
-            if text[0] not in dialect.comments:
-                yield Refusal("GX101", item.start, 1, f"{dialect.name} has no such comments")
-            if dialect.executes(text):
-                inner = text[1:].removesuffix(")") if text[0] == "(" else text[1:]
-                meaning.events.append(EventShape(COMMENT, f"({inner})"))
+            yield from _comment(item, shape, dialect, meaning)
+
+
+def _comment(
+    item: Comment, shape: Shape, dialect: type[Dialect], meaning: Meaning
+) -> Iterator[Refusal]:
+    """Turn a comment that is executed into an event."""
+    text = shape.block.text[item.start : item.end]
+    if text[0] not in dialect.comments:
+        yield Refusal("GX101", item.start, 1, f"{dialect.name} has no such comments")
+    if dialect.executes(text):
+        inner = text[1:].removesuffix(")") if text[0] == "(" else text[1:]
+        meaning.events.append(EventShape(COMMENT, f"({inner})"))
 
 
 def _expression(word: Word, dialect: type[Dialect]) -> Iterator[Refusal]:
