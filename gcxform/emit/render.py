@@ -14,6 +14,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+PEELED_AT_MOST = 16
+
 
 class Renderer:
     """Collects rendered templates and puts them in order."""
@@ -116,6 +118,20 @@ class Renderer:
                 matrix[places, : part.shape[1]] = part
         kept = matrix != 0
         return matrix[kept].tobytes(), np.count_nonzero(kept, axis=1)
+
+
+def groups_of(ways: Ints) -> list[Ints]:
+    """Return the places of each value, by peeling off one value after another."""
+    groups: list[Ints] = []
+    left = np.arange(len(ways))
+    while len(left) and len(groups) < PEELED_AT_MOST:
+        same = ways[left] == ways[left[0]]
+        groups.append(left[same])
+        left = left[~same]
+    if len(left):
+        order = left[np.argsort(ways[left], kind="stable")]
+        groups += np.split(order, np.flatnonzero(np.diff(ways[order])) + 1)
+    return groups
 
 
 def interleave(
