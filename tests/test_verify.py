@@ -237,6 +237,25 @@ def test_comments_that_act_are_events(change: Change) -> None:
         run(change, program=program)
 
 
+@pytest.mark.parametrize("other", ["G38.3", "G38.4", "G38.5"])
+def test_a_probing_move_stays_what_it_is(other: str) -> None:
+    program = b"G21 G90 G94\nG0 X0 Y0 Z5\nG38.2 Z-5 F50\nM2\n"
+    run(program=program)
+    with pytest.raises(gx.VerificationError, match="tied to the spindle or to a probe"):
+        run(said("G38.2", other), program=program)
+
+
+@pytest.mark.parametrize("code", ["G0", "G1"])
+def test_short_moves_left_out_may_not_lead_far_away(code: str) -> None:
+    """A thousand steps of 0.2 um are a tenth of a millimetre there and as much back."""
+    there = [f"X{1 + 0.0002 * k:.4f} F{100 + k}" for k in range(1, 500)]
+    back = [f"X{1 + 0.0002 * k:.4f} F{100 - k / 10:g}" for k in range(498, -1, -1)]
+    moves = "\n".join([f"{code} {there[0]}", *there[1:], *back])
+    program = f"G21 G90 G94\nG0 X0 Y0 Z0\nG1 X1 F100\n{moves}\nG1 X5 F100\nM2\n".encode()
+    with pytest.raises(gx.VerificationError, match="missing"):
+        run(dropped(*range(3, 3 + 998)), program=program)
+
+
 def test_an_event_stays_before_the_first_piece_of_its_move() -> None:
     program = b"G21 G90 G94\nG0 X0 Y0 Z0\nG1 X9 F100 M8\nM2\n"
 
