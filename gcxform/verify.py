@@ -177,9 +177,9 @@ class Verifier:
         begins = np.append(True, np.diff(left) > 1)[: len(left)]
         together = np.bincount(np.cumsum(begins) - 1, along) if len(left) else along
         short = together[np.cumsum(begins) - 1] <= self.budget
-        wrong = left[trace.before.is_arc[left] | ~short]
-        if len(wrong):
-            line = int(trace.before.source[wrong[0]])
+        missing = left[trace.before.is_arc[left] | ~short]
+        if len(missing):
+            line = int(trace.before.source[missing[0]])
             self._raise("a move of the source is missing in the output", line, 0)
 
     def _kinds(self, trace: _Trace) -> None:
