@@ -180,7 +180,8 @@ def _unreached(task: Task) -> Flags:
     if not task.manner.crossing:
         return np.ones(len(shapes), np.bool_)
     percent = task.table.flag("percent", shapes) & task.manner.target.has_percent
-    blank = [not task.table.shapes.shapes[int(shape)].block.items for shape in shapes]
+    blocks = [task.table.shapes.shapes[int(shape)].block for shape in shapes]
+    blank = [not block.items and block.error is None for block in blocks]
     return np.asarray(percent | np.array(blank, np.bool_))
 
 
