@@ -154,7 +154,8 @@ class Verifier:
         """Compare where feed moves begin after a rapid: a rapid's own end may be left out."""
         before, after = trace.before, trace.after
         begins = np.append(True, trace.owner[1:] != trace.owner[:-1])
-        rows = np.flatnonzero(begins & (before.kind[trace.owner] != Kind.RAPID))[1:]
+        rows = np.flatnonzero(begins & (before.kind[trace.owner] != Kind.RAPID))
+        rows = rows[rows > 0]
         if not len(rows):
             return
         gap = (after.start[rows] - before.start[trace.owner[rows]])[:, :3]
