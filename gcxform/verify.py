@@ -22,6 +22,7 @@ from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.meaning import FRAMING, only_for_cycles
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
+from gcxform.modal.tables import PROBES
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import WHOLE, Event, Kind, Toolpath
 from gcxform.toolpath.runs import Runs, deviation_of_runs
@@ -107,6 +108,7 @@ class Verifier:
         trace = Trace(read.path, window, back.path, path, source, nth, first)
         self._count(read, window, trace)
         self._compare(trace)
+        self._forms(trace, read, back)
         if self.feed_modes:
             for wrong in self._proof(trace).left_behind(read, back):
                 self._raise(*wrong)
@@ -142,7 +144,6 @@ class Verifier:
         if not off.angle[turned] <= self.angle_budget:
             self._fail(f"a rotary axis is {off.angle[turned]:.5f} degrees off", trace, turned)
         self._kinds(trace)
-        self._forms(trace)
         self._sides(trace)
         for wrong in self._proof(trace).wrong():
             self._raise(*wrong)
@@ -159,7 +160,8 @@ class Verifier:
         """Compare where feed moves begin after a rapid: a rapid's own end may be left out."""
         before, after = trace.before, trace.after
         begins = np.append(True, trace.owner[1:] != trace.owner[:-1])
-        rows = np.flatnonzero(begins & (before.kind[trace.owner] != Kind.RAPID))[1:]
+        rows = np.flatnonzero(begins & (before.kind[trace.owner] != Kind.RAPID))
+        rows = rows[rows > 0]
         if not len(rows):
             return
         gap = (after.start[rows] - before.start[trace.owner[rows]])[:, :3]
@@ -174,12 +176,18 @@ class Verifier:
             self._fail(message, trace, int(rows[worst]))
 
     def _missing(self, trace: Trace, runs: Runs) -> None:
-        """Check that rows which no move in the output stands for were too short to write."""
-        left = ways(trace.before, runs.left).tolist()
-        for row, length in zip(runs.left.tolist(), left, strict=True):
-            if trace.before.is_arc[row] or not length <= self.budget:
-                line = int(trace.before.source[row])
-                self._raise("a move of the source is missing in the output", line, 0)
+        """Check that rows which no move in the output stands for were too short to write.
+
+        Those that follow one another have to be that short together, or they might lead far away.
+        """
+        left, along = runs.left, ways(trace.before, runs.left)
+        begins = np.append(True, np.diff(left) > 1)[: len(left)]
+        together = np.bincount(np.cumsum(begins) - 1, along) if len(left) else along
+        short = together[np.cumsum(begins) - 1] <= self.budget
+        missing = left[trace.before.is_arc[left] | ~short]
+        if len(missing):
+            line = int(trace.before.source[missing[0]])
+            self._raise("a move of the source is missing in the output", line, 0)
 
     def _kinds(self, trace: Trace) -> None:
         rapid_before = trace.before.kind[trace.owner] == Kind.RAPID
@@ -187,13 +195,15 @@ class Verifier:
         if wrong.any():
             self._fail("a rapid became a feed move, or the reverse", trace, int(np.argmax(wrong)))
 
-    def _forms(self, trace: Trace) -> None:
+    def _forms(self, trace: Trace, read: Interpreted, back: Interpreted) -> None:
         """Check that what is tied to the spindle or to a probe is still that, and in one piece."""
         written, owner = trace.written, trace.written_owner
         form, was = written.form, trace.before.form[owner]
         tied = np.isin(form, WHOLE) | np.isin(was, WHOLE)
         broken = tied & (form != was)
         broken |= tied & (np.bincount(owner, minlength=len(trace.before))[owner] != 1)
+        code, old = back.modes.motion[written.block], read.modes.motion[trace.before.block[owner]]
+        broken |= (code != old) & (np.isin(code, PROBES) | np.isin(old, PROBES))
         if broken.any():
             output = int(written.source[np.argmax(broken)])
             message = "a move tied to the spindle or to a probe became another, or several"

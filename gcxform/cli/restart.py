@@ -237,6 +237,11 @@ class Restart:
         other.interpret(reader.read(text), reader.table)
         if "frame" not in self.state.stated:
             other.state.frames = replace(other.state.frames, known=self.state.frames.known)
+        lost = np.isnan(other.state.position) & ~np.isnan(self.state.position)
+        if preamble.approach is None and lost.any():
+            names = ", ".join(a for a, gone in zip(self.axes, lost.tolist(), strict=True) if gone)
+            message = f"the blocks of the restart move {names}, and to where is not known"
+            raise self.refusal(message, "--clearance 50mm, with a Z that is clear of all")
         self._compare_states(self.state, other.state, preamble)
         other.state.percents = self.state.percents
         other.state.rapid = self.state.rapid
@@ -274,6 +279,11 @@ class Restart:
             before = self.reader.read(window.text[: int(window.start[count])])
             expected = mine.interpret(before, self.reader.table)
             self._compare(expected, theirs.interpret(before, self.reader.table))
+        if mine.state.parameters != theirs.state.parameters:
+            raise self.refusal(
+                "no restart is safe here: the program has set parameters before, which are not "
+                f"restated, and line {line}, which is not read, may take them"
+            )
         hint = "from there on the program does what it did, if all is as it was in this line"
         message = f"compared up to line {line - 1}: line {line} is not read ({first.code})"
         return replace(first, code="GX732", message=message, hint=hint)

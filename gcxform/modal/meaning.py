@@ -15,6 +15,8 @@ from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Mark, Number, Statement, Word
 
 CENTRE = "IJK"
+COMMENT = 0
+"""The order of comments that are executed: LinuxCNC does so before all else in the block."""
 DRILL_WORDS = "PQLK"
 """Words that only a canned cycle in force may want."""
 UNTOUCHED_STATEMENTS: frozenset[str] = frozenset()
@@ -181,9 +183,19 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
             meaning.deleted |= item.kind == "block_delete"
             meaning.percent |= item.kind == "percent"
         elif isinstance(item, Comment):
-            text = shape.block.text[item.start : item.end]
-            if text[0] not in dialect.comments:
-                yield Refusal("GX101", item.start, 1, f"{dialect.name} has no such comments")
+            yield from _comment(item, shape, dialect, meaning)
+
+
+def _comment(
+    item: Comment, shape: Shape, dialect: type[Dialect], meaning: Meaning
+) -> Iterator[Refusal]:
+    """Turn a comment that is executed into an event."""
+    text = shape.block.text[item.start : item.end]
+    if text[0] not in dialect.comments:
+        yield Refusal("GX101", item.start, 1, f"{dialect.name} has no such comments")
+    if dialect.executes(text):
+        inner = text[1:].removesuffix(")") if text[0] == "(" else text[1:]
+        meaning.events.append(EventShape(COMMENT, f"({inner})"))
 
 
 def _expression(word: Word, dialect: type[Dialect]) -> Iterator[Refusal]:

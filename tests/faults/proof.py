@@ -48,4 +48,11 @@ MUTATIONS = (
         "np.isfinite(self.sense)",
         VERIFY,
     ),
+    Mutation(
+        "deviation: what is compared with nothing passes",
+        "gcxform/toolpath/deviation.py",
+        "self.distance = np.full(len(owner), np.inf)",
+        "self.distance = np.zeros(len(owner))",
+        VERIFY,
+    ),
 )
