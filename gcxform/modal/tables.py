@@ -61,7 +61,8 @@ NUMBER = {
 
 
 MANY_WORK = 9
-"""The number of codes that have a P word, so that they name more than one work offset."""
+"""The number of G54.1, whose P names one of many work offsets, and of all codes of that group that
+have no number of their own. Two of them in a row may be two work offsets."""
 
 
 FLAGS = (
@@ -134,8 +135,10 @@ class MeaningTable:
 
     def _enter(self, index: int, meaning: Meaning) -> None:
         for group, code in meaning.groups.items():
-            if group in COLUMNS and code in NUMBER:
-                self.groups[index, COLUMNS.index(group)] = NUMBER[code]
+            other = MANY_WORK if group == "frame" else None
+            number = NUMBER.get(code, other)
+            if group in COLUMNS and number is not None:
+                self.groups[index, COLUMNS.index(group)] = number
         for address, slot in meaning.slots.items():
             if address.isalpha():
                 self.slots[index, ord(address) - 65] = slot
