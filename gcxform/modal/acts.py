@@ -387,8 +387,9 @@ def mirror(state: FrameState, asked: Asked) -> FrameState:
 
 
 def _turned(state: FrameState, asked: Asked, name: str, turn: Turn) -> FrameState:
-    if state.turns:
-        raise ActError("GX213", f"{asked.code} upon {state.turns[0][0]}: controls differ in order")
+    if state.turns or state.polar:
+        before = state.turns[0][0] if state.turns else "polar words"
+        raise ActError("GX213", f"{asked.code} upon {before}: controls differ in order")
     return replace(state, turns=((name, turn),))
 
 
