@@ -17,7 +17,8 @@ from gcxform.syntax.tree import Comment, Expression, Mark, Number, Statement, Wo
 CENTRE = "IJK"
 DRILL_WORDS = "PQLK"
 """Words that only a canned cycle in force may want."""
-UNTOUCHED_STATEMENTS: frozenset[str] = frozenset()
+LENT = "DIJKLPQR"
+"""Words of which a block has one value for all of its codes, its move among them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +106,8 @@ class Meaning:
     """What a block of a shape does, but for its numbers.
 
     `lengths` are the words that codes take for themselves and that are in the unit of the program:
-    code, address, slot.
+    code, address, slot. `lent` are words that codes take which a move of the block may want as
+    well: the code by address.
     """
 
     groups: dict[str, str] = field(default_factory=dict)
@@ -128,6 +130,7 @@ class Meaning:
     acts: list[Act] = field(default_factory=list)
     lengths: list[tuple[str, str, int]] = field(default_factory=list)
     drill_words: str = ""
+    lent: dict[str, str] = field(default_factory=dict)
     refusal: Refusal | None = None
 
     @property
@@ -268,7 +271,7 @@ def _g_effects(
         code = dialect.codes[name]
         if code.effect is Effect.MODAL:
             continue
-        taken = _take(code, dialect, meaning)
+        taken = _take(name, code, dialect, meaning)
         lengths = LINEAR if code.effect is Effect.FRAME else code.lengths
         meaning.lengths += [(name, a, slot) for a, slot in taken if a in lengths]
         if code.effect is Effect.DWELL:
@@ -300,7 +303,7 @@ def _g_act(
 
 
 def _take(
-    code: Code | MCode, dialect: type[Dialect], meaning: Meaning
+    name: str, code: Code | MCode, dialect: type[Dialect], meaning: Meaning
 ) -> tuple[tuple[str, int], ...]:
     """Take the words that are parameters to a code away from the block."""
     letters = code.takes
@@ -309,6 +312,8 @@ def _take(
     taken = tuple((a, meaning.slots[a]) for a in letters if a in meaning.slots)
     for address, _ in taken:
         del meaning.slots[address]
+    if isinstance(code, MCode) or code.effect is not Effect.FRAME:
+        meaning.lent |= {address: name for address, _ in taken if address in LENT}
     return taken
 
 
@@ -340,7 +345,7 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         meaning.runs_macro |= code is dialect.unknown_m
         meaning.changes_tool |= code.group == "tool"
         order = {"tool": 30, "spindle": 40, "coolant": 41, "override": 42}.get(code.group, 43)
-        taken = _take(code, dialect, meaning)
+        taken = _take(name, code, dialect, meaning)
         if code.act:
             meaning.acts.append(Act(code.act, name, taken, word.start, width))
         meaning.events.append(EventShape(order, name, taken, code.after))

@@ -100,11 +100,9 @@ class Moves:
             )
         for line in np.flatnonzero(centre & ~((arc | self.tied.paced) & ~own)).tolist():
             self.findings.add(line, "GX203", "I, J, K and R belong to arcs, and this is none")
-        for line in np.flatnonzero(centre & arc & self._dwells()).tolist():
-            message = "a dwell and an arc: the control takes some words for both"
-            self.findings.add(line, "GX203", message, hint="write the dwell in a block of its own")
         moves &= self.modes.motion != NUMBER["G80"]
         moves |= centre & arc & ~own
+        self._refuse_lent(moves | self.drilling.calls, arc)
         self.tied.check(moves, own)
         in_machine = self.lines.flag("in_machine") & (self.modes.motion == Kind.LINE)
         feeding = (moves & ~self.tied.paced) | in_machine
@@ -112,12 +110,20 @@ class Moves:
         self._check_feed(feeding, calls)
         return moves
 
-    def _dwells(self) -> Flags:
-        """Return the lines with a dwell that takes a word which arcs take as well."""
-        if self.dialect.turns_address not in self.dialect.dwell:
-            return np.zeros(self.lines.live, np.bool_)
-        dwell = np.array([meaning.dwell for meaning in self.lines.table.meanings], np.bool_)
-        return np.asarray(dwell[self.lines.shape])
+    def _refuse_lent(self, moves: Flags, arc: Flags) -> None:
+        """Refuse words of other codes that the move of their block would take as well."""
+        takes = moves | self.lines.flag("compensates")
+        for line in np.flatnonzero(takes & self.lines.flag("lends")).tolist():
+            meaning = self.lines.table.meanings[int(self.lines.shape[line])]
+            wanted = "D" if meaning.compensates else ""
+            if arc[line]:
+                wanted += "IJKR" + ("PQ" if self.splines[line] else self.dialect.turns_address)
+            rule = self.dialect.cycle_rule
+            if rule is not None and self.modes.cycle[line] != CYCLE_OFF:
+                wanted += "R" + rule.repeats + rule.takes.get(int(self.modes.cycle[line]), "")
+            for address in sorted(meaning.lent.keys() & {*wanted})[:1]:
+                message = f"{address} belongs to {meaning.lent[address]}, and the move takes it too"
+                self.findings.add(line, "GX203", message, hint="write two blocks")
 
     def _check_feed(self, moves: Flags, calls: Flags) -> None:
         """Refuse feed moves without a feed, and blocks in inverse time without a feed word."""

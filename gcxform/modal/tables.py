@@ -49,6 +49,7 @@ NUMBER = {
     "G99": 0,
     "G98": 1,
     "M5": 0,
+    "M19": 0,
     "M3": 1,
     "M4": 2,
     "G40": 0,
@@ -90,6 +91,7 @@ FLAGS = (
     "bars_comp_before",
     "bars_comp_after",
     "compensates",
+    "lends",
 )
 
 
@@ -167,6 +169,7 @@ class MeaningTable:
             bool(meaning.bars_comp[0]),
             bool(meaning.bars_comp[1]),
             meaning.compensates,
+            bool(meaning.lent),
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:
