@@ -346,6 +346,8 @@ def rotate(state: FrameState, asked: Asked) -> FrameState:
         raise ActError("GX213", f"{asked.code} under G91 differs between controls")
     if set(asked.axes) != set(names):
         raise ActError("GX213", f"{asked.code} needs its centre: {names[0]} and {names[1]}")
+    if not asked.written.keys().isdisjoint("IJK"):
+        raise ActError("GX213", f"{asked.code} about an axis in space is not followed")
     if "R" not in asked.written:
         raise ActError("GX213", f"{asked.code} needs its angle: R")
     centre = [0.0, 0.0, 0.0]
