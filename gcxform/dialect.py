@@ -68,6 +68,8 @@ class Dialect:
     m_codes: ClassVar[Mapping[int, MCode]] = ISO_M
     unknown_m: ClassVar[MCode | None] = None
     """What an M code outside `m_codes` is; None: it is refused."""
+    m_first: ClassVar[bool] = False
+    """Whether M codes that may move axes do so before the motion of their block, for certain."""
     initial: ClassVar[Mapping[str, str]] = {
         "motion": "G80",
         "plane": "G17",

@@ -66,13 +66,30 @@ class Moves:
         self._busy_until = np.append(0, np.cumsum(moving | lost | self.track.worded))
         none = np.empty((0, len(self.axes)))
         self._nothing = Rows.plain(np.empty(0, np.int64), self.modes.motion[:0], none, 0)
+        self._leaving = self._leaves(lost)
         parts = [
             self._stretch(first, last, moving, lost if lost.any() else None)
             for first, last in self._stretches(moving)
         ]
+        if self.lines.live in self._leaving:
+            self.track.lose_all(self.lines.live)
         drilled = iter(self.drilling.rows())
         rows = [next(drilled) if part is None else part for part in parts]
         return self._path(Rows.joined(rows, len(self.axes)))
+
+    def _leaves(self, lost: Flags) -> set[int]:
+        """Return the lines before which positions are lost to an M code beside a move.
+
+        Where an M code may act after the move of its block, what it loses is lost behind it as
+        well. A canned cycle beside one is refused.
+        """
+        if self.dialect.m_first or not lost.any():
+            return set()
+        for line in np.flatnonzero(lost & self.drilling.calls).tolist():
+            message = "a canned cycle beside an M code that may move axes"
+            self.findings.add(line, "GX213", message, hint="write the M code in a block of its own")
+        beside = lost & (self.track.worded | self.lines.flag("own_moves"))
+        return set((np.flatnonzero(beside) + 1).tolist())
 
     # --- which lines move ---
 
@@ -176,8 +193,8 @@ class Moves:
         alone = np.flatnonzero(self._alone(moving))
         self._singles = set(alone.tolist())
         alone = np.concatenate([acting[own], alone])
-        borders = np.concatenate([[0], acting, alone, alone + 1, drills, [self.lines.live]])
-        borders = np.unique(borders).tolist()
+        ends = np.array([0, self.lines.live, *self._leaving], np.int64)
+        borders = np.unique(np.concatenate([acting, alone, alone + 1, drills, ends])).tolist()
         self._acts = set(acting.tolist())
         if len(borders) == 1:
             yield 0, 0
@@ -188,6 +205,8 @@ class Moves:
         self._refuse_other_units(first, first + 1)
         if first < len(self._reset) and self._reset[first]:
             self.track.reset_work(first)
+        if first in self._leaving or (first + 1 in self._leaving and first in self._acts):
+            self.track.lose_all(first)
         if first in self._acts:
             self.track.act(first)
             own = own_moves(self.track, first)

@@ -161,6 +161,10 @@ class Track:
                 self.state.position[k] = np.nan
         self.breaks.append(Break(line, axes))
 
+    def lose_all(self, line: int) -> None:
+        """Note that from a line on no position is known."""
+        self._lose(line, (1 << len(self.axes)) - 1)
+
     # --- stretches ---
 
     def along(self, first: int, last: int, rows: Ints, lost: Flags | None) -> Floats:
@@ -228,19 +232,25 @@ class Track:
         placed = present & ~incremental
         if lost is not None:
             value = np.where(lost & ~present, np.nan, value)
+            nowhere = incremental & lost & (not self.dialect.m_first)
+            self._refuse_steps(nowhere, axis, here.start)
             placed = placed | (lost & ~incremental)
         if not incremental.any():
             return fill(value, placed, before)
         position = _with_increments(value, placed, incremental, before)
-        for line in np.flatnonzero(incremental & np.isnan(position))[: Findings.enough].tolist():
+        self._refuse_steps(incremental & np.isnan(position), axis, here.start)
+        return position
+
+    def _refuse_steps(self, which: Flags, axis: str, first: int) -> None:
+        """Refuse incremental words of lines, counted from the first, that begin nowhere known."""
+        for line in np.flatnonzero(which)[: Findings.enough].tolist():
             self.findings.add(
-                line + here.start,
+                line + first,
                 "GX207",
                 f"{axis} is incremental, but where {axis} stands is not known",
                 axis,
                 f"begin with an absolute {axis}, or say start = {{ {axis} = ... }} in [input]",
             )
-        return position
 
     def polar(self, here: slice) -> dict[str, tuple[Floats, Flags]]:
         """Return the words of the plane's axes where radius and angle are programmed."""
