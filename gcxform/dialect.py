@@ -136,6 +136,8 @@ class Dialect:
     """G52 and G92 set one and the same shift."""
     g52_known: ClassVar[bool] = True
     """Whether G52 and G92 mean what they mean on most controls; otherwise a setting decides."""
+    mirrors_at_zero: ClassVar[bool] = False
+    """A mirror stands at the zero of the work offset; other places are refused."""
     g43_takes_spindle_tool: ClassVar[bool] = False
     """G43 without H takes the length of the tool in the spindle."""
     length_may_move: ClassVar[bool] = False
