@@ -83,6 +83,8 @@ class Dialect:
     """The modal state a program is taken to start in; the certificate says what was taken."""
     axis_words_once: ClassVar[bool] = False
     """A motion code beside a code that takes the axis words for itself (G92, G28) is refused."""
+    g80_beside_motion: ClassVar[bool] = True
+    """G80 beside another motion code says nothing; otherwise the block is refused."""
     last_code_wins: ClassVar[bool] = False
     """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
     cutter_comp: ClassVar[CutterComp] = CutterComp()

@@ -241,7 +241,9 @@ def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         if code is None:
             yield Refusal("GX201", word.start, width, f"{dialect.name} has no code {name}")
             continue
-        if "G80" in (name, meaning.groups.get(code.group)) and name != "G80":
+        if not dialect.g80_beside_motion:
+            pass
+        elif "G80" in (name, meaning.groups.get(code.group)) and name != "G80":
             owners.pop(code.group, None)  # beside another motion code G80 says nothing
         elif name == "G80" and code.group in owners and meaning.groups[code.group] != "G80":
             continue
@@ -297,7 +299,8 @@ def _g_act(
     meaning.acts.append(Act(code.act, name, taken, word.start, width))
     if code.act == "length-add" and any(axis in meaning.slots for axis in dialect.axes):
         yield Refusal("GX202", word.start, width, f"{name} takes H or axis words, not both")
-    if code.act in TAKES_MOTION and dialect.axis_words_once and "motion" in meaning.groups:
+    takes = code.act in TAKES_MOTION or "X" in code.takes
+    if takes and dialect.axis_words_once and "motion" in meaning.groups:
         message = f"{name} and {meaning.groups['motion']} both want the axis words"
         yield Refusal("GX202", word.start, width, message)
 
