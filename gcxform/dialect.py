@@ -146,6 +146,8 @@ class Dialect:
     """Another tool length may move the axis by itself; where it stands is then not known."""
     units_spoil_length: ClassVar[bool] = False
     """A tool length in force keeps its number when the unit changes, so that it is another one."""
+    g49_takes_axes: ClassVar[bool] = False
+    """G49 takes the axis words of its block, and leaves them out."""
     g53_in_g91: ClassVar[str] = "refused"
     """What G53 does under G91: "absolute", or "refused" by the control or by us."""
     g53_is_rapid: ClassVar[bool] = False

@@ -337,9 +337,6 @@ def length_vector(state: FrameState, asked: Asked) -> FrameState:
 
 def no_length(state: FrameState, asked: Asked) -> FrameState:
     """G49: no tool length."""
-    if asked.axes:
-        message = f"{asked.code} takes the axis words, and this control leaves them out"
-        raise ActError("GX213", message, "move in a block of its own")
     return state.with_tool(NO_TOOL, "")
 
 

@@ -299,8 +299,11 @@ def _g_act(
     meaning.acts.append(Act(code.act, name, taken, word.start, width))
     if code.act == "length-add" and any(axis in meaning.slots for axis in dialect.axes):
         yield Refusal("GX202", word.start, width, f"{name} takes H or axis words, not both")
-    takes = code.act in TAKES_MOTION or "X" in code.takes
-    if takes and dialect.axis_words_once and "motion" in meaning.groups:
+    moves = "motion" in meaning.groups or not meaning.slots.keys().isdisjoint(dialect.axes)
+    if code.act == "no-length" and dialect.g49_takes_axes and moves:
+        message = f"{name} takes the axis words here, and has no use for them"
+        yield Refusal("GX202", word.start, width, message, "move in a block of its own")
+    if code.act in TAKES_MOTION and dialect.axis_words_once and "motion" in meaning.groups:
         message = f"{name} and {meaning.groups['motion']} both want the axis words"
         yield Refusal("GX202", word.start, width, message)
 

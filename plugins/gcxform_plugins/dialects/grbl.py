@@ -43,7 +43,6 @@ class Grbl(gx.Dialect):
         **{code: v.frame("non-modal", "home") for code in ("G28", "G30")},
         **{code: v.frame("non-modal", "store-home") for code in ("G28.1", "G30.1")},
         "G53": v.frame("non-modal", "machine"),
-        "G49": v.frame("tool-length", "no-length", "XYZ"),
         "G43.1": v.frame("tool-length", "length-vector", "XYZ"),
         **{code: gx.Code("motion") for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
     }
@@ -55,6 +54,7 @@ class Grbl(gx.Dialect):
     initial: ClassVar[Mapping[str, str]] = {**gx.Dialect.initial, "motion": "G0"}
     axis_words_once = True
     g80_beside_motion = False
+    g49_takes_axes = True
     starts_in_frame = True
     g10_p0_is_active = True
     g10_needs_p = False
