@@ -99,6 +99,11 @@ class Drilling:
         if self.cycles is not None and (self.modes.cycle[first:last] == CYCLE_OFF).any():
             self.cycles.leave()
 
+    def moved(self) -> None:
+        """Note that a block has moved in a way of its own, perhaps while a cycle is in force."""
+        if self.cycles is not None:
+            self.cycles.zero = None
+
     # --- stretches, as they come ---
 
     def follow(self, first: int, last: int) -> None:
@@ -124,7 +129,7 @@ class Drilling:
             track.breaks.append(Break(last, 1 << plane.axes[2]))
 
     def _refuse_other_zero(self, first: int, last: int, normal: int) -> None:
-        """Refuse G98 where coordinates have changed since a cycle began that is still in force.
+        """Refuse G98 where coordinates have changed, or G28 has moved, while a cycle is in force.
 
         Not where words do not outlive their cycle: that control goes back to the same number.
         """
@@ -136,7 +141,7 @@ class Drilling:
         if not (other and self.cycles.rule.keeps_words):
             return
         for line in np.flatnonzero(self._common.initial[first:last])[:1].tolist():
-            message = "the coordinates have changed within a cycle: the level of G98 is not certain"
+            message = "another work offset or G28 within a cycle: the level of G98 is not certain"
             hint = "write G80 before, and all words again"
             self.track.findings.add(first + line, "GX215", message, hint=hint)
 
