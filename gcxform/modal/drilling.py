@@ -298,6 +298,7 @@ class Drilling:
     def rows(self) -> list[Rows]:
         """Return the moves of the stretches, in their order."""
         self._refuse_other_count()
+        self._refuse_without_place()
         found: dict[int, Rows] = {}
         kinds = [(f.plane, f.unit, f.stretch is None) for f in self._followed]
         for kind in dict.fromkeys(kinds):
@@ -313,6 +314,21 @@ class Drilling:
         for line in np.flatnonzero(counted).tolist():
             message, hint = "L counts nothing here: this control repeats cycles by K", "write K"
             self.track.findings.add(line, "GX215", message, "L", hint)
+
+    def _refuse_without_place(self) -> None:
+        """Refuse calls that name no place in the plane, where a setting decides if they drill."""
+        rule, control = self.lines.dialect.cycle_rule, self.lines.reading.control
+        if rule is None or not rule.alone or control.get(rule.alone) == "drills":
+            return
+        drills = self.calls & (self._word(self._repeats, slice(None)) != 0)
+        has = {letter: ~np.isnan(self._word(letter, slice(None))) for letter in "XYZR"}
+        for plane in Plane:
+            first, second, normal = ("XYZ"[axis] for axis in plane.axes)
+            here = drills & (self.modes.plane == plane) & (has[normal] | has["R"])
+            for line in np.flatnonzero(here & ~has[first] & ~has[second]).tolist():
+                message = f"a cycle without {first} and {second}: a setting decides if it drills"
+                hint = f'give {first} or {second}, or say [control] {rule.alone} = "drills"'
+                self.track.findings.add(line, "GX215", message, hint=hint)
 
     def _stretches(self, followed: list[_Followed], line: Ints, bounds: Ints) -> list[Stretch]:
         """Return the columns of stretches, those of plain ones as one."""
