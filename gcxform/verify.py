@@ -33,6 +33,7 @@ Floats = NDArray[np.float64]
 
 LENGTHS = frozenset("XYZUVWIJKR")
 TIME_ERROR = 1e-3  # relative: what the rounding of the feeds of pieces may change
+UNEVEN = 0.25  # relative; a chord of a quarter of a circle is a tenth shorter than its arc
 
 
 @dataclass(slots=True)
@@ -232,6 +233,8 @@ class Verifier:
             self._fail("the feed has changed", trace, int(np.argmax(off & plain)))
         if (moving & inverse).any():
             self._times(trace)
+        if self.feed_modes or (moving & inverse).any():
+            self._paces(trace)
 
     def _times(self, trace: _Trace) -> None:
         """Add up the times of the written moves, before the models cut them further."""
@@ -248,6 +251,26 @@ class Verifier:
         if len(wrong):
             line = int(trace.before.source[wrong[0]])
             self._raise("the time of a move in G93 has changed", line, 0)
+
+    def _paces(self, trace: _Trace) -> None:
+        """Check that the pieces of a move share its time as they share its way.
+
+        The time of the whole says nothing of one short piece, whose feed might be any.
+        """
+        written, owner, way = trace.written, trace.written_owner, lengths(trace.written)
+        mine, inverse = written.kind != Kind.RAPID, written.feed_mode == FeedMode.INVERSE_TIME
+        mine &= inverse | (self._may_be_converted(trace, owner) if self.feed_modes else False)
+        along = (way.least + way.most) / 2
+        time = np.where(inverse, 1.0, along) / written.feed
+        whole = self._sums(trace, mine, along)[owner]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slow = self._sums(trace, mine, time)[owner] / whole
+        slack = 2 * np.where(way.turns, self.angle_budget, self.budget)
+        off = np.abs(time - slow * along) > slow * (UNEVEN * along + slack)
+        off &= mine & (whole > 0)
+        if off.any():
+            row = int(written.source[np.argmax(off)])
+            self._raise("a piece of a move is faster or slower than it", trace.line_of(row), row)
 
     def _told(self, path: Toolpath) -> tuple[Event, ...]:
         """Return the events that have to be in the output too: not those that are folded away."""

@@ -20,6 +20,7 @@ MUTATIONS = (
         "feed modes left behind are ignored",
         "if (mode != read.modes.feed_mode[line]).any():",
     ),
+    _verifier("the pace of a piece is ignored", "if off.any():"),
     _verifier("times are ignored", "if len(wrong):"),
     _verifier(
         "events are ignored",
