@@ -19,7 +19,6 @@ COMMENT = 0
 """The order of comments that are executed: LinuxCNC does so before all else in the block."""
 DRILL_WORDS = "PQLK"
 """Words that only a canned cycle in force may want."""
-UNTOUCHED_STATEMENTS: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
