@@ -26,6 +26,7 @@ MUTATIONS = (
         "feed modes left behind are ignored",
         "if (mode != read.modes.feed_mode[line]).any():",
     ),
+    _feeds("the pace of a piece is ignored", "if off.any():"),
     _feeds("times are ignored", "if len(wrong):"),
     _verifier(
         "events are ignored",
