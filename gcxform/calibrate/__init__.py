@@ -1,6 +1,6 @@
 """From measurements to error models, with the covariance of what is found.
 
-    gcxform/calibrate/csvtext.py        tables of measurements: units in the header, places of faults
+    gcxform/calibrate/csvtext.py        tables: units in the header, places of faults
     gcxform/calibrate/diagonaldata.py   readings along the body diagonals, and linear tests
     gcxform/calibrate/diagonalfile.py   the same from CSV files, and back
     gcxform/calibrate/equations.py      what a reading says about the errors of the axes

@@ -59,7 +59,7 @@ class Heading(NamedTuple):
 
     name: str
     unit: str
-    index: int
+    place: int
 
 
 @dataclass(frozen=True)
@@ -76,18 +76,18 @@ class CsvTable:
 
     def where(self, row: int, name: str = "") -> Location:
         """Return the place of a cell, of the whole row without a name."""
-        return _place(self.file, self.rows[row], self.headings[name].index if name else None)
+        return _place(self.file, self.rows[row], self.headings[name].place if name else None)
 
     def heading_place(self, name: str = "") -> Location:
         """Return the place of a heading, of the header without a name."""
-        return _place(self.file, self.header, self.headings[name].index if name else None)
+        return _place(self.file, self.header, self.headings[name].place if name else None)
 
     def texts(self, name: str) -> list[str]:
         """Return a column as it stands; empty strings if there is none of that name."""
         if name not in self.headings:
             return [""] * len(self)
-        index = self.headings[name].index
-        return [row.cells[index].text for row in self.rows]
+        place = self.headings[name].place
+        return [row.cells[place].text for row in self.rows]
 
     def numbers(self, name: str) -> FloatArray:
         """Return a column (n,) in the unit of its heading. Raises InputError (GX471)."""

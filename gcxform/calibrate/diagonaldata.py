@@ -187,7 +187,9 @@ def _sequence_faults(leg: Leg) -> Iterator[_Fault]:
     if fault := _end_fault(leg):
         yield fault
     elif (count - 1) % 3:
-        message = f"the diagonal {leg.name} ends within a step: after the start {count - 1} readings"
+        message = (
+            f"the diagonal {leg.name} ends within a step: after the start {count - 1} readings"
+        )
         yield _Fault(count - 1, "diagonal", message, f"each step has three: {order}")
     else:
         yield from _unequal_steps(leg, moved, turn)

@@ -119,7 +119,9 @@ def _value_column(table: CsvTable) -> str:
         has = "both columns" if present else "neither of the columns"
         message = f"the table has {has} reading and deviation"
         place = table.heading_place(present[-1] if present else "")
-        raise InputError.one("GX470", message, place, "give one of them, with its unit: reading [mm]")
+        raise InputError.one(
+            "GX470", message, place, "give one of them, with its unit: reading [mm]"
+        )
     return present[0]
 
 

@@ -32,7 +32,7 @@ class Solution:
     @property
     def rank(self) -> int:
         """How many directions are determined."""
-        return len(self.value) - self.free.shape[1]
+        return len(self.value) - int(self.free.shape[1])
 
     @property
     def redundancy(self) -> int:

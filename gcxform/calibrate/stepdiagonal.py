@@ -26,7 +26,7 @@ from gcxform.calibrate.equations import Equations, Increments, Layout, equations
 from gcxform.calibrate.reframe import slopes_of, turn_of
 from gcxform.calibrate.solution import Solution, plausible, reduced_rows, solve
 from gcxform.diagnostics import InputError
-from gcxform.machine.errors import AXES, AxisFunction, AxisFunctions, FloatArray
+from gcxform.machine.errors import AXES, AxisFunction, AxisFunctions, BoolArray, FloatArray
 
 NOISE: Final = 0.001  # mm, of one step
 REJECTED: Final = 3.0  # times the stated noise
@@ -70,26 +70,26 @@ class Identified:
 
     @cached_property
     def _output(self) -> FloatArray:
-        return self._framing @ self.solution.value
+        return np.asarray(self._framing @ self.solution.value)
 
     @cached_property
     def _hidden(self) -> FloatArray:
         """How the outputs (n, d) change along the directions that no reading sees."""
-        return self._framing @ self.solution.free
+        return np.asarray(self._framing @ self.solution.free)
 
     @cached_property
-    def _known(self) -> FloatArray:
-        return np.abs(self._hidden).max(axis=1, initial=0.0) < _NOTHING
+    def _known(self) -> BoolArray:
+        return np.asarray(np.abs(self._hidden).max(axis=1, initial=0.0) < _NOTHING)
 
     @property
     def functions(self) -> FloatArray:
         """The errors (3, 3, steps) in mm."""
-        return self._output[: self.layout.errors].reshape(3, 3, -1)
+        return np.asarray(self._output[: self.layout.errors].reshape(3, 3, -1))
 
     @property
-    def determined(self) -> FloatArray:
-        """Which functions (3, 3) are determined, as booleans."""
-        known: FloatArray = self._known[: self.layout.errors].reshape(3, 3, -1).all(axis=2)
+    def determined(self) -> BoolArray:
+        """Which functions (3, 3) are determined."""
+        known: BoolArray = self._known[: self.layout.errors].reshape(3, 3, -1).all(axis=2)
         return known
 
     @cached_property
@@ -186,7 +186,7 @@ class Identified:
 
     def _refuse(self) -> None:
         names = [f"E{AXES[d]}{AXES[a]}" for a, d in np.argwhere(~self.determined)]
-        free = "; ".join(worded(row) for row in self.hidden_slopes)
+        free = "; ".join(together(row) for row in self.hidden_slopes)
         raise InputError.one(
             "GX476",
             f"the readings do not determine {', '.join(names)}: with beams free to be misaligned, "
@@ -295,6 +295,12 @@ def worded(row: FloatArray) -> str:
             sign = ("- " if factor < 0 else "+ ") if text else ("-" if factor < 0 else "")
             text += f"{' ' if text else ''}{sign}{size}{name}"
     return text
+
+
+def together(row: FloatArray) -> str:
+    """Return a direction among `SLOPES` in words, such as `scale X +1 with scale Z -1.14`."""
+    pairs = zip(row.tolist(), SLOPES, strict=True)
+    return " with ".join(f"{name} {factor:+.4g}" for factor, name in pairs if abs(factor) > 1e-6)
 
 
 def _um(value: float) -> str:
