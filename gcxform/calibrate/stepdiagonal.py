@@ -89,8 +89,8 @@ class Identified:
     @property
     def determined(self) -> BoolArray:
         """Which functions (3, 3) are determined."""
-        known: BoolArray = self._known[: self.layout.errors].reshape(3, 3, -1).all(axis=2)
-        return known
+        known = self._known[: self.layout.errors].reshape(3, 3, -1)
+        return np.asarray(known.all(axis=2))
 
     @cached_property
     def covariance(self) -> FloatArray:
@@ -101,7 +101,8 @@ class Identified:
     @property
     def deviations(self) -> FloatArray:
         """The standard deviations (3, 3, steps) in mm."""
-        return np.sqrt(np.diag(self.covariance).clip(0.0)).reshape(3, 3, -1)
+        variance = np.diag(self.covariance).clip(0.0)
+        return np.asarray(np.sqrt(variance).reshape(3, 3, -1))
 
     @property
     def shapes(self) -> FloatArray:
