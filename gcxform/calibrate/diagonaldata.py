@@ -9,7 +9,7 @@ the diagonal, and the reading is the part of the motion along it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple, TypeVar
 
@@ -146,7 +146,7 @@ def step_diagonals(legs: Sequence[Leg], where: Where = nowhere) -> Diagonals:
     found = [
         Diagnostic("GX472", fault.message, where(k, fault.row, fault.column), fault.hint)
         for k, leg in enumerate(legs)
-        if (fault := next(_sequence_faults(leg), None))
+        if (fault := _sequence_fault(leg))
     ]
     if found:
         raise InputError(tuple(found))
@@ -165,47 +165,52 @@ def plain_diagonals(legs: Sequence[Leg], where: Where = nowhere) -> Diagonals:
     return _of_one_volume(legs, [1] * len(legs), where)
 
 
-def _sequence_faults(leg: Leg) -> Iterator[_Fault]:
-    """Yield what is wrong with the positions of a leg of sequential steps."""
+def _sequence_fault(leg: Leg) -> _Fault | None:
+    """Return what is wrong with the stops of a leg of sequential steps."""
     count = len(leg.position)
     if count < 4:
         least = "at least 4 are needed: the start, and a step of each axis"
-        yield _Fault(0, "diagonal", f"the diagonal {leg.name} has {count} readings; {least}")
-        return
-    moved = np.diff(leg.position, axis=0)
+        message = f"the diagonal {leg.name} has {count} readings; {least}"
+        return _Fault(0, "diagonal", message)
+    if fault := _end_fault(leg):
+        return fault
     turn = (0, 1, 2) if leg.forward else (2, 1, 0)
-    order = ", ".join(AXES[axis] for axis in turn)
+    moved = np.diff(leg.position, axis=0)
+    usual = np.median(moved[: (count - 1) // 3 * 3].reshape(-1, 3, 3), axis=0)
+    apart = np.abs(usual) > TOLERANCE
+    if (count - 1) % 3 == 0 and (apart == np.eye(3, dtype=np.bool_)[list(turn)]).all():
+        return _stop_fault(leg, usual)
+    return _turn_fault(leg, moved, turn)
+
+
+def _turn_fault(leg: Leg, moved: FloatArray, turn: Sequence[int]) -> _Fault:
+    """Return the first move that is not of the axis whose turn it is."""
+    hint = f"steps go {', '.join(AXES[axis] for axis in turn)} in turn"
     for k, step in enumerate(moved):
         due = turn[k % 3]
-        moving = np.flatnonzero(np.abs(step) > TOLERANCE)
-        if list(moving) != [due]:
-            wrong = AXES[next((a for a in moving if a != due), due)]
-            what = f"where {AXES[due]} is due the diagonal {leg.name} moves "
-            moves = " and ".join(AXES[a] for a in moving) or "nothing"
-            yield _Fault(k + 1, wrong.lower(), what + moves, f"steps go {order} in turn")
-            return
-    if fault := _end_fault(leg):
-        yield fault
-    elif (count - 1) % 3:
-        message = (
-            f"the diagonal {leg.name} ends within a step: after the start {count - 1} readings"
-        )
-        yield _Fault(count - 1, "diagonal", message, f"each step has three: {order}")
-    else:
-        yield from _unequal_steps(leg, moved, turn)
+        moving = [int(axis) for axis in np.flatnonzero(np.abs(step) > TOLERANCE)]
+        if moving != [due]:
+            wrong = next((axis for axis in moving if axis != due), due)
+            moves = " and ".join(AXES[axis] for axis in moving) or "nothing"
+            message = f"where {AXES[due]} is due the diagonal {leg.name} moves {moves}"
+            return _Fault(k + 1, AXES[wrong].lower(), message, hint)
+    message = f"the diagonal {leg.name} ends within a step, {len(moved)} readings after its start"
+    return _Fault(len(moved), "diagonal", message, hint)
 
 
-def _unequal_steps(leg: Leg, moved: FloatArray, turn: Sequence[int]) -> Iterator[_Fault]:
-    for first, axis in enumerate(turn):
-        steps = moved[first::3, axis]
-        usual = float(np.median(steps))
-        for k in np.flatnonzero(np.abs(steps - usual) > TOLERANCE):
-            message = (
-                f"on the diagonal {leg.name} the step of {AXES[axis]} is {_mm(steps[k])} mm here "
-                f"and {_mm(usual)} mm elsewhere"
-            )
-            hint = "steps have to be equal, or the mirror leaves the beam"
-            yield _Fault(int(3 * k + first + 1), AXES[axis].lower(), message, hint)
+def _stop_fault(leg: Leg, usual: FloatArray) -> _Fault | None:
+    """Return the first stop that is off the equal steps (3, 3) which are usual on the leg."""
+    steps = np.tile(usual, ((len(leg.position) - 1) // 3, 1))
+    due = np.concatenate((np.zeros((1, 3)), np.cumsum(steps, axis=0)))
+    due += np.median(leg.position - due, axis=0)
+    wrong = np.argwhere(np.abs(leg.position - due) > TOLERANCE)
+    if not len(wrong):
+        return None
+    row, axis = (int(k) for k in wrong[0])
+    at, wanted = _mm(leg.position[row, axis]), _mm(due[row, axis])
+    message = f"on the diagonal {leg.name} {AXES[axis]} is {at} mm where {wanted} is due"
+    hint = "the steps of an axis have to be equal, or the mirror leaves the beam"
+    return _Fault(row, AXES[axis].lower(), message, hint)
 
 
 def _end_fault(leg: Leg) -> _Fault | None:

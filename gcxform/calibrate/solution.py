@@ -67,7 +67,7 @@ def solve(matrix: FloatArray, observed: FloatArray, deviation: FloatArray) -> So
 def plausible(degrees: int) -> float:
     """Return what chi square with some degrees of freedom exceeds once in a thousand times.
 
-    By Wilson and Hilferty (Proc. Nat. Acad. Sci. 17 (1931) 684); within 1 % of the tables.
+    By Wilson and Hilferty (Proc. Nat. Acad. Sci. 17 (1931) 684); within 3 % of the tables.
     """
     part = 2.0 / (9.0 * degrees)
     return degrees * (1.0 - part + 3.0902 * math.sqrt(part)) ** 3

@@ -207,12 +207,16 @@ def identify(
 ) -> Identified:
     """Return what the readings tell. Raises InputError (GX475) if they contradict each other.
 
-    They do if the residuals show more than `REJECTED` times the stated noise; or if beams are
-    assumed to be aligned and misalignments explain the residuals far better (chi square, 0.1 %).
+    They do if the residuals of the diagonals, or what linear tests add to them, show more than
+    `REJECTED` times the stated noise; or if beams are assumed to be aligned and misalignments
+    explain the residuals far better (chi square, 0.1 %).
     """
     assumed = assumed or Assumed()
-    found = solved(diagonals, linear, assumed)
-    _reject(found)
+    alone = found = solved(diagonals, (), assumed)
+    _reject(alone)
+    if linear:
+        found = solved(diagonals, linear, assumed)
+        _reject_linear(found, alone)
     if not assumed.free_beams:
         _reject_aligned(found)
     return found
@@ -266,6 +270,20 @@ def _reject(found: Identified) -> None:
         hint="look for a lost beam, a diagonal that was measured at another temperature, or "
         "misaligned beams (--misalignment free); or state the noise that there is",
     )
+
+
+def _reject_linear(found: Identified, alone: Identified) -> None:
+    added = found.solution.redundancy - alone.solution.redundancy
+    gain = found.solution.chi_square - alone.solution.chi_square
+    if added > 0 and gain > REJECTED**2 * added:
+        times = math.sqrt(gain / added)
+        raise InputError.one(
+            "GX475",
+            f"the linear tests contradict the diagonals, or each other: {times:.1f} times the "
+            f"noise of {_um(found.assumed.of_linear)} um a reading",
+            hint="look at units and signs (actual minus nominal), and at the temperatures; or "
+            "state the noise that there is (--linear-noise)",
+        )
 
 
 def _reject_aligned(found: Identified) -> None:

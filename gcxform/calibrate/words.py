@@ -26,8 +26,8 @@ MEAN_SCALE: Final = "(X^2 sX + Y^2 sY + Z^2 sZ) / (X^2 + Y^2 + Z^2)"
 WIDTH: Final = 98
 _ASSUMED: Final = {
     True: "free to be misaligned, by two angles each, which were estimated",
-    False: "taken to be exactly along the diagonals; 0.1 mrad off would shift the end of a scale by "
-    "some 20 um on 0.5 m",
+    False: "taken to be exactly along the diagonals; 0.1 mrad off would shift the end of a "
+    "scale by some 20 um on 0.5 m",
 }
 
 Report = dict[str, Any]
