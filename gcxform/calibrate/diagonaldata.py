@@ -185,7 +185,8 @@ def _sequence_fault(leg: Leg) -> _Fault | None:
 
 def _turn_fault(leg: Leg, moved: FloatArray, turn: Sequence[int]) -> _Fault:
     """Return the first move that is not of the axis whose turn it is."""
-    hint = f"steps go {', '.join(AXES[axis] for axis in turn)} in turn"
+    order = ", ".join(AXES[axis] for axis in turn)
+    hint = f"steps go {order} in turn; another run of the same diagonal has another name in `run`"
     for k, step in enumerate(moved):
         due = turn[k % 3]
         moving = [int(axis) for axis in np.flatnonzero(np.abs(step) > TOLERANCE)]

@@ -188,7 +188,7 @@ def _linear(table: CsvTable, volume: Volume) -> MeasuredLinear:
     table.need("deviation")
     moving = [letter for letter in letters if letter in table.headings]
     if len(moving) != 1:
-        has = " and ".join(moving).upper() or "no axis"
+        has = " and ".join(letter.upper() for letter in moving) or "no axis"
         message = f"a linear test has a column for the axis that moves, and this table has {has}"
         raise InputError.one("GX470", message, table.heading_place(), "as in: X [mm]")
     axis = letters.index(moving[0])
