@@ -8,8 +8,9 @@ from diagonal_kit import apart, turned, values
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcxform.calibrate.diagonaldata import step_diagonals
+from gcxform.calibrate.diagonaldata import plain_diagonals, step_diagonals
 from gcxform.calibrate.diagonalfile import diagonals_csv, linear_csv, parse_diagonals, parse_linear
+from gcxform.calibrate.plaindiagonal import squareness
 from gcxform.calibrate.reframe import reframed
 from gcxform.calibrate.stepdiagonal import Assumed, identify
 from gcxform.machine.errors import AxisFunction, AxisFunctions
@@ -81,3 +82,16 @@ def test_v9_a_turn_is_not_seen_in_the_frame(machine, turn):
     assert apart(reframed(turned(model, turn)), once) <= 1e-10
     assert apart(reframed(once), once) <= 1e-12
     assert values(once)[:, :, 0] == pytest.approx(np.zeros((3, 3)), abs=0.0)
+
+
+@given(machine=machines(), back=st.booleans())
+def test_the_squareness_of_any_machine(machine, back):
+    """Four lengths give the end slopes of the frame, whatever else the machine does."""
+    model, low, travel, steps = machine
+    legs = simulate_step_diagonal(model, low, travel, steps, bidirectional=True)
+    found = squareness(plain_diagonals(legs[1::2] if back else legs), 0.001)
+    ends = values(reframed(model))[:, :, -1]
+    slopes = (ends[1, 0] / travel[1], ends[2, 0] / travel[2], ends[2, 1] / travel[2])
+    assert found.slopes == pytest.approx(slopes, abs=1e-12)
+    scales = np.diag(ends) / travel
+    assert found.mean_scale == pytest.approx(travel**2 @ scales / (travel @ travel), abs=1e-12)
