@@ -20,7 +20,7 @@ import numpy as np
 
 from gcxform.calibrate.diagonaldata import Diagonals
 from gcxform.calibrate.solution import Solution, solve
-from gcxform.machine.errors import AxisFunction, AxisFunctions, FloatArray
+from gcxform.machine.errors import AxisFunction, AxisFunctions, FloatArray, check_contraction
 
 BLIND: Final = (
     "a plain diagonal test is blind to scale errors with X^2 sX + Y^2 sY + Z^2 sZ = 0 (X, Y, Z: "
@@ -61,14 +61,19 @@ class Squareness:
         return np.asarray(np.outer(self._factors, self._factors) * self.solution.covariance)
 
     def model(self) -> AxisFunctions:
-        """Return the model with this squareness alone: other errors were not measured and are 0."""
+        """Return the model with this squareness alone: other errors were not measured and are 0.
+
+        Raises UsageError (GX415) if no machine is like that.
+        """
         volume = self.diagonals.volume
         ends = np.zeros((3, 2, 3))
         xy, xz, yz = self.slopes
         ends[1, 1, 0] = xy * volume.travel[1]
         ends[2, 1, :2] = np.array((xz, yz)) * volume.travel[2]
         x, y, z = (AxisFunction(volume.nodes(k)[[0, -1]], ends[k]) for k in range(3))
-        return AxisFunctions((x, y, z))
+        model = AxisFunctions((x, y, z))
+        check_contraction(model)
+        return model
 
 
 def squareness(diagonals: Diagonals, noise: float) -> Squareness:

@@ -26,7 +26,14 @@ from gcxform.calibrate.equations import Equations, Increments, Layout, equations
 from gcxform.calibrate.reframe import slopes_of, turn_of
 from gcxform.calibrate.solution import Solution, plausible, reduced_rows, solve
 from gcxform.diagnostics import InputError
-from gcxform.machine.errors import AXES, AxisFunction, AxisFunctions, BoolArray, FloatArray
+from gcxform.machine.errors import (
+    AXES,
+    AxisFunction,
+    AxisFunctions,
+    BoolArray,
+    FloatArray,
+    check_contraction,
+)
 
 NOISE: Final = 0.001  # mm, of one step
 REJECTED: Final = 3.0  # times the stated noise
@@ -175,7 +182,11 @@ class Identified:
         return self.assumed.noise * self.solution.ratio
 
     def model(self) -> AxisFunctions:
-        """Return the nine functions. Raises InputError (GX476) if they are not determined."""
+        """Return the nine functions.
+
+        Raises InputError (GX476) if they are not determined, and UsageError (GX415) if no machine
+        is like that: readings in a column of deviations have no redundancy against them.
+        """
         if not self.determined.all():
             self._refuse()
         volume = self.diagonals.volume
@@ -183,7 +194,9 @@ class Identified:
             AxisFunction(volume.nodes(k), np.pad(self.functions[k].T, ((1, 0), (0, 0))))
             for k in range(3)
         )
-        return AxisFunctions((x, y, z))
+        model = AxisFunctions((x, y, z))
+        check_contraction(model)
+        return model
 
     def _refuse(self) -> None:
         names = [f"E{AXES[d]}{AXES[a]}" for a, d in np.argwhere(~self.determined)]
