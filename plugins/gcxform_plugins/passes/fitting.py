@@ -32,7 +32,7 @@ class ArcFitter:
         self.path = work.path
         self.step = work.step
         self.limit = MARGIN * self.step.limit
-        self.reach = self.step.model.model.lipschitz
+        self.reach = work.lipschitz
         rotary = np.nan_to_num(self.path.end - self.path.start)[:, 3:]
         self._turning = (rotary != 0).any(axis=1)
 
@@ -90,7 +90,7 @@ class ArcFitter:
         """Return commands (n, 3), in the program's coordinates, for points of arcs."""
         offset = self.work.offset_of(row)
         target = gx.points_on_arcs(self.path, row, part) + offset
-        return self.step.command(target) - offset
+        return self.work.command(target, row) - offset
 
     def _residual(self, row: Ints, low: Floats, high: Floats) -> Floats:
         """Return how far (mm) the machine is from the arcs when it is sent along fitted ones.
@@ -118,7 +118,9 @@ class ArcFitter:
         every = np.repeat(np.arange(len(row)), number)
         part = np.tile((np.arange(number) + 0.5) / number, len(row))
         command = gx.points_on_arcs(pieces, 2 * every + 1, part)
-        actual = command + self.step.error(command + self.work.offset_of(row[every]))
+        place = self.work.place
+        table = command + place.offset_of(row[every])
+        actual = command + self.step.error(table, place.tool_of(row[every]))
         along = low[every] + part * (high - low)[every]
         wanted = gx.points_on_arcs(self.path, row[every], along)
         off = self._beside(row[every], along, wanted, actual)
