@@ -9,13 +9,15 @@ import numpy as np
 
 from gcxform.calibrate.diagonaldata import Diagonals, LinearTest, step_diagonals
 from gcxform.calibrate.stepdiagonal import Assumed
-from gcxform.machine.errors import AxisFunction, AxisFunctions, FloatArray
+from gcxform.machine.errors import FloatArray
+from gcxform.machine.functions import AxisFunction, AxisFunctions
 from gcxform.machine.modelfile import load_model
 from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "lddm"
 LOW = (0.0, 0.0, 0.0)
 TRAVEL = (480.0, 330.0, 450.0)
+LENGTHS = [4.254, -26.823, -27.853, -37.184]  # um: what its diagonals are longer by
 ALIGNED = Assumed(free_beams=False)
 FREE = Assumed()
 

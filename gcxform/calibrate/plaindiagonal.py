@@ -20,7 +20,8 @@ import numpy as np
 
 from gcxform.calibrate.diagonaldata import Diagonals
 from gcxform.calibrate.solution import Solution, solve
-from gcxform.machine.errors import AxisFunction, AxisFunctions, FloatArray, check_contraction
+from gcxform.machine.errors import FloatArray, check_contraction
+from gcxform.machine.functions import AxisFunction, AxisFunctions
 
 BLIND: Final = (
     "a plain diagonal test is blind to scale errors with X^2 sX + Y^2 sY + Z^2 sZ = 0 (X, Y, Z: "

@@ -15,7 +15,8 @@ from __future__ import annotations
 import numpy as np
 
 from gcxform.diagnostics import UsageError
-from gcxform.machine.errors import AxisFunction, AxisFunctions, FloatArray
+from gcxform.machine.errors import FloatArray
+from gcxform.machine.functions import AxisFunction, AxisFunctions
 
 FRAME = (
     "end points: the error is zero at the low corner, and EYX, EZX and EZY end at zero; "

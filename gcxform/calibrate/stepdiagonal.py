@@ -26,14 +26,8 @@ from gcxform.calibrate.equations import Equations, Increments, Layout, equations
 from gcxform.calibrate.reframe import slopes_of, turn_of
 from gcxform.calibrate.solution import Solution, plausible, reduced_rows, solve
 from gcxform.diagnostics import InputError
-from gcxform.machine.errors import (
-    AXES,
-    AxisFunction,
-    AxisFunctions,
-    BoolArray,
-    FloatArray,
-    check_contraction,
-)
+from gcxform.machine.errors import AXES, BoolArray, FloatArray, check_contraction
+from gcxform.machine.functions import AxisFunction, AxisFunctions
 
 NOISE: Final = 0.001  # mm, of one step
 REJECTED: Final = 3.0  # times the stated noise

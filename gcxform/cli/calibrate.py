@@ -113,7 +113,7 @@ def _plain(data: str, noise: float, wanted: bool) -> tuple[str, Mapping[str, Any
     from gcxform.calibrate.diagonalfile import read_diagonals
     from gcxform.calibrate.plaindiagonal import squareness
     from gcxform.calibrate.words import plain_comments, plain_report
-    from gcxform.machine.modelfile import to_toml
+    from gcxform.machine.modeltext import to_toml
 
     measured = read_diagonals(_path(data), plain=True)
     found = squareness(measured.diagonals, noise)
@@ -129,7 +129,7 @@ def _steps(
     from gcxform.calibrate.diagonalfile import read_diagonals, read_linear
     from gcxform.calibrate.stepdiagonal import Assumed, identify
     from gcxform.calibrate.words import step_comments, step_report
-    from gcxform.machine.modelfile import to_toml
+    from gcxform.machine.modeltext import to_toml
 
     measured = read_diagonals(_path(data))
     beside = [read_linear(Path(name), measured.diagonals.volume) for name in linear]
@@ -148,7 +148,7 @@ def _path(name: str) -> Path:
 
 def _length(text: str, option: str) -> float:
     """Return a length in mm that is above 0. Raises UsageError."""
-    from gcxform.machine.machine import LENGTH
+    from gcxform.machine.quantities import LENGTH
 
     try:
         length = LENGTH.parse(text, bare=True)

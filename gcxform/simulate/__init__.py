@@ -1,1 +1,1 @@
-"""Virtual measurements: the readings that a machine with a known error model would give."""
+"""Virtual tests: what an instrument would read on a machine with known errors."""

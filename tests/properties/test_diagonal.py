@@ -13,7 +13,7 @@ from gcxform.calibrate.diagonalfile import diagonals_csv, linear_csv, parse_diag
 from gcxform.calibrate.plaindiagonal import squareness
 from gcxform.calibrate.reframe import reframed
 from gcxform.calibrate.stepdiagonal import Assumed, identify
-from gcxform.machine.errors import AxisFunction, AxisFunctions
+from gcxform.machine.functions import AxisFunction, AxisFunctions
 from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal
 
 SENSES = st.tuples(*(st.tuples(st.sampled_from((1, -1)), st.just(signs)) for signs in (
