@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from faults import (
     arcs,
+    calibrating,
     commands,
     computing,
     cutter,
@@ -31,4 +32,5 @@ MUTATIONS: tuple[Mutation, ...] = (
     *splines.MUTATIONS,
     *tied.MUTATIONS,
     *proof.MUTATIONS,
+    *calibrating.MUTATIONS,
 )
