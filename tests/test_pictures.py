@@ -329,11 +329,17 @@ def test_cycles_and_splines_find_their_moves_again():
     flat = ~before.rapid & ~down
     wanted = 1e-4 * np.maximum(before.start, before.end)[flat, 0]
     assert before.deviation[flat] == pytest.approx(wanted, abs=4e-4)
-    drilled = [
-        side.end[~side.rapid & (side.start[:, 2] > side.end[:, 2])] for side in (before, after)
-    ]
     for x in (60.0, 90.0):
-        assert all((np.abs(side[:, 0] - x) < 0.1).any() for side in drilled)
+        one, other = (feeds_at(side, x) for side in (before, after))
+        assert one == pytest.approx(8.0 + 2 * 0.254, abs=0.02)  # again where each peck ended
+        assert other == pytest.approx(one, abs=0.01)
+
+
+def feeds_at(heat, x):
+    """Return how far the tool goes down in feed at an X, mm."""
+    here = ~heat.rapid & (np.abs(heat.end[:, 0] - x) < 0.1) & (np.abs(heat.end[:, 1] - 50) < 0.1)
+    way = heat.end[here] - heat.start[here]
+    return -float(way[np.abs(way[:, :2]).max(axis=1) < 0.01, 2].sum())
 
 
 def test_a_long_program_is_an_image_within_the_svg(here, monkeypatch):

@@ -104,8 +104,8 @@ MUTATIONS = (
     Mutation(
         "show: moves of a cycle are taken for one another",
         f"{FOLDER}/heat.py",
-        "np.where(rapid, APART, 0.0)",
-        "np.where(rapid, 0.0, 0.0)",
+        "far <= far.min() + NEAR",
+        "far >= far.min() + NEAR",
         PICTURES,
     ),
     Mutation(
