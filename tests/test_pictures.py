@@ -22,7 +22,7 @@ from gcxform.machine.modelfile import load_model
 from gcxform.plot import canvas
 from gcxform.plot.models import curves, squareness
 from gcxform.registry import default_registry
-from gcxform.simulate.heat import before_and_after
+from gcxform.simulate.heat import before_and_after, in_order
 
 EXAMPLES = EXAMPLE.parents[1]
 MODEL = ("--model", str(EXAMPLE))
@@ -333,6 +333,15 @@ def test_cycles_and_splines_find_their_moves_again():
         one, other = (feeds_at(side, x) for side in (before, after))
         assert one == pytest.approx(8.0 + 2 * 0.254, abs=0.02)  # again where each peck ended
         assert other == pytest.approx(one, abs=0.01)
+
+
+def test_moves_that_were_cut_belong_to_the_move_whose_end_comes_next():
+    down, up = [0.0, 0.0, 2.0], [0.0, 0.0, 10.0]
+    ends = np.array([up, down, up, down, up])
+    others = np.array([up, [0.0, 0.0, 6.0], down, up, [0.0, 0.0, 8.0], [0.0, 0.0, 4.0], down, up])
+    assert in_order(ends, others + 0.02).tolist() == [0, 1, 1, 2, 3, 3, 3, 4]
+    assert in_order(ends, ends).tolist() == [0, 1, 2, 3, 4]
+    assert in_order(ends[:2], others[:1]).tolist() == [0]
 
 
 def feeds_at(heat, x):

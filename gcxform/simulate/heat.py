@@ -148,16 +148,16 @@ def owners(nominal: Toolpath, written: Toolpath, line_of: Ints) -> Ints:
         theirs = np.flatnonzero(line == several)
         ours = moving[nominal.source[moving] == several]
         if len(ours):
-            owner[theirs] = ours[_in_order(nominal.end[ours, :3], written.end[theirs, :3])]
+            owner[theirs] = ours[in_order(nominal.end[ours, :3], written.end[theirs, :3])]
     return owner
 
 
-def _in_order(ends: FloatArray, others: FloatArray) -> Ints:
+def in_order(ends: FloatArray, others: FloatArray) -> Ints:
     """Return to which of the ends (m, 3) each of the others (n, 3) belongs or leads, in order."""
     found = np.full(len(others), len(ends) - 1)
     begin = 0
     for k, end in enumerate(ends):
-        stop = len(others) - (len(ends) - 1 - k)
+        stop = max(begin + 1, len(others) - (len(ends) - 1 - k))
         far = np.nan_to_num(np.abs(others[begin:stop] - end)).max(axis=1)
         if not len(far):
             break
