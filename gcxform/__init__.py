@@ -33,13 +33,20 @@ if TYPE_CHECKING:
     from gcxform.guess import Guess as Guess
     from gcxform.guess import guess_dialect as guess_dialect
     from gcxform.hookspecs import hookimpl as hookimpl
-    from gcxform.machine.errors import AxisFunction as AxisFunction
-    from gcxform.machine.errors import AxisFunctions as AxisFunctions
     from gcxform.machine.errors import ErrorModel as ErrorModel
     from gcxform.machine.errors import Outside as Outside
     from gcxform.machine.errors import check_contraction as check_contraction
     from gcxform.machine.errors import compensate as compensate
+    from gcxform.machine.errors import reach_of as reach_of
     from gcxform.machine.formats import ErrorFormat as ErrorFormat
+    from gcxform.machine.functions import AxisFunction as AxisFunction
+    from gcxform.machine.functions import AxisFunctions as AxisFunctions
+    from gcxform.machine.functions import Fault as Fault
+    from gcxform.machine.functions import faults as faults
+    from gcxform.machine.lattice import Lattice as Lattice
+    from gcxform.machine.linear import Linear as Linear
+    from gcxform.machine.rigid import RigidBody as RigidBody
+    from gcxform.machine.sums import Sum as Sum
     from gcxform.modal.codes import Code as Code
     from gcxform.modal.codes import CutterComp as CutterComp
     from gcxform.modal.codes import MCode as MCode
@@ -55,6 +62,8 @@ if TYPE_CHECKING:
     from gcxform.syntax.tree import Comment as Comment
     from gcxform.syntax.tree import Number as Number
     from gcxform.syntax.tree import Word as Word
+    from gcxform.tomltext import did_you_mean as did_you_mean
+    from gcxform.tomltext import read_text as read_text
     from gcxform.toolpath.circles import arc_cuts as arc_cuts
     from gcxform.toolpath.circles import arc_extremes as arc_extremes
     from gcxform.toolpath.circles import circle_through as circle_through
@@ -97,7 +106,13 @@ _HOMES = {
     "dialect": "ArcRule Dialect NumberFormat",
     "guess": "Evidence Guess guess_dialect",
     "hookspecs": "hookimpl",
-    "machine.errors": "AxisFunction AxisFunctions ErrorModel Outside check_contraction compensate",
+    "machine.errors": "ErrorModel Outside check_contraction compensate reach_of",
+    "machine.functions": "AxisFunction AxisFunctions Fault faults",
+    "machine.lattice": "Lattice",
+    "machine.linear": "Linear",
+    "machine.rigid": "RigidBody",
+    "machine.sums": "Sum",
+    "tomltext": "did_you_mean read_text",
     "machine.formats": "ErrorFormat",
     "modal.codes": "Code CutterComp MCode",
     "options": "Angle Length ModelFile Option Vector",

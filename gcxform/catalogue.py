@@ -336,18 +336,17 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "leave the row out so that the error is interpolated.",
     ),
     "GX413": (
-        "Errors of the carriages are not taken",
+        "Errors of the carriages without the place of the frame",
         'With `convention = "carriage"` the errors are motions of each carriage, and their sign at '
-        "the tool depends on which axes carry the workpiece; the model of nine functions does not "
-        "know that. Give the errors of the tool relative to the workpiece and write "
-        '`convention = "relative"`.',
+        "the tool depends on which axes carry the workpiece. Put F for the frame into `order`: "
+        '`order = "XYFZ"` where X and Y move the table and Z the spindle. Or give the errors of '
+        'the tool relative to the workpiece and write `convention = "relative"`.',
     ),
     "GX414": (
-        "Angular errors in a model of nine functions",
+        "Angular errors without their lever",
         "The file has roll, pitch or yaw (EA., EB., EC.) which is not zero. Their effect at the "
-        "tool grows with the tool offset and with the other axes; leaving them out would "
-        "compensate wrongly. Remove them only if the tables were measured at the tool tip and "
-        "contain their effect.",
+        "tool grows with the travel of the axes nearer to the tool, so these need a table, and "
+        "with the tool, so `tool` has to say which point was measured.",
     ),
     "GX415": (
         "The error changes too fast with the position",
@@ -391,6 +390,11 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "An error model without tables",
         "The file has none of the tables of its axes, so it would compensate nothing. Add them, "
         "or leave the compensation out of the pipeline.",
+    ),
+    "GX424": (
+        "Models that cannot be added",
+        "The files of a sum name each other, were measured at different points of the tool, or "
+        "have no travel in common.",
     ),
     "GX431": (
         "The limits of an axis do not ascend",

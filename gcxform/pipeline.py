@@ -19,7 +19,8 @@ from gcxform.contract import Pass, PassContext, TextPass
 from gcxform.diagnostics import UsageError
 from gcxform.dialect import Dialect, NumberFormat
 from gcxform.emit.manner import Manner
-from gcxform.machine.machine import Machine, load_machine
+from gcxform.machine.machine import Machine
+from gcxform.machine.machinefile import load_machine
 from gcxform.modal.state import Reading
 from gcxform.pipelinefile import PipelineSpec, load, parse_chain
 from gcxform.registry import Registry, default_registry

@@ -19,12 +19,9 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar
 
-import msgspec
-
 from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import Diagnostic, Location, UsageError
-from gcxform.machine import machine
-from gcxform.machine.modelfile import AxisFunctionsFile
+from gcxform.machine import machinefile, modelfile
 from gcxform.options import (
     Argument,
     Coordinates,
@@ -323,9 +320,9 @@ def schema(
 ) -> dict[str, Any]:
     """Return the JSON Schema of a kind of files; that of pipelines has the passes' options."""
     if kind == "machine":
-        return machine.schema()
+        return machinefile.schema()
     if kind == "model":
-        return msgspec.json.schema(AxisFunctionsFile)
+        return modelfile.schema()
     return _pipeline_schema((registry or default_registry()).passes)
 
 

@@ -10,9 +10,11 @@ import pytest
 
 from gcxform.catalogue import CATALOGUE
 from gcxform.diagnostics import Diagnostic, UsageError
-from gcxform.machine.errors import AxisFunction, AxisFunctions, ErrorModel
+from gcxform.machine.errors import ErrorModel
 from gcxform.machine.formats import ErrorFormat
-from gcxform.machine.modelfile import load_model, to_toml
+from gcxform.machine.functions import AxisFunction, AxisFunctions
+from gcxform.machine.modelfile import load_model
+from gcxform.machine.modeltext import to_toml
 from gcxform.tomltext import locate_key
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"
@@ -143,7 +145,7 @@ DEFECTS = {
     "format 2": (HEAD.replace("1", "2") + X, "GX406", 1, "2"),
     "format true": (HEAD.replace("1", "true") + X, "GX406", 1, "True"),
     "unknown kind": (HEAD.replace("axis-functions", "axis-function"), "GX407", 2, "did you mean"),
-    "later kind": (HEAD.replace("axis-functions", "lattice"), "GX407", 2, "known: axis-functions"),
+    "later kind": (HEAD.replace("axis-functions", "rubber"), "GX407", 2, "known: axis-functions"),
     "kind 3": (HEAD.replace('"axis-functions"', "3"), "GX407", 2, "3"),
     "unsorted": (HEAD + X.replace("30", "5"), "GX408", 6, "5.0 comes after 10.0"),
     "twice": (HEAD + X.replace("30", "10"), "GX409", 6, "10.0 stands twice"),
@@ -154,8 +156,9 @@ DEFECTS = {
     "nan": (HEAD + X.replace("0.001", "nan"), "GX412", 7, "nan"),
     "inf position": (HEAD + X.replace("30", "inf"), "GX412", 6, "inf"),
     "nan squareness": (HEAD + Z + "[squareness]\nA0Z = nan", "GX412", 11, "nan"),
-    "carriage": (HEAD.replace("relative", "carriage") + X, "GX413", 4, "relative"),
-    "angular": (HEAD + X + "ECX = [0, 0, 1e-6]\n", "GX414", 10, "ECX"),
+    "carriage": (HEAD.replace("relative", "carriage") + X, "GX413", 4, "which axes"),
+    "angular": (HEAD + X + "ECX = [0, 0, 1e-6]\n", "GX414", 10, "no table [Y]"),
+    "angular without tool": (HEAD + Z + "ECZ = [0, 1e-6]\n", "GX414", 10, "which point"),
     "in micrometres": (HEAD + X.replace("0.003", "3.0"), "GX415", 0, "mm per mm"),
     "square without table": (HEAD + X + "[squareness]\nC0Y = 1e-5", "GX420", 11, "[Y]"),
     "square of corrections": (
@@ -187,7 +190,8 @@ def test_the_column_of_an_element_is_shown(tmp_path):
 
 
 def test_all_defects_of_the_tables_are_told(tmp_path):
-    found = refused(tmp_path, HEAD + X.replace("30", "5").replace("0.003", "nan") + "EAX=[0,1,0]\n")
+    tables = X.replace("30", "5").replace("0.003", "nan") + "EAX=[0,1,0]\n"
+    found = refused(tmp_path, HEAD + "tool = [0, 0, 0]\n" + tables)
     assert [d.code for d in found] == ["GX408", "GX412", "GX414"]
 
 
@@ -230,7 +234,7 @@ class Tab(ErrorFormat):
 def test_a_foreign_format_is_asked(tmp_path):
     path = tmp_path / "machine.dat"
     path.write_text("0.001")
-    assert load_model(path, [Tab]).lipschitz == pytest.approx(0.001)
+    assert load_model(path, [Tab]).lipschitz() == pytest.approx(0.001)
 
 
 def test_a_foreign_model_is_checked_too(tmp_path):

@@ -307,7 +307,7 @@ def test_a_model_is_loaded(tmp_path: Path) -> None:
     (tmp_path / "m.toml").write_text(MODEL)
     made_pass = build(WithModel, {"model": "m.toml"}, tmp_path, (), where)
     assert made_pass.model.path == tmp_path / "m.toml"
-    assert made_pass.model.model.largest == 0.01
+    assert made_pass.model.model.largest() == 0.01
     assert len(made_pass.model.sha256) == 64
     again = build(WithModel, to_toml(made_pass), Path("elsewhere"), (), where)
     assert again == made_pass

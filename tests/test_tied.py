@@ -5,7 +5,8 @@ import pytest
 
 import gcxform as gx
 from gcxform.toolpath.path import Form
-from gcxform.verify import Verifier, _Trace
+from gcxform.trace import Trace
+from gcxform.verify import Verifier
 
 
 def test_the_proof_compares_forms():
@@ -22,8 +23,8 @@ def test_the_proof_compares_forms():
             return 4
 
     lines = np.arange(4)
-    same = _Trace(written, Window(), written, written, lines, lines * 0, 0)
+    same = Trace(written, Window(), written, written, lines, lines * 0, 0)
     verifier._forms(same)
-    other = _Trace(before, Window(), written, written, lines, lines * 0, 0)
+    other = Trace(before, Window(), written, written, lines, lines * 0, 0)
     with pytest.raises(gx.VerificationError, match="tied to the spindle"):
         verifier._forms(other)

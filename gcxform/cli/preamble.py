@@ -10,18 +10,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from gcxform.cli.memory import RESTATED, Memory
+from gcxform.cli.memory import Memory
 from gcxform.dialect import INCH, LINEAR, Dialect
 from gcxform.emit.numbers import MOST_DECIMALS, text_of
 from gcxform.modal.state import State
-from gcxform.modal.tables import NUMBER
+from gcxform.modal.tables import NUMBER, code_of
 
 EXACT = 1e-9  # mm, degrees: closer positions are the same
-
-
-def code_of(group: str, number: int) -> str:
-    """Return the code of a modal group by its number."""
-    return next(code for code in RESTATED[group] if NUMBER[code] == number)
 
 
 @dataclass(frozen=True)

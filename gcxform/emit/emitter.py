@@ -23,8 +23,15 @@ from gcxform.emit.manner import Believed, Manner, Task
 from gcxform.emit.numbers import MOST_DECIMALS, decimals_for, decimals_of, quantise
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, motion_kinds
-from gcxform.emit.render import Renderer, interleave
-from gcxform.emit.saying import CannotSayError, event_text, gaps_between, left_out, nothing_left
+from gcxform.emit.render import Renderer, groups_of, interleave
+from gcxform.emit.saying import (
+    CannotSayError,
+    event_text,
+    gaps_between,
+    left_out,
+    nothing_left,
+    slash_of,
+)
 from gcxform.emit.templates import TemplateWriter
 from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
@@ -39,7 +46,6 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 
-PEELED_AT_MOST = 16
 FEED_SLIP = 1.5e-4  # relative; a feed that would be written farther off is refused
 
 
@@ -211,7 +217,7 @@ class _Job:
 
     def _render(self, chosen: Ints, renderer: Renderer) -> None:
         """Render the pieces, one template after another."""
-        for places in _groups(self._ways(chosen)):
+        for places in groups_of(self._ways(chosen)):
             members = chosen[places]
             renderer.begin(self.pieces.line[members])
             for field in self._template(int(members[0])):
@@ -262,12 +268,14 @@ class _Job:
     def _event_text(self, piece: int) -> tuple[Field, ...]:
         """Return the block of something that a canned cycle does between its moves."""
         event, target = self.pieces.events[int(self.pieces.event[piece])], self.task.manner.target
+        line = int(self.pieces.line[piece])
         text = event_text(event, target, self.emitter.gap or b"")
         if text is None:
-            where = self.task.location(int(self.pieces.line[piece]))
+            where = self.task.location(line)
             message = f"{target.name} cannot say the {event.what} of this cycle"
             raise InputError.one("GX501", message, where)
-        return (Literal(text),)
+        shape = self.task.table.shapes.shapes[int(self.task.shape[line])]
+        return (Literal(slash_of(shape) + text),)
 
     def _field(self, field: Field, members: Ints, renderer: Renderer) -> None:
         """Render one field of the pieces of a template."""
@@ -380,20 +388,6 @@ class _Job:
                 if len(last):
                     setattr(believed, name, int(stated[last[-1]]))
             self._leave_end(believed)
-
-
-def _groups(ways: Ints) -> list[Ints]:
-    """Return the places of each value, by peeling off one value after another."""
-    groups: list[Ints] = []
-    left = np.arange(len(ways))
-    while len(left) and len(groups) < PEELED_AT_MOST:
-        same = ways[left] == ways[left[0]]
-        groups.append(left[same])
-        left = left[~same]
-    if len(left):
-        order = left[np.argsort(ways[left], kind="stable")]
-        groups += np.split(order, np.flatnonzero(np.diff(ways[order])) + 1)
-    return groups
 
 
 def _is_path_mode(what: str, source: type[Dialect]) -> bool:

@@ -8,7 +8,7 @@ by `gcxform/modal/cycles.py`, in the coordinates of the program.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -109,10 +109,12 @@ class Drilling:
         words = track.frame.words(track.state.position[None, :])[0]
         after = words.copy()
         stretch, dwell = None, self.cycles.mode.dwell
-        if self._is_plain(first, last):
+        self._refuse_other_zero(first, last, plane.axes[2])
+        if not track.frame.polar and self._is_plain(first, last):
             after[list(plane.axes)] = self._plain_end(first, last, words, plane)
         else:
             calls = self._calls_on(slice(first, last), words[list(plane.axes)], plane, unit)
+            calls = self._in_coordinates(calls, slice(first, last))
             stretch = self.cycles.follow(calls)
             after[list(plane.axes)] = stretch.after[-1]
         frame = len(track.frames) - 1
@@ -120,6 +122,31 @@ class Drilling:
         track.state.position = track.frame.positions(after[None, :])[0].copy()
         if self._manual.any() and self._manual[first:last].any():
             track.breaks.append(Break(last, 1 << plane.axes[2]))
+
+    def _refuse_other_zero(self, first: int, last: int, normal: int) -> None:
+        """Refuse G98 where coordinates have changed since a cycle began that is still in force.
+
+        Not where words do not outlive their cycle: that control goes back to the same number.
+        """
+        assert self.cycles is not None
+        frame = self.track.frame
+        zero = frame.shift[normal], frame.origin[normal], frame.matrix
+        other = self.cycles.mode.code and zero != self.cycles.zero
+        self.cycles.zero = zero
+        if not (other and self.cycles.rule.keeps_words):
+            return
+        for line in np.flatnonzero(self._common.initial[first:last])[:1].tolist():
+            message = "the coordinates have changed within a cycle: the level of G98 is not certain"
+            hint = "write G80 before, and all words again"
+            self.track.findings.add(first + line, "GX215", message, hint=hint)
+
+    def _in_coordinates(self, calls: Calls, here: slice) -> Calls:
+        """Return calls with coordinates where their words are radius and angle (G16)."""
+        if not self.track.frame.polar:
+            return calls
+        placed = self.track.polar(here).values()
+        first, second = (np.where(given, value, np.nan) for value, given in placed)
+        return replace(calls, first=first, second=second)
 
     def _is_plain(self, first: int, last: int) -> bool:
         """Whether a stretch begins without a cycle in force, ends with G80, and has one in G90."""

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, Dialect
-from gcxform.machine.machine import LENGTH
+from gcxform.machine.quantities import LENGTH
 from gcxform.modal.arithmetic import Key
 from gcxform.modal.computing import compute
 from gcxform.modal.cycles import Cycles

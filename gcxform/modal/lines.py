@@ -112,7 +112,9 @@ class Lines:
         shape = self.window.shape
         ends = np.zeros(len(shape), np.bool_)
         if self.dialect.stops_at_end:
-            ends |= self.table.flag("ends", shape) & ~self.table.flag("deleted", shape)
+            ends |= self.table.flag("ends", shape)
+            if (self.reading.block_delete or self.dialect.block_delete) != "execute":
+                ends &= ~self.table.flag("deleted", shape)
         percent = np.flatnonzero(self.table.flag("percent", shape))
         for line in percent[max(0, 1 - self.state.percents) :][:1]:
             ends[line] = True

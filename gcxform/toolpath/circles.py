@@ -80,18 +80,28 @@ def arc_extremes(path: Toolpath) -> tuple[Floats, Ints]:
 
 
 def arc_cuts(
-    path: Toolpath, offset: Floats, nodes: Sequence[Floats], lipschitz: float, slack: float
+    path: Toolpath,
+    offset: Floats,
+    nodes: Sequence[Floats],
+    lipschitz: float,
+    curvature: float,
+    slack: float,
 ) -> tuple[Ints, Floats]:
     """Return row and part of the cuts at which an error field leaves arcs nearly arcs.
 
     Between two cuts the field, with its Lipschitz constant (mm/mm), is linear in the position
     (`nodes`, in positions plus `offset` (n or 1, 3)), so that an arc's image is within `slack` (mm)
-    of an arc.
+    of an arc. Where the field is curved there, by up to `curvature` (mm/mm2) along any direction,
+    the pieces are so short that this adds `slack` once more.
     """
     rows = np.flatnonzero(path.is_arc)
     first, last, angle = radius_and_angle(path, rows)
     size = np.maximum(first, last)
     widest = np.sqrt(8 * slack / np.maximum(size * lipschitz, 1e-12)) / 2
+    if curvature:
+        length = np.hypot(size * path.sweep[rows], _rise(path, rows))
+        longest = np.sqrt(8 * slack / curvature)
+        widest = np.minimum(widest, path.sweep[rows] * longest / np.maximum(length, longest))
     count = np.ceil(path.sweep[rows] / np.minimum(widest, 0.5)).astype(np.int64)
     row = np.repeat(rows, count)
     nth = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
@@ -110,6 +120,12 @@ def arc_cuts(
         rise = _rise_crossings(path, mine, shift, normal, nodes[normal])
         found.append((mine[rise[0]], rise[1]))
     return np.concatenate([r for r, _ in found]), np.concatenate([p for _, p in found])
+
+
+def _rise(path: Toolpath, rows: Ints) -> Floats:
+    """Return how far (mm) arcs go along the axes of their planes; 0 where that is not known."""
+    normal = np.array([plane.axes[2] for plane in Plane])[path.plane[rows]]
+    return np.asarray(np.nan_to_num(path.end[rows, normal] - path.start[rows, normal]))
 
 
 def _rise_crossings(

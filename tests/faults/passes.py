@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import CORPUS, FIGURES, KIT, PASSES, VERIFY, Mutation
+from faults.mutation import CORPUS, FIGURES, KIT, PASSES, RIGID, RIGID_PASS, VERIFY, Mutation
 
 MUTATIONS = (
     # the error model and the search for commands
@@ -16,23 +16,79 @@ MUTATIONS = (
     Mutation(
         "undo: the sign of the error is swapped",
         f"{PASSES}/undoing.py",
-        "actual = point + self.step.error(point + offset)",
-        "actual = point - self.step.error(point + offset)",
+        "actual = point + self.step.error(table,",
+        "actual = point - self.step.error(table,",
         VERIFY,
     ),
     Mutation(
         "E: an axis is dropped",
-        "gcxform/machine/errors.py",
-        'for k in range(3):\n            # "clip" spares',
-        'for k in range(2):\n            # "clip" spares',
+        "gcxform/machine/functions.py",
+        "self.add_columns(total[:, piece], coordinate[piece], range(3))",
+        "self.add_columns(total[:2, piece], coordinate[piece], range(2))",
         FIGURES,
     ),
     Mutation(
         "E: one cell farther",
-        "gcxform/machine/errors.py",
+        "gcxform/machine/functions.py",
         "return cell.astype(np.intp), part",
         "return cell.astype(np.intp), part + 1.0",
         FIGURES,
+    ),
+    Mutation(
+        "rigid body: the lever turns the other way",
+        "gcxform/machine/rigid.py",
+        "total[after] += turn[3 + before] * lever",
+        "total[after] -= turn[3 + before] * lever",
+        RIGID,
+    ),
+    Mutation(
+        "rigid body: the axis has no bearing on those before it",
+        "gcxform/machine/rigid.py",
+        "self.order.index(AXES[axis]) + 1 :",
+        "self.order.index(AXES[axis]) + 2 :",
+        RIGID,
+    ),
+    Mutation(
+        "rigid body: the place of the measurement is forgotten",
+        "gcxform/machine/rigid.py",
+        "place[:, j] - self.at[axis][j]",
+        "place[:, j]",
+        RIGID,
+    ),
+    Mutation(
+        "rigid body: no curvature",
+        "gcxform/machine/rigid.py",
+        "found[k, j] = found[j, k] = float(",
+        "found[k, j] = found[j, k] = 0.5 * float(",
+        RIGID,
+    ),
+    Mutation(
+        "lattice: two corners change places",
+        "gcxform/machine/lattice.py",
+        "weight = weight * (part if c else 1.0 - part)",
+        "weight = weight * (1.0 - part if c else part)",
+        RIGID,
+    ),
+    Mutation(
+        "lattice: the twist of a cell is halved",
+        "gcxform/machine/lattice.py",
+        "found[i, j] = found[j, i] = float(",
+        "found[i, j] = found[j, i] = 0.25 * float(",
+        RIGID,
+    ),
+    Mutation(
+        "volumetric: the tool points the other way",
+        f"{PASSES}/volumetric.py",
+        "tip = -tools\n",
+        "tip = +tools\n",
+        RIGID_PASS,
+    ),
+    Mutation(
+        "volumetric: curved pieces are not divided",
+        f"{PASSES}/splitting.py",
+        "np.ceil(np.sqrt(bend / between))",
+        "np.ceil(np.sqrt(0.01 * bend / between))",
+        RIGID_PASS,
     ),
     Mutation(
         "volumetric: the first node is skipped",

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform_plugins.passes.fitting import ArcFitter
+from gcxform_plugins.passes.placing import Place
 from gcxform_plugins.passes.splitting import cuts_of_lines
 
 if TYPE_CHECKING:
@@ -34,29 +35,37 @@ def left_alone(path: gx.Toolpath) -> NDArray[np.bool_]:
 class Compensation:
     """The forward work on one window."""
 
-    def __init__(self, step: Volumetric, path: gx.Toolpath, offset: Floats) -> None:
+    def __init__(self, step: Volumetric, path: gx.Toolpath, place: Place) -> None:
         self.step = step
         self.path = path
-        self.offset = offset
-        self.start = path.start[:, :3] + offset
-        self.end = path.end[:, :3] + offset
+        self.place = place
+        self.offset = place.offset
+        self.start = path.start[:, :3] + self.offset
+        self.end = path.end[:, :3] + self.offset
+        model = step.model.model
+        reach = gx.reach_of(model, place.tool)
+        self.lipschitz, self.curvature = model.lipschitz(reach), model.curvature(reach)
         self.left = left_alone(path)
 
     def offset_of(self, rows: Ints) -> Floats:
         """Return table position minus program position of rows."""
-        return self.offset if len(self.offset) == 1 else self.offset[rows]
+        return self.place.offset_of(rows)
+
+    def command(self, target: Floats, rows: Ints) -> Floats:
+        """Return the commands (n, 3) for targets in the table (n, 3) on rows, mm."""
+        return self.step.command(target, self.place.tool_of(rows))
 
     def correction(self, rows: Ints, part: Floats) -> Floats:
         """Return the error (n, 3) at parts of the way of arcs."""
         point = gx.points_on_arcs(self.path, rows, part)
-        return self.step.error(point + self.offset_of(rows))
+        return self.step.error(point + self.offset_of(rows), self.place.tool_of(rows))
 
     def run(self) -> gx.Toolpath:
         """Return the commands."""
         self._refuse_splines()
         self._check_known()
         self._check_inside()
-        self.entry_command = self.step.command(self.start[:1])[0]
+        self.entry_command = self.step.command(self.start[:1], self.place.first_tool)[0]
         if self.step.rapids == "skip" and self.path.after_rapid:
             self.entry_command = self.start[0]
         commands = self._commands()
@@ -77,9 +86,10 @@ class Compensation:
     def _commands(self) -> Floats:
         """Return the commands for the ends of the rows; what G28 and G53 say stays as it is."""
         if not self.left.any():
-            return self.step.command(self.end)
+            return self.step.command(self.end, self.place.tool)
         commands = self.end.copy()
-        commands[~self.left] = self.step.command(self.end[~self.left])
+        rows = np.flatnonzero(~self.left)
+        commands[rows] = self.command(self.end[rows], rows)
         path = self.path
         distances = path.blocks.incremental[path.block] & (path.form == gx.Form.HOME)
         distances &= np.append(path.nth[1:] > 0, False)[: len(path)]  # the way to G28's own point
@@ -202,7 +212,7 @@ class Compensation:
         target = self.end[row]
         target[inner] = self._between(row[inner], part[inner])
         command = commands[row]
-        command[inner] = self.step.command(target[inner])
+        command[inner] = self.command(target[inner], row[inner])
         self._check_size(command, target, row)
         end = self._with_others(commands - self.offset)[row]
         end[:, :3] = np.where(inner[:, None], command - self.offset_of(row), end[:, :3])

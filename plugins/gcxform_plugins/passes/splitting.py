@@ -1,4 +1,8 @@
-"""Where `volumetric` cuts lines: at the nodes that their commands cross, as far as needed."""
+"""Where `volumetric` cuts lines: at the nodes that their commands cross, as far as needed.
+
+A model with angular errors is also curved between the nodes, and bounds that: where the bound is
+too large for a piece between two nodes, it is divided, and these places may be cut as well.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +18,12 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 REFINEMENTS = 4  # each shrinks the error of a crossing by the Lipschitz constant of the error
 NEGLIGIBLE = 1e-5  # mm; a cut that mends less is not worth a block: a hundredth of the rounding
+CURVED = 1e-4  # mm; what may stay between two cuts, without a tolerance, where the error is curved
+CURVED_SHARE = 0.25  # of a tolerance, for the same
 
 
 def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
@@ -26,22 +33,54 @@ def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
     points[0], points[1:] = work.entry_command, commands
     lines = (path.kind == gx.Kind.LINE) & (path.form == gx.Form.PLAIN)
     lines &= path.starts_known & ~work.left
+    row, part = _at_nodes(work, points, lines)
+    exact = step.tolerance is None or step.split == "nodes"
+    residual = NEGLIGIBLE if exact else step.limit
+    if work.curvature.any():
+        between = CURVED if exact else CURVED_SHARE * step.limit
+        row, part = _divided(work, row, part, lines, between)
+        residual -= 0.0 if exact else between
+    return _needed(work, row, part, points, residual) if len(row) else (row, part)
+
+
+def _at_nodes(work: Compensation, points: Floats, lines: Flags) -> tuple[Ints, Floats]:
+    """Return row and part of the places where commands cross a node."""
+    step = work.step
     row, part, axis, plane = gx.line_crossings(points, lines, step.nodes())
     if not len(row):
         return row, part
     start, way = work.start[row], work.end[row] - work.start[row]
     index = np.arange(len(row))
     for _ in range(REFINEMENTS):
-        command = step.command(start + part[:, None] * way)
+        command = work.command(start + part[:, None] * way, row)
         with np.errstate(divide="ignore", invalid="ignore"):
             shift = (plane - command[index, axis]) / way[index, axis]
         part = part + np.where(np.isfinite(shift) & (np.abs(shift) < 0.5), shift, 0.0)
     inside = (part > 0) & (part < 1)
-    row, part = row[inside], part[inside]
-    if not len(row):
-        return row, part
-    exact = step.tolerance is None or step.split == "nodes"
-    return _needed(work, row, part, points, NEGLIGIBLE if exact else step.limit)
+    return row[inside], part[inside]
+
+
+def _divided(
+    work: Compensation, row: Ints, part: Floats, lines: Flags, between: float
+) -> tuple[Ints, Floats]:
+    """Return the places, and more so that between two of them the error bends by `between` mm."""
+    whole = np.flatnonzero(lines)
+    row, part = np.append(row, whole), np.append(part, np.ones(len(whole)))
+    order = np.lexsort((part, row))
+    row, part = row[order], part[order]
+    before = np.where(np.append(True, row[1:] != row[:-1]), 0.0, np.append(0.0, part[:-1]))
+    way = np.abs(work.end[row] - work.start[row]) * (part - before)[:, None]
+    bend = np.einsum("ni,ij,nj->n", way, work.curvature, way) / 8 * (1 + 4 * work.lipschitz)
+    pieces = np.ceil(np.sqrt(bend / between)).astype(np.int64)
+    long = np.flatnonzero(pieces > 1)
+    which = np.repeat(long, pieces[long] - 1)
+    first = np.cumsum(pieces[long] - 1) - (pieces[long] - 1)
+    nth = np.arange(len(which)) - np.repeat(first, pieces[long] - 1) + 1
+    more = before[which] + (part - before)[which] * nth / pieces[which]
+    inner = part < 1.0
+    row, part = np.append(row[inner], row[which]), np.append(part[inner], more)
+    order = np.lexsort((part, row))
+    return row[order], part[order]
 
 
 def _needed(
@@ -53,13 +92,12 @@ def _needed(
 ) -> tuple[Ints, Floats]:
     """Return the cuts that a residual (mm) needs.
 
-    A straight command from one exact point to another is off at the nodes between them, and
+    A straight command from one exact point to another is off at the places between them, and
     nowhere more than there, by its distance from the exact command.
     """
-    step = work.step
-    limit = residual * (1 - 1e-6) / (1 + step.model.model.lipschitz)
+    limit = residual * (1 - 1e-6) / (1 + work.lipschitz)
     start, way = work.start[row], work.end[row] - work.start[row]
-    exact = step.command(start + part[:, None] * way)
+    exact = work.command(start + part[:, None] * way, row)
     straight = points[row] + part[:, None] * (points[row + 1] - points[row])
     off = np.sqrt(((exact - straight) ** 2).sum(axis=1))
     begins = np.flatnonzero(np.append(True, row[1:] != row[:-1]))

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform_plugins.passes.placing import Place
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.volumetric import Volumetric
@@ -20,15 +21,20 @@ Ints = NDArray[np.int64]
 
 STILL = 1e-9  # mm; an axis that moves by less stays where it is
 UNDO_SLACK = 2e-6  # mm; how far pieces of an undone arc are from the curve they stand for
+BEND_SLACK = 1e-5  # mm; the same for pieces of a line, and what the bending adds to an arc
 
 
 class Machine:
     """Where the machine goes with commands: the forward model alone."""
 
-    def __init__(self, step: Volumetric, path: gx.Toolpath, offset: Floats) -> None:
+    def __init__(self, step: Volumetric, path: gx.Toolpath, place: Place) -> None:
         self.step = step
         self.path = path
-        self.offset = offset
+        self.place = place
+        offset = self.offset = place.offset
+        model = step.model.model
+        reach = gx.reach_of(model, place.tool)
+        self.lipschitz, self.curvature = model.lipschitz(reach), model.curvature(reach)
         self.start = path.start[:, :3] + offset
         self.end = path.end[:, :3] + offset
 
@@ -46,8 +52,8 @@ class Machine:
             every, at = every[order], at[order]
             counts = np.bincount(every, minlength=len(path))
         point = self._points(every, at)
-        offset = self.offset if len(self.offset) == 1 else self.offset[every]
-        actual = point + self.step.error(point + offset)
+        table = point + self.place.offset_of(every)
+        actual = point + self.step.error(table, self.place.tool_of(every))
         if self.step.rapids == "skip":
             rapid = path.kind[every] == gx.Kind.RAPID
             actual[rapid] = point[rapid]
@@ -74,7 +80,7 @@ class Machine:
         entry = self.path.entry[:3].copy()
         skipped = self.step.rapids == "skip" and self.path.after_rapid
         if np.isfinite(entry).all() and not skipped:
-            entry += self.step.error(entry[None, :] + self.offset[:1])[0]
+            entry += self.step.error(entry[None, :] + self.offset[:1], self.place.first_tool)[0]
         return entry
 
     def _crossings(self) -> tuple[Ints, Floats]:
@@ -82,10 +88,12 @@ class Machine:
         path = self.path
         plain = np.isin(path.form, gx.FREE)
         lines = np.flatnonzero((path.kind == gx.Kind.LINE) & path.starts_known & plain)
-        row, part = self._bends(lines)
+        row, part = self._curves(lines, *self._bends(lines))
         if path.has_arcs:
-            reach = self.step.model.model.lipschitz
-            arc_row, arc_part = gx.arc_cuts(path, self.offset, self.step.nodes(), reach, UNDO_SLACK)
+            bend = float(np.linalg.norm(self.curvature, 2))
+            arc_row, arc_part = gx.arc_cuts(
+                path, self.offset, self.step.nodes(), self.lipschitz, bend, UNDO_SLACK
+            )
             row, part = np.append(row, arc_row), np.append(part, arc_part)
         return row, part
 
@@ -103,6 +111,25 @@ class Machine:
                 rows.append(lines[moving[inside]])
                 parts.append(part[inside])
         return np.concatenate(rows), np.concatenate(parts)
+
+    def _curves(self, lines: Ints, row: Ints, part: Floats) -> tuple[Ints, Floats]:
+        """Return the cuts, and more where between two of them the error is no straight line."""
+        if not self.curvature.any():
+            return row, part
+        rows = np.concatenate([row, lines])
+        stop = np.append(part, np.ones(len(lines)))
+        order = np.lexsort((stop, rows))
+        rows, stop = rows[order], stop[order]
+        begin = np.where(np.append(True, rows[1:] != rows[:-1]), 0.0, np.append(0.0, stop[:-1]))
+        way = np.abs(self.end[rows] - self.start[rows]) * (stop - begin)[:, None]
+        sag = np.einsum("ni,ij,nj->n", way, self.curvature, way) / 8.0
+        pieces = np.maximum(np.ceil(np.sqrt(sag / BEND_SLACK)), 1.0).astype(np.int64)
+        every = np.repeat(np.arange(len(rows)), pieces)
+        nth = np.arange(len(every)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
+        at = begin[every] + (stop - begin)[every] * nth / pieces[every]
+        at = np.where(nth == pieces[every], stop[every], at)
+        inner = at < 1.0
+        return rows[every][inner], at[inner]
 
     def _points(self, rows: Ints, part: Floats) -> Floats:
         """Return commanded points (n, 3) of rows at parts of their way."""
@@ -135,6 +162,7 @@ class Machine:
             middle = self._points_between(rows, (part + before) / 2)
             columns["centre"] = path.centre[rows] + middle
         slack = UNDO_SLACK if path.has_arcs else 0.0
+        slack += (BEND_SLACK + slack) if self.curvature.any() else 0.0
         return path.with_rows(counts, **columns).replace(entry=entry, slack=path.slack + slack)
 
     def _points_between(self, rows: Ints, part: Floats) -> Floats:
@@ -142,6 +170,6 @@ class Machine:
         errors = np.zeros((len(rows), 3))
         arcs = np.flatnonzero(self.path.is_arc[rows])
         point = gx.points_on_arcs(self.path, rows[arcs], part[arcs])
-        offset = self.offset if len(self.offset) == 1 else self.offset[rows[arcs]]
-        errors[arcs] = self.step.error(point + offset)
+        table = point + self.place.offset_of(rows[arcs])
+        errors[arcs] = self.step.error(table, self.place.tool_of(rows[arcs]))
         return errors

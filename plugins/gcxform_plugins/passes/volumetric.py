@@ -5,7 +5,7 @@ target p the command solves c + E(c) = p. Between two commands the control goes 
 bends at the nodes of its table, so a line is cut where its command crosses a node, and nowhere else
 unless asked: then the machine is on the line, exactly. With a tolerance, only those cuts stay that
 the tolerance needs. An arc stays an arc where one fitted to the compensated points holds the
-tolerance, and is halved where it does not.
+tolerance, and is cut where it does not.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform_plugins.passes.compensation import Compensation
+from gcxform_plugins.passes.placing import Place
 from gcxform_plugins.passes.undoing import Machine
 
 Floats = NDArray[np.float64]
@@ -97,26 +98,20 @@ class Volumetric(gx.Pass):
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the commands for a path."""
-        if not len(path):
-            return path
-        offset = self._offset(path, context)
-        return Compensation(self, path, offset).run()
+        return Compensation(self, path, self._place(path, context)).run() if len(path) else path
 
     def undo(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return where the machine goes: command plus error, cut where the error bends."""
-        if not len(path):
-            return path
-        offset = self._offset(path, context)
-        return Machine(self, path, offset).run()
+        return Machine(self, path, self._place(path, context)).run() if len(path) else path
 
-    def _offset(self, path: gx.Toolpath, context: gx.PassContext) -> Floats:
-        """Return table position minus position of each row (n, 3), or of all (1, 3)."""
+    def _place(self, path: gx.Toolpath, context: gx.PassContext) -> Place:
+        """Return where the rows of a path are in the machine."""
         origin = np.array(self.table_origin)
+        tools = np.nan_to_num(np.array([frame.tool for frame in path.frames]))
         if self.part_origin is not None:
             self._check_frames(path, "a second work offset, but only one part-origin", False)
-            tools = np.nan_to_num(np.array([frame.tool for frame in path.frames]))
-            place = np.array(self.part_origin) - origin - tools
-            return np.asarray(place if len(place) == 1 else place[path.frame])
+            offset = np.array(self.part_origin) - origin - tools
+            return Place(offset if len(offset) == 1 else offset[path.frame])
         assert context.machine is not None
         table = context.machine.work_offsets
         self._check_frames(path, "the machine file has not all offsets of this block", True)
@@ -124,7 +119,11 @@ class Volumetric(gx.Pass):
             message = f"the machine file has no work offset {path.first}"
             raise path.refuse("GX314", np.array([0]), message, "add it there")
         zero = [table[path.first].get(axis, 0.0) for axis in "XYZ"]
-        return np.asarray(np.array([zero]) - origin)
+        tip = None
+        if self.model.model.needs_tool:
+            tip = -tools
+            tip = tip[0] if len(tip) == 1 else tip[path.frame]
+        return Place(np.array([zero]) - origin, tip)
 
     def _check_frames(self, path: gx.Toolpath, message: str, tools: bool) -> None:
         """Refuse rows whose X, Y, Z count from elsewhere; `tools`: tool lengths matter."""
@@ -146,10 +145,11 @@ class Volumetric(gx.Pass):
         x, y, z = (n if bends else n[1:-1] for n in self.model.model.nodes)
         return x, y, z
 
-    def error(self, position: Floats) -> Floats:
-        """Return the error (n, 3) at positions in the table (n, 3), mm."""
-        return self.model.model.error(position, self.outside)
+    def error(self, position: Floats, tool: Floats | None = None) -> Floats:
+        """Return the error (n, 3) at positions in the table (n, 3), mm, for tools."""
+        return self.model.model.error(position, self.outside, tool)
 
-    def command(self, target: Floats) -> Floats:
-        """Return the commands (n, 3) for targets in the table (n, 3), mm."""
-        return gx.compensate(self.model.model, target, self.outside, self.iterations).position
+    def command(self, target: Floats, tool: Floats | None = None) -> Floats:
+        """Return the commands (n, 3) for targets in the table (n, 3), mm, for tools."""
+        model = self.model.model
+        return gx.compensate(model, target, self.outside, self.iterations, tool).position

@@ -1,0 +1,206 @@
+"""The lattice: errors at the points of a rectilinear grid, trilinear between them.
+
+The rigid-body model is trilinear in each cell if every node of its functions is a node of the grid,
+so functions become a lattice without loss. For tools other than that of the measurement the turns
+of the tool are a second lattice: E(q, t) = E(q, t0) + R(q) x (t - t0).
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from gcxform.machine.errors import BLOCK, ErrorModel, FloatArray, Outside, part_of
+
+Cell = npt.NDArray[np.intp]
+Field = tuple[list[FloatArray], FloatArray]
+CORNERS = tuple(itertools.product((0, 1), repeat=3))
+
+
+@dataclass(frozen=True, eq=False)
+class Lattice(ErrorModel):
+    """Errors on a grid.
+
+    `grid` holds the positions (mm) on X, Y and Z, ascending; on an axis with one position the error
+    is the same everywhere. `values` (nx, ny, nz, 3) are the errors in mm, `turns` (nx, ny, nz, 3)
+    the angular errors in rad if they are known, and `measured` the tool (mm) of the measurement.
+    """
+
+    grid: tuple[FloatArray, FloatArray, FloatArray]
+    values: FloatArray
+    turns: FloatArray | None = None
+    measured: tuple[float, float, float] | None = None
+    kind: ClassVar[str] = "lattice"
+
+    @property
+    def tool(self) -> FloatArray | None:
+        """The way (3,) in mm from the gauge point to the measured point."""
+        return None if self.measured is None else np.array(self.measured)
+
+    @property
+    def needs_tool(self) -> bool:
+        """Whether the angular errors are known."""
+        return self.turns is not None
+
+    def error(
+        self,
+        position: FloatArray,
+        outside: Outside = Outside.ERROR,
+        tool: FloatArray | None = None,
+        sense: FloatArray | None = None,
+    ) -> FloatArray:
+        """Return E (n, 3) in mm at the positions (n, 3) in mm: see `ErrorModel.error`."""
+        total = np.zeros((3, len(position)))
+        place = position
+        if outside is Outside.CLAMP:
+            place = np.column_stack([np.clip(position[:, k], *self.range_of(k)) for k in range(3)])
+        with np.errstate(invalid="ignore"):
+            for first in range(0, len(position), BLOCK):
+                piece = slice(first, first + BLOCK)
+                self._add(total[:, piece], place[piece], part_of(tool, piece))
+        if outside is Outside.ZERO:
+            total[:, self.outside(position).any(axis=1)] = 0.0
+        return total.T
+
+    def _add(self, total: FloatArray, place: FloatArray, tool: FloatArray | None) -> None:
+        """Add the errors (3, n) at some places (n, 3) to `total`, in place."""
+        cells = [self._cell(axis, place[:, axis]) for axis in range(3)]
+        flat = self._flat
+        turning = tool is not None and self.turns is not None
+        found = np.zeros((len(flat) if turning else 3, len(place)))
+        _, ny, nz = self.values.shape[:3]
+        for corner in CORNERS:
+            if any(c and not len(part) for c, (_, part) in zip(corner, cells, strict=True)):
+                continue
+            weight = np.ones(len(place))
+            at = []
+            for c, (cell, part) in zip(corner, cells, strict=True):
+                at.append(cell + c)
+                if len(part):
+                    weight = weight * (part if c else 1.0 - part)
+            index = (at[0] * ny + at[1]) * nz + at[2]
+            for k, row in enumerate(found):
+                row += weight * np.take(flat[k], index, mode="clip")
+        total += found[:3]
+        if turning and tool is not None:
+            origin = np.zeros(3) if self.tool is None else self.tool
+            total += np.cross(found[3:].T, tool - origin).T
+
+    def _cell(self, axis: int, coordinate: FloatArray) -> tuple[Cell, FloatArray]:
+        """Return the cell (n,) and the part of it (n,); no parts where an axis has one node."""
+        nodes = self.grid[axis]
+        if len(nodes) == 1:
+            return np.zeros(len(coordinate), np.intp), np.empty(0)
+        cell = np.searchsorted(nodes[1:-1], coordinate, side="right")
+        return cell, (coordinate - nodes[cell]) / (nodes[cell + 1] - nodes[cell])
+
+    @cached_property
+    def _flat(self) -> FloatArray:
+        """The values, and the turns below them, as rows (3 or 6, points)."""
+        rows = [self.values] if self.turns is None else [self.values, self.turns]
+        return np.ascontiguousarray(np.vstack([r.reshape(-1, 3).T for r in rows]))
+
+    @property
+    def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """The positions of the grid in mm; empty for an axis with one."""
+        x, y, z = (n if len(n) > 1 else np.empty(0) for n in self.grid)
+        return x, y, z
+
+    def range_of(self, axis_index: int) -> tuple[float, float]:
+        """Return the first and last position of an axis in mm; infinite if it has one."""
+        nodes = self.grid[axis_index]
+        return (float(nodes[0]), float(nodes[-1])) if len(nodes) > 1 else (-math.inf, math.inf)
+
+    # --- bounds ---
+
+    def lipschitz(self, reach: float = 0.0) -> float:
+        """Return a bound of the spectral norm of dE/dc: see `ErrorModel.lipschitz`.
+
+        A derivative along one axis is bilinear in the two others, so it is largest on an edge of a
+        cell; the norm of a matrix is at most that of its columns.
+        """
+        return self._steepness[0] + reach * self._steepness[1]
+
+    def curvature(self, reach: float = 0.0) -> FloatArray:
+        """Return bounds (3, 3) of |d2E/dci dcj| (mm/mm2), from the faces of all cells."""
+        return self._twists[0] + reach * self._twists[1]
+
+    @cached_property
+    def _steepness(self) -> tuple[float, float]:
+        values, turns = self._fields()
+        return _steepest(*values), _steepest(*turns)
+
+    @cached_property
+    def _twists(self) -> tuple[FloatArray, FloatArray]:
+        values, turns = self._fields()
+        return _twist(*values), _twist(*turns)
+
+    def _fields(self) -> tuple[Field, Field]:
+        """Return grid and values, and grid and turns, with one extrapolated cell on every side."""
+        turns = np.zeros_like(self.values) if self.turns is None else self.turns
+        return self._wider(self.values), self._wider(turns)
+
+    def largest(self, reach: float = 0.0) -> float:
+        """Return a bound of |E| in mm inside the grid: it is largest at a node."""
+        found = float(np.sqrt((self.values**2).sum(axis=-1)).max())
+        if self.turns is not None and reach:
+            found += reach * float(np.sqrt((self.turns**2).sum(axis=-1)).max())
+        return found
+
+    def _wider(self, values: FloatArray) -> Field:
+        """Return the grid and values with one extrapolated cell on every side."""
+        grid = list(self.grid)
+        for axis in range(3):
+            nodes = grid[axis]
+            if len(nodes) > 1:
+                grid[axis] = np.concatenate(
+                    [[2 * nodes[0] - nodes[1]], nodes, [2 * nodes[-1] - nodes[-2]]]
+                )
+                v = np.moveaxis(values, axis, 0)
+                v = np.concatenate([2 * v[:1] - v[1:2], v, 2 * v[-1:] - v[-2:-1]])
+                values = np.moveaxis(v, 0, axis)
+        return grid, values
+
+
+def _steepest(grid: list[FloatArray], values: FloatArray) -> float:
+    """Return the largest norm of the columns of the derivative over all cells."""
+    square = np.zeros([max(len(n) - 1, 1) for n in grid])
+    with np.errstate(over="ignore", invalid="ignore"):
+        for axis in range(3):
+            if len(grid[axis]) > 1:
+                slope = _along(grid, values, axis)
+                size = (slope**2).sum(axis=-1)
+                for other in range(3):
+                    if other != axis and len(grid[other]) > 1:
+                        size = _larger_neighbour(size, other)
+                square = square + size
+        largest = float(np.sqrt(square.max()))
+    return largest if math.isfinite(largest) else math.inf
+
+
+def _twist(grid: list[FloatArray], values: FloatArray) -> FloatArray:
+    """Return the largest mixed derivatives (3, 3) of all cells."""
+    found = np.zeros((3, 3))
+    for i, j in ((0, 1), (0, 2), (1, 2)):
+        if len(grid[i]) > 1 and len(grid[j]) > 1:
+            mixed = _along(grid, _along(grid, values, i), j)
+            found[i, j] = found[j, i] = float(np.sqrt((mixed**2).sum(axis=-1)).max())
+    return found
+
+
+def _along(grid: list[FloatArray], values: FloatArray, axis: int) -> FloatArray:
+    """Return the slopes of values along an axis, one fewer there."""
+    width = np.diff(grid[axis]).reshape([-1 if k == axis else 1 for k in range(4)])
+    return np.asarray(np.diff(values, axis=axis) / width)
+
+
+def _larger_neighbour(size: FloatArray, axis: int) -> FloatArray:
+    """Return the larger of each two neighbours along an axis."""
+    s = np.moveaxis(size, axis, 0)
+    return np.moveaxis(np.maximum(s[:-1], s[1:]), 0, axis)

@@ -1,0 +1,36 @@
+"""Where the rows of a path are in the machine, for `volumetric`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Place:
+    """Position in the table minus position in the program, and the tool.
+
+    `offset` (n or 1, 3) mm; `tool` (n, 3) or (3,) mm is the way from the gauge point to the tip,
+    None where the error does not depend on it or it is not known.
+    """
+
+    offset: Floats
+    tool: Floats | None = None
+
+    def offset_of(self, rows: Ints) -> Floats:
+        """Return the offsets (n or 1, 3) of rows."""
+        return self.offset if len(self.offset) == 1 else self.offset[rows]
+
+    def tool_of(self, rows: Ints) -> Floats | None:
+        """Return the tools of rows."""
+        return self.tool if self.tool is None or self.tool.ndim == 1 else self.tool[rows]
+
+    @property
+    def first_tool(self) -> Floats | None:
+        """The tool of the first row."""
+        return self.tool if self.tool is None or self.tool.ndim == 1 else self.tool[:1]
