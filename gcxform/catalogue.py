@@ -692,6 +692,21 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "or cannot be said by blocks. Begin at an earlier line: at the tool change, at the block "
         "that states the arc, before the code that is named.",
     ),
+    "GX736": (
+        "Pictures need matplotlib",
+        "Figures and tables work without it, pictures do not, and it is not installed. Install the "
+        "package with its extra: `pip install 'gcxform[plot]'`.",
+    ),
+    "GX737": (
+        "Not a kind of picture",
+        "Pictures are written as SVG or PNG, by the ending of the file's name: out.svg, out.png.",
+    ),
+    "GX738": (
+        "A virtual test does not fit the error model",
+        "The test would leave the volume in which the errors are known, or has no room in it, so "
+        "that its figures would be made up. Choose another place or size; --outside extrapolate "
+        "or clamp goes beyond the tables all the same.",
+    ),
     # --- 8xx: plugins ---
     "GX740": (
         "How the control compensates the cutter",
