@@ -16,7 +16,6 @@ from gcxform.cli.described import built, options_of
 from gcxform.cli.outputs import check_places, destination
 from gcxform.cli.programs import opened
 from gcxform.machine.errors import Outside
-from gcxform.machine.machine import load_machine
 from gcxform.options import Length, ModelFile, Option, Vector
 from gcxform.pipeline import Pipeline
 from gcxform.pipelinefile import parse_chain
@@ -50,7 +49,6 @@ class ModelOptions:
     show_default=True,
     help="Passes before the compensation.",
 )
-@options.MACHINE
 @options_of(ModelOptions)
 @options.reading_options
 @options.FILE
@@ -75,16 +73,17 @@ def command(
         assert alone is not None
         drawn = plot.model(alone.model, f"{alone.path.name}: {alone.model.kind}")
     else:
-        reading = Asked(
+        what = Asked(
+            machine=machine,
             start=start,
             increment=increment,
             block_delete=block_delete,
             feed_increment=feed_increment,
-        ).reading()
+        )
+        reading = what.reading()
         kind = default_registry().dialect(needed_dialect(dialect))
         passes = [*parse_chain(chain, Path.cwd(), default_registry()), _step(asked)]
-        geometry = load_machine(Path(machine)) if machine else None
-        pipeline = Pipeline(kind, kind, tuple(passes), reading, geometry)
+        pipeline = Pipeline(kind, kind, tuple(passes), reading, what.loaded_machine)
         with opened(file) as source:
             program = Program(b"".join(source.windows()), kind, reading, source.name)
         before, after, _ = before_and_after(program, pipeline)
