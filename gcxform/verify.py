@@ -22,6 +22,7 @@ from gcxform.modal.meaning import FRAMING, only_for_cycles
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
+from gcxform.toolpath.facts import IN_AIR, between_taps
 from gcxform.toolpath.path import WHOLE, Event, FeedMode, Kind, Toolpath
 from gcxform.toolpath.runs import SAME_FEED, Runs, deviation_of_runs, runs_of
 from gcxform.toolpath.travel import lengths, ways
@@ -40,6 +41,7 @@ class Findings:
 
     deviation   mm; `source_line` and `output_line` count from 1
     angle       degrees, of rotary axes
+    between_taps, aside   moves between taps that are off by more than the budget, and how far (mm)
     """
 
     moves: int = 0
@@ -50,6 +52,8 @@ class Findings:
     output_line: int = 0
     rapids: int = 0
     unknown_starts: int = 0
+    between_taps: int = 0
+    aside: float = 0.0
     lines_after_end: int = 0
     problems: list[str] = field(default_factory=list)
 
@@ -129,12 +133,13 @@ class Verifier:
         off = deviation_of_runs(before, after, runs, self.budget)
         self.findings.unknown_starts += int(off.unknown_start.sum())
         self._start(trace)
-        worst = int(np.argmax(off.distance))
-        if not off.distance[worst] <= self.findings.deviation:
-            self._note_worst(float(off.distance[worst]), trace, worst)
+        distance = self._but_between_taps(off.distance, trace)
+        worst = int(np.argmax(distance))
+        if not distance[worst] <= self.findings.deviation:
+            self._note_worst(float(distance[worst]), trace, worst)
         self.findings.angle = max(self.findings.angle, float(off.angle.max()))
-        if not off.distance[worst] <= self.budget:
-            size = f"{off.distance[worst]:.5f} mm" if np.isfinite(off.distance[worst]) else "far"
+        if not distance[worst] <= self.budget:
+            size = f"{distance[worst]:.5f} mm" if np.isfinite(distance[worst]) else "far"
             self._fail(f"the path is {size} off, the budget is {self.budget:.5f} mm", trace, worst)
         turned = int(np.argmax(off.angle))
         if not off.angle[turned] <= self.angle_budget:
@@ -143,6 +148,18 @@ class Verifier:
         self._forms(trace)
         self._sides(trace)
         self._feeds(trace)
+
+    def _but_between_taps(self, distance: Floats, trace: _Trace) -> Floats:
+        """Return distances without those of moves between taps that nothing can say better."""
+        if all(type(step).undo is Pass.undo for step in self.passes):
+            return distance
+        free = between_taps(trace.before)[trace.owner]
+        free &= (distance > self.budget) & (distance <= IN_AIR)
+        if not free.any():
+            return distance
+        self.findings.between_taps += int(free.sum())
+        self.findings.aside = max(self.findings.aside, float(distance[free].max()))
+        return np.where(free, 0.0, distance)
 
     def _note_worst(self, distance: float, trace: _Trace, row: int) -> None:
         self.findings.deviation = distance

@@ -39,7 +39,8 @@ class Key:
     `motion`, `inch`, `incremental`, `absolute_centre`, `feed_mode`: what has to be stated; -1:
     nothing. `silent`: a motion code that moves nothing is left out.
     `expanded`: the block called a canned cycle, of which this is a move. `thread`: it is one whose
-    code and K stay. `arc`: whether centre words are written, in `plane`; `turns`: full turns beyond
+    code and K stay. `tap`: it is a canned cycle whose ends have moved; `apart`: one of its repeats,
+    which become blocks of their own. `arc`: whether centre words are written, in `plane`; `turns`: full turns beyond
     the arc.
     """
 
@@ -53,6 +54,8 @@ class Key:
     feed: Feed
     expanded: bool
     thread: bool
+    tap: bool
+    apart: bool
     arc: bool
     plane: int
     turns: int
@@ -89,6 +92,14 @@ class Axis:
 
 
 @dataclass(frozen=True, slots=True)
+class CycleWord:
+    """A word that says where a canned cycle goes."""
+
+    gap: bytes
+    address: str
+
+
+@dataclass(frozen=True, slots=True)
 class Centre:
     """A centre word; `index` is 0 for the plane's first axis, 1 for its second."""
 
@@ -104,4 +115,4 @@ class FeedWord:
     gap: bytes
 
 
-Field = Literal | Copied | Computed | Axis | Centre | FeedWord
+Field = Literal | Copied | Computed | Axis | CycleWord | Centre | FeedWord

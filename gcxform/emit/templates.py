@@ -15,6 +15,7 @@ from gcxform.emit.fields import (
     Centre,
     Computed,
     Copied,
+    CycleWord,
     Feed,
     FeedWord,
     Field,
@@ -77,7 +78,8 @@ class TemplateWriter:
         self.fields: list[Field] = []
         self.key = key
         self.as_it_stands = key.role in (Role.NONE, Role.VERBATIM)
-        self.axes_written = self.as_it_stands
+        self.axes_written = self.as_it_stands or key.tap
+        self.cycle_words = [a for a in "XYZR" if key.tap]
         self.centre_written = not key.arc
         self.stated: set[str] = set()
         if key.role is Role.GONE:
@@ -117,6 +119,7 @@ class TemplateWriter:
     def _rest(self) -> None:
         """Write what the piece needs and no item of the block has stood for."""
         self._repair()
+        self._cycle_words(b"", "XYZR")
         self._axes(b"")
         self._centre(b"")
         self._feed_at_end()
@@ -189,6 +192,10 @@ class TemplateWriter:
             self._g_word(word, lead)
         elif address == "M":
             self._m_word(word, lead)
+        elif self.key.tap and address in "XYZR":
+            self._cycle_word(address, lead)
+        elif self.key.apart and address == self._repeats:
+            return
         elif address in self.meaning.slots and not verbatim and self._motion(word, lead):
             return
         elif address == "F" and "F" in self.meaning.slots:
@@ -202,7 +209,7 @@ class TemplateWriter:
         """Write what a word of the motion stands for; return whether it is one."""
         if word.address in self.axes:
             self._axes(lead)
-        elif self.key.thread:
+        elif self.key.thread or self.key.tap:
             return False
         elif word.address in "IJKR":
             self._centre(lead)
@@ -210,6 +217,26 @@ class TemplateWriter:
             spline = self.meaning.groups.get("motion") in ("G5", "G5.1")
             return word.address == self.source.turns_address or (spline and word.address in "PQ")
         return True
+
+    @property
+    def _repeats(self) -> str:
+        rule = self.source.cycle_rule
+        return "" if rule is None else rule.repeats
+
+    def _cycle_word(self, address: str, lead: bytes) -> None:
+        """Write a word of a canned cycle anew; behind the last of the block those it has not."""
+        self._cycle_words(self._gap(lead), address)
+        named = [word.address for word in self.shape.block.words]
+        if not set(self.cycle_words) & set(named):
+            self._cycle_words(self.gap, "XYZR")
+
+    def _cycle_words(self, lead: bytes, addresses: str) -> None:
+        """Write those of some words of a canned cycle that are still to be written."""
+        for address in addresses:
+            if address in self.cycle_words:
+                self.cycle_words.remove(address)
+                self.fields.append(CycleWord(lead or self._gap(b""), address))
+                lead = self.gap
 
     def _said(self, start: int, end: int) -> str:
         """Return a piece of a word, in capitals where the target knows nothing else."""
@@ -272,7 +299,8 @@ class TemplateWriter:
             return False
         # A spline that goes nowhere is left out, and its words are.
         left_out = name in ("G5", "G5.1") and self.key.role is Role.NONE
-        return left_out or not (self.as_it_stands or self.key.thread) or self.key.silent
+        stays = self.as_it_stands or self.key.thread or self.key.tap
+        return left_out or not stays or self.key.silent
 
     def _refuse(self, word: Word, what: str) -> NoReturn:
         raise CannotSayError(
