@@ -387,7 +387,8 @@ class _Job:
     def _carry(self) -> None:
         """Leave what the control believes after the window."""
         believed, pieces = self.emitter.believed, self.pieces
-        believed.level, believed.tapping = self.taps.level, self.taps.moved
+        taps = self.taps
+        believed.level, believed.tapping, believed.aside = taps.level, taps.moved, taps.aside
         if len(self.path):
             exact = bool(self.copying.exact[-1])
             held = self.path.end[-1] if exact else self.positions.after[-1]

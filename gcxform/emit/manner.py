@@ -70,6 +70,7 @@ class Believed:
     `exact`: its position is that of the source to the last bit, because all was copied.
     `level`: from where the canned cycle in force has begun, along its axis; nan: there is none, or
     it has no moves. `tapping`: its taps have moved, so that each needs words of its own.
+    `aside`: how far (mm) it stands from where it shall be, after a tap.
     """
 
     position: Floats
@@ -83,6 +84,7 @@ class Believed:
     exact: bool = True
     level: float = np.nan
     tapping: bool = False
+    aside: float = 0.0
 
     @classmethod
     def at_start(cls, manner: Manner, position: Floats) -> Believed:

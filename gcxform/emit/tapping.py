@@ -54,6 +54,7 @@ class Taps:
     words   by address (rows,): the numbers to be written, as whole numbers of the last decimal, in
             the first row of each block
     rows    (blocks,) the first row of each block that is written anew
+    aside   mm; how far off the control stands after the window, if a tap is its last move
     level   in words: the level from which the cycle in force after the window has begun; nan: none
     """
 
@@ -65,7 +66,8 @@ class Taps:
         self.count = np.ones(live, np.int64)
         self.words: dict[str, Floats] = {}
         self.rows = np.empty(0, np.int64)
-        self.level, self.moved = np.nan, False
+        self.level, self.moved, self.aside = np.nan, False, believed.aside
+        self._check_start(0)
         self.active = task.read.modes.cycle[:live] != CYCLE_OFF
         tied = self.path.form == Form.SYNCHRONISED
         if not tied.any() and not self.active[-1:].any():
@@ -153,7 +155,9 @@ class Taps:
         """Let a tap of one move be written with the words of its end, if it comes back."""
         rows = self._rows(line)
         back = self.positions.held[rows.stop - 1] - self._standing(rows.start)
-        if self.task.manner.crossing or np.nanmax(np.abs(back), initial=0.0) > EXACT:
+        other = self.path.blocks.inch[line] != self.original.blocks.inch[line]  # K stays as it is
+        off = np.nanmax(np.abs(back), initial=0.0) > EXACT
+        if self.task.manner.crossing or other or off:
             return
         self.lines[line] = True
         self._begin(rows.start)
@@ -174,21 +178,22 @@ class Taps:
             self._begin(hole.row)
             standing = self._hole(line, hole, standing)
         self.positions.held[rows] = standing
-        self._check_after(line, rows, standing)
+        self._end(line, rows.stop, standing)
 
     def _check(self, line: int, rows: slice) -> None:
         """Refuse a cycle that cannot be written with other words."""
         was = self._source_rows(line)
         path, original = self.path, self.original
-        frame = path.frames[int(path.frame[rows.start])]
+        frames = {path.frames[number] for number in path.frame[rows].tolist()}
+        before = {original.frames[number] for number in original.frame[was].tolist()}
         same = rows.stop - rows.start == was.stop - was.start
         same = same and bool((path.form[rows] == original.form[was]).all())
         if not same or not self.tied[line]:
             self._refuse(line, "a canned cycle beside a tap that moves cannot be written anew")
         if self.task.manner.crossing or path.blocks.inch[line] != original.blocks.inch[line]:
             self._refuse(line, "a tap would have to be written in another dialect or unit")
-        turned = not frame.shifts_only or frame.polar
-        if turned or (path.frame[rows] != path.frame[rows.start]).any():
+        plain = all(frame.shifts_only and not frame.polar for frame in frames | before)
+        if not plain or len(frames) > 1:
             self._refuse(line, "a tap in turned, scaled or mirrored coordinates")
         if not _same(path.end[rows, 3:], original.end[was, 3:]):
             self._refuse(line, "a tap would have to turn rotary axes")
@@ -253,8 +258,7 @@ class Taps:
 
     def _check_fits(self, line: int, off: float) -> None:
         """Refuse a tap whose top and bottom would be too far from where they shall be (mm)."""
-        promised = ROOM * self.task.manner.promised
-        if off <= max(promised, EXACT):
+        if off <= self._allowed:
             return
         self._refuse(
             line,
@@ -263,22 +267,29 @@ class Taps:
             "give the pass a larger tolerance",
         )
 
-    def _check_after(self, line: int, rows: slice, standing: Floats) -> None:
-        """Refuse a tap that ends at a level too far off (mm) for what follows."""
-        off = float(np.abs(standing - self.positions.end[rows.stop - 1])[:3].max())
-        if off > IN_AIR:
-            self._refuse(
-                line, f"between taps the tool would be {off:.3f} mm from where it shall be"
-            )
-        feeds = rows.stop < len(self.path) and self.path.kind[rows.stop] != Kind.RAPID
-        if feeds and off > max(ROOM * self.task.manner.promised, EXACT):
-            line = int(self.path.block[rows.stop])
-            message = f"a feed move begins where a tap has ended, {off * 1000:.3f} um off"
-            self._refuse(line, message, "put a rapid between them")
+    def _end(self, line: int, row: int, standing: Floats) -> None:
+        """Note how far off (mm) the control stands before a row, after a tap."""
+        self.aside = float(np.abs(standing - self.positions.end[row - 1])[:3].max())
+        if self.aside > IN_AIR:
+            message = f"between taps the tool would be {self.aside:.3f} mm from where it shall be"
+            self._refuse(line, message)
+        self._check_start(row)
 
-    def _refuse(
-        self, line: int, message: str, hint: str = "take it out of the program"
-    ) -> NoReturn:
+    def _check_start(self, row: int) -> None:
+        """Refuse a feed move from where a tap has ended too far off; a rapid makes up for it."""
+        if row == len(self.path):
+            return
+        if self.path.kind[row] != Kind.RAPID and self.aside > self._allowed:
+            message = f"a feed move begins where a tap has ended, {self.aside * 1000:.3f} um off"
+            self._refuse(int(self.path.block[row]), message, "put a rapid between them")
+        self.aside = 0.0
+
+    @property
+    def _allowed(self) -> float:
+        """How far a tap may be off (mm)."""
+        return max(ROOM * self.task.manner.promised, EXACT)
+
+    def _refuse(self, line: int, message: str, hint: str = "leave it without the pass") -> NoReturn:
         raise InputError.one("GX506", message, self.task.location(line), hint)
 
 

@@ -15,7 +15,7 @@ from gcxform.emit.fields import (
     Centre,
     Computed,
     Copied,
-    CycleWord,
+    CycleWords,
     Feed,
     FeedWord,
     Field,
@@ -79,7 +79,8 @@ class TemplateWriter:
         self.key = key
         self.as_it_stands = key.role in (Role.NONE, Role.VERBATIM)
         self.axes_written = self.as_it_stands or key.tap
-        self.cycle_words = [a for a in "XYZR" if key.tap]
+        named = [word.address for word in self.shape.block.words]
+        self.cycle_words = CycleWords("XYZR" if key.tap else "", named, self.gap)
         self.centre_written = not key.arc
         self.stated: set[str] = set()
         if key.role is Role.GONE:
@@ -119,7 +120,7 @@ class TemplateWriter:
     def _rest(self) -> None:
         """Write what the piece needs and no item of the block has stood for."""
         self._repair()
-        self._cycle_words(b"", "XYZR")
+        self.fields += self.cycle_words.rest(self._gap(b""))
         self._axes(b"")
         self._centre(b"")
         self._feed_at_end()
@@ -192,10 +193,6 @@ class TemplateWriter:
             self._g_word(word, lead)
         elif address == "M":
             self._m_word(word, lead)
-        elif self.key.tap and address in "XYZR":
-            self._cycle_word(address, lead)
-        elif self.key.apart and address == self._repeats:
-            return
         elif address in self.meaning.slots and not verbatim and self._motion(word, lead):
             return
         elif address == "F" and "F" in self.meaning.slots:
@@ -207,9 +204,11 @@ class TemplateWriter:
 
     def _motion(self, word: Word, lead: bytes) -> bool:
         """Write what a word of the motion stands for; return whether it is one."""
+        if self.key.tap:
+            return self._cycle_word(word.address, lead)
         if word.address in self.axes:
             self._axes(lead)
-        elif self.key.thread or self.key.tap:
+        elif self.key.thread:
             return False
         elif word.address in "IJKR":
             self._centre(lead)
@@ -218,25 +217,16 @@ class TemplateWriter:
             return word.address == self.source.turns_address or (spline and word.address in "PQ")
         return True
 
-    @property
-    def _repeats(self) -> str:
+    def _cycle_word(self, address: str, lead: bytes) -> bool:
+        """Write a word of a canned cycle that has moved; return whether it is no more to be copied.
+
+        The one that counts repeats is left out where they are blocks of their own.
+        """
+        if address in self.cycle_words.waiting:
+            self.fields += self.cycle_words.at(address, self._gap(lead))
+            return True
         rule = self.source.cycle_rule
-        return "" if rule is None else rule.repeats
-
-    def _cycle_word(self, address: str, lead: bytes) -> None:
-        """Write a word of a canned cycle anew; behind the last of the block those it has not."""
-        self._cycle_words(self._gap(lead), address)
-        named = [word.address for word in self.shape.block.words]
-        if not set(self.cycle_words) & set(named):
-            self._cycle_words(self.gap, "XYZR")
-
-    def _cycle_words(self, lead: bytes, addresses: str) -> None:
-        """Write those of some words of a canned cycle that are still to be written."""
-        for address in addresses:
-            if address in self.cycle_words:
-                self.cycle_words.remove(address)
-                self.fields.append(CycleWord(lead or self._gap(b""), address))
-                lead = self.gap
+        return self.key.apart and rule is not None and address == rule.repeats
 
     def _said(self, start: int, end: int) -> str:
         """Return a piece of a word, in capitals where the target knows nothing else."""
