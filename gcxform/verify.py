@@ -153,7 +153,9 @@ class Verifier:
         """Return distances without those of moves between taps that nothing can say better."""
         if all(type(step).undo is Pass.undo for step in self.passes):
             return distance
-        free = between_taps(trace.before)[trace.owner]
+        rows = between_taps(trace.before)
+        rows[trace.written_owner[between_taps(trace.written)]] = True
+        free = rows[trace.owner]
         free &= (distance > self.budget) & (distance <= IN_AIR)
         if not free.any():
             return distance

@@ -39,9 +39,13 @@ MOVES_TO_R = 2  # over the hole, and down to R
 
 @dataclass(frozen=True, slots=True)
 class _Hole:
-    """One tap: its first row, and where the pass wants its top (at R) and its bottom (axes,)."""
+    """One tap: its first row, how many moves there are to R, and where the pass wants its ends.
+
+    These are its top, at R, and its bottom (axes,).
+    """
 
     row: int
+    moves: int
     top: Floats
     bottom: Floats
 
@@ -204,7 +208,7 @@ class Taps:
         ways_in = rows.start + np.flatnonzero(tied & ~np.append(False, tied[:-1]))
         for number, row in enumerate(ways_in.tolist()):
             first = row - MOVES_TO_R if number else rows.start
-            yield _Hole(first, self.positions.end[row - 1], self.positions.end[row])
+            yield _Hole(first, row - first, self.positions.end[row - 1], self.positions.end[row])
 
     def _hole(self, line: int, hole: _Hole, standing: Floats) -> Floats:
         """Set the words of a tap; return where the control stands after it (axes,)."""
@@ -212,7 +216,7 @@ class Taps:
         place, normal = list(axes[:2]), axes[2]
         goal = np.array(hole.bottom)
         goal[place] = (hole.top[place] + hole.bottom[place]) / 2
-        clearance = self._clearance(line, float(hole.top[normal]))
+        clearance = self._clearance(line, hole, float(standing[normal]), normal)
         beside = np.sqrt(((hole.top - goal)[place] ** 2).sum())
         self._check_fits(line, float(np.hypot(beside, clearance - hole.top[normal])))
         said = [self._rounded(line, "XYZ"[axis], float(goal[axis])) for axis in range(3)]
@@ -228,14 +232,21 @@ class Taps:
         self._say(line, hole.row, "R", rest, self.level)
         return after
 
-    def _clearance(self, line: int, top: float) -> float:
-        """Return the R level: on that side of the level where the cycle begins on which it was.
+    def _clearance(self, line: int, hole: _Hole, standing: float, normal: int) -> float:
+        """Return the R level: on that side of two other levels on which it was.
 
-        From below R a control rises before it goes to the hole, or refuses the cycle.
+        If the cycle begins below R, a control rises before it goes to the hole, or refuses it. In
+        G98 LinuxCNC goes there at the initial level if the tool stands at R or below.
         """
-        tied = self.path.form[self._rows(line)] == Form.SYNCHRONISED
-        if int(np.argmax(tied)) > MOVES_TO_R:
-            return max(top, self.level + self._step(line, "R"))
+        top, step = float(hole.top[normal]), self._step(line, "R")
+        if hole.moves > MOVES_TO_R:
+            return max(top, self.level + step)
+        rule = self.task.manner.source.cycle_rule
+        if rule is not None and rule.rises_first and self.task.read.modes.retract[line] == 1:
+            was = hole.row - self._rows(line).start + self._source_rows(line).start
+            at_r = was + hole.moves - 1
+            high = self.original.start[was, normal] - self.original.end[at_r, normal]
+            top = min(top, standing - step) if high > EXACT else max(top, standing)
         return min(top, self.level)
 
     def _rounded(self, line: int, address: str, value: float) -> float:
