@@ -10,7 +10,7 @@ def _verifier(name: str, old: str, new: str = "if False:") -> Mutation:
 
 
 MUTATIONS = (
-    _verifier("the budget is ignored", "if not off.distance[worst] <= self.budget:"),
+    _verifier("the budget is ignored", "if not distance[worst] <= self.budget:"),
     _verifier("rotary axes are ignored", "if not off.angle[turned] <= self.angle_budget:"),
     _verifier("kinds are ignored", "if wrong.any():"),
     _verifier("feeds are ignored", "if (off & plain).any():"),
