@@ -33,7 +33,12 @@ MUTATIONS = (
         "return top",
         "tests/test_corpus.py::test_case[tied/tapping-at-r]",
     ),
-    _tapping("words in force are relied on", "self.moved |= ", "self.moved = "),
+    _tapping(
+        "words in force are relied on",
+        "self.moved |= ",
+        "self.moved = ",
+        "tests/test_corpus.py::test_case[tied/tapping-in-force]",
+    ),
     _tapping(
         "feed moves begin where a tap has ended",
         "self.aside > self._allowed",
@@ -44,7 +49,7 @@ MUTATIONS = (
         "the level is not carried to the next window",
         "going_on = 0 if believed.level == believed.level else -1",
         "going_on = -1",
-        "tests/test_corpus.py::test_windows_make_no_difference[tied/tapping-moved]",
+        "tests/test_corpus.py::test_windows_make_no_difference[tied/tapping-in-force]",
     ),
     _tapping(
         "mirrored taps are written",
