@@ -520,7 +520,9 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "Canned cycles, returns to reference, moves in machine coordinates and blocks that set "
         "coordinates from where the axes stand are copied as they are, or not at all: what a pass "
         'asks for cannot be said in such a block. Resolve it first: the pass "cycles" writes '
-        'cycles as plain moves, the pass "offsets" folds shifts into coordinates.',
+        'cycles as plain moves, the pass "offsets" folds shifts into coordinates. Taps are written '
+        "again with their ends moved, if the place, which is one for top and bottom, is right for "
+        "both within what the passes promise; otherwise give the pass a larger tolerance.",
     ),
     # --- 6xx: verification ---
     "GX601": (
