@@ -113,6 +113,17 @@ def test_compare_through_a_model(here: Path) -> None:
     assert found.exit_code == 0, found.output
 
 
+def test_compare_with_arcs_that_end_on_a_node_of_the_model() -> None:
+    """Where a node and an even cut of an arc meet, nothing is left between them."""
+    bracket = EXAMPLES / "bracket"
+    words = ["-f", "linuxcnc", "-m", str(bracket / "machine.toml"), "--tolerance", "20um"]
+    model = ["--model", str(EXAMPLES / "lddm" / "model.toml")]
+    program = str(bracket / "bracket.nc")
+    found = call("compare", *words, *model, program, program)
+    assert found.exit_code == 0, found.output
+    assert "nan" not in found.stdout
+
+
 def test_compare_refuses_what_it_cannot_read(here: Path) -> None:
     (here / "lost.nc").write_bytes(b"G91 G1 F100 X1\n")
     assert call("compare", "-f", "linuxcnc", "part.nc", "lost.nc").exit_code == 3
