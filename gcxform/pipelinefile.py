@@ -21,7 +21,7 @@ from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar
 
 from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import Diagnostic, Location, UsageError
-from gcxform.machine import machine, modelfile
+from gcxform.machine import machinefile, modelfile
 from gcxform.options import (
     Argument,
     Coordinates,
@@ -320,7 +320,7 @@ def schema(
 ) -> dict[str, Any]:
     """Return the JSON Schema of a kind of files; that of pipelines has the passes' options."""
     if kind == "machine":
-        return machine.schema()
+        return machinefile.schema()
     if kind == "model":
         return modelfile.schema()
     return _pipeline_schema((registry or default_registry()).passes)

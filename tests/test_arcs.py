@@ -8,69 +8,31 @@ away than allowed (the discrete Frechet distance).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from arcs_kit import SPACING, arcs, ended, follows, points, polylines
 from gcxform_plugins.passes.fit import Fit, Limits
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from oracles import rs274
 from properties.test_laws import at, point_of
 from reference.interpreter import Move, interpret
 from test_verify import Change, dropped, inserted, said, swapped
+from test_verify import run as lie
 
 import gcxform as gx
-from gcxform.emit.emitter import Emitted
 from gcxform.run import Output, Run
 from gcxform.source import Source
 from gcxform.toolpath.runs import Runs, deviation_of_runs, runs_of
 
-Points = NDArray[np.float64]
-
 EXAMPLES = Path(__file__).parents[1] / "examples" / "lddm"
-SPACING = 0.02  # mm between the points that are compared
 ROUNDING = 0.004  # mm; what three decimals may add along an arc
-PLANES = {"G17": "XYZ", "G18": "ZXY", "G19": "YZX"}
-CENTRES = {"X": "I", "Y": "J", "Z": "K"}
 SOME = settings(max_examples=max(settings.default.max_examples // 2, 1), deadline=None)
 FEW = settings(SOME, max_examples=max(settings.default.max_examples // 8, 1))
-
-
-# --- the oracle ---
-
-
-def points(moves: Iterable[Move]) -> Points:
-    """Return points along moves, no farther apart than SPACING."""
-    found: list[Points] = []
-    for move in moves:
-        if not set("XYZ") <= set(move.start):
-            continue
-        length = math.dist(point_of(move.start), point_of(move.end))
-        if move.centre is not None:
-            radius = math.dist(point_of(move.start), move.centre)
-            length = math.hypot(radius * move.sweep, length)
-        parts = np.linspace(0.0, 1.0, math.ceil(length / SPACING) + 1)
-        found.append(np.array([at(move, float(part)) for part in parts]))
-    return np.vstack(found)
-
-
-def follows(one: Points, other: Points, limit: float) -> bool:
-    """Whether one row of points can be followed along the other within a distance."""
-    column = np.arange(len(other))
-    reached = column < 0
-    for row, point in enumerate(one):
-        near = ((other - point) ** 2).sum(axis=1) <= limit**2
-        entered = reached | np.append(row == 0, reached[:-1])
-        entered = near & (entered if row else column == 0)
-        last_in = np.maximum.accumulate(np.where(entered, column, -1))
-        last_out = np.maximum.accumulate(np.where(near, -2, column))
-        reached = near & (last_in > last_out)
-    return bool(reached[-1])
 
 
 def run(chain: str, program: bytes, dialect: str = "linuxcnc") -> gx.Result:
@@ -88,59 +50,6 @@ def check(program: bytes, result: gx.Result, tolerance: float) -> None:
     for old, new in zip(*ends, strict=True):
         assert (old is None) == (new is None)
         assert old is None or new is None or math.dist(old, new) <= ROUNDING
-
-
-# --- programs ---
-
-
-def ended(lines: Iterable[str]) -> bytes:
-    return "\n".join([*lines, "M2", ""]).encode()
-
-
-@st.composite
-def arcs(draw: st.DrawFn) -> tuple[bytes, int]:
-    """Draw a program of arcs and helices, far enough from straight; and how many there are."""
-    plane = draw(st.sampled_from(sorted(PLANES)))
-    u, v, w = PLANES[plane]
-    place = dict.fromkeys("XYZ", 0.0)
-    lines = [f"G21 G90 G94 {plane}", "G0 X0 Y0 Z0", "F100"]
-    count = draw(st.integers(1, 3))
-    for _ in range(count):
-        radius, angle = draw(st.integers(10, 60)) / 10, math.radians(draw(st.integers(0, 359)))
-        turn = math.radians(draw(st.integers(60, 320))) * draw(st.sampled_from((1, -1)))
-        rise = draw(st.sampled_from((0.0, 0.0, 1.0, -3.0)))
-        start, centre = dict(place), {}
-        centre[u] = round(start[u] - radius * math.cos(angle), 4)
-        centre[v] = round(start[v] - radius * math.sin(angle), 4)
-        place[u] = round(centre[u] + radius * math.cos(angle + turn), 4)
-        place[v] = round(centre[v] + radius * math.sin(angle + turn), 4)
-        place[w] = round(start[w] + rise, 4)
-        words = [f"{a}{place[a]:.4f}" for a in (u, v, w)]
-        words += [f"{CENTRES[a]}{centre[a] - start[a]:.4f}" for a in (u, v)]
-        lines.append(("G3 " if turn > 0 else "G2 ") + " ".join(words))
-        place[w] = round(place[w] + 2, 4)
-        lines.append(f"G1 {w}{place[w]:.4f}")
-    return ended(lines), count
-
-
-@st.composite
-def polylines(draw: st.DrawFn) -> bytes:
-    """Draw short lines that turn now smoothly, now not, with this and that between them."""
-    place, heading = np.zeros(3), 0.0
-    lines = ["G21 G90 G94 G17", "G0 X0 Y0 Z0", "G1 F100"]
-    for _ in range(draw(st.integers(1, 6))):
-        bend, climb = draw(st.integers(-40, 40)) / 100, draw(st.sampled_from((0.0, 0.0, 0.05)))
-        length = draw(st.sampled_from((0.05, 0.3, 0.8)))
-        wobble = draw(st.sampled_from((0.0, 0.0, 0.01, 0.04)))
-        for _ in range(draw(st.integers(1, 14))):
-            heading += bend
-            aside = wobble * draw(st.integers(-4, 4)) / 4
-            way = np.array([math.cos(heading), math.sin(heading), climb]) * length
-            place = place + way + np.array([-math.sin(heading), math.cos(heading), 0.0]) * aside
-            lines.append("X{:.3f} Y{:.3f} Z{:.3f}".format(*place))
-        heading += draw(st.sampled_from((0.0, 0.0, 0.5, 3.1)))
-        lines += draw(st.sampled_from(([], ["M8"], ["F200"], ["G91", "G90"], ["G4 P0.1"])))
-    return ended(lines)
 
 
 # --- the laws ---
@@ -357,21 +266,7 @@ TAMPERED: dict[str, tuple[Change, str]] = {
 
 
 def tampered(change: Change, program: bytes) -> None:
-    source = Source.of_bytes(program)
-    job = Run(gx.Pipeline.parse("arcs tolerance=0.02", "linuxcnc"), source, "full")
-    emit, texts = job.emitter.emit, list[bytes]()
-
-    def lying(*task: object) -> Emitted:
-        emitted = emit(*task)  # type: ignore[arg-type]
-        lines = emitted.text.splitlines(keepends=True)
-        changed = list(change(list(zip(lines, emitted.source.tolist(), strict=True))))
-        several = [(t, n) for text, n in changed for t in text.splitlines(keepends=True)]
-        text = b"".join(line for line, _ in several)
-        source = np.array([number for _, number in several], np.int64)
-        return Emitted(text, source, np.zeros(len(source), np.int64))
-
-    job.emitter.emit = lying  # type: ignore[method-assign]
-    job.over(source.windows(), Output(texts.append, None), lambda _: None)
+    lie(change, "arcs tolerance=0.02", program)
 
 
 def test_nothing_is_wrong_with_the_program_itself() -> None:

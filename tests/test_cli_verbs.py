@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from cli_kit import ABSOLUTE, COMPENSATED, call, workplace
 
+from gcxform.modal.tables import FAMILIES, NUMBER, code_of
 from gcxform.source import WINDOW
 
 
@@ -112,6 +113,17 @@ def test_compare_through_a_model(here: Path) -> None:
     assert found.exit_code == 0, found.output
 
 
+def test_compare_with_arcs_that_end_on_a_node_of_the_model() -> None:
+    """Where a node and an even cut of an arc meet, nothing is left between them."""
+    bracket = EXAMPLES / "bracket"
+    words = ["-f", "linuxcnc", "-m", str(bracket / "machine.toml"), "--tolerance", "20um"]
+    model = ["--model", str(EXAMPLES / "lddm" / "model.toml")]
+    program = str(bracket / "bracket.nc")
+    found = call("compare", *words, *model, program, program)
+    assert found.exit_code == 0, found.output
+    assert "nan" not in found.stdout
+
+
 def test_compare_refuses_what_it_cannot_read(here: Path) -> None:
     (here / "lost.nc").write_bytes(b"G91 G1 F100 X1\n")
     assert call("compare", "-f", "linuxcnc", "part.nc", "lost.nc").exit_code == 3
@@ -205,6 +217,31 @@ def test_explain_a_block(here: Path) -> None:
     (here / "end.nc").write_bytes(b"M2\nX5\n(so)\n")
     assert "the program has ended" in call("explain", "-f", "linuxcnc", "end.nc:2").stdout
     assert "moves nothing" in call("explain", "-f", "grbl", "end.nc:3").stdout
+
+
+@pytest.mark.parametrize(
+    ("block", "code"),
+    [
+        ("G33 Z-5 K1", "G33"),
+        ("G5 X1 Y1 I1 J0 P0 Q-1", "G80"),
+        ("G5.1 X5 Y5 I1 J1", "G80"),
+        ("G81 X1 Z-1 R1", "G81"),
+        ("G18 G3 X2 I1 K0", "G3 G18"),
+        ("G38.2 X3", "G38.2"),
+        ("G0 G55 G90.1 G20 G95 X0 Y0 Z0", "G0 G17 G90 G90.1 G95 G20 G55"),
+    ],
+)
+def test_explain_names_any_code_in_force(here: Path, block: str, code: str) -> None:
+    head = "G21 G90 G94 G17\nS100 M3\nG0 X0 Y0 Z0\nF100\n"
+    (here / "p.nc").write_text(f"{head}{block}\nM8\nM2\n")
+    found = call("explain", "-f", "linuxcnc", "p.nc:6")
+    assert (found.exit_code, found.stderr) == (0, "")
+    assert f"modal {code} " in found.stdout
+
+
+def test_every_number_of_a_group_has_its_code() -> None:
+    for group, codes in FAMILIES.items():
+        assert [code_of(group, NUMBER[code]) for code in codes] == list(codes)
 
 
 @pytest.mark.parametrize("kind", ["pipeline", "machine", "model"])

@@ -18,7 +18,7 @@ import pytest
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
 from gcxform.cli import VERBS
-from gcxform.machine.machine import load_machine
+from gcxform.machine.machinefile import load_machine
 from gcxform.modal.codes import Effect
 from gcxform.options import describe
 from gcxform.pipelinefile import KEYS, SECTIONS

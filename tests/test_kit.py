@@ -1,4 +1,4 @@
-"""The kit: every registered pass and dialect keeps its contract, and broken ones are caught."""
+"""The kit: every registered pass keeps its contract, and broken ones are caught."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -15,7 +14,7 @@ import pytest
 import gcxform as gx
 from gcxform.options import ModelFile
 from gcxform.registry import default_registry
-from gcxform.testing import check_dialect, check_pass
+from gcxform.testing import check_pass
 from gcxform.testing.paths import paths
 
 MODEL = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"
@@ -67,11 +66,6 @@ def test_registered_passes(name):
 def test_volumetric_without_rapids():
     made = passes()["volumetric"]
     check_pass(made, made(model=ModelFile.load(MODEL), part_origin=HERE, rapids="skip"))
-
-
-@pytest.mark.parametrize("name", sorted(default_registry().dialects))
-def test_registered_dialects(name):
-    check_dialect(default_registry().dialects[name])
 
 
 def test_the_paths_cover_what_there_is():
@@ -340,86 +334,3 @@ def test_a_pass_that_does_not_begin():
     model = ModelFile.load(MODEL)
     with pytest.raises(AssertionError, match=r"(?s)does not begin.*GX721"):
         check_pass(passes()["volumetric"], passes()["volumetric"](model=model))
-
-
-# --- broken dialects ---
-
-
-class Plain(gx.Dialect):
-    """The common part."""
-
-    name = "plain"
-
-
-class Undocumented(Plain):
-    pass
-
-
-class NoGrammar(Plain):
-    """A grammar that is not there."""
-
-    grammar = ("gcxform_grammars", "none")
-
-
-class NoInitial(Plain):
-    """A group without initial code."""
-
-    initial: ClassVar[Mapping[str, str]] = {"motion": "G0"}
-
-
-class StrangeCode(Plain):
-    """A modal code that the core cannot follow."""
-
-    codes: ClassVar[Mapping[str, gx.Code]] = {**gx.Dialect.codes, "G16": gx.Code("polar")}
-
-
-class StrangeWord(Plain):
-    """A code that takes a word the dialect does not have."""
-
-    codes: ClassVar[Mapping[str, gx.Code]] = {
-        **gx.Dialect.codes,
-        "G59.9": gx.Code("frame"),
-    }
-
-
-class TooFine(Plain):
-    """Nine decimals."""
-
-    numbers = gx.NumberFormat(mm=9)
-
-
-class NoZ(Plain):
-    """A lathe that is none."""
-
-    axes = "XZ"
-
-
-class NoRapid(Plain):
-    """A control without G0."""
-
-    codes: ClassVar[Mapping[str, gx.Code]] = {
-        name: code for name, code in gx.Dialect.codes.items() if name != "G0"
-    }
-
-
-def test_a_good_dialect():
-    check_dialect(Plain)
-
-
-@pytest.mark.parametrize(
-    ("broken", "said"),
-    [
-        (Undocumented, "no docstring"),
-        (NoGrammar, "does not load"),
-        (NoInitial, "initial['plane']"),
-        (StrangeCode, "the core has no group 'polar'"),
-        (StrangeWord, "does not know"),
-        (TooFine, "9 decimals"),
-        (NoZ, "X, Y and Z come first"),
-        (NoRapid, "this program fails"),
-    ],
-    ids=lambda value: value.__name__ if isinstance(value, type) else "",
-)
-def test_broken_dialects(broken, said):
-    with pytest.raises(AssertionError, match=re.escape(said)):
-        check_dialect(broken)

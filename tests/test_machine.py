@@ -9,7 +9,9 @@ import pytest
 
 from gcxform.catalogue import CATALOGUE
 from gcxform.diagnostics import Diagnostic, FileError, UsageError
-from gcxform.machine.machine import ANGLE, LENGTH, Axis, Tool, load_machine, schema
+from gcxform.machine.machine import Axis, Tool
+from gcxform.machine.machinefile import load_machine, schema
+from gcxform.machine.quantities import ANGLE, LENGTH
 
 TRUNNION = """format = 1
 name = "trunnion mill"

@@ -242,6 +242,18 @@ def test_feed_modes_and_work_offsets() -> None:
     assert found.feeds[0].what == "G55 became G56"
 
 
+@pytest.mark.parametrize(
+    ("tied", "plain", "what"),
+    [
+        ("G38.2 Z5 F100\n", "G1 Z5\n", "a probe move became a plain move"),
+        ("S100 M3\nG33 Z5 K1\n", "S100 M3\nG95 G1 Z5 F1\n", "a thread move became a plain move"),
+    ],
+)
+def test_what_is_tied_is_no_plain_move(tied: str, plain: str, what: str) -> None:
+    assert [difference.what for difference in compared(tied, plain).feeds] == [what]
+    assert compared(tied, tied).same
+
+
 EVENTS = {
     "missing": ("M3 S100\nX10\nM5\n", "M3 S100\nX10\n", "M5 is only in A"),
     "too many": ("X10\n", "X10\nM8\n", "M8 is only in B"),

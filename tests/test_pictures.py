@@ -17,12 +17,12 @@ from simulate_kit import EXAMPLE, file_of, functions
 
 import gcxform as gx
 from gcxform import plot
-from gcxform.machine.machine import load_machine
+from gcxform.machine.machinefile import load_machine
 from gcxform.machine.modelfile import load_model
 from gcxform.plot import canvas
 from gcxform.plot.models import curves, squareness
 from gcxform.registry import default_registry
-from gcxform.simulate.heat import before_and_after
+from gcxform.simulate.heat import before_and_after, in_order
 
 EXAMPLES = EXAMPLE.parents[1]
 MODEL = ("--model", str(EXAMPLE))
@@ -246,12 +246,26 @@ def test_squareness_is_the_angle_between_two_axes_whatever_their_frame():
     assert squareness(turned) == pytest.approx(squareness(plain))
 
 
+def test_a_machine_of_21_parameters_fills_the_grid(here):
+    assert call("show", str(EXAMPLES / "rigid-body" / "model.toml"), "-o", "all.svg").exit_code == 0
+    groups, text = drawn("all.svg")
+    names = [f"E{letter}{axis}" for axis in "XYZ" for letter in "XYZABC"]
+    assert [name for name in names if name not in groups] == []
+    assert all(f"{name}, {'um' if name[1] in 'XYZ' else 'urad'}" in text for name in names)
+    assert "none" not in text
+
+
 class Lattice(gx.ErrorModel):
     """A model that is no function of one axis at a time."""
 
     kind = "lattice"
     nodes = (np.array([0.0, 50.0]),) * 3
-    lipschitz = largest = 1e-4
+
+    def lipschitz(self, reach=0.0):
+        return 1e-4
+
+    def largest(self, reach=0.0):
+        return 1e-2
 
     def error(self, position, outside=gx.Outside.ERROR, tool=None, sense=None):
         return 1e-6 * position * position[:, ::-1]
@@ -329,11 +343,26 @@ def test_cycles_and_splines_find_their_moves_again():
     flat = ~before.rapid & ~down
     wanted = 1e-4 * np.maximum(before.start, before.end)[flat, 0]
     assert before.deviation[flat] == pytest.approx(wanted, abs=4e-4)
-    drilled = [
-        side.end[~side.rapid & (side.start[:, 2] > side.end[:, 2])] for side in (before, after)
-    ]
     for x in (60.0, 90.0):
-        assert all((np.abs(side[:, 0] - x) < 0.1).any() for side in drilled)
+        one, other = (feeds_at(side, x) for side in (before, after))
+        assert one == pytest.approx(8.0 + 2 * 0.254, abs=0.02)  # again where each peck ended
+        assert other == pytest.approx(one, abs=0.01)
+
+
+def test_moves_that_were_cut_belong_to_the_move_whose_end_comes_next():
+    down, up = [0.0, 0.0, 2.0], [0.0, 0.0, 10.0]
+    ends = np.array([up, down, up, down, up])
+    others = np.array([up, [0.0, 0.0, 6.0], down, up, [0.0, 0.0, 8.0], [0.0, 0.0, 4.0], down, up])
+    assert in_order(ends, others + 0.02).tolist() == [0, 1, 1, 2, 3, 3, 3, 4]
+    assert in_order(ends, ends).tolist() == [0, 1, 2, 3, 4]
+    assert in_order(ends[:2], others[:1]).tolist() == [0]
+
+
+def feeds_at(heat, x):
+    """Return how far the tool goes down in feed at an X, mm."""
+    here = ~heat.rapid & (np.abs(heat.end[:, 0] - x) < 0.1) & (np.abs(heat.end[:, 1] - 50) < 0.1)
+    way = heat.end[here] - heat.start[here]
+    return -float(way[np.abs(way[:, :2]).max(axis=1) < 0.01, 2].sum())
 
 
 def test_a_long_program_is_an_image_within_the_svg(here, monkeypatch):

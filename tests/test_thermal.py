@@ -36,7 +36,6 @@ from gcxform.machine.functions import AxisFunction, AxisFunctions
 from gcxform.machine.modelfile import load_model, schema
 from gcxform.machine.sums import Sum
 from gcxform.machine.thermal import Held, Rod, Stretch, ThermalScrew, drift, stretch
-from gcxform.options import ModelFile
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "warm-screw"
 VECTOR = [0, 13.084, 30.636, 56.166, 91.270, 133.394, 176.795, 214.452, 242.535]
@@ -434,10 +433,10 @@ def test_the_fingerprint_is_that_of_the_readings(tmp_path):
     ):
         folder = tmp_path / str(k)
         folder.mkdir()
-        prints.append(ModelFile.load(written(folder, text(), log)).sha256)
+        prints.append(gx.ModelFile.load(written(folder, text(), log)).sha256)
     assert prints[0] == prints[1]
     assert len(set(prints)) == 3
-    whole = ModelFile.load(written(tmp_path, text(), LOG))
+    whole = gx.ModelFile.load(written(tmp_path, text(), LOG))
     earlier = whole.at_time("2026-03-04T09:00:00")
     assert earlier.sha256 != whole.sha256
     assert earlier.at_time("2026-03-04T09:05:00").sha256 == earlier.sha256

@@ -25,6 +25,7 @@ VERBS: Final = {
     "compare": "Say how far the paths of two programs are apart, and where.",
     "info": "Say what is in a program.",
     "resume": "Print the blocks that make a restart at a line safe.",
+    "calibrate": "Turn measurements of a machine into its error model.",
     "simulate": "Test a machine with known errors, before and after compensation.",
     "show": "Draw an error model, or the error along the path of a program.",
     "list": "List what is installed, or the options of one thing.",

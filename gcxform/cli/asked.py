@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from gcxform.cli.options import ENVIRONMENT
 from gcxform.diagnostics import Location, UsageError
+from gcxform.machine.machine import Machine
+from gcxform.machine.machinefile import load_machine
 from gcxform.modal.state import Reading
 from gcxform.options import Argument, build
 from gcxform.pipeline import Pipeline
@@ -40,6 +43,11 @@ class Asked:
     def says_chain(self) -> bool:
         """Whether a pipeline is named at all."""
         return self.chain is not None or self.file is not None
+
+    @cached_property
+    def loaded_machine(self) -> Machine | None:
+        """The machine that is named, None if none is. Raises UsageError for what is wrong in it."""
+        return load_machine(Path(self.machine)) if self.machine else None
 
     def build(self, registry: Registry | None = None) -> Pipeline:
         """Return the pipeline. Raises UsageError."""
@@ -96,7 +104,8 @@ class Asked:
         """Return what the command line says for reading a program without a pipeline."""
         said = self.input()
         given = (dict(said.start), said.increment, None, said.block_delete, said.units)
-        return Reading(*given, said.feed_increment)
+        reading = Reading(*given, said.feed_increment)
+        return reading.on(self.loaded_machine) if self.loaded_machine else reading
 
 
 def excluding(what: str) -> UsageError:

@@ -15,7 +15,7 @@ from gcxform.cli.tolerant import Tolerant
 from gcxform.diagnostics import UsageError
 from gcxform.dialect import INCH
 from gcxform.modal.state import State
-from gcxform.modal.tables import CYCLES, GROUPS, NUMBER
+from gcxform.modal.tables import GROUPS, code_of
 from gcxform.registry import default_registry
 from gcxform.source import Source
 from gcxform.syntax.tree import Block, Comment, Mark, Number, Word
@@ -27,15 +27,6 @@ _MOVES = {
     Kind.LINE: "line",
     Kind.ARC_CW: "clockwise arc",
     Kind.ARC_CCW: "counter-clockwise arc",
-}
-_FAMILIES = {
-    "motion": ("G0", "G1", "G2", "G3", "G80", *(f"G{number}" for number in CYCLES)),
-    "plane": ("G17", "G18", "G19"),
-    "distance": ("G90", "G91"),
-    "arc-distance": ("G91.1", "G90.1"),
-    "feed-mode": ("G93", "G94", "G95"),
-    "units": ("G21", "G20"),
-    "cutter-comp": ("G40", "G41", "G42", "G41.1", "G42.1"),
 }
 _UNITS = {
     FeedMode.INVERSE_TIME: "1/min",
@@ -111,7 +102,7 @@ def _items(block: Block) -> Iterator[str]:
 def _state(state: State, axes: str) -> Iterator[str]:
     """Yield the codes in force and the position."""
     codes = [
-        state.frames.work if group == "frame" else _code(group, state.groups[group])
+        state.frames.work if group == "frame" else code_of(group, state.groups[group])
         for group in GROUPS
     ]
     feed = "none" if math.isnan(state.feed) else f"{state.feed:g}"
@@ -119,11 +110,6 @@ def _state(state: State, axes: str) -> Iterator[str]:
     yield f"  modal {' '.join(codes)}, F {feed}{unit if feed != 'none' else ''}"
     words = state.frames.frame().words(state.position[None, :])[0]
     yield f"  at    {_point(axes, words)}"
-
-
-def _code(group: str, number: int) -> str:
-    """Return the code of a modal group by its number."""
-    return next(code for code in _FAMILIES[group] if NUMBER[code] == number)
 
 
 def _point(axes: str, position: Any) -> str:

@@ -113,7 +113,7 @@ def reading_findings(pipeline: Pipeline, source: Source) -> Iterator[Diagnostic]
     """
     letters = source.letters()
     axes = "".join(a for a in pipeline.source.axes if a in letters or a in "XYZ")
-    interpreter = Interpreter(pipeline.source, pipeline.reading, axes, source.name)
+    interpreter = Interpreter(pipeline.source, pipeline.machine_reading, axes, source.name)
     ending = Ending(pipeline.source, source.name)
     refused = False
     for window, reader in windows_of(source, pipeline.source):

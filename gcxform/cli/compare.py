@@ -14,7 +14,7 @@ from gcxform.cli.outputs import STDOUT
 from gcxform.cli.programs import opened
 from gcxform.contract import Pass
 from gcxform.diagnostics import Location, UsageError
-from gcxform.machine.machine import LENGTH, load_machine
+from gcxform.machine.quantities import LENGTH
 from gcxform.options import Argument, build
 from gcxform.registry import default_registry
 
@@ -35,7 +35,7 @@ SHOWN = 10
 @click.option("--part-origin", metavar="X,Y,Z", help="Origin of the programs in the machine.")
 @click.option("--table-origin", metavar="X,Y,Z", help="Origin of the measurement.")
 @click.option("--outside", metavar="POLICY", help="What the error is beyond the table.")
-@options.MACHINE
+@click.option("--time", metavar="TIME", help="Time (ISO 8601) whose temperatures hold.")
 @options.reading_options
 @click.argument("a", metavar="A")
 @click.argument("b", metavar="B")
@@ -45,28 +45,23 @@ def command(
     dialect: str | None,
     to: str | None,
     tolerance: str,
-    machine: str | None,
-    start: str | None,
-    increment: str | None,
-    block_delete: str | None,
-    feed_increment: str | None,
-    **model: str | None,
+    model: str | None,
+    part_origin: str | None,
+    table_origin: str | None,
+    outside: str | None,
+    time: str | None,
+    **asked: Any,
 ) -> int:
     """Compare two programs; exit 1 if path, feeds or events differ."""
-    asked = Asked(
-        start=start,
-        increment=increment,
-        block_delete=block_delete,
-        feed_increment=feed_increment,
-    )
     if a == b == STDOUT:
         raise excluding("stdin as A and stdin as B")
     limit = _length(tolerance)
-    through = _model(model)
-    geometry = load_machine(Path(machine)) if machine else None
-    first = _program(a, needed_dialect(dialect), asked)
-    second = _program(b, to or needed_dialect(dialect), asked)
-    found = compare(first, second, limit, through, geometry)
+    origins = {"part-origin": part_origin, "table-origin": table_origin}
+    through = _model({"model": model, **origins, "outside": outside, "time": time})
+    what = Asked(**asked)
+    first = _program(a, needed_dialect(dialect), what)
+    second = _program(b, to or needed_dialect(dialect), what)
+    found = compare(first, second, limit, through, what.loaded_machine)
     click.echo(report(found, first, second))
     return 0 if found.same else 1
 
@@ -81,9 +76,9 @@ def _length(text: str) -> float:
     return length
 
 
-def _model(given: dict[str, Any]) -> Pass | None:
+def _model(given: dict[str, str | None]) -> Pass | None:
     """Return the pass that made B, None if there is none."""
-    raw = {k.replace("_", "-"): Argument(v) for k, v in given.items() if v is not None}
+    raw = {key: Argument(text) for key, text in given.items() if text is not None}
     if "model" not in raw:
         if raw:
             raise UsageError.one("GX705", f"--{next(iter(raw))} needs --model")

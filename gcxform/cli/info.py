@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import click
@@ -20,7 +19,7 @@ from gcxform.cli.tolerant import Tolerant
 from gcxform.cli.tools import Extents, Tools
 from gcxform.dialect import Dialect
 from gcxform.guess import guess_dialect
-from gcxform.machine.machine import load_machine
+from gcxform.machine.machine import Machine
 from gcxform.modal.reader import WindowReader
 from gcxform.registry import default_registry
 from gcxform.source import Source
@@ -40,16 +39,13 @@ _KINDS = {
 
 @click.command("info", help=VERBS["info"], short_help=VERBS["info"])
 @options.FROM
-@options.MACHINE
 @options.reading_options
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @options.FILE
-def command(
-    file: str, dialect: str | None, machine: str | None, as_json: bool, **asked: Any
-) -> None:
+def command(file: str, dialect: str | None, as_json: bool, **asked: Any) -> None:
     """Print what is in a program; without a dialect its words, and which dialect it may be in."""
-    reading = Asked(**asked).reading()
-    speeds = _speeds(machine)
+    what = Asked(**asked)
+    reading, speeds = what.reading(), _speeds(what.loaded_machine)
     kind = default_registry().dialect(dialect) if dialect else None
     with opened(file) as source:
         found = {"file": source.name, "bytes": source.size, **_words(source, kind or Dialect)}
@@ -60,11 +56,9 @@ def command(
     click.echo(json.dumps(found, indent=2) if as_json else "\n".join(_text(found)))
 
 
-def _speeds(machine: str | None) -> dict[str, float]:
-    """Return the top speeds of the axes of a machine file."""
-    if machine is None:
-        return {}
-    axes = load_machine(Path(machine)).axes
+def _speeds(machine: Machine | None) -> dict[str, float]:
+    """Return the top speeds of the axes of a machine, as far as they are known."""
+    axes = machine.axes if machine else {}
     return {name: axis.max_speed for name, axis in axes.items() if axis.max_speed is not None}
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from gcxform.dialect import Dialect
 from gcxform.modal.codes import Effect
 from gcxform.modal.meaning import Meaning
-from gcxform.modal.tables import CYCLES, NUMBER
+from gcxform.modal.tables import CYCLES, FAMILIES, NUMBER
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import Block, Number, Word
 from gcxform.toolpath.path import Event
@@ -54,13 +54,8 @@ HANDLED: Final[Mapping[str, How]] = {
     "stop": How.NOTHING,
 }
 RESTATED: Final[Mapping[str, tuple[str, ...]]] = {
+    **FAMILIES,
     "motion": ("G0", "G1", "G2", "G3", "G80"),
-    "plane": ("G17", "G18", "G19"),
-    "distance": ("G90", "G91"),
-    "arc-distance": ("G91.1", "G90.1"),
-    "feed-mode": ("G93", "G94", "G95"),
-    "units": ("G21", "G20"),
-    "cutter-comp": ("G40", "G41", "G42", "G41.1", "G42.1"),
     "frame": (*(f"G{n}" for n in range(54, 60)), "G59.1", "G59.2", "G59.3"),
 }
 """The modal codes that are in the interpreter's state and that a preamble states."""

@@ -12,7 +12,6 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 FROM = click.option("-f", "--from", "dialect", metavar="DIALECT", help="Dialect of the program.")
 TO = click.option("-t", "--to", metavar="DIALECT", help="Dialect to write.  [default: as read]")
-MACHINE = click.option("-m", "--machine", metavar="FILE", help="Machine file (TOML).")
 VERIFY = click.option(
     "--verify",
     type=click.Choice(["off", "on", "full"]),
@@ -32,6 +31,7 @@ _PIPELINE = (
     click.option("-x", "--chain", metavar="CHAIN", help="Passes: 'absolute | metric'."),
 )
 _READING = (
+    click.option("-m", "--machine", metavar="FILE", help="Machine file (TOML)."),
     click.option("--start", metavar="X=4,Y=-2", help="Where axes stand before the first block."),
     click.option("--increment", metavar="LENGTH", help="What 1 means in a distance without point."),
     click.option(
@@ -55,6 +55,6 @@ def reading_options(command: Command) -> Command:
 def pipeline_options(command: Command) -> Command:
     """Add the options that make a pipeline."""
     command = reading_options(command)
-    for option in (MACHINE, TO, FROM, *reversed(_PIPELINE)):
+    for option in (TO, FROM, *reversed(_PIPELINE)):
         command = option(command)
     return command

@@ -10,18 +10,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from gcxform.cli.memory import RESTATED, Memory
+from gcxform.cli.memory import Memory
 from gcxform.dialect import INCH, LINEAR, Dialect
 from gcxform.emit.numbers import MOST_DECIMALS, text_of
 from gcxform.modal.state import State
-from gcxform.modal.tables import NUMBER
+from gcxform.modal.tables import NUMBER, code_of
 
 EXACT = 1e-9  # mm, degrees: closer positions are the same
-
-
-def code_of(group: str, number: int) -> str:
-    """Return the code of a modal group by its number."""
-    return next(code for code in RESTATED[group] if NUMBER[code] == number)
 
 
 @dataclass(frozen=True)
@@ -85,17 +80,17 @@ class Preamble:
             yield text
         if now != inch:
             yield code_of("units", int(inch))
-        if self.memory.length and self.approach is None:
-            yield self.memory.length
 
     def _tool(self) -> Iterator[str]:
-        """Yield the tool change, then the tool that waits; or say which tool must be there."""
+        """Yield the tool change, or say which tool must be there; the tool that waits; a length."""
         loaded, ready = self.memory.loaded, self.memory.ready
         if loaded is not None:
             change = " ".join(part for part in loaded if part)
             yield change if self.change_tool else f"({loaded[0] or 'TOOL'} MUST BE IN THE SPINDLE)"
         if ready is not None and (loaded is None or loaded[0] != ready):
             yield ready
+        if self.memory.length and self.approach is None:
+            yield self.memory.length  # behind the tool: G43 may take the one in the spindle
 
     def _spindle(self) -> Iterator[str]:
         """Yield speed and direction, then coolant."""

@@ -7,22 +7,23 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gcxform.cli.memory import Memory, shapes_seen
-from gcxform.cli.preamble import Approach, Preamble, code_of
+from gcxform.cli.preamble import Approach, Preamble
 from gcxform.diagnostics import Diagnostic, InputError, Location, UsageError, VerificationError
 from gcxform.dialect import INCH, Dialect
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading, State
-from gcxform.modal.tables import CYCLES, GROUPS, NUMBER
+from gcxform.modal.tables import CYCLES, GROUPS, NUMBER, code_of
 from gcxform.source import Source
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Kind, Toolpath
 
 CLOSE = 1e-6  # mm, degrees: positions are written with so many decimals
 ARCS = ("G2", "G3")
-COMPARED = ("kind", "plane", "feed_mode", "frame", "source", "nth", "form", "side")
+COMPARED = ("kind", "plane", "feed_mode", "source", "nth", "form", "side")
 MEASURED = ("end", "centre", "sweep", "feed", "radius", "control")  # the feed where it cuts
 
 
@@ -231,11 +232,21 @@ class Restart:
         other = self._interpreter(reading)
         if preamble.approach is None:
             other.state.position[:] = self.state.position
-            other.state.frames = replace(self.state.frames, known=True)
+            tool = other.state.frames.in_spindle
+            other.state.frames = replace(self.state.frames, known=True, in_spindle=tool)
+        if not preamble.change_tool:
+            tool = self.state.frames.in_spindle
+            other.state.frames = replace(other.state.frames, in_spindle=tool)
+            other.state.tool = self.state.tool
         reader = WindowReader(self.dialect)
         other.interpret(reader.read(text), reader.table)
         if "frame" not in self.state.stated:
             other.state.frames = replace(other.state.frames, known=self.state.frames.known)
+        lost = np.isnan(other.state.position) & ~np.isnan(self.state.position)
+        if preamble.approach is None and lost.any():
+            names = ", ".join(a for a, gone in zip(self.axes, lost.tolist(), strict=True) if gone)
+            message = f"the blocks of the restart move {names}, and to where is not known"
+            raise self.refusal(message, "--clearance 50mm, with a Z that is clear of all")
         self._compare_states(self.state, other.state, preamble)
         other.state.percents = self.state.percents
         other.state.rapid = self.state.rapid
@@ -273,6 +284,11 @@ class Restart:
             before = self.reader.read(window.text[: int(window.start[count])])
             expected = mine.interpret(before, self.reader.table)
             self._compare(expected, theirs.interpret(before, self.reader.table))
+        if mine.state.parameters != theirs.state.parameters:
+            raise self.refusal(
+                "no restart is safe here: the program has set parameters before, which are not "
+                f"restated, and line {line}, which is not read, may take them"
+            )
         hint = "from there on the program does what it did, if all is as it was in this line"
         message = f"compared up to line {line - 1}: line {line} is not read ({first.code})"
         return replace(first, code="GX732", message=message, hint=hint)
@@ -283,12 +299,19 @@ class Restart:
             raise self._difference(line)
 
 
+def _other_frames(one: Toolpath, other: Toolpath) -> NDArray[np.bool_]:
+    """Return the rows (n,) with other frames; the two paths may number theirs differently."""
+    wrong = [[mine != theirs for theirs in other.frames] for mine in one.frames]
+    shape = len(one.frames), len(other.frames)
+    return np.array(wrong, np.bool_).reshape(shape)[one.frame, other.frame]
+
+
 def _differences(one: Toolpath, other: Toolpath) -> Iterator[int]:
     """Yield lines, from 1, in which two paths differ."""
     if len(one) != len(other):
         yield int(min(one.source[:1].tolist() + other.source[:1].tolist())) + 1
         return
-    wrong = np.zeros(len(one), np.bool_)
+    wrong = _other_frames(one, other)
     for name in COMPARED:
         wrong |= getattr(one, name) != getattr(other, name)
     for name in MEASURED:

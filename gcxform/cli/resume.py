@@ -14,7 +14,7 @@ from gcxform.cli.preamble import Preamble
 from gcxform.cli.programs import opened
 from gcxform.cli.restart import Restart
 from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
-from gcxform.machine.machine import LENGTH
+from gcxform.machine.quantities import LENGTH
 from gcxform.registry import default_registry
 
 

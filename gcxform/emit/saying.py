@@ -179,6 +179,12 @@ def comment_in(target: type[Dialect], text: str) -> str:
     return ";" + inner
 
 
+def slash_of(shape: Shape) -> bytes:
+    """Return the slash with which the blocks of a shape may be skipped, if they have one."""
+    marks = [i for i in shape.block.items if isinstance(i, Mark) and i.kind == "block_delete"]
+    return "".join(shape.block.text[mark.start : mark.end] for mark in marks).encode("latin-1")
+
+
 def own_gap(shape: Shape, usual: bytes) -> bytes:
     """Return what stands between the words of a block, or what is usual in the program."""
     words = list(shape.block.words)

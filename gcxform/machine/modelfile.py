@@ -70,7 +70,7 @@ def _foreign(path: Path, formats: Sequence[type[ErrorFormat]]) -> ErrorModel:
 
 def _native(path: Path, formats: Formats, above: tuple[Path, ...]) -> ErrorModel:
     document = read_toml(path, CODES)
-    check_format(document, "error models")
+    check_version(document, "error models")
     kind = document.values.get("kind")
     if kind is None:
         raise document.missing_key(("kind",))
@@ -100,7 +100,7 @@ def _sum(document: TomlText, path: Path, formats: Formats, above: tuple[Path, ..
     return checked_sum(document, models)
 
 
-def check_format(document: TomlText, what: str) -> None:
+def check_version(document: TomlText, what: str) -> None:
     """Raise UsageError unless the file says that it is of the format which is known."""
     version = document.values.get("format")
     if version is None:

@@ -178,8 +178,7 @@ def local(state: FrameState, asked: Asked) -> FrameState:
         raise ActError("GX213", f"{asked.code} names no axis")
     if asked.dialect.g52_is_g92:
         return _with_preset(state, moved_to_names(state, asked, state.preset))
-    if not asked.dialect.g52_known and "g52" not in asked.reading.control:
-        raise _unset(asked.code, "g52")
+    _refuse_unset(asked)
     return replace(state, local=moved_to_names(state, asked, state.local))
 
 
@@ -188,8 +187,10 @@ def preset(state: FrameState, asked: Asked) -> FrameState:
     _refuse_turned(state, asked)
     if not asked.axes:
         raise ActError("GX213", f"{asked.code} names no axis")
-    if not asked.dialect.g52_known and "g52" not in asked.reading.control:
-        raise _unset(asked.code, "g52")
+    _refuse_unset(asked)
+    if any(state.local[asked.column(state, axis)] for axis in asked.axes):
+        message = f"{asked.code} under a shift of G52: whether that shift stays is not certain"
+        raise ActError("GX213", message, "write G52 with zeros before it")
     here = state.frame().local(np.asarray(asked.position)[None, :])[0]
     shift = np.array(state.preset)
     for axis, value in asked.axes.items():
@@ -217,11 +218,15 @@ def _refuse_turned(state: FrameState, asked: Asked) -> None:
         raise ActError("GX213", f"{asked.code} in turned or scaled coordinates")
 
 
-def _unset(code: str, name: str) -> ActError:
-    return ActError(
+def _refuse_unset(asked: Asked) -> None:
+    """Refuse G52 and G92 where a setting decides what they shift, but for the one that is known."""
+    if asked.dialect.g52_known or asked.reading.control.get("g52") == "fanuc":
+        return
+    raise ActError(
         "GX214",
-        f"what {code} does depends on a setting of the control",
-        f"say it in the machine file: [control] {name} = ...; see the dialect's page",
+        f"what {asked.code} does depends on a setting of the control",
+        'say that it is as on a Fanuc: [control] g52 = "fanuc" in the machine file; see the '
+        "dialect's page",
     )
 
 
@@ -346,6 +351,8 @@ def rotate(state: FrameState, asked: Asked) -> FrameState:
         raise ActError("GX213", f"{asked.code} under G91 differs between controls")
     if set(asked.axes) != set(names):
         raise ActError("GX213", f"{asked.code} needs its centre: {names[0]} and {names[1]}")
+    if not asked.written.keys().isdisjoint("IJK"):
+        raise ActError("GX213", f"{asked.code} about an axis in space is not followed")
     if "R" not in asked.written:
         raise ActError("GX213", f"{asked.code} needs its angle: R")
     centre = [0.0, 0.0, 0.0]
@@ -377,6 +384,8 @@ def mirror(state: FrameState, asked: Asked) -> FrameState:
     """G51.1: mirror named axes about the points given."""
     if not asked.axes or set(asked.axes) - set("XYZ"):
         raise ActError("GX213", f"{asked.code} needs X, Y or Z")
+    if asked.dialect.mirrors_at_zero and any(asked.axes.values()):
+        raise ActError("GX213", f"where {asked.code} mirrors is known for zeros only")
     matrix, centre = np.eye(3), [0.0, 0.0, 0.0]
     for axis, value in asked.axes.items():
         k = "XYZ".index(axis)
@@ -387,8 +396,9 @@ def mirror(state: FrameState, asked: Asked) -> FrameState:
 
 
 def _turned(state: FrameState, asked: Asked, name: str, turn: Turn) -> FrameState:
-    if state.turns:
-        raise ActError("GX213", f"{asked.code} upon {state.turns[0][0]}: controls differ in order")
+    if state.turns or state.polar:
+        before = state.turns[0][0] if state.turns else "polar words"
+        raise ActError("GX213", f"{asked.code} upon {before}: controls differ in order")
     return replace(state, turns=((name, turn),))
 
 

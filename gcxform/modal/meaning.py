@@ -15,9 +15,12 @@ from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Mark, Number, Statement, Word
 
 CENTRE = "IJK"
+COMMENT = 0
+"""The order of comments that are executed: LinuxCNC does so before all else in the block."""
 DRILL_WORDS = "PQLK"
 """Words that only a canned cycle in force may want."""
-UNTOUCHED_STATEMENTS: frozenset[str] = frozenset()
+LENT = "DIJKLPQR"
+"""Words of which a block has one value for all of its codes, its move among them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +108,8 @@ class Meaning:
     """What a block of a shape does, but for its numbers.
 
     `lengths` are the words that codes take for themselves and that are in the unit of the program:
-    code, address, slot.
+    code, address, slot. `lent` are words that codes take which a move of the block may want as
+    well: the code by address.
     """
 
     groups: dict[str, str] = field(default_factory=dict)
@@ -128,6 +132,7 @@ class Meaning:
     acts: list[Act] = field(default_factory=list)
     lengths: list[tuple[str, str, int]] = field(default_factory=list)
     drill_words: str = ""
+    lent: dict[str, str] = field(default_factory=dict)
     refusal: Refusal | None = None
 
     @property
@@ -181,9 +186,19 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
             meaning.deleted |= item.kind == "block_delete"
             meaning.percent |= item.kind == "percent"
         elif isinstance(item, Comment):
-            text = shape.block.text[item.start : item.end]
-            if text[0] not in dialect.comments:
-                yield Refusal("GX101", item.start, 1, f"{dialect.name} has no such comments")
+            yield from _comment(item, shape, dialect, meaning)
+
+
+def _comment(
+    item: Comment, shape: Shape, dialect: type[Dialect], meaning: Meaning
+) -> Iterator[Refusal]:
+    """Turn a comment that is executed into an event."""
+    text = shape.block.text[item.start : item.end]
+    if text[0] not in dialect.comments:
+        yield Refusal("GX101", item.start, 1, f"{dialect.name} has no such comments")
+    if dialect.executes(text):
+        inner = text[1:].removesuffix(")") if text[0] == "(" else text[1:]
+        meaning.events.append(EventShape(COMMENT, f"({inner})"))
 
 
 def _expression(word: Word, dialect: type[Dialect]) -> Iterator[Refusal]:
@@ -238,7 +253,9 @@ def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         if code is None:
             yield Refusal("GX201", word.start, width, f"{dialect.name} has no code {name}")
             continue
-        if "G80" in (name, meaning.groups.get(code.group)) and name != "G80":
+        if not dialect.g80_beside_motion:
+            pass
+        elif "G80" in (name, meaning.groups.get(code.group)) and name != "G80":
             owners.pop(code.group, None)  # beside another motion code G80 says nothing
         elif name == "G80" and code.group in owners and meaning.groups[code.group] != "G80":
             continue
@@ -268,7 +285,7 @@ def _g_effects(
         code = dialect.codes[name]
         if code.effect is Effect.MODAL:
             continue
-        taken = _take(code, dialect, meaning)
+        taken = _take(name, code, dialect, meaning)
         lengths = LINEAR if code.effect is Effect.FRAME else code.lengths
         meaning.lengths += [(name, a, slot) for a, slot in taken if a in lengths]
         if code.effect is Effect.DWELL:
@@ -294,13 +311,17 @@ def _g_act(
     meaning.acts.append(Act(code.act, name, taken, word.start, width))
     if code.act == "length-add" and any(axis in meaning.slots for axis in dialect.axes):
         yield Refusal("GX202", word.start, width, f"{name} takes H or axis words, not both")
+    moves = "motion" in meaning.groups or not meaning.slots.keys().isdisjoint(dialect.axes)
+    if code.act == "no-length" and dialect.g49_takes_axes and moves:
+        message = f"{name} takes the axis words here, and has no use for them"
+        yield Refusal("GX202", word.start, width, message, "move in a block of its own")
     if code.act in TAKES_MOTION and dialect.axis_words_once and "motion" in meaning.groups:
         message = f"{name} and {meaning.groups['motion']} both want the axis words"
         yield Refusal("GX202", word.start, width, message)
 
 
 def _take(
-    code: Code | MCode, dialect: type[Dialect], meaning: Meaning
+    name: str, code: Code | MCode, dialect: type[Dialect], meaning: Meaning
 ) -> tuple[tuple[str, int], ...]:
     """Take the words that are parameters to a code away from the block."""
     letters = code.takes
@@ -309,6 +330,8 @@ def _take(
     taken = tuple((a, meaning.slots[a]) for a in letters if a in meaning.slots)
     for address, _ in taken:
         del meaning.slots[address]
+    if isinstance(code, MCode) or code.effect is not Effect.FRAME:
+        meaning.lent |= {address: name for address, _ in taken if address in LENT}
     return taken
 
 
@@ -340,7 +363,7 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         meaning.runs_macro |= code is dialect.unknown_m
         meaning.changes_tool |= code.group == "tool"
         order = {"tool": 30, "spindle": 40, "coolant": 41, "override": 42}.get(code.group, 43)
-        taken = _take(code, dialect, meaning)
+        taken = _take(name, code, dialect, meaning)
         if code.act:
             meaning.acts.append(Act(code.act, name, taken, word.start, width))
         meaning.events.append(EventShape(order, name, taken, code.after))

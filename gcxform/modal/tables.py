@@ -49,6 +49,7 @@ NUMBER = {
     "G99": 0,
     "G98": 1,
     "M5": 0,
+    "M19": 0,
     "M3": 1,
     "M4": 2,
     "G40": 0,
@@ -58,10 +59,30 @@ NUMBER = {
     "G42.1": 4,
 }
 """The number that stands for a code within its group."""
+FAMILIES = {
+    "motion": (
+        *("G0", "G1", "G2", "G3", "G80", "G5", "G5.1", "G33", "G33.1"),
+        *(f"G38.{2 + k}" for k in range(len(PROBES))),
+        *(f"G{n}" for n in CYCLES),
+    ),
+    "plane": ("G17", "G18", "G19"),
+    "distance": ("G90", "G91"),
+    "arc-distance": ("G91.1", "G90.1"),
+    "feed-mode": ("G93", "G94", "G95"),
+    "units": ("G21", "G20"),
+    "cutter-comp": ("G40", "G41", "G42", "G41.1", "G42.1"),
+}
+"""The codes of each of the groups, but for work offsets, which have names."""
+
+
+def code_of(group: str, number: int) -> str:
+    """Return the code of a group by its number."""
+    return next(code for code in FAMILIES[group] if NUMBER[code] == number)
 
 
 MANY_WORK = 9
-"""The number of codes that have a P word, so that they name more than one work offset."""
+"""The number of G54.1, whose P names one of many work offsets, and of all codes of that group that
+have no number of their own. Two of them in a row may be two work offsets."""
 
 
 FLAGS = (
@@ -89,6 +110,7 @@ FLAGS = (
     "bars_comp_before",
     "bars_comp_after",
     "compensates",
+    "lends",
 )
 
 
@@ -134,8 +156,10 @@ class MeaningTable:
 
     def _enter(self, index: int, meaning: Meaning) -> None:
         for group, code in meaning.groups.items():
-            if group in COLUMNS and code in NUMBER:
-                self.groups[index, COLUMNS.index(group)] = NUMBER[code]
+            other = MANY_WORK if group == "frame" else None
+            number = NUMBER.get(code, other)
+            if group in COLUMNS and number is not None:
+                self.groups[index, COLUMNS.index(group)] = number
         for address, slot in meaning.slots.items():
             if address.isalpha():
                 self.slots[index, ord(address) - 65] = slot
@@ -164,6 +188,7 @@ class MeaningTable:
             bool(meaning.bars_comp[0]),
             bool(meaning.bars_comp[1]),
             meaning.compensates,
+            bool(meaning.lent),
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -161,6 +161,10 @@ class Track:
                 self.state.position[k] = np.nan
         self.breaks.append(Break(line, axes))
 
+    def lose_all(self, line: int) -> None:
+        """Note that from a line on no position is known."""
+        self._lose(line, (1 << len(self.axes)) - 1)
+
     # --- stretches ---
 
     def along(self, first: int, last: int, rows: Ints, lost: Flags | None) -> Floats:
@@ -176,7 +180,7 @@ class Track:
         if lost_here is None and not self._words_until[last] > self._words_until[first]:
             return self.frame.positions(words)
         end = np.array(before)
-        polar = self._polar(here) if self.frame.polar else {}
+        polar = self.polar(here) if self.frame.polar else {}
         for k, axis in enumerate(self.axes):
             if lost_here is None and axis not in polar and self.column(axis) is None:
                 continue
@@ -228,39 +232,48 @@ class Track:
         placed = present & ~incremental
         if lost is not None:
             value = np.where(lost & ~present, np.nan, value)
+            nowhere = incremental & lost & (not self.dialect.m_first)
+            self._refuse_steps(nowhere, axis, here.start)
             placed = placed | (lost & ~incremental)
         if not incremental.any():
             return fill(value, placed, before)
         position = _with_increments(value, placed, incremental, before)
-        for line in np.flatnonzero(incremental & np.isnan(position))[: Findings.enough].tolist():
+        self._refuse_steps(incremental & np.isnan(position), axis, here.start)
+        return position
+
+    def _refuse_steps(self, which: Flags, axis: str, first: int) -> None:
+        """Refuse incremental words of lines, counted from the first, that begin nowhere known."""
+        for line in np.flatnonzero(which)[: Findings.enough].tolist():
             self.findings.add(
-                line + here.start,
+                line + first,
                 "GX207",
                 f"{axis} is incremental, but where {axis} stands is not known",
                 axis,
                 f"begin with an absolute {axis}, or say start = {{ {axis} = ... }} in [input]",
             )
-        return position
 
-    def _polar(self, here: slice) -> dict[str, tuple[Floats, Flags]]:
+    def polar(self, here: slice) -> dict[str, tuple[Floats, Flags]]:
         """Return the words of the plane's axes where radius and angle are programmed."""
         planes = np.unique(self.modes.plane[here])
-        first, second, _ = Plane(int(planes[0])).axes
+        if not np.isnan(self.state.polar).all():
+            planes = np.union1d(planes, self.state.polar_plane)
+        first, second, _ = Plane(int(self.modes.plane[here][0])).axes
         names = "XYZ"[first], "XYZ"[second]
         columns = []
         count = self.modes.plane[here].shape[0]
         any_word = np.zeros(count, np.bool_)
         for k, axis in enumerate(names):
-            word = self.column(axis)
+            word = self.lines.word(axis) if k else self.column(axis)  # an angle has no unit
             value = np.full(count, np.nan) if word is None else word[0][here]
             present = np.zeros(count, np.bool_) if word is None else word[1][here]
             columns.append(fill(np.where(present, value, np.nan), present, self.state.polar[k]))
             any_word |= present
         if count:
             self.state.polar = float(columns[0][-1]), float(columns[1][-1])
+            self.state.polar_plane = int(self.modes.plane[here][-1])
         radius, angle = columns[0], np.deg2rad(columns[1])
         bad = any_word & (np.isnan(radius + angle) | self.modes.incremental[here])
-        bad |= len(planes) > 1
+        bad |= self.worded[here] & (len(planes) > 1)
         for line in np.flatnonzero(bad)[: Findings.enough].tolist():
             message = "in polar words radius and angle must be known, in one plane and in G90"
             self.findings.add(line + here.start, "GX213", message)

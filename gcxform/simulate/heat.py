@@ -26,7 +26,6 @@ Ints = NDArray[np.int64]
 PIECES = 4000  # the path is divided into about so many, at least
 MANY = 1000  # splines
 SPLINE = 500  # points of a spline to which others are compared
-APART = 1e6  # mm; a rapid is never taken for a feed move
 NEAR = 0.1  # mm; ends that are so much farther off than the nearest may be the same end
 
 
@@ -149,22 +148,16 @@ def owners(nominal: Toolpath, written: Toolpath, line_of: Ints) -> Ints:
         theirs = np.flatnonzero(line == several)
         ours = moving[nominal.source[moving] == several]
         if len(ours):
-            owner[theirs] = ours[_in_order(_marked(nominal, ours), _marked(written, theirs))]
+            owner[theirs] = ours[in_order(nominal.end[ours, :3], written.end[theirs, :3])]
     return owner
 
 
-def _marked(path: Toolpath, rows: Ints) -> FloatArray:
-    """Return the ends (n, 4) in mm of rows, of rapids far away in a dimension of their own."""
-    rapid = path.kind[rows] == Kind.RAPID
-    return np.column_stack([path.end[rows, :3], np.where(rapid, APART, 0.0)])
-
-
-def _in_order(ends: FloatArray, others: FloatArray) -> Ints:
-    """Return to which of the ends (m, 4) each of the others (n, 4) belongs or leads, in order."""
+def in_order(ends: FloatArray, others: FloatArray) -> Ints:
+    """Return to which of the ends (m, 3) each of the others (n, 3) belongs or leads, in order."""
     found = np.full(len(others), len(ends) - 1)
     begin = 0
     for k, end in enumerate(ends):
-        stop = len(others) - (len(ends) - 1 - k)
+        stop = max(begin + 1, len(others) - (len(ends) - 1 - k))
         far = np.nan_to_num(np.abs(others[begin:stop] - end)).max(axis=1)
         if not len(far):
             break

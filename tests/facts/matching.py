@@ -11,7 +11,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from oracles.canon import CanonMove
+from oracles.canon import EVENTS, CanonMove
 from oracles.compare import PRINTED, SLACK, feed_difference
 from oracles.toolpaths import HOMES, OFFSETS, START, moves_of, resolved
 from reference.model import Move
@@ -26,17 +26,6 @@ from gcxform.source import Source
 from gcxform.toolpath.path import Toolpath
 
 REFUSED = {"refuse", "partial", "tool_refuse"}
-CALLS = {
-    "START_SPINDLE_CLOCKWISE": "M3",
-    "START_SPINDLE_COUNTERCLOCKWISE": "M4",
-    "STOP_SPINDLE_TURNING": "M5",
-    "MIST_ON": "M7",
-    "FLOOD_ON": "M8",
-    "FLOOD_OFF": "M9",
-    "CHANGE_TOOL": "M6",
-    "PROGRAM_STOP": "M0",
-    "OPTIONAL_PROGRAM_STOP": "M1",
-}
 ALWAYS = {"M0", "M1", "M3", "M4", "M5", "M7", "M8", "M9"}
 SILENT = re.compile(
     r"SET_|USE_|MESSAGE|COMMENT|MIST_OFF|START_CHANGE|SELECT_|.*_SPEED_FEED_|.*ABLE_"
@@ -169,7 +158,7 @@ def _steps_of(motion: dict[str, Any]) -> list[dict[str, Any]]:
         if numbers:
             end = dict(zip("XYZABC", map(float, numbers), strict=False))
             return [{"type": "told", "end": end}]
-        return [] if SILENT.match(call) else [{"type": "event", "what": CALLS[call]}]
+        return [] if SILENT.match(call) else [{"type": "event", "what": EVENTS[call]}]
     if kind == "hole":
         at = {"X": motion["X"], "Y": motion["Y"]}
         levels = [("rapid", "start"), ("feed", "depth"), ("rapid", "retract")]

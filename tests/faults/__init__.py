@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from faults import (
     arcs,
+    calibrating,
     commands,
     computing,
     cutter,
@@ -34,5 +35,6 @@ MUTATIONS: tuple[Mutation, ...] = (
     *thermal.MUTATIONS,
     *tied.MUTATIONS,
     *proof.MUTATIONS,
+    *calibrating.MUTATIONS,
     *simulating.MUTATIONS,
 )

@@ -84,7 +84,7 @@ MUTATIONS = (
     ),
     Mutation(
         "runs: events may stand inside",
-        "gcxform/verify.py",
+        "gcxform/trace.py",
         "through = int(self.through[written_row])",
         "through = int(self.written_owner[written_row])",
         ARCS,

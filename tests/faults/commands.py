@@ -34,6 +34,27 @@ MUTATIONS = (
         "tests/test_resume.py",
     ),
     Mutation(
+        "resume: frames are not compared",
+        "gcxform/cli/restart.py",
+        "[mine != theirs for theirs in other.frames]",
+        "[False for theirs in other.frames]",
+        "tests/test_machine_reading.py",
+    ),
+    Mutation(
+        "commands: the machine file is forgotten",
+        "gcxform/cli/asked.py",
+        "return reading.on(self.loaded_machine) if self.loaded_machine else reading",
+        "return reading",
+        "tests/test_machine_reading.py",
+    ),
+    Mutation(
+        "check: the machine file is forgotten",
+        "gcxform/cli/check.py",
+        "pipeline.machine_reading, axes",
+        "pipeline.reading, axes",
+        "tests/test_machine_reading.py",
+    ),
+    Mutation(
         "haas: a dwell with a point is in milliseconds",
         "gcxform/modal/events.py",
         "lines.window.decimals[number] >= 0:",

@@ -5,22 +5,29 @@ from __future__ import annotations
 from faults.mutation import VERIFY, Mutation
 
 
-def _verifier(name: str, old: str, new: str = "if False:") -> Mutation:
-    return Mutation(f"verifier: {name}", "gcxform/verify.py", old, new, VERIFY)
+def _verifier(
+    name: str, old: str, new: str = "if False:", file: str = "gcxform/verify.py"
+) -> Mutation:
+    return Mutation(f"verifier: {name}", file, old, new, VERIFY)
+
+
+def _feeds(name: str, old: str) -> Mutation:
+    return _verifier(name, old, file="gcxform/feedproof.py")
 
 
 MUTATIONS = (
-    _verifier("the budget is ignored", "if not off.distance[worst] <= self.budget:"),
+    _verifier("the budget is ignored", "if not distance[worst] <= self.budget:"),
     _verifier("rotary axes are ignored", "if not off.angle[turned] <= self.angle_budget:"),
     _verifier("kinds are ignored", "if wrong.any():"),
-    _verifier("feeds are ignored", "if (off & plain).any():"),
-    _verifier("feed modes are ignored", "if strange.any():"),
-    _verifier("converted feeds are ignored", "if len(off):"),
-    _verifier(
+    _feeds("feeds are ignored", "if (off & plain).any():"),
+    _feeds("feed modes are ignored", "if strange.any():"),
+    _feeds("converted feeds are ignored", "if len(off):"),
+    _feeds(
         "feed modes left behind are ignored",
         "if (mode != read.modes.feed_mode[line]).any():",
     ),
-    _verifier("times are ignored", "if len(wrong):"),
+    _feeds("the pace of a piece is ignored", "if off.any():"),
+    _feeds("times are ignored", "if len(wrong):"),
     _verifier(
         "events are ignored",
         "self._events(self._told(read.path), self._told(back.path), trace)",
@@ -40,6 +47,13 @@ MUTATIONS = (
         "gcxform/toolpath/deviation.py",
         "(after.sense[rows] == self.sense)",
         "np.isfinite(self.sense)",
+        VERIFY,
+    ),
+    Mutation(
+        "deviation: what is compared with nothing passes",
+        "gcxform/toolpath/deviation.py",
+        "self.distance = np.full(len(owner), np.inf)",
+        "self.distance = np.zeros(len(owner))",
         VERIFY,
     ),
 )

@@ -13,8 +13,8 @@ MUTATIONS = (
     Mutation(
         "simulate: the machine is off the other way",
         f"{FOLDER}/positions.py",
-        "np.asarray(commanded + self.model.error(commanded, self.outside, **more))",
-        "np.asarray(commanded - self.model.error(commanded, self.outside, **more))",
+        "return commanded + self.model.error(",
+        "return commanded - self.model.error(",
         TESTS,
     ),
     Mutation(
@@ -104,8 +104,8 @@ MUTATIONS = (
     Mutation(
         "show: moves of a cycle are taken for one another",
         f"{FOLDER}/heat.py",
-        "np.where(rapid, APART, 0.0)",
-        "np.where(rapid, 0.0, 0.0)",
+        "far <= far.min() + NEAR",
+        "far >= far.min() + NEAR",
         PICTURES,
     ),
     Mutation(

@@ -76,7 +76,7 @@ MUTATIONS = (
     ),
     _fault(
         "the readings are not in the fingerprint",
-        "gcxform/options.py",
+        "gcxform/optionkinds.py",
         'data += fingerprint(model) if model.composed else b""',
         'data += b""',
     ),

@@ -11,11 +11,9 @@ from hypothesis import settings
 from oracles import rs274
 from oracles.canon import CanonProgram
 from oracles.toolpaths import difference, read
-from properties.test_shifts import CLOSE, READING, TOOLS, gone_elsewhere, vector
+from properties.test_shifts import CLOSE, TOOLS, gone_elsewhere, vector, written
 
 import gcxform as gx
-from gcxform.run import Output, Run
-from gcxform.source import Source
 from gcxform.testing.generate import Options
 from gcxform.testing.whole import WholeBuilder
 
@@ -61,16 +59,6 @@ def test_gcxform_reads_the_whole_language_as_linuxcnc_does() -> None:
 
 def chain_of(choose: random.Random) -> str:
     return " | ".join(dict.fromkeys(choose.choice(STEPS) for _ in range(choose.randint(1, 4))))
-
-
-def written(chain: str, source: bytes, window: int) -> tuple[bytes, list[int]]:
-    """Return what a chain makes of a program read in windows, and the line map."""
-    pipeline = replace(gx.Pipeline.parse(chain, "linuxcnc"), reading=READING)
-    parts: list[bytes] = []
-    lines: list[int] = []
-    run = Run(pipeline, Source.of_bytes(source), "full")
-    run.over(run.source.windows(window), Output(parts.append, lines), lambda size: None)
-    return b"".join(parts), lines
 
 
 def test_the_machine_goes_where_it_went_after_any_chain() -> None:

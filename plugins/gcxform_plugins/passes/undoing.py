@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+APART = 1e-9  # of a move; two cuts nearer to each other are one
 STILL = 1e-9  # mm; an axis that moves by less stays where it is
 UNDO_SLACK = 2e-6  # mm; how far pieces of an undone arc are from the curve they stand for
 BEND_SLACK = 1e-5  # mm; the same for pieces of a line, and what the bending adds to an arc
@@ -49,7 +50,7 @@ class Machine:
             every = np.concatenate([whole, rows])
             at = np.concatenate([at, part])
             order = np.lexsort((at, every))
-            every, at = every[order], at[order]
+            every, at = _apart(every[order], at[order])
             counts = np.bincount(every, minlength=len(path))
         point = self._points(every, at)
         table = point + self.place.offset_of(every)
@@ -173,3 +174,11 @@ class Machine:
         table = point + self.place.offset_of(rows[arcs])
         errors[arcs] = self.step.error(table, self.place.tool_of(rows[arcs]))
         return errors
+
+
+def _apart(rows: Ints, part: Floats) -> tuple[Ints, Floats]:
+    """Return the ends of pieces without those that would leave nothing between two of them."""
+    new = np.append(True, rows[1:] != rows[:-1])
+    before = np.where(new, 0.0, np.append(0.0, part[:-1]))
+    keep = (part == 1.0) | ((part - before > APART) & (part < 1.0 - APART))
+    return rows[keep], part[keep]

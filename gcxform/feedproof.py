@@ -1,0 +1,163 @@
+"""The proof of feeds: they are those of the source, or take the time those of the source do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.modal.interpreter import Interpreted
+from gcxform.toolpath.path import FeedMode, Kind
+from gcxform.toolpath.runs import SAME_FEED
+from gcxform.toolpath.travel import lengths
+from gcxform.trace import Trace
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+TIME_ERROR = 1e-3  # relative: what the rounding of the feeds of pieces may change
+UNEVEN = 0.25  # relative; a chord of a quarter of a circle is a tenth shorter than its arc
+
+
+class Wrong(NamedTuple):
+    """What is wrong, and where: a line of the source, and one of the output or 0; both from 0."""
+
+    message: str
+    line: int
+    output_line: int = 0
+
+
+@dataclass(frozen=True)
+class FeedProof:
+    """The feeds of one window, and what they may be.
+
+    modes         the feed modes into which passes have converted feeds, in their order
+    budget        mm by which the path may be off; `angle_budget`: degrees, of rotary axes
+    """
+
+    trace: Trace
+    modes: Sequence[FeedMode]
+    budget: float
+    angle_budget: float
+
+    def wrong(self) -> Iterator[Wrong]:
+        """Yield where feeds are not those of the source; in inverse time, the times must add up."""
+        before, after, owner = self.trace.before, self.trace.after, self.trace.owner
+        moving = before.kind[owner] != Kind.RAPID
+        other = before.feed_mode[owner] != after.feed_mode
+        meant = after.feed_mode == self.modes[-1] if self.modes else False
+        strange = other & moving & ~np.asarray(meant)
+        if strange.any():
+            yield self._at("the feed mode has changed", int(np.argmax(strange)))
+        if self.modes:
+            yield from self._converted()
+            moving &= ~self._may_be_converted(owner)
+        inverse = after.feed_mode == FeedMode.INVERSE_TIME
+        plain = moving & ~inverse
+        off = np.abs(after.feed - before.feed[owner]) > SAME_FEED * np.abs(after.feed)
+        if (off & plain).any():
+            yield self._at("the feed has changed", int(np.argmax(off & plain)))
+        if (moving & inverse).any():
+            yield from self._times()
+        if self.modes or (moving & inverse).any():
+            yield from self._paces()
+
+    def _times(self) -> Iterator[Wrong]:
+        """Add up the times of the written moves, before the models cut them further."""
+        written, owner = self.trace.written, self.trace.written_owner
+        mine = written.feed_mode == FeedMode.INVERSE_TIME
+        mine &= written.kind != Kind.RAPID
+        if self.modes:
+            mine &= ~self._may_be_converted(owner)
+        time = np.bincount(owner[mine], 1 / written.feed[mine], len(self.trace.before))
+        wanted = 1 / self.trace.before.feed
+        slack = TIME_ERROR * wanted
+        used = np.unique(owner[mine])
+        wrong = used[np.abs(time[used] - wanted[used]) > slack[used]]
+        if len(wrong):
+            line = int(self.trace.before.source[wrong[0]])
+            yield Wrong("the time of a move in G93 has changed", line)
+
+    def _paces(self) -> Iterator[Wrong]:
+        """Check that the pieces of a move share its time as they share its way.
+
+        The time of the whole says nothing of one short piece, whose feed might be any.
+        """
+        written, owner = self.trace.written, self.trace.written_owner
+        way = lengths(written)
+        mine, inverse = written.kind != Kind.RAPID, written.feed_mode == FeedMode.INVERSE_TIME
+        mine &= inverse | (self._may_be_converted(owner) if self.modes else False)
+        along = (way.least + way.most) / 2
+        time = np.where(inverse, 1.0, along) / written.feed
+        whole = self._sums(mine, along)[owner]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slow = self._sums(mine, time)[owner] / whole
+        slack = 2 * np.where(way.turns, self.angle_budget, self.budget)
+        off = np.abs(time - slow * along) > slow * (UNEVEN * along + slack)
+        off &= mine & (whole > 0)
+        if off.any():
+            row = int(written.source[np.argmax(off)])
+            message = "a piece of a move is faster or slower than it"
+            yield Wrong(message, self.trace.line_of(row), row)
+
+    def _may_be_converted(self, owner: Ints) -> NDArray[np.bool_]:
+        """Return the rows whose feeds a pass may have converted, there and back if there are two.
+
+        One pass alone leaves what is in its mode; blocks after which another program may run keep
+        their mode.
+        """
+        before = self.trace.before
+        kept = before.blocks.leaves[before.block]
+        if len(self.modes) == 1:
+            kept = kept | (before.feed_mode == self.modes[0])
+        return np.asarray(~kept[owner])
+
+    def _converted(self) -> Iterator[Wrong]:
+        """Check converted feeds by time: at the old feed it is that of the way.
+
+        The way may be measured as programmed or as written, and its pieces may be off by what the
+        path may be off.
+        """
+        before, written, owner = self.trace.before, self.trace.written, self.trace.written_owner
+        mine = (written.kind != Kind.RAPID) & self._may_be_converted(owner)
+        if not mine.any():
+            return
+        rows, old, new = np.unique(owner[mine]), lengths(before), lengths(written)
+        inverse = written.feed_mode == FeedMode.INVERSE_TIME
+        ways = np.where(inverse, 1.0, (new.least + new.most) / 2)
+        time = self._sums(mine, ways / written.feed)[rows]
+        timed = before.feed_mode[rows] == FeedMode.INVERSE_TIME
+        way = (old.least + old.most)[rows] / 2
+        implied = time * before.feed[rows] * np.where(timed, way, 1.0)
+        pieces = self._sums(mine, np.ones(len(written)))[rows]
+        slack = pieces * np.where(old.turns[rows], self.angle_budget, self.budget)
+        least = np.minimum(old.least[rows], self._sums(mine, new.least)[rows])
+        most = np.maximum(old.most[rows], self._sums(mine, new.most)[rows])
+        low, high = least * (1 - TIME_ERROR) - slack, most * (1 + TIME_ERROR) + slack
+        off = rows[~((implied >= low) & (implied <= high))]
+        if len(off):
+            line = int(before.source[off[0]])
+            yield Wrong("the time of a move is another after its feed was converted", line)
+
+    def _sums(self, mine: NDArray[np.bool_], values: Floats) -> Floats:
+        """Return the sums of values over the written rows `mine` of each row of the source."""
+        return np.bincount(
+            self.trace.written_owner[mine], values[mine], len(self.trace.before)
+        ).astype(float)
+
+    def left_behind(self, read: Interpreted, back: Interpreted) -> Iterator[Wrong]:
+        """Yield where what may run after a block finds another feed mode than the source leaves."""
+        first = read.path.blocks.first
+        for line in np.flatnonzero(read.path.blocks.leaves).tolist():
+            places = np.flatnonzero(self.trace.source == line + first)
+            mode = back.modes.feed_mode[places[-1:]]
+            if (mode != read.modes.feed_mode[line]).any():
+                message = "another feed mode is left to what may run after this block"
+                yield Wrong(message, line + first, int(places[-1]) + self.trace.first)
+
+    def _at(self, message: str, row: int) -> Wrong:
+        """Return what is wrong in a row of what the machine does."""
+        output = int(self.trace.after.source[row])
+        return Wrong(message, self.trace.line_of(output), output)
