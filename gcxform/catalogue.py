@@ -122,7 +122,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "What the cycle does cannot be told: a word is missing or cannot be, a level is not known, "
         "the control refuses it, or a setting of the control decides. The message says which. "
         "Settings go to [control] of the machine file: peck-return for G73, peck-clearance for "
-        "G83.",
+        "G83, cycle-without-place for blocks that name no place.",
     ),
     "GX216": (
         "A thread, a tap or a probe that the control refuses",
@@ -520,7 +520,9 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "Canned cycles, returns to reference, moves in machine coordinates and blocks that set "
         "coordinates from where the axes stand are copied as they are, or not at all: what a pass "
         'asks for cannot be said in such a block. Resolve it first: the pass "cycles" writes '
-        'cycles as plain moves, the pass "offsets" folds shifts into coordinates.',
+        'cycles as plain moves, the pass "offsets" folds shifts into coordinates. Taps are written '
+        "again with their ends moved, if the place, which is one for top and bottom, is right for "
+        "both within what the passes promise; otherwise give the pass a larger tolerance.",
     ),
     # --- 6xx: verification ---
     "GX601": (
@@ -691,6 +693,21 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "modes, tool, spindle, coolant, and where the axes stand. Something of that is not known, "
         "or cannot be said by blocks. Begin at an earlier line: at the tool change, at the block "
         "that states the arc, before the code that is named.",
+    ),
+    "GX736": (
+        "Pictures need matplotlib",
+        "Figures and tables work without it, pictures do not, and it is not installed. Install the "
+        "package with its extra: `pip install 'gcxform[plot]'`.",
+    ),
+    "GX737": (
+        "Not a kind of picture",
+        "Pictures are written as SVG or PNG, by the ending of the file's name: out.svg, out.png.",
+    ),
+    "GX738": (
+        "A virtual test does not fit the error model",
+        "The test would leave the volume in which the errors are known, or has no room in it, so "
+        "that its figures would be made up. Choose another place or size; --outside extrapolate "
+        "or clamp goes beyond the tables all the same.",
     ),
     # --- 8xx: plugins ---
     "GX740": (

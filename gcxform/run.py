@@ -280,6 +280,10 @@ class Run:
                 "rapids: only their ends, because controls do not move straight in them",
             ),
             (found.unknown_starts, "moves from an unknown position: only their ends"),
+            (
+                found.between_taps,
+                f"moves between taps: only that they are within {found.aside:.4f} mm",
+            ),
             (found.lines_after_end, "lines after the end of the program: copied, not read"),
         ):
             if count:

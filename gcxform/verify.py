@@ -24,6 +24,7 @@ from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import PROBES
 from gcxform.syntax.scan import Window
+from gcxform.toolpath.facts import IN_AIR, between_taps
 from gcxform.toolpath.path import WHOLE, Event, Kind, Toolpath
 from gcxform.toolpath.runs import Runs, deviation_of_runs
 from gcxform.toolpath.travel import ways
@@ -42,6 +43,7 @@ class Findings:
 
     deviation   mm; `source_line` and `output_line` count from 1
     angle       degrees, of rotary axes
+    between_taps, aside   moves between taps that are off by more than the budget, and how far (mm)
     """
 
     moves: int = 0
@@ -52,6 +54,8 @@ class Findings:
     output_line: int = 0
     rapids: int = 0
     unknown_starts: int = 0
+    between_taps: int = 0
+    aside: float = 0.0
     lines_after_end: int = 0
     problems: list[str] = field(default_factory=list)
 
@@ -133,12 +137,13 @@ class Verifier:
         off = deviation_of_runs(before, after, runs, self.budget)
         self.findings.unknown_starts += int(off.unknown_start.sum())
         self._start(trace)
-        worst = int(np.argmax(off.distance))
-        if not off.distance[worst] <= self.findings.deviation:
-            self._note_worst(float(off.distance[worst]), trace, worst)
+        distance = self._but_between_taps(off.distance, trace)
+        worst = int(np.argmax(distance))
+        if not distance[worst] <= self.findings.deviation:
+            self._note_worst(float(distance[worst]), trace, worst)
         self.findings.angle = max(self.findings.angle, float(off.angle.max()))
-        if not off.distance[worst] <= self.budget:
-            size = f"{off.distance[worst]:.5f} mm" if np.isfinite(off.distance[worst]) else "far"
+        if not distance[worst] <= self.budget:
+            size = f"{distance[worst]:.5f} mm" if np.isfinite(distance[worst]) else "far"
             self._fail(f"the path is {size} off, the budget is {self.budget:.5f} mm", trace, worst)
         turned = int(np.argmax(off.angle))
         if not off.angle[turned] <= self.angle_budget:
@@ -147,6 +152,20 @@ class Verifier:
         self._sides(trace)
         for wrong in self._proof(trace).wrong():
             self._raise(*wrong)
+
+    def _but_between_taps(self, distance: Floats, trace: Trace) -> Floats:
+        """Return distances without those of moves between taps that nothing can say better."""
+        if all(type(step).undo is Pass.undo for step in self.passes):
+            return distance
+        rows = between_taps(trace.before)
+        rows[trace.written_owner[between_taps(trace.written)]] = True
+        free = rows[trace.owner]
+        free &= (distance > self.budget) & (distance <= IN_AIR)
+        if not free.any():
+            return distance
+        self.findings.between_taps += int(free.sum())
+        self.findings.aside = max(self.findings.aside, float(distance[free].max()))
+        return np.where(free, 0.0, distance)
 
     def _proof(self, trace: Trace) -> FeedProof:
         return FeedProof(trace, self.feed_modes, self.budget, self.angle_budget)

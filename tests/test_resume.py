@@ -277,6 +277,22 @@ def test_a_tool_change_that_moves_axes_needs_a_clearance(tmp_path: Path, dialect
     assert call(*words, "--clearance", "50").exit_code == 0
 
 
+def test_the_length_of_the_tool_in_the_spindle_waits_for_the_tool(tmp_path: Path) -> None:
+    text = "T1 M6\nG43\n" + HEAD + "X1.\nX2.\nM2\n"
+    found = resumed(tmp_path, text, "linuxcnc", 7)
+    assert found.index("T1 M6") < found.index("G43")
+    assert "G0 G43 Z50." in resumed(tmp_path, text, "linuxcnc", 7, "--clearance", "50")
+    loaded = resumed(tmp_path, text, "linuxcnc", 7, "--clearance", "50", "--tool-loaded")
+    assert "(T1 MUST BE IN THE SPINDLE)" in loaded
+    restart = Restart(
+        default_registry().dialect("linuxcnc"), Source.of_bytes(text.encode()), Reading(), 7
+    )
+    preamble = restart.preamble(None, None, True)
+    blocks = [block for block in preamble.blocks() if block != "G43"]
+    with pytest.raises(gx.InputError, match="tool in the spindle"):
+        restart.prove(preamble, "\n".join([blocks[0], "G43", *blocks[1:], ""]).encode())
+
+
 def test_parameters_that_a_line_not_read_may_take_are_no_restart(tmp_path: Path) -> None:
     text = HEAD + "#1=5\nX1.\no100 if [#1 gt 2]\nX3.\no100 endif\nM2\n"
     words = ["resume", "-f", "linuxcnc", "--line", "5", "--clearance", "50"]

@@ -349,6 +349,24 @@ def test_a_feed_converted_wrong_is_refused(name: str) -> None:
         run(change, chain, CONVERTED)
 
 
+@pytest.mark.parametrize("chain", ["segment chord-error=1um", "segment | feed mode=inverse-time"])
+def test_one_piece_of_many_may_not_be_faster(chain: str) -> None:
+    """A piece takes less of the time of its move than the rounding of feeds may change."""
+    mode = "G94 F3" if "feed" in chain else "G93 F3"
+    program = f"G21 G90 {mode}\nG0 X0 Y0\nG2 X0 Y0 I500 {mode[4:]}\nG94 M2\n".encode()
+    chain = chain.replace("segment |", "segment chord-error=1um |")
+
+    def change(lines: list[Line]) -> Iterable[Line]:
+        text, number = lines[700]
+        word = next(word for word in text.split() if word[:1] == b"F")
+        lines[700] = text.replace(word, b"F%.3f" % (3 * float(word[1:]))), number
+        return lines
+
+    assert run(chain=chain, program=program).count(b"F") > 1000
+    with pytest.raises(gx.VerificationError, match="faster or slower"):
+        run(change, chain, program)
+
+
 def test_a_feed_per_minute_converted_wrong_is_refused() -> None:
     program = b"G21 G90 G93\nG0 X0 Y0\nG1 X10 F20\nG3 X20 Y10 J10 F6\nG94 G1 X30 F70\nM2\n"
     chain = "feed mode=per-minute"

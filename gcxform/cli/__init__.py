@@ -26,6 +26,8 @@ VERBS: Final = {
     "info": "Say what is in a program.",
     "resume": "Print the blocks that make a restart at a line safe.",
     "calibrate": "Turn measurements of a machine into its error model.",
+    "simulate": "Test a machine with known errors, before and after compensation.",
+    "show": "Draw an error model, or the error along the path of a program.",
     "list": "List what is installed, or the options of one thing.",
     "explain": "Explain a diagnostic code, or what a block does.",
     "schema": "Print the JSON Schema of a kind of files.",

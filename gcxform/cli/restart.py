@@ -232,7 +232,12 @@ class Restart:
         other = self._interpreter(reading)
         if preamble.approach is None:
             other.state.position[:] = self.state.position
-            other.state.frames = replace(self.state.frames, known=True)
+            tool = other.state.frames.in_spindle
+            other.state.frames = replace(self.state.frames, known=True, in_spindle=tool)
+        if not preamble.change_tool:
+            tool = self.state.frames.in_spindle
+            other.state.frames = replace(other.state.frames, in_spindle=tool)
+            other.state.tool = self.state.tool
         reader = WindowReader(self.dialect)
         other.interpret(reader.read(text), reader.table)
         if "frame" not in self.state.stated:

@@ -18,7 +18,18 @@ from gcxform.diagnostics import Diagnostic, InputError
 from gcxform.dialect import Dialect
 from gcxform.emit.centres import Centres
 from gcxform.emit.copying import Copying
-from gcxform.emit.fields import Axis, Centre, Computed, Copied, Feed, Field, Key, Literal, Role
+from gcxform.emit.fields import (
+    Axis,
+    Centre,
+    Computed,
+    Copied,
+    CycleWord,
+    Feed,
+    Field,
+    Key,
+    Literal,
+    Role,
+)
 from gcxform.emit.manner import Believed, Manner, Task
 from gcxform.emit.numbers import MOST_DECIMALS, decimals_for, decimals_of, quantise
 from gcxform.emit.pieces import Pieces
@@ -32,6 +43,7 @@ from gcxform.emit.saying import (
     nothing_left,
     slash_of,
 )
+from gcxform.emit.tapping import Taps
 from gcxform.emit.templates import TemplateWriter
 from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
@@ -100,8 +112,9 @@ class _Job:
         self.emitter = emitter
         self.path = task.path
         self.positions = Positions(task, emitter.believed)
+        self.taps = Taps(task, self.positions, emitter.believed)
         self.kind = motion_kinds(task, self.positions)
-        self.pieces = Pieces(task, self.kind, emitter.believed)
+        self.pieces = Pieces(task, self.kind, emitter.believed, self.taps)
         self.copying = Copying(task, self.pieces, self.positions, emitter.believed)
 
     def run(self) -> Emitted:
@@ -122,7 +135,7 @@ class _Job:
     def _without_words(self) -> Flags:
         """Return the inner pieces of split blocks that would have no word: nothing moves."""
         still: Flags = ~self.positions.write.any(axis=1) & (self.kind < Kind.ARC_CW)
-        inner: Flags = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row
+        inner: Flags = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row & ~self.pieces.tap
         inner &= ~self.pieces.expanded_line[self.pieces.line] | (self.pieces.motion < 0)
         return np.asarray(inner & self.pieces.of_rows(still, False))
 
@@ -204,6 +217,8 @@ class _Job:
             (pieces.feed_mode + 1, 128),
             (pieces.silent, 2),
             (pieces.thread, 2),
+            (pieces.tap, 2),
+            (pieces.apart, 2),
             (pieces.feed, 3),
             (inch, 2),
         ]
@@ -246,6 +261,8 @@ class _Job:
             Feed(int(pieces.feed[piece])),
             bool(pieces.expanded_line[line]),
             bool(pieces.thread[piece]),
+            bool(pieces.tap[piece]),
+            bool(pieces.apart[piece]),
             arc,
             int(self.path.plane[row]) if arc else 0,
             int(self._turns()[row]) if arc else 0,
@@ -295,6 +312,11 @@ class _Job:
                 self._check_known(field.address, whole, present, rows)
                 decimals = manner.decimals_of(field.address, inch)
                 renderer.number(field.gap, field.address, whole, decimals, present)
+        elif isinstance(field, CycleWord):
+            whole = self.taps.words[field.address][rows]
+            decimals = manner.decimals_of(field.address, inch)
+            everywhere = np.ones(len(rows), np.bool_)
+            renderer.number(field.gap, field.address, whole, decimals, everywhere)
         elif isinstance(field, Centre):
             whole = self.centre[rows, field.index]
             decimals = manner.decimals_of(field.address, inch)
@@ -373,6 +395,8 @@ class _Job:
     def _carry(self) -> None:
         """Leave what the control believes after the window."""
         believed, pieces = self.emitter.believed, self.pieces
+        taps = self.taps
+        believed.level, believed.tapping, believed.aside = taps.level, taps.moved, taps.aside
         if len(self.path):
             exact = bool(self.copying.exact[-1])
             held = self.path.end[-1] if exact else self.positions.after[-1]

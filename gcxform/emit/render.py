@@ -137,9 +137,7 @@ def groups_of(ways: Ints) -> list[Ints]:
 def interleave(
     task: Task, copied: Flags, written: Ints, nth: Ints, text: bytes, lengths: Ints
 ) -> tuple[bytes, Ints, Ints]:
-    """Return a window's new text and, for each of its lines, the line it came from.
-
-    The third value is the order in which the copied lines and then the written ones stand.
+    """Return a window's new text and, for each of its lines, line and move that it came from.
 
     `copied` (live,) says which lines are copied; `written` (k,) are the lines of the pieces whose
     texts, of these lengths, follow one another in `text`. `nth` (k,) says which move of its line

@@ -99,6 +99,11 @@ class Drilling:
         if self.cycles is not None and (self.modes.cycle[first:last] == CYCLE_OFF).any():
             self.cycles.leave()
 
+    def moved(self) -> None:
+        """Note that a block has moved in a way of its own, perhaps while a cycle is in force."""
+        if self.cycles is not None:
+            self.cycles.zero = None
+
     # --- stretches, as they come ---
 
     def follow(self, first: int, last: int) -> None:
@@ -124,7 +129,7 @@ class Drilling:
             track.breaks.append(Break(last, 1 << plane.axes[2]))
 
     def _refuse_other_zero(self, first: int, last: int, normal: int) -> None:
-        """Refuse G98 where coordinates have changed since a cycle began that is still in force.
+        """Refuse G98 where coordinates have changed, or G28 has moved, while a cycle is in force.
 
         Not where words do not outlive their cycle: that control goes back to the same number.
         """
@@ -136,7 +141,7 @@ class Drilling:
         if not (other and self.cycles.rule.keeps_words):
             return
         for line in np.flatnonzero(self._common.initial[first:last])[:1].tolist():
-            message = "the coordinates have changed within a cycle: the level of G98 is not certain"
+            message = "another work offset or G28 within a cycle: the level of G98 is not certain"
             hint = "write G80 before, and all words again"
             self.track.findings.add(first + line, "GX215", message, hint=hint)
 
@@ -293,6 +298,7 @@ class Drilling:
     def rows(self) -> list[Rows]:
         """Return the moves of the stretches, in their order."""
         self._refuse_other_count()
+        self._refuse_without_place()
         found: dict[int, Rows] = {}
         kinds = [(f.plane, f.unit, f.stretch is None) for f in self._followed]
         for kind in dict.fromkeys(kinds):
@@ -308,6 +314,21 @@ class Drilling:
         for line in np.flatnonzero(counted).tolist():
             message, hint = "L counts nothing here: this control repeats cycles by K", "write K"
             self.track.findings.add(line, "GX215", message, "L", hint)
+
+    def _refuse_without_place(self) -> None:
+        """Refuse calls that name no place in the plane, where a setting decides if they drill."""
+        rule, control = self.lines.dialect.cycle_rule, self.lines.reading.control
+        if rule is None or not rule.alone or control.get(rule.alone) == "drills":
+            return
+        drills = self.calls & (self._word(self._repeats, slice(None)) != 0)
+        has = {letter: ~np.isnan(self._word(letter, slice(None))) for letter in "XYZR"}
+        for plane in Plane:
+            first, second, normal = ("XYZ"[axis] for axis in plane.axes)
+            here = drills & (self.modes.plane == plane) & (has[normal] | has["R"])
+            for line in np.flatnonzero(here & ~has[first] & ~has[second]).tolist():
+                message = f"a cycle without {first} and {second}: a setting decides if it drills"
+                hint = f'give {first} or {second}, or say [control] {rule.alone} = "drills"'
+                self.track.findings.add(line, "GX215", message, hint=hint)
 
     def _stretches(self, followed: list[_Followed], line: Ints, bounds: Ints) -> list[Stretch]:
         """Return the columns of stretches, those of plain ones as one."""

@@ -297,6 +297,18 @@ class Lines:
             self.state.memory["cycle"] = int(cycle[-1])
         return np.asarray(cycle)
 
+    def behind_cycle(self, cycle: Small) -> Flags:
+        """Return the lines whose motion code was given before a cycle that is over.
+
+        Only of controls on which cycles are of another group than it.
+        """
+        begins: Flags = self.stated("cycle") & (cycle != CYCLE_OFF)
+        if not (begins.any() or self.state.memory["behind"]):
+            return np.zeros(self.live, np.bool_)
+        behind = fill(begins, begins | self.stated("motion"), self.state.memory["behind"])
+        self.state.memory["behind"] = int(behind[-1]) if self.live else 0
+        return np.asarray(behind & (cycle == CYCLE_OFF))
+
     def _tool(self) -> Floats:
         """Return the tool number last programmed on or before each line, -1 for none."""
         word = self.word("T")

@@ -115,6 +115,12 @@ class Moves:
                 "axis words, but no motion code is in force",
                 hint="write G0 or G1 in this block",
             )
+        behind = self.lines.behind_cycle(self.modes.cycle) & (self.modes.motion != Kind.RAPID)
+        for line in np.flatnonzero(behind & moves).tolist():
+            message = (
+                "after a cycle controls differ in whether G0 or the code before it is in force"
+            )
+            self.findings.add(line, "GX209", message, hint="write G0 or G1 in this block")
         for line in np.flatnonzero(centre & ~((arc | self.tied.paced) & ~own)).tolist():
             self.findings.add(line, "GX203", "I, J, K and R belong to arcs, and this is none")
         moves &= self.modes.motion != NUMBER["G80"]
@@ -211,6 +217,7 @@ class Moves:
             self.track.act(first)
             own = own_moves(self.track, first)
             if own is not None:
+                self.drilling.moved()
                 return own
         self._refuse_other_units(first + 1, last)
         if self.drilling.calls[first:last].any():

@@ -45,11 +45,6 @@ class Frame:
     polar: bool = False
     tool: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
-    @classmethod
-    def at_zero(cls, axes: str, work: str = "G54") -> Frame:
-        """Return the frame in which words are positions."""
-        return cls(work, (0.0,) * len(axes), (work,) * len(axes))
-
     @property
     def shifts_only(self) -> bool:
         """Whether words are positions but for a shift."""

@@ -13,6 +13,7 @@ from faults import (
     passes,
     proof,
     reading,
+    simulating,
     splines,
     tied,
     writing,
@@ -33,4 +34,5 @@ MUTATIONS: tuple[Mutation, ...] = (
     *tied.MUTATIONS,
     *proof.MUTATIONS,
     *calibrating.MUTATIONS,
+    *simulating.MUTATIONS,
 )

@@ -19,6 +19,7 @@ refused. What is not named here is as in `fanuc`.
 | G28 | without axis words every axis goes home at once: refused | known |
 | G52, G92 | Setting 33: refused unless `[control] g52 = "fanuc"` says that it is FANUC | manual |
 | canned cycles | L counts the holes, L0 stores; I, J, K, and P of G73, G83: refused | known |
+| a cycle without X and Y | Setting 28: refused unless `cycle-without-place = "drills"` | manual |
 | G12 G13 G70 G71 G72 G150, drilling | cycles: refused by name | manual |
 | G31 | as Fanuc's | manual |
 | G47 G35 G36 G37 G136 | engraving and probing: refused by name | manual |
@@ -100,6 +101,7 @@ class Haas(Fanuc):
         takes={**dict.fromkeys(Fanuc.cycle_rule.takes, "PQL"), 73: "QL", 83: "QL"},
         open_words={**Fanuc.cycle_rule.open_words, 73: "P", 83: "P"},
         repeats="L",
+        alone="cycle-without-place",
     )
     work_names: ClassVar[Mapping[str, str]] = {
         code: f"G154 P{int(code[1:]) - 109}" for code in MORE_OFFSETS

@@ -5,7 +5,7 @@ target p the command solves c + E(c) = p. Between two commands the control goes 
 bends at the nodes of its table, so a line is cut where its command crosses a node, and nowhere else
 unless asked: then the machine is on the line, exactly. With a tolerance, only those cuts stay that
 the tolerance needs. An arc stays an arc where one fitted to the compensated points holds the
-tolerance, and is halved where it does not.
+tolerance, and is cut where it does not.
 """
 
 from __future__ import annotations
