@@ -12,6 +12,8 @@ from cli_kit import ABSOLUTE, COMPENSATED, call, workplace
 from gcxform.modal.tables import FAMILIES, NUMBER, code_of
 from gcxform.source import WINDOW
 
+EXAMPLES = Path(__file__).parents[1] / "examples"
+
 
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
