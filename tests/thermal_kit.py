@@ -5,7 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
+import gcxform as gx
+from gcxform.catalogue import CATALOGUE
+from gcxform.machine.modelfile import load_model
 from gcxform.machine.thermal import Held, Rod, ThermalScrew, stretch
 
 ALPHA = 11.5e-6
@@ -82,3 +86,27 @@ def written(folder: Path, model: str, readings: str | None = None) -> Path:
     (folder / "model.toml").write_text(model, "utf-8")
     (folder / "readings.csv").write_text(readings or csv(row("2026-03-04T10:00:00")), "utf-8")
     return folder / "model.toml"
+
+
+LOG = csv(
+    row("2026-03-04T08:00:00", [22.0] * 12),
+    row("2026-03-04T09:00:00", WARM - 4),
+    row("2026-03-04T10:00:00"),
+)
+
+
+def along(model, x) -> np.ndarray:
+    """Return the error in X (um) at positions of X (mm)."""
+    x = np.atleast_1d(np.asarray(x, dtype=float))
+    return 1000 * model.error(np.column_stack([x, 0 * x, 0 * x]))[:, 0]
+
+
+def refused(path: Path):
+    with pytest.raises(gx.UsageError) as caught:
+        load_model(path)
+    assert all(d.code in CATALOGUE for d in caught.value.diagnostics)
+    return caught.value.diagnostics
+
+
+def place(found) -> tuple:
+    return Path(found.where.file).name, found.where.line, found.where.column, found.code
