@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cli_kit import call
 from test_docs import _timeless, commands
 from thermal_kit import (
     ALPHA,
@@ -24,6 +25,7 @@ from thermal_kit import (
 
 import gcxform as gx
 from gcxform.machine.modelfile import load_model
+from gcxform.plot.models import curves
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "warm-screw"
 
@@ -152,6 +154,26 @@ def test_a_model_without_temperatures_has_no_time(tmp_path):
     (tmp_path / "geometry.toml").write_text(GEOMETRY)
     with pytest.raises(gx.UsageError, match="GX426"):
         pipeline(tmp_path, "geometry.toml", 'time = "2026-03-04T10:00:00"')
+
+
+@pytest.mark.parametrize(("hour", "same"), [("09:00:00", True), ("10:00:00", False)])
+def test_compare_takes_the_state_of_its_time(tmp_path, monkeypatch, hour, same):
+    monkeypatch.chdir(tmp_path)
+    written(tmp_path, text(), LOG)
+    Path("part.nc").write_bytes(PROGRAM)
+    early = pipeline(tmp_path, "model.toml", 'time = "2026-03-04T09:00:00"', 4)
+    Path("early.nc").write_bytes(early.run(PROGRAM).text)
+    model = ["--model", "model.toml", "--part-origin", "0,0,0", "--time", f"2026-03-04T{hour}"]
+    words = ["compare", "-f", "fanuc", "--tolerance", "5um", *model, "part.nc", "early.nc"]
+    assert call(*words).exit_code == int(not same)
+
+
+def test_the_picture_of_a_warm_screw_is_curved(tmp_path):
+    model = load_model(written(tmp_path, text()))
+    ((name, (position, value)),) = curves(model).items()
+    assert name == "EXX"
+    assert 1000 * value == pytest.approx(along(model, position), abs=1e-9)
+    assert np.unique(np.round(np.diff(value), 9)).size > 20
 
 
 # --- the example ----------------------------------------------------------------------------

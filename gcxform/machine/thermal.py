@@ -175,11 +175,11 @@ def stretch(
 class ThermalScrew(ErrorModel):
     """The positioning errors of axes whose screws or scales are warm; see `Stretch`.
 
-    An axis that is None has no error and no limits. `choose` returns the model in its state at
-    another time.
+    An axis whose stretch is None has no error and no limits. `choose` returns the model in its
+    state at another time.
     """
 
-    axes: tuple[Stretch | None, Stretch | None, Stretch | None]
+    stretches: tuple[Stretch | None, Stretch | None, Stretch | None]
     known: tuple[State, ...] = ()
     choose: Callable[[str], ThermalScrew] | None = field(default=None, compare=False, repr=False)
     kind: ClassVar[str] = "thermal-screw"
@@ -203,7 +203,7 @@ class ThermalScrew(ErrorModel):
     ) -> FloatArray:
         """Return E (n, 3) in mm at the positions (n, 3) in mm: see `ErrorModel.error`."""
         total = np.zeros((3, len(position)))
-        for k, axis in enumerate(self.axes):
+        for k, axis in enumerate(self.stretches):
             if axis is not None:
                 column = position[:, k]
                 if outside is Outside.CLAMP:
@@ -216,29 +216,29 @@ class ThermalScrew(ErrorModel):
     @property
     def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """The sensors as positions of X, Y and Z in mm, and the ends of the travel."""
-        x, y, z = (np.empty(0) if axis is None else axis.position for axis in self.axes)
+        x, y, z = (np.empty(0) if axis is None else axis.position for axis in self.stretches)
         return x, y, z
 
     def range_of(self, axis_index: int) -> tuple[float, float]:
         """Return the travel of an axis in mm; infinite for an absent axis."""
-        axis = self.axes[axis_index]
+        axis = self.stretches[axis_index]
         if axis is None:
             return -math.inf, math.inf
         return float(axis.position[0]), float(axis.position[-1])
 
     def lipschitz(self, reach: float = 0.0) -> float:
         """Return the steepest slope: dE/dc is diagonal, so it is the spectral norm, exactly."""
-        slopes = [0.0 if axis is None else axis.steepest for axis in self.axes]
+        slopes = [0.0 if axis is None else axis.steepest for axis in self.stretches]
         return max(slopes) if all(map(math.isfinite, slopes)) else math.inf
 
     def curvature(self, reach: float = 0.0) -> FloatArray:
         """Return the largest |d2E/dx2| of each axis on the diagonal."""
-        bends = [0.0 if axis is None else float(np.abs(axis.bend).max()) for axis in self.axes]
+        bends = [0.0 if axis is None else float(np.abs(axis.bend).max()) for axis in self.stretches]
         return np.diag(bends)
 
     def largest(self, reach: float = 0.0) -> float:
         """Return the largest |E| in mm: that of the axes together, as each has its own place."""
-        return math.hypot(*(0.0 if axis is None else axis.largest for axis in self.axes))
+        return math.hypot(*(0.0 if axis is None else axis.largest for axis in self.stretches))
 
 
 def drift(rod: Rod, travel: tuple[float, float]) -> float:
