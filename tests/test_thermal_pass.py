@@ -11,17 +11,7 @@ import numpy as np
 import pytest
 from cli_kit import call
 from test_docs import _timeless, commands
-from thermal_kit import (
-    ALPHA,
-    AT,
-    COLD,
-    LOG,
-    NAMES,
-    PITCH,
-    WARM,
-    text,
-    written,
-)
+from thermal_kit import ALPHA, AT, COLD, LOG, NAMES, PITCH, WARM, along, text, written
 
 import gcxform as gx
 from gcxform.machine.modelfile import load_model
