@@ -69,8 +69,7 @@ class Run:
 
     def _prepare(self) -> None:
         pipeline = self.pipeline
-        letters = self.source.letters()
-        axes = "".join(a for a in pipeline.source.axes if a in letters or a in "XYZ")
+        axes = self.source.axes(pipeline.source.axes)
         reading = _with_assumed_start(pipeline, axes)
         self.axes = axes
         self.interpreter = Interpreter(pipeline.source, reading, axes, self.source.name)

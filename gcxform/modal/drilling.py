@@ -7,10 +7,8 @@ by `gcxform/modal/cycles.py`, in the coordinates of the program.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +19,7 @@ from gcxform.modal.cyclestretch import Mode, Stretch
 from gcxform.modal.rows import Rows
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.modal.track import Break, Track
+from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Event, Form, Plane, constant
 
 Floats = NDArray[np.float64]
@@ -79,6 +78,7 @@ class Drilling:
         self.calls = self._calls()
         self._words: dict[str, Floats] = {}
         self._lasts: dict[str, Ints] = {}
+        self._steps: dict[str, Floats | None] = {}
         self._followed: list[_Followed] = []
 
     def _calls(self) -> Flags:
@@ -122,19 +122,12 @@ class Drilling:
             track.breaks.append(Break(last, 1 << plane.axes[2]))
 
     def _is_plain(self, first: int, last: int) -> bool:
-        """Whether a stretch begins without a cycle in force, ends with G80, and has one in G90."""
+        """Whether a stretch begins without a cycle in force, ends with G80, and has one cycle."""
         assert self.cycles is not None
         if self.cycles.mode.code or last == self.lines.live:
             return False
-        odd = self._odd_until[last] - self._odd_until[first]
         changes = self._changes_until[last] - self._changes_until[first + 1]
-        return bool(self.modes.cycle[last] == CYCLE_OFF and not odd and not changes)
-
-    @cached_property
-    def _odd_until(self) -> Ints:
-        """How many lines before each line are in G91 or have repeats."""
-        repeated = ~np.isnan(self._word(self._repeats, slice(None)))
-        return np.append(0, np.cumsum(self.modes.incremental | repeated))
+        return bool(self.modes.cycle[last] == CYCLE_OFF and not changes)
 
     @cached_property
     def _changes_until(self) -> Ints:
@@ -144,31 +137,69 @@ class Drilling:
     def _plain_end(self, first: int, last: int, words: Floats, plane: Plane) -> list[float]:
         """Return where the tool is after a plain stretch; take over the dwell that it leaves."""
         assert self.cycles is not None
-        end = [float(words[axis]) for axis in plane.axes]
+        before = [float(words[axis]) for axis in plane.axes]
         place = self._last("P", last - 1)
         if place >= first:
             self.cycles.mode = Mode(dwell=float(self._word("P", slice(place, place + 1))[0]))
-        called = -1
-        for nth, axis in enumerate(plane.axes):
-            place = self._last("XYZ"[axis], last - 1)
-            called = max(called, place)
-            if place >= first and nth < 2:
-                end[nth] = float(self._word("XYZ"[axis], slice(place, place + 1))[0])
-        if self.cycles.rule.stores:
-            called = max(called, self._last("R", last - 1))
-        if called >= first:
-            place = self._last("R", called)
-            here = slice(place, place + 1)
-            clearance = float(self._word("R", here)[0]) if place >= first else np.nan
-            initial = bool(self._common.initial[called])
-            end[2] = float(np.maximum(end[2], clearance)) if initial else clearance
-        return end
+        end = [
+            self._arrived("XYZ"[axis], first, last, standing)
+            for axis, standing in zip(plane.axes[:2], before, strict=False)
+        ]
+        called, initial = self._last("", last - 1), before[2]
+        if called < first:
+            return [*end, initial]
+        place = self._last("R", called)
+        clearance = float(self._word("R", slice(place, place + 1))[0]) if place >= first else np.nan
+        if self.modes.incremental[called]:
+            clearance += initial
+        high = bool(self._common.initial[called])
+        return [*end, float(np.maximum(initial, clearance)) if high else clearance]
+
+    def _arrived(self, axis: str, first: int, last: int, before: float) -> float:
+        """Return where an axis of the plane is after a plain stretch."""
+        place, steps = self._last(axis, last - 1), self._steps_along(axis)
+        placed = place >= first
+        word = float(self._word(axis, slice(place, place + 1))[0]) if placed else before
+        if steps is None or not self.modes.incremental[first:last].any():
+            return word
+        moved = np.cumsum(steps[first:last])
+        return float((word - moved[place - first] if placed else before) + moved[-1])
+
+    def _steps_along(self, axis: str) -> Floats | None:
+        """Return how far each line goes by increments, all of its repeats; None if none does."""
+        if axis not in self._steps:
+            stepping = self._drilled & self.modes.incremental
+            way = self._word(axis, slice(None)) * self._counts
+            along = np.where(stepping & ~np.isnan(way), way, 0.0)
+            self._steps[axis] = along if stepping.any() else None
+        return self._steps[axis]
+
+    @cached_property
+    def _counts(self) -> Floats:
+        """How often each line drills."""
+        repeats = self._word(self._repeats, slice(None))
+        return np.where(np.isnan(repeats), 1.0, repeats)
+
+    @cached_property
+    def _drilled(self) -> Flags:
+        """The calls that drill."""
+        assert self.cycles is not None
+        letters = "XYZR" if self.cycles.rule.stores else "XYZ"
+        named = [~np.isnan(self._word(letter, slice(None))) for letter in letters]
+        return np.asarray(self.calls & np.any(named, axis=0) & (self._counts > 0))
 
     def _last(self, address: str, line: int) -> int:
-        """Return the last call with a word, on a line or before it; -1 for none."""
+        """Return the last call with a word, on a line or before it; -1 for none.
+
+        Words of axes count where they place a hole; without an address, the last that drills.
+        """
         if address not in self._lasts:
-            present = ~np.isnan(self._word(address, slice(None)))
-            places = np.where(present & self.calls, np.arange(self.lines.live), -1)
+            which = self.calls if address in ("P", "R") else self._drilled
+            if address:
+                which = which & ~np.isnan(self._word(address, slice(None)))
+            if address in self.track.axes:
+                which = which & ~self.modes.incremental
+            places = np.where(which, np.arange(self.lines.live), -1)
             self._lasts[address] = np.maximum.accumulate(places)
         return int(self._lasts[address][line])
 
@@ -264,14 +295,12 @@ class Drilling:
     # --- all stretches of the window ---
 
     def rows(self) -> list[Rows]:
-        """Return the moves of the stretches, in their order."""
+        """Return the moves of the stretches."""
         self._refuse_other_count()
-        found: dict[int, Rows] = {}
-        kinds = [(f.plane, f.unit, f.stretch is None) for f in self._followed]
-        for kind in dict.fromkeys(kinds):
-            numbers = [number for number, other in enumerate(kinds) if other == kind]
-            found.update(zip(numbers, self._rows_of(numbers), strict=True))
-        return [found[number] for number in range(len(kinds))]
+        kinds: dict[tuple[Plane, float, bool], list[_Followed]] = {}
+        for one in self._followed:
+            kinds.setdefault((one.plane, one.unit, one.stretch is None), []).append(one)
+        return [self._rows_of(followed) for followed in kinds.values()]
 
     def _refuse_other_count(self) -> None:
         """Refuse L where K counts the holes: it would be left out."""
@@ -294,10 +323,9 @@ class Drilling:
         dwells = np.array([one.dwell for one in followed])
         return [self.cycles.follow_fresh(calls, bounds[:-1], positions, dwells)]
 
-    def _rows_of(self, numbers: list[int]) -> Iterator[Rows]:
-        """Yield the moves of stretches of one plane and unit."""
+    def _rows_of(self, followed: list[_Followed]) -> Rows:
+        """Return the moves of stretches of one plane and unit."""
         assert self.cycles is not None
-        followed = [self._followed[number] for number in numbers]
         line = np.concatenate([np.arange(one.first, one.last) for one in followed])
         bounds = np.cumsum([0, *(one.last - one.first for one in followed)])
         steps = self.cycles.steps(self._stretches(followed, line, bounds))
@@ -307,16 +335,18 @@ class Drilling:
         rows = steps.rows
         bounds = np.searchsorted(rows.call, bounds)
         self._place_events(rows.events, bounds, [one.first for one in followed])
-        nth = np.arange(len(rows.call)) - np.searchsorted(rows.call, rows.call)
-        form = np.where(rows.synchronised, Form.SYNCHRONISED, Form.CYCLE).astype(np.int8)
-        for one, (begin, end) in zip(followed, pairwise(bounds.tolist()), strict=True):
-            here = slice(begin, end)
-            words = np.empty((len(one.words), end - begin)).T
-            words[:] = one.words
-            words[:, list(one.plane.axes)] = rows.end[here]
-            ends = self.track.frames[one.frame].positions(words)
-            frame = constant(one.frame, end - begin, np.int64)
-            yield Rows(line[rows.call[here]], rows.kind[here], ends, nth[here], form[here], frame)
+        which = np.repeat(np.arange(len(followed)), np.diff(bounds))
+        words = np.array([one.words for one in followed]).T[:, which].T
+        words[:, list(followed[0].plane.axes)] = rows.end
+        frame = np.array([one.frame for one in followed])[which]
+        return Rows(
+            line[rows.call],
+            rows.kind,
+            by_frame(Frame.positions, self.track.frames, frame, words, 1.0),
+            np.arange(len(rows.call)) - np.searchsorted(rows.call, rows.call),
+            np.where(rows.synchronised, Form.SYNCHRONISED, Form.CYCLE).astype(np.int8),
+            frame,
+        )
 
     def _place_events(self, events: tuple[Event, ...], bounds: Ints, firsts: list[int]) -> None:
         """Keep events by stretch, their rows counted from the first of it."""

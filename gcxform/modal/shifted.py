@@ -64,7 +64,10 @@ class Shifted:
 
     def rows(self) -> tuple[Ints, Floats, Ints]:
         """Return the lines (n,) of the moves, their ends (n, axes) and their frames (n,)."""
-        bounds = np.array(self._bounds, np.int64).reshape(-1, 2)
+        if not self._bounds:
+            nothing = np.empty(0, np.int64)
+            return nothing, np.empty((0, len(self.track.axes))), nothing
+        bounds = np.array(self._bounds)
         line = np.flatnonzero(self.moving)
         begin, end = np.searchsorted(line, bounds.T)
         count = end - begin
