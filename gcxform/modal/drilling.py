@@ -94,15 +94,25 @@ class Drilling:
         way = np.where(calls, 1 + modes.plane + 256 * modes.inch, 0)
         return np.flatnonzero(np.diff(way, prepend=0))
 
-    def leave(self, first: int, last: int) -> None:
-        """Forget what cycles keep where lines end cycle mode, or begin another."""
-        if self.cycles is not None and (self.modes.cycle[first:last] == CYCLE_OFF).any():
-            self.cycles.leave()
-
     # --- stretches, as they come ---
 
-    def follow(self, first: int, last: int) -> None:
-        """Read a stretch of calls, and take over where the tool is after it."""
+    def follows(self, first: int, last: int) -> bool:
+        """Whether a stretch is one of calls; if it is, take over where the tool is after it.
+
+        What cycles keep is forgotten where other lines end cycle mode, or begin another.
+        """
+        cycles = self.cycles
+        if cycles is None or first == last:
+            return False
+        if self.calls[first]:
+            self._follow(first, last)
+            return True
+        if cycles.mode.code and (self.modes.cycle[first:last] == CYCLE_OFF).any():
+            cycles.leave()
+        return False
+
+    def _follow(self, first: int, last: int) -> None:
+        """Read a stretch of calls."""
         assert self.cycles is not None
         track, plane = self.track, Plane(int(self.modes.plane[first]))
         unit = INCH if self.modes.inch[first] else 1.0
@@ -118,7 +128,7 @@ class Drilling:
         frame = len(track.frames) - 1
         self._followed.append(_Followed(first, last, plane, unit, words, frame, dwell, stretch))
         track.state.position = track.frame.positions(after[None, :])[0].copy()
-        if self._manual.any() and self._manual[first:last].any():
+        if self._any_manual and self._manual[first:last].any():
             track.breaks.append(Break(last, 1 << plane.axes[2]))
 
     def _is_plain(self, first: int, last: int) -> bool:
@@ -140,7 +150,7 @@ class Drilling:
         before = [float(words[axis]) for axis in plane.axes]
         place = self._last("P", last - 1)
         if place >= first:
-            self.cycles.mode = Mode(dwell=float(self._word("P", slice(place, place + 1))[0]))
+            self.cycles.mode = Mode(dwell=float(self._word("P", place)))
         end = [
             self._arrived("XYZ"[axis], first, last, standing)
             for axis, standing in zip(plane.axes[:2], before, strict=False)
@@ -149,7 +159,7 @@ class Drilling:
         if called < first:
             return [*end, initial]
         place = self._last("R", called)
-        clearance = float(self._word("R", slice(place, place + 1))[0]) if place >= first else np.nan
+        clearance = float(self._word("R", place)) if place >= first else np.nan
         if self.modes.incremental[called]:
             clearance += initial
         high = bool(self._common.initial[called])
@@ -159,8 +169,8 @@ class Drilling:
         """Return where an axis of the plane is after a plain stretch."""
         place, steps = self._last(axis, last - 1), self._steps_along(axis)
         placed = place >= first
-        word = float(self._word(axis, slice(place, place + 1))[0]) if placed else before
-        if steps is None or not self.modes.incremental[first:last].any():
+        word = float(self._word(axis, place)) if placed else before
+        if steps is None or self._added_until[first] == self._added_until[last]:
             return word
         moved = np.cumsum(steps[first:last])
         return float((word - moved[place - first] if placed else before) + moved[-1])
@@ -173,6 +183,11 @@ class Drilling:
             along = np.where(stepping & ~np.isnan(way), way, 0.0)
             self._steps[axis] = along if stepping.any() else None
         return self._steps[axis]
+
+    @cached_property
+    def _added_until(self) -> Ints:
+        """How many lines before each line are in G91."""
+        return np.append(0, np.cumsum(self.modes.incremental))
 
     @cached_property
     def _counts(self) -> Floats:
@@ -203,11 +218,11 @@ class Drilling:
             self._lasts[address] = np.maximum.accumulate(places)
         return int(self._lasts[address][line])
 
-    def _word(self, address: str, here: slice | Ints) -> Floats:
-        """Return a word on lines, nan where there is none; lengths in mm."""
+    def _word(self, address: str, here: int | slice | Ints) -> Floats:
+        """Return a word on lines, or on one, nan where there is none; lengths in mm."""
         if address not in self._words:
             self._words[address] = self._column(address)
-        return self._words[address][here]
+        return np.asarray(self._words[address][here])
 
     def _column(self, address: str) -> Floats:
         """Return a word on all lines of the window, nan where it is none of a call's."""
@@ -253,6 +268,10 @@ class Drilling:
             modes.feed_mode == 93,
             np.arange(lines.live) + lines.window.first_line,
         )
+
+    @cached_property
+    def _any_manual(self) -> bool:
+        return bool(self._manual.any())
 
     @cached_property
     def _manual(self) -> Flags:
@@ -354,5 +373,6 @@ class Drilling:
             return
         lines = [event.line - self.lines.window.first_line for event in events]
         whose = np.searchsorted(firsts, lines, "right") - 1
-        for number, event in zip(whose.tolist(), events, strict=True):
-            self.events.append((firsts[number], event.row - int(bounds[number]), event))
+        behind = np.array([event.row for event in events]) - bounds[whose]
+        stretch = np.array(firsts)[whose]
+        self.events += zip(stretch.tolist(), behind.tolist(), events, strict=True)

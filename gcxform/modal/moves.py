@@ -182,13 +182,14 @@ class Moves:
         borders = np.concatenate([[0], acting, alone, alone + 1, drills, [self.lines.live]])
         borders = np.unique(borders).tolist()
         self._acts = set(acting.tolist())
+        self._resets = set(np.flatnonzero(self._reset).tolist())
         return list(pairwise(borders)) or [(0, 0)]
 
     def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows | None:
         """Return the rows of a stretch, None for one whose rows are made at the end, or that has none.
         """
         self._refuse_other_units(first, first + 1)
-        if first < len(self._reset) and self._reset[first]:
+        if first in self._resets:
             self.track.reset_work(first)
         if first in self._acts:
             self.track.act(first)
@@ -196,10 +197,8 @@ class Moves:
             if own is not None:
                 return own
         self._refuse_other_units(first + 1, last)
-        if self.drilling.calls[first:last].any():
-            self.drilling.follow(first, last)
+        if self.drilling.follows(first, last):
             return None
-        self.drilling.leave(first, last)
         if first in self._singles:
             return self.tied.row(first)
         if self._busy_until[last] == self._busy_until[first]:

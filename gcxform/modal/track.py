@@ -27,6 +27,7 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar", "no-polar"})
+FRAMELESS = frozenset({"change-tool", "set-tool", "user-code", "store-home"})
 LENGTHENED = frozenset({"length", "length-negative", "length-vector", "length-add", "no-length"})
 
 
@@ -94,6 +95,8 @@ class Track:
         before, old = self.state.frames, self.frame
         asked = self._asked(act, line)
         self.state.frames = frames = ACTS[act.name](before, asked)
+        if act.name in FRAMELESS:
+            return
         if act.name == "work" and not before.known:
             self._lose(line, (1 << len(self.axes)) - 1)
         if act.name in LENGTHENED and self.dialect.length_may_move and frames.frame() != old:
