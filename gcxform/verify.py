@@ -18,8 +18,9 @@ from gcxform.contract import Pass, PassContext
 from gcxform.diagnostics import Diagnostic, GcxformError, Location, VerificationError
 from gcxform.dialect import INCH
 from gcxform.modal.interpreter import Interpreted, Interpreter
-from gcxform.modal.meaning import FRAMING, only_for_cycles
+from gcxform.modal.meaning import FRAMING
 from gcxform.modal.reader import WindowReader
+from gcxform.modal.sorting import only_for_cycles
 from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import WHOLE, Event, FeedMode, Kind, Toolpath

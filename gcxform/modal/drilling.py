@@ -155,7 +155,7 @@ class Drilling:
             self._arrived("XYZ"[axis], first, last, standing)
             for axis, standing in zip(plane.axes[:2], before, strict=False)
         ]
-        called, initial = self._last("", last - 1), before[2]
+        called, initial = int(self._last_drilled[last - 1]), before[2]
         if called < first:
             return [*end, initial]
         place = self._last("R", called)
@@ -203,19 +203,24 @@ class Drilling:
         named = [~np.isnan(self._word(letter, slice(None))) for letter in letters]
         return np.asarray(self.calls & np.any(named, axis=0) & (self._counts > 0))
 
+    def _latest(self, which: Flags) -> Ints:
+        """Return the last of some lines on each line or before it, -1 for none."""
+        places = np.where(which, np.arange(self.lines.live), -1)
+        return np.asarray(np.maximum.accumulate(places))
+
+    @cached_property
+    def _last_drilled(self) -> Ints:
+        return self._latest(self._drilled)
+
     def _last(self, address: str, line: int) -> int:
         """Return the last call with a word, on a line or before it; -1 for none.
 
-        Words of axes count where they place a hole; without an address, the last that drills.
+        Words of axes count where they place a hole in G90.
         """
         if address not in self._lasts:
-            which = self.calls if address in ("P", "R") else self._drilled
-            if address:
-                which = which & ~np.isnan(self._word(address, slice(None)))
-            if address in self.track.axes:
-                which = which & ~self.modes.incremental
-            places = np.where(which, np.arange(self.lines.live), -1)
-            self._lasts[address] = np.maximum.accumulate(places)
+            which = self.calls if address in ("P", "R") else self._drilled & ~self.modes.incremental
+            which = which & ~np.isnan(self._word(address, slice(None)))
+            self._lasts[address] = self._latest(which)
         return int(self._lasts[address][line])
 
     def _word(self, address: str, here: int | slice | Ints) -> Floats:

@@ -25,9 +25,9 @@ def events_of(
     after: list[bool] = []
     having = np.flatnonzero(lines.flag("has_events"))
     begin, end = np.searchsorted(rows, having), np.searchsorted(rows, having, "right")
-    columns = (having, lines.shape[having], lines.first[having], begin, end)
+    columns = [c.tolist() for c in (having, lines.shape[having], lines.first[having], begin, end)]
     meanings, first_line = lines.table.meanings, lines.window.first_line
-    for line, number, first, first_row, last_row in zip(*(c.tolist() for c in columns), strict=True):
+    for line, number, first, first_row, last_row in zip(*columns, strict=True):
         for shape in meanings[number].events:
             values = tuple(_value(lines, shape.what, a, first + n) for a, n in shape.slots)
             where = last_row if shape.after else first_row

@@ -186,8 +186,7 @@ class Moves:
         return list(pairwise(borders)) or [(0, 0)]
 
     def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows | None:
-        """Return the rows of a stretch, None for one whose rows are made at the end, or that has none.
-        """
+        """Return the rows of a stretch; None where it has none, or they are made at the end."""
         self._refuse_other_units(first, first + 1)
         if first in self._resets:
             self.track.reset_work(first)

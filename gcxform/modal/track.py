@@ -12,8 +12,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import INCH
-from gcxform.modal.acts import ACTS, ActError, Asked, is_length
+from gcxform.dialect import INCH, LINEAR
+from gcxform.modal.acts import ACTS
+from gcxform.modal.asking import ActError, Asked
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames import FrameState
 from gcxform.modal.lines import LENGTHS, Lines, fill
@@ -134,7 +135,7 @@ class Track:
         window, first = self.lines.window, int(self.lines.first[line])
         written = {a: float(window.value[first + slot]) for a, slot in act.slots}
         scale = INCH if self.modes.inch[line] else 1.0
-        words = {a: v * scale if is_length(a) else v for a, v in written.items()}
+        words = {a: v * scale if a in LINEAR else v for a, v in written.items()}
         for address, slot in act.slots:
             self.lines.refuse_pointless(line, address, first + slot)
         return Asked(
