@@ -51,7 +51,9 @@ def steps(random: Random) -> list[str]:
     cycle, level = random.choice(CYCLES), random.choice(("G98", "G99"))
     more = ["X{x}", "X-{x} L2", "Y-{y}", "X{x} Y{y} R-1"]
     blocks = ["G17", "G0 Z{z}", "G91", f"{level} X{{x}} Y{{y}} {cycle} Z-4 R-2 L3"]
-    blocks += [*random.choices(more, k=random.randint(0, 4)), "G90 G80"]
+    blocks += random.choices(more, k=random.randint(0, 4))
+    blocks += random.choice(([], ["G90 X{x} Z-3 R{r}", "X{x}"], ["G90 Y{y} Z-3 R{r}"]))
+    blocks.append("G90 G80")
     return [filled(random, block) for block in blocks]
 
 
