@@ -69,10 +69,8 @@ class Moves:
         stretches = self._stretches(moving)
         if len(stretches) > 1 and not lost.any():
             self.shifted = Shifted(self.track, moving)
-        found = [
-            self._stretch(first, last, moving, lost if lost.any() else None)
-            for first, last in stretches
-        ]
+        losing = lost if lost.any() else None
+        found = [self._stretch(first, last, moving, losing) for first, last in stretches]
         if self.lines.live in self._leaving:
             self.track.lose_all(self.lines.live)
         rows = [part for part in found if part is not None and len(part.line)]

@@ -263,6 +263,8 @@ class Toolpath:
     @property
     def mirrored(self) -> Flags:
         """(n,) whether left becomes right in the plane of the row, by its frame."""
+        if all(frame.matrix is None for frame in self.frames):
+            return np.zeros(len(self), np.bool_)
         mirrors = [[frame.mirrors(*plane.axes[:2]) for plane in Plane] for frame in self.frames]
         return np.array(mirrors, np.bool_)[self.frame, self.plane]
 
