@@ -16,6 +16,7 @@ from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.emit.emitter import Emitted, Emitter
+from gcxform.heap import give_back
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
@@ -69,8 +70,7 @@ class Run:
 
     def _prepare(self) -> None:
         pipeline = self.pipeline
-        letters = self.source.letters()
-        axes = "".join(a for a in pipeline.source.axes if a in letters or a in "XYZ")
+        axes = self.source.axes(pipeline.source.axes)
         reading = _with_assumed_start(pipeline, axes)
         self.axes = axes
         self.interpreter = Interpreter(pipeline.source, reading, axes, self.source.name)
@@ -141,7 +141,7 @@ class Run:
         feed_modes = any(step.feed_mode is not None for step in self.steps)
         proof: Future[None] | None = None
         try:
-            for window, table in windows:
+            for number, (window, table) in enumerate(windows):
                 read, emitted = self._transform(window, table)
                 if proof is not None:
                     proof.result()
@@ -155,6 +155,7 @@ class Run:
                         emitted.nth,
                     )
                 self._hand_on(window, emitted, out)
+                give_back(number)
                 progress(len(window.text))
             if feed_modes:
                 self._check_end()

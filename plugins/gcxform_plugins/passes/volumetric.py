@@ -135,7 +135,7 @@ class Volumetric(gx.Pass):
 
     def _check_frames(self, path: gx.Toolpath, message: str, tools: bool) -> None:
         """Refuse rows whose X, Y, Z count from elsewhere; `tools`: tool lengths matter."""
-        for number in np.unique(path.frame).tolist():
+        for number in np.flatnonzero(np.bincount(path.frame)).tolist():
             origins = path.frames[number].origin[:3]
             named = [name if tools else name.split(" + ")[0] for name in origins]
             if any(name != path.first for name in named):
