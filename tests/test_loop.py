@@ -9,6 +9,11 @@ more, and over many seeds not less. (Issue 4, "the whole loop in one test".)
 from __future__ import annotations
 
 import math
+import os
+import re
+import shutil
+import subprocess
+import sys
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -16,14 +21,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 from htm import actual
+from test_docs import _timeless, commands
 from test_rigid import scalar
 from test_rigid_pass import away, point
 
 import gcxform as gx
 from gcxform.calibrate.diagonaldata import FOUR
-from gcxform.calibrate.diagonalfile import diagonals_csv, linear_csv, parse_diagonals, parse_linear
+from gcxform.calibrate.diagonalfile import (
+    diagonals_csv,
+    linear_csv,
+    parse_diagonals,
+    parse_linear,
+    read_diagonals,
+    read_linear,
+)
 from gcxform.calibrate.stepdiagonal import Assumed, Identified, identify
 from gcxform.machine.functions import AxisFunction
+from gcxform.machine.modelfile import load_model
 from gcxform.machine.modeltext import to_toml
 from gcxform.machine.rigid import RigidBody
 from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal
@@ -213,3 +227,55 @@ def test_the_whole_loop(tmp_path):
 def test_a_machine_with_angular_errors_is_refused_where_readings_contradict_each_other():
     with pytest.raises(gx.InputError, match="linear tests contradict the diagonals"):
         measured(truth(0, 1e-5), 0)
+
+
+# --- the shipped example ---
+
+EXAMPLE = BRACKET.parent / "step-diagonal"
+
+
+def test_the_commands_of_the_example_print_what_its_readme_shows(tmp_path):
+    folder = tmp_path / "step-diagonal"
+    shutil.copytree(EXAMPLE, folder)
+    (folder / "model.toml").unlink()
+    page = (EXAMPLE / "README.md").read_text("utf-8")
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    for block in re.findall(r"```console\n(.*?)```", page, re.DOTALL):
+        for command, shown in commands(block):
+            done = subprocess.run(
+                ["bash", "-c", command],
+                cwd=folder,
+                env={**os.environ, "PATH": path},
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                timeout=60,
+                check=False,
+            )
+            lines = _timeless(shown).splitlines()
+            pattern = "".join(r"(?:.*\n)*?" if s == "..." else re.escape(s) + "\n" for s in lines)
+            assert re.fullmatch(pattern, _timeless(done.stdout)), f"{command}\n{done.stdout}"
+    shipped, made = load_model(EXAMPLE / "model.toml"), load_model(folder / "model.toml")
+    somewhere = np.random.default_rng(1).uniform(0.0, 300.0, (50, 3))
+    assert np.abs(shipped.error(somewhere) - made.error(somewhere)).max() < 1e-12
+    for picture in ("model.svg", "heat.svg"):
+        assert b"</svg>" in (folder / picture).read_bytes()
+
+
+def test_the_example_is_within_what_its_covariance_predicts(tmp_path):
+    """Functions of the true machine, squareness folded in, against those that were identified."""
+    diagonals = read_diagonals(EXAMPLE / "diagonals.csv").diagonals
+    linear = [
+        test
+        for name in ("linear-x.csv", "linear-y.csv")
+        for test in read_linear(EXAMPLE / name, diagonals.volume).tests
+    ]
+    found = identify(diagonals, linear, Assumed(0.0005))
+    machine = load_model(EXAMPLE / "machine-as-it-is.toml")
+    assert isinstance(machine, RigidBody)
+    true = np.array([f.values[1:, :3].T for f in machine.axes if f is not None])
+    off = (found.functions - true).ravel()
+    variance, turned = np.linalg.eigh(found.covariance)
+    seen = variance > 1e-3 * variance.mean()
+    chi = float(((turned.T @ off)[seen] ** 2 / variance[seen]).sum())
+    assert abs(chi - seen.sum()) <= 3.0 * math.sqrt(2.0 * seen.sum())
