@@ -92,6 +92,9 @@ def _sum(document: TomlText, path: Path, formats: Formats, above: tuple[Path, ..
     above = (*above, path.resolve())
     models = []
     for k, name in enumerate(file.models):
+        if "\0" in name:
+            message = f"no file is called {name!r}"
+            raise UsageError.one("GX401", message, document.where("models", k))
         part = path.parent / name
         if part.resolve() in above:
             message = f"the sum {name} is a part of itself"
