@@ -25,6 +25,7 @@ VERBS: Final = {
     "compare": "Say how far the paths of two programs are apart, and where.",
     "info": "Say what is in a program.",
     "resume": "Print the blocks that make a restart at a line safe.",
+    "table": "Convert error tables from one format to another, or show one.",
     "list": "List what is installed, or the options of one thing.",
     "explain": "Explain a diagnostic code, or what a block does.",
     "schema": "Print the JSON Schema of a kind of files.",

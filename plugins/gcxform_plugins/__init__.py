@@ -52,5 +52,6 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
 def gcxform_error_formats() -> list[type[gx.ErrorFormat]]:
     """Return the foreign tables of machine errors."""
     from gcxform_plugins.formats.lddm import Lddm
+    from gcxform_plugins.formats.linuxcnc_comp import LinuxCncComp
 
-    return [Lddm]
+    return [Lddm, LinuxCncComp]
