@@ -51,7 +51,9 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
 @gx.hookimpl
 def gcxform_error_formats() -> list[type[gx.ErrorFormat]]:
     """Return the foreign tables of machine errors."""
+    from gcxform_plugins.formats.etalon import Etalon
+    from gcxform_plugins.formats.isg_csv import IsgCsv
     from gcxform_plugins.formats.lddm import Lddm
     from gcxform_plugins.formats.linuxcnc_comp import LinuxCncComp
 
-    return [Lddm, LinuxCncComp]
+    return [Etalon, IsgCsv, Lddm, LinuxCncComp]
