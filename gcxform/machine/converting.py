@@ -116,26 +116,35 @@ KINDS: dict[str, Callable[[ErrorModel, str], Fit]] = {
 
 
 def difference(one: ErrorModel, other: ErrorModel, sense: float = 0.0) -> FloatArray:
-    """Return by how much (n,) in mm two models differ at all nodes of both, with their own tool."""
-    points = points_of(grid_of(one, other))
+    """Return by how much (n,) in mm two models differ at all nodes of both, with their own tool.
+
+    Models that are linear without limits are compared from -`LEVER` to `LEVER`.
+    """
+    x, y, z = (
+        nodes if len(nodes) else LEVER * np.array([-1.0, 0.0, 1.0]) for nodes in _nodes(one, other)
+    )
+    points = points_of((x, y, z))
     senses = np.full(points.shape, sense)
     apart = other.error(points, sense=senses) - one.error(points, sense=senses)
     return np.asarray(np.linalg.norm(apart, axis=1))
 
 
-def grid_of(*models: ErrorModel) -> Grid:
-    """Return the nodes of models; zero on an axis on which none of them depends.
+def _nodes(*models: ErrorModel) -> list[FloatArray]:
+    return [reduce(np.union1d, (model.nodes[axis] for model in models)) for axis in range(3)]
+
+
+def grid_of(model: ErrorModel) -> Grid:
+    """Return the nodes of a model; zero on an axis on which it does not depend.
 
     Raises UsageError for a model that is linear without limits: it has no nodes to stand for it.
     """
-    grid = []
-    for axis in range(3):
-        nodes = reduce(np.union1d, (model.nodes[axis] for model in models))
-        if not len(nodes) and any(_slopes(model, axis) for model in models):
+    grid = _nodes(model)
+    for axis, nodes in enumerate(grid):
+        if not len(nodes) and _slopes(model, axis):
             message = f"the model has no positions on {AXES[axis]}, on which its error depends"
             raise UsageError.one("GX481", message)
-        grid.append(nodes if len(nodes) else np.zeros(1))
-    return grid[0], grid[1], grid[2]
+    x, y, z = (nodes if len(nodes) else np.zeros(1) for nodes in grid)
+    return x, y, z
 
 
 def _slopes(model: ErrorModel, axis: int) -> bool:
