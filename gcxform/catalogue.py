@@ -457,15 +457,21 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "of three linear axes. Leaving it out would change the errors, so the file is refused.",
     ),
     "GX483": (
-        "The points of a table are no grid",
-        "A height map has one height for every position on X with every position on Y. Look for "
-        "points that are missing, double, or beside the lines of the grid.",
+        "Values of a table are missing, double or out of place",
+        "A height map has one height for every position on X with every position on Y, a "
+        "positioning test a deviation at every target in each direction, a table in equal steps a "
+        "value at each. Look for what is missing, double, or beside the lines of the grid.",
     ),
     "GX484": (
         "Backlash in a pass that does not know the direction of travel",
         "The error of an axis depends on the direction in which it moved last, and this pass "
         "takes one error for each position. Leave backlash to the control, or give the mean of "
         "both directions: forward and reverse alike.",
+    ),
+    "GX485": (
+        "Deviations of a size that no machine has",
+        "The largest deviation of a measured axis is above 1 mm, or none is above a hundredth of a "
+        "micrometre. The unit that was said is probably not that of the file.",
     ),
     "GX501": (
         "The target cannot say this",
