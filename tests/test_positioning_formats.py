@@ -194,18 +194,7 @@ DEFECTS = {
     "no axis": (UM, RTL.replace("Axis:X", "Axis:longitudinal"), "GX480", 0, 1),
     "another axis": (RenishawRtl("um", "Y"), RTL, "GX482", 19, 1),
     "millimetres said": (RenishawRtl("mm"), RTL, "GX485", 39, 1),
-    "in metres said": (
-        UM,
-        RTL.replace("4.0", "0.001")
-        .replace("6.0", "0")
-        .replace("-3.5", "0")
-        .replace("-2.5", "0")
-        .replace("0.5", "0")
-        .replace("1.0\n", "0\n"),
-        "GX485",
-        38,
-        1,
-    ),
+    "in metres said": (UM, scaled(1e-6), "GX485", 39, 1),
 }
 
 

@@ -140,7 +140,10 @@ def _format(text: str, option: str, axis: str | None) -> ErrorFormat | None:
         hint = did_you_mean(name, formats)
         raise UsageError.one("GX730", f"there is no format {name!r}", Location(option), hint)
     form, raw = formats[name], dict(_pair(pair, option) for pair in pairs)
-    if not hasattr(form, "__dataclass_fields__") and not raw:
+    if not hasattr(form, "__dataclass_fields__"):
+        if raw:
+            message = f"the format {name!r} has no options, and {next(iter(raw))!r} is given"
+            raise UsageError.one("GX701", message, Location(option))
         return form()
     if axis and "axis" in (doc.name for doc in describe(form)):
         raw.setdefault("axis", Argument(axis))

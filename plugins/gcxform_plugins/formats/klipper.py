@@ -11,7 +11,7 @@ from typing import Annotated, ClassVar, NamedTuple
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.formats import heightpoints
+from gcxform_plugins.tables import heightpoints
 
 SAVED = r"#\*#"  # how Klipper marks the lines that it saves itself
 WORDS = rf"(?<!\S){SAVED}|\[[^\]]*\]|[^\s=:,\[\]]+|[=:]"

@@ -10,8 +10,8 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.formats import pitches, siemens
-from gcxform_plugins.formats.siemens import UNITS, Floats, Table
+from gcxform_plugins.tables import pitches, siemens
+from gcxform_plugins.tables.siemens import UNITS, Floats, Table
 
 VALUE = "$AN_CEC"
 AXIS_KEYS = ("_INPUT_AXIS", "_OUTPUT_AXIS")
