@@ -16,6 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcxform.machine.functions import AxisFunctions
+from gcxform.machine.modelfile import load_model
 from gcxform.machine.rigid import RigidBody
 
 ISG = """\
@@ -71,6 +72,68 @@ def test_the_signs(tmp_path, kind):
     assert at(model, 100.0) == pytest.approx([0.005, 0.002, 0], abs=1e-12)
     assert at(model, 0.0, 100.0) == pytest.approx([-0.002, 0, 0], abs=1e-12)
     assert at(model, 100.0, 100.0) == pytest.approx([0.0, 0.002, 0], abs=1e-12)
+
+
+NATIVE = """\
+format = 1
+kind = "axis-functions"
+values = "error"
+convention = "relative"
+[Y]
+position = [0, 100]
+EXY = [0, 0]
+EYY = [0, 0]
+EZY = [0, 0]
+[Z]
+position = [-50, 100]
+EXZ = [0, 0.001]
+EYZ = [0, 0]
+EZZ = [0, 0]
+[squareness]
+C0Y = 1e-5
+B0Z = 2e-5
+A0Z = -4e-5
+"""
+SQUARE = {
+    IsgCsv: """\
+C0Y B0Z A0Z
+1e-5 2e-5 -4e-5
+#
+Y EYY
+0 0
+100 0
+#
+Z EXZ
+-50 0
+100 0.001
+""",
+    Etalon: """\
+[C0Y]
+VALUE=1e-5
+[B0Z]
+VALUE=2e-5
+[A0Z]
+VALUE=-4e-5
+[EYY]
+Gridpoints = {
+0 0
+100 0
+}
+[EXZ]
+Gridpoints = {
+-50 0
+100 0.001
+}
+""",
+}
+
+
+@both
+def test_squareness_is_that_of_the_native_file(tmp_path, kind):
+    (tmp_path / "native.toml").write_text(NATIVE)
+    (tmp_path / "table").write_text(SQUARE[kind])
+    native = load_model(tmp_path / "native.toml")
+    assert apart(native, kind("error").read(tmp_path / "table")) < 1e-15
 
 
 @both

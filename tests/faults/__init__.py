@@ -13,6 +13,7 @@ from faults import (
     proof,
     reading,
     splines,
+    tables,
     tied,
     writing,
 )
@@ -30,5 +31,6 @@ MUTATIONS: tuple[Mutation, ...] = (
     *arcs.MUTATIONS,
     *splines.MUTATIONS,
     *tied.MUTATIONS,
+    *tables.MUTATIONS,
     *proof.MUTATIONS,
 )
