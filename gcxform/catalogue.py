@@ -514,6 +514,40 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "axes with --linear; --report without -o writes what is known.",
     ),
     # --- 5xx: emission ---
+    "GX480": (
+        "A table does not say all that has to be known",
+        "Files of this format leave something out, such as their units, their axis or their sign, "
+        "and a wrong guess gives a wrong program. Convert the file once with `gcxform table "
+        "convert`, which takes what is missing, and use the native file that it writes.",
+    ),
+    "GX481": (
+        "A format cannot hold the model",
+        "The format has no place for a part of the error model, which would be lost without a "
+        "word. Choose a format that has one, or fit a simpler model with --kind; the fit says what "
+        "it leaves.",
+    ),
+    "GX482": (
+        "Something in a foreign table is not supported",
+        "The file has an entry that is not known, or is known and has no meaning in an error model "
+        "of three linear axes. Leaving it out would change the errors, so the file is refused.",
+    ),
+    "GX483": (
+        "Values of a table are missing, double or out of place",
+        "A height map has one height for every position on X with every position on Y, a "
+        "positioning test a deviation at every target in each direction, a table in equal steps a "
+        "value at each. Look for what is missing, double, or beside the lines of the grid.",
+    ),
+    "GX484": (
+        "Backlash in a pass that does not know the direction of travel",
+        "The error of an axis depends on the direction in which it moved last, and this pass "
+        "takes one error for each position. Leave backlash to the control, or give the mean of "
+        "both directions: forward and reverse alike.",
+    ),
+    "GX485": (
+        "Deviations of a size that no machine has",
+        "The largest deviation of a measured axis is above 1 mm, or none is above a hundredth of a "
+        "micrometre. The unit that was said is probably not that of the file.",
+    ),
     "GX501": (
         "The target cannot say this",
         "The control that is written for has no such code, word, comment or plane of arcs, and "
@@ -580,6 +614,12 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "The path that `cutter-comp` made was checked against the contour by other means, and is "
         "not at the tool's radius from it. Nothing was written. This is a bug of gcxform or of a "
         "plugin; please report it with the program.",
+    ),
+    "GX605": (
+        "A table does not read back as it was meant",
+        "The table that was to be written was read again, and the errors differ. Nothing was "
+        "written. This is a bug of the format: report it to the author of the plugin, see `gcxform "
+        "list formats`.",
     ),
     "GX701": (
         "Unknown key in a pipeline",

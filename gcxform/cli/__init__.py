@@ -29,6 +29,7 @@ VERBS: Final = {
     "calibrate": "Turn measurements of a machine into its error model.",
     "simulate": "Test a machine with known errors, before and after compensation.",
     "show": "Draw an error model, or the error along the path of a program.",
+    "table": "Convert error tables from one format to another, or show one.",
     "list": "List what is installed, or the options of one thing.",
     "explain": "Explain a diagnostic code, or what a block does.",
     "schema": "Print the JSON Schema of a kind of files.",

@@ -12,6 +12,7 @@ from gcxform.machine.errors import AXES, ErrorModel, FloatArray
 from gcxform.machine.functions import COLUMNS, AxisFunction, AxisFunctions
 from gcxform.machine.lattice import Lattice
 from gcxform.machine.linear import Linear
+from gcxform.machine.pitch import PitchTables
 from gcxform.machine.rigid import RigidBody
 
 
@@ -26,6 +27,8 @@ def to_toml(model: ErrorModel) -> str:
             lines = _lattice(model)
         case Linear():
             lines = _linear(model)
+        case PitchTables():
+            lines = _pitch(model)
         case _:
             raise TypeError(f"models of the kind {model.kind!r} are not written")
     return "\n".join(["format = 1", f'kind = "{model.kind}"', *lines]) + "\n"
@@ -77,6 +80,16 @@ def _linear(model: Linear) -> list[str]:
         "[squareness]",
         *(f"{name} = {float(value)}" for name, value in square.items()),
     ]
+
+
+def _pitch(model: PitchTables) -> list[str]:
+    lines = ['values = "error"']
+    for axis, table in zip(AXES, model.axes, strict=True):
+        if table is not None:
+            lines += ["", f"[{axis}]"]
+            for name in ("position", "forward", "reverse"):
+                lines.append(f"{name} = {getattr(table, name).tolist()}")
+    return lines
 
 
 def fingerprint(part: Any) -> bytes:

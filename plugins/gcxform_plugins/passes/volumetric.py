@@ -94,6 +94,10 @@ class Volumetric(gx.Pass):
     def begin(self, context: gx.PassContext) -> None:
         """Refuse a model that cannot be inverted, and a run without origin."""
         gx.check_contraction(self.model.model)
+        if self.model.model.backlash.any():
+            axes = " ".join(a for a, b in zip("XYZ", self.model.model.backlash, strict=True) if b)
+            message = f"volumetric does not compensate backlash, and the model has some on {axes}"
+            raise gx.UsageError.one("GX484", message)
         offsets = context.machine.work_offsets if context.machine else {}
         if self.part_origin is None and not offsets:
             raise gx.UsageError.one(
