@@ -26,7 +26,16 @@ from gcxform.registry import default_registry
 from gcxform.source import Source
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.matching import Matching, Pieces, match, measure
-from gcxform.toolpath.path import BLOCK_MODES, COLUMNS, Event, FeedMode, Kind, Toolpath
+from gcxform.toolpath.path import (
+    BLOCK_MODES,
+    COLUMNS,
+    WHOLE,
+    Event,
+    FeedMode,
+    Form,
+    Kind,
+    Toolpath,
+)
 from gcxform.toolpath.splines import straightened
 
 STRAIGHT = 1e-5  # mm; lines that stand for splines are so near
@@ -62,8 +71,7 @@ class Program:
     def path(self) -> Toolpath:
         """The moves of the whole program: mm and degrees."""
         source = Source.of_bytes(self.text, self.name)
-        letters = source.letters()
-        axes = "".join(a for a in self.dialect.axes if a in letters or a in "XYZ")
+        axes = source.axes(self.dialect.axes)
         interpreter = Interpreter(self.dialect, self.reading, axes, self.name)
         reader = WindowReader(self.dialect)
         texts = [*source.windows()] or [b""]
@@ -218,7 +226,10 @@ def _parted(a: Toolpath, b: Toolpath, matching: Matching) -> tuple[int, int] | N
 
 @dataclass(frozen=True)
 class _Manner:
-    """How pieces are travelled: feed (in G93 that of the whole piece), feed mode, work offset."""
+    """How pieces are travelled: feed (in G93 that of the whole piece), feed mode, work offset.
+
+    `tied` is the form of what is tied to the spindle or to a probe, and that of plain moves else.
+    """
 
     feed: NDArray[np.float64]
     mode: NDArray[np.int8]
@@ -226,6 +237,7 @@ class _Manner:
     rapid: NDArray[np.bool_]
     side: NDArray[np.int8]
     radius: NDArray[np.float64]
+    tied: NDArray[np.int8]
     line: NDArray[np.int64]
 
     @classmethod
@@ -236,8 +248,9 @@ class _Manner:
         feed = np.divide(path.feed[row], part, out=np.full(len(row), np.inf), where=part > 0)
         origins = np.array([", ".join(dict.fromkeys(frame.origin)) for frame in path.frames])
         side, radius = path.side[row], np.nan_to_num(path.radius[row])
-        origin = origins[path.frame[row]]
-        return cls(feed, mode, origin, rapid, side, radius, path.source[row] + 1)
+        origin, form = origins[path.frame[row]], path.form[row]
+        tied = np.where(np.isin(form, WHOLE), form, np.int8(Form.PLAIN))
+        return cls(feed, mode, origin, rapid, side, radius, tied, path.source[row] + 1)
 
     def alike(self, other: _Manner, at: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Return whether pieces `at` are travelled as the pieces of the other path."""
@@ -246,6 +259,7 @@ class _Manner:
             near = (feed == other.feed) | (np.abs(feed - other.feed) <= FEED_SLIP * np.abs(feed))
         same = self.rapid[at] | (near & (mode == other.mode))
         same &= (self.side[at] == other.side) & (self.radius[at] == other.radius)
+        same &= self.tied[at] == other.tied
         return np.asarray(same & (self.origin[at] == other.origin))
 
 
@@ -273,6 +287,9 @@ def _changed(one: _Manner, other: _Manner, k: int) -> str:
         return f"{one.origin[k]} became {other.origin[k]}"
     if (one.side[k], one.radius[k]) != (other.side[k], other.radius[k]):
         return "cutter compensation is another"
+    if one.tied[k] != other.tied[k]:
+        names = (Form(int(form)).name.lower() for form in (one.tied[k], other.tied[k]))
+        return " became ".join(f"a {name} move" for name in names)
     if one.mode[k] != other.mode[k]:
         return f"feed mode G{one.mode[k]} became G{other.mode[k]}"
     return f"feed {one.feed[k]:g} became {other.feed[k]:g}"

@@ -122,7 +122,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "What the cycle does cannot be told: a word is missing or cannot be, a level is not known, "
         "the control refuses it, or a setting of the control decides. The message says which. "
         "Settings go to [control] of the machine file: peck-return for G73, peck-clearance for "
-        "G83.",
+        "G83, cycle-without-place for blocks that name no place.",
     ),
     "GX216": (
         "A thread, a tap or a probe that the control refuses",
@@ -396,6 +396,35 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "The files of a sum name each other, were measured at different points of the tool, or "
         "have no travel in common.",
     ),
+    "GX425": (
+        "The thermal error is above its limit",
+        "Somewhere along the travel the axis is farther off than `limit`. It is never cut off: "
+        "half a compensation is a wrong program. Let the machine cool down, look for a wrong "
+        "sensor, or raise `limit` if the machine really is so far off.",
+    ),
+    "GX426": (
+        "No state of the machine for this time",
+        "The readings have no row at or shortly before the time that is asked for, the time is "
+        "written with an offset from UTC and the readings are not, or the model has no "
+        "temperatures at all. `max-age` is how old (s) the readings may be.",
+    ),
+    "GX427": (
+        "A sensor without a usable reading",
+        "A sensor is not in the file of readings, or has no reading at the time that is used, or "
+        "one outside of `sensor-range`. A guess would move the tool, so nothing is put in its "
+        "place: choose another time, or leave the sensor out of the model.",
+    ),
+    "GX428": (
+        "The sensors do not reach along the travel",
+        "The error at a place is the growth of the rod up to there, so the temperature has to be "
+        "known along all of it. Name the nearest sensor a second time at the end of the rod if it "
+        "is as warm there; otherwise the travel is shorter.",
+    ),
+    "GX429": (
+        "A thermal model that contradicts itself",
+        "A number is out of its range: stiffness, expansion and ages are above 0, and ranges "
+        "ascend. Or an axis has not just one of a screw and a scale.",
+    ),
     "GX431": (
         "The limits of an axis do not ascend",
         "`limits` is the lower end of the travel and then the upper one, in mm or degrees. "
@@ -437,6 +466,52 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "A line of a LinuxCNC tool table has a tool number (T1) once in the file, and words with a "
         "number each: P, X, Y, Z, D; I, J and Q are passed over, and offsets of other axes have to "
         "be 0. What follows a semicolon is a comment.",
+    ),
+    "GX470": (
+        "Not a table of measurements",
+        "A file of measurements has a header that names its columns, with a unit in brackets where "
+        "there is one, and rows below: `gcxform calibrate diagonal --help` shows it. A column is "
+        "missing, stands twice, means nothing, or has no unit that is known. Units are never "
+        "guessed, because micrometres look like millimetres.",
+    ),
+    "GX471": (
+        "A reading that is not a number",
+        "A cell of a table of measurements is empty or not a finite decimal number, or a row has "
+        "too many or too few cells. Decimals are set off by a point, and cells by commas. Where a "
+        "reading was lost leave the whole run out, or measure it again.",
+    ),
+    "GX472": (
+        "Stops that are not those of a diagonal",
+        "Along a body diagonal the machine steps X, Y, Z in turn, each axis always by its own "
+        "step and in the sense of the name of the diagonal: npp goes down in X. On the way back "
+        "it is Z, Y, X, and direction is a minus sign. A missing or doubled row shows as a move "
+        "of the wrong axis, in the row that is marked or shortly before it.",
+    ),
+    "GX473": (
+        "Diagonals that do not belong together",
+        "The four body diagonals are ppp, npp, pnp and ppn, of the same volume and in the same "
+        "number of steps; nnn is ppp from its other end. Measure the one that is missing, or the "
+        "one that differs, again.",
+    ),
+    "GX474": (
+        "A linear test that does not fit the diagonals",
+        "A direct linear test helps where the diagonals were measured, and a run of it needs two "
+        "positions at least. Leave out positions beyond the diagonals; its zero may be anywhere.",
+    ),
+    "GX475": (
+        "Measurements that contradict each other",
+        "There are more readings than unknowns, and they do not agree within the noise that was "
+        "stated; the model they give would be wrong somewhere. Usual reasons are a beam that was "
+        "lost or not along its diagonal, a machine that grew warm between the diagonals, and "
+        "angular errors, which this method does not know. If the noise is larger than stated, "
+        "state it.",
+    ),
+    "GX476": (
+        "Errors that the measurements do not determine",
+        "Some errors can change together without any effect on a reading, so that the model would "
+        "be a guess. Unless the beams are known to be along their diagonals, the diagonals tell "
+        "one combination of the three scale errors and not the scales. Add linear tests of two "
+        "axes with --linear; --report without -o writes what is known.",
     ),
     # --- 5xx: emission ---
     "GX480": (
@@ -508,7 +583,9 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "Canned cycles, returns to reference, moves in machine coordinates and blocks that set "
         "coordinates from where the axes stand are copied as they are, or not at all: what a pass "
         'asks for cannot be said in such a block. Resolve it first: the pass "cycles" writes '
-        'cycles as plain moves, the pass "offsets" folds shifts into coordinates.',
+        'cycles as plain moves, the pass "offsets" folds shifts into coordinates. Taps are written '
+        "again with their ends moved, if the place, which is one for top and bottom, is right for "
+        "both within what the passes promise; otherwise give the pass a larger tolerance.",
     ),
     # --- 6xx: verification ---
     "GX601": (
@@ -685,6 +762,21 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "modes, tool, spindle, coolant, and where the axes stand. Something of that is not known, "
         "or cannot be said by blocks. Begin at an earlier line: at the tool change, at the block "
         "that states the arc, before the code that is named.",
+    ),
+    "GX736": (
+        "Pictures need matplotlib",
+        "Figures and tables work without it, pictures do not, and it is not installed. Install the "
+        "package with its extra: `pip install 'gcxform[plot]'`.",
+    ),
+    "GX737": (
+        "Not a kind of picture",
+        "Pictures are written as SVG or PNG, by the ending of the file's name: out.svg, out.png.",
+    ),
+    "GX738": (
+        "A virtual test does not fit the error model",
+        "The test would leave the volume in which the errors are known, or has no room in it, so "
+        "that its figures would be made up. Choose another place or size; --outside extrapolate "
+        "or clamp goes beyond the tables all the same.",
     ),
     # --- 8xx: plugins ---
     "GX740": (

@@ -68,6 +68,8 @@ class Dialect:
     m_codes: ClassVar[Mapping[int, MCode]] = ISO_M
     unknown_m: ClassVar[MCode | None] = None
     """What an M code outside `m_codes` is; None: it is refused."""
+    m_first: ClassVar[bool] = False
+    """Whether M codes that may move axes do so before the motion of their block, for certain."""
     initial: ClassVar[Mapping[str, str]] = {
         "motion": "G80",
         "plane": "G17",
@@ -81,6 +83,8 @@ class Dialect:
     """The modal state a program is taken to start in; the certificate says what was taken."""
     axis_words_once: ClassVar[bool] = False
     """A motion code beside a code that takes the axis words for itself (G92, G28) is refused."""
+    g80_beside_motion: ClassVar[bool] = True
+    """G80 beside another motion code says nothing; otherwise the block is refused."""
     last_code_wins: ClassVar[bool] = False
     """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
     cutter_comp: ClassVar[CutterComp] = CutterComp()
@@ -134,12 +138,16 @@ class Dialect:
     """G52 and G92 set one and the same shift."""
     g52_known: ClassVar[bool] = True
     """Whether G52 and G92 mean what they mean on most controls; otherwise a setting decides."""
+    mirrors_at_zero: ClassVar[bool] = False
+    """A mirror stands at the zero of the work offset; other places are refused."""
     g43_takes_spindle_tool: ClassVar[bool] = False
     """G43 without H takes the length of the tool in the spindle."""
     length_may_move: ClassVar[bool] = False
     """Another tool length may move the axis by itself; where it stands is then not known."""
     units_spoil_length: ClassVar[bool] = False
     """A tool length in force keeps its number when the unit changes, so that it is another one."""
+    g49_takes_axes: ClassVar[bool] = False
+    """G49 takes the axis words of its block, and leaves them out."""
     g53_in_g91: ClassVar[str] = "refused"
     """What G53 does under G91: "absolute", or "refused" by the control or by us."""
     g53_is_rapid: ClassVar[bool] = False

@@ -18,6 +18,7 @@ from gcxform.trace import Trace
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 TIME_ERROR = 1e-3  # relative: what the rounding of the feeds of pieces may change
+UNEVEN = 0.25  # relative; a chord of a quarter of a circle is a tenth shorter than its arc
 
 
 class Wrong(NamedTuple):
@@ -60,6 +61,8 @@ class FeedProof:
             yield self._at("the feed has changed", int(np.argmax(off & plain)))
         if (moving & inverse).any():
             yield from self._times()
+        if self.modes or (moving & inverse).any():
+            yield from self._paces()
 
     def _times(self) -> Iterator[Wrong]:
         """Add up the times of the written moves, before the models cut them further."""
@@ -76,6 +79,28 @@ class FeedProof:
         if len(wrong):
             line = int(self.trace.before.source[wrong[0]])
             yield Wrong("the time of a move in G93 has changed", line)
+
+    def _paces(self) -> Iterator[Wrong]:
+        """Check that the pieces of a move share its time as they share its way.
+
+        The time of the whole says nothing of one short piece, whose feed might be any.
+        """
+        written, owner = self.trace.written, self.trace.written_owner
+        way = lengths(written)
+        mine, inverse = written.kind != Kind.RAPID, written.feed_mode == FeedMode.INVERSE_TIME
+        mine &= inverse | (self._may_be_converted(owner) if self.modes else False)
+        along = (way.least + way.most) / 2
+        time = np.where(inverse, 1.0, along) / written.feed
+        whole = self._sums(mine, along)[owner]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slow = self._sums(mine, time)[owner] / whole
+        slack = 2 * np.where(way.turns, self.angle_budget, self.budget)
+        off = np.abs(time - slow * along) > slow * (UNEVEN * along + slack)
+        off &= mine & (whole > 0)
+        if off.any():
+            row = int(written.source[np.argmax(off)])
+            message = "a piece of a move is faster or slower than it"
+            yield Wrong(message, self.trace.line_of(row), row)
 
     def _may_be_converted(self, owner: Ints) -> NDArray[np.bool_]:
         """Return the rows whose feeds a pass may have converted, there and back if there are two.

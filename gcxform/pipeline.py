@@ -140,7 +140,11 @@ class Pipeline:
         """How the program is written."""
         numbers = self.numbers or self.target.numbers
         expands = any(NO_CYCLES in step.ensures for step in self.path_passes)
-        return Manner(self.source, self.target, numbers, self.words, self.decimals, expands)
+        manner = Manner(self.source, self.target, numbers, self.words, self.decimals, expands)
+        promised = self.promised()
+        if not np.isfinite(promised):
+            promised = max((self.budget or 0.0) - self._repeated * manner.rounding(False), 0.0)
+        return replace(manner, promised=promised)
 
     @property
     def machine_reading(self) -> Reading:

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from gcxform.contract import TextPass
 from gcxform.diagnostics import InputError, Location, VerificationError
 from gcxform.dialect import Dialect
+from gcxform.modal.limits import without_blanks
 from gcxform.syntax.scan import scan
 from gcxform.syntax.shapes import ShapeTable, instantiate
-from gcxform.syntax.tree import BLANKS, Block, Statement, Word
+from gcxform.syntax.tree import BLANKS, Block, Number, Statement, Word
 
 
 class TextRun:
@@ -67,7 +68,24 @@ class TextRun:
         after = [] if new is None else _meaning(self.dialect.load_grammar().parse(new))
         if after != _meaning(block):
             raise VerificationError.one("GX603", f"{step.name} changed the words of a block", where)
+        if new is not None:
+            self._check_limits(step, block.text, new, where)
         return new
+
+    def _check_limits(self, step: TextPass, old: str, new: str, where: Location) -> None:
+        """Refuse blocks and sequence numbers that have become larger than the control takes."""
+        size = without_blanks if self.dialect.length_without_blanks else len
+        long, limit = size(new.encode("latin-1")), self.dialect.line_length
+        if limit and long > max(limit, size(old.encode("latin-1"))):
+            message = f"{step.name}: the block would have {long} characters"
+            message += f"; {self.dialect.name} takes {limit}"
+            raise InputError.one("GX502", message, where)
+        most = self.dialect.largest_number
+        for word in self.dialect.load_grammar().parse(new).words if most else ():
+            number = word.value
+            if word.address == "N" and isinstance(number, Number) and number.value > most:
+                message = f"{step.name}: the sequence number is larger than {most}"
+                raise InputError.one("GX219", message, where)
 
     def finish(self) -> None:
         """End the run."""

@@ -19,10 +19,13 @@ from gcxform.diagnostics import Diagnostic, GcxformError, Location, Verification
 from gcxform.dialect import INCH
 from gcxform.feedproof import FeedProof
 from gcxform.modal.interpreter import Interpreted, Interpreter
-from gcxform.modal.meaning import FRAMING, only_for_cycles
+from gcxform.modal.meaning import FRAMING
 from gcxform.modal.reader import WindowReader
+from gcxform.modal.sorting import only_for_cycles
 from gcxform.modal.state import Reading
+from gcxform.modal.tables import PROBES
 from gcxform.syntax.scan import Window
+from gcxform.toolpath.facts import IN_AIR, between_taps
 from gcxform.toolpath.path import WHOLE, Event, Kind, Toolpath
 from gcxform.toolpath.runs import Runs, deviation_of_runs
 from gcxform.toolpath.travel import ways
@@ -41,6 +44,7 @@ class Findings:
 
     deviation   mm; `source_line` and `output_line` count from 1
     angle       degrees, of rotary axes
+    between_taps, aside   moves between taps that are off by more than the budget, and how far (mm)
     """
 
     moves: int = 0
@@ -51,6 +55,8 @@ class Findings:
     output_line: int = 0
     rapids: int = 0
     unknown_starts: int = 0
+    between_taps: int = 0
+    aside: float = 0.0
     lines_after_end: int = 0
     problems: list[str] = field(default_factory=list)
 
@@ -107,6 +113,7 @@ class Verifier:
         trace = Trace(read.path, window, back.path, path, source, nth, first)
         self._count(read, window, trace)
         self._compare(trace)
+        self._forms(trace, read, back)
         if self.feed_modes:
             for wrong in self._proof(trace).left_behind(read, back):
                 self._raise(*wrong)
@@ -131,21 +138,35 @@ class Verifier:
         off = deviation_of_runs(before, after, runs, self.budget)
         self.findings.unknown_starts += int(off.unknown_start.sum())
         self._start(trace)
-        worst = int(np.argmax(off.distance))
-        if not off.distance[worst] <= self.findings.deviation:
-            self._note_worst(float(off.distance[worst]), trace, worst)
+        distance = self._but_between_taps(off.distance, trace)
+        worst = int(np.argmax(distance))
+        if not distance[worst] <= self.findings.deviation:
+            self._note_worst(float(distance[worst]), trace, worst)
         self.findings.angle = max(self.findings.angle, float(off.angle.max()))
-        if not off.distance[worst] <= self.budget:
-            size = f"{off.distance[worst]:.5f} mm" if np.isfinite(off.distance[worst]) else "far"
+        if not distance[worst] <= self.budget:
+            size = f"{distance[worst]:.5f} mm" if np.isfinite(distance[worst]) else "far"
             self._fail(f"the path is {size} off, the budget is {self.budget:.5f} mm", trace, worst)
         turned = int(np.argmax(off.angle))
         if not off.angle[turned] <= self.angle_budget:
             self._fail(f"a rotary axis is {off.angle[turned]:.5f} degrees off", trace, turned)
         self._kinds(trace)
-        self._forms(trace)
         self._sides(trace)
         for wrong in self._proof(trace).wrong():
             self._raise(*wrong)
+
+    def _but_between_taps(self, distance: Floats, trace: Trace) -> Floats:
+        """Return distances without those of moves between taps that nothing can say better."""
+        if all(type(step).undo is Pass.undo for step in self.passes):
+            return distance
+        rows = between_taps(trace.before)
+        rows[trace.written_owner[between_taps(trace.written)]] = True
+        free = rows[trace.owner]
+        free &= (distance > self.budget) & (distance <= IN_AIR)
+        if not free.any():
+            return distance
+        self.findings.between_taps += int(free.sum())
+        self.findings.aside = max(self.findings.aside, float(distance[free].max()))
+        return np.where(free, 0.0, distance)
 
     def _proof(self, trace: Trace) -> FeedProof:
         return FeedProof(trace, self.feed_modes, self.budget, self.angle_budget)
@@ -159,7 +180,8 @@ class Verifier:
         """Compare where feed moves begin after a rapid: a rapid's own end may be left out."""
         before, after = trace.before, trace.after
         begins = np.append(True, trace.owner[1:] != trace.owner[:-1])
-        rows = np.flatnonzero(begins & (before.kind[trace.owner] != Kind.RAPID))[1:]
+        rows = np.flatnonzero(begins & (before.kind[trace.owner] != Kind.RAPID))
+        rows = rows[rows > 0]
         if not len(rows):
             return
         gap = (after.start[rows] - before.start[trace.owner[rows]])[:, :3]
@@ -174,12 +196,18 @@ class Verifier:
             self._fail(message, trace, int(rows[worst]))
 
     def _missing(self, trace: Trace, runs: Runs) -> None:
-        """Check that rows which no move in the output stands for were too short to write."""
-        left = ways(trace.before, runs.left).tolist()
-        for row, length in zip(runs.left.tolist(), left, strict=True):
-            if trace.before.is_arc[row] or not length <= self.budget:
-                line = int(trace.before.source[row])
-                self._raise("a move of the source is missing in the output", line, 0)
+        """Check that rows which no move in the output stands for were too short to write.
+
+        Those that follow one another have to be that short together, or they might lead far away.
+        """
+        left, along = runs.left, ways(trace.before, runs.left)
+        begins = np.append(True, np.diff(left) > 1)[: len(left)]
+        together = np.bincount(np.cumsum(begins) - 1, along) if len(left) else along
+        short = together[np.cumsum(begins) - 1] <= self.budget
+        missing = left[trace.before.is_arc[left] | ~short]
+        if len(missing):
+            line = int(trace.before.source[missing[0]])
+            self._raise("a move of the source is missing in the output", line, 0)
 
     def _kinds(self, trace: Trace) -> None:
         rapid_before = trace.before.kind[trace.owner] == Kind.RAPID
@@ -187,13 +215,15 @@ class Verifier:
         if wrong.any():
             self._fail("a rapid became a feed move, or the reverse", trace, int(np.argmax(wrong)))
 
-    def _forms(self, trace: Trace) -> None:
+    def _forms(self, trace: Trace, read: Interpreted, back: Interpreted) -> None:
         """Check that what is tied to the spindle or to a probe is still that, and in one piece."""
         written, owner = trace.written, trace.written_owner
         form, was = written.form, trace.before.form[owner]
         tied = np.isin(form, WHOLE) | np.isin(was, WHOLE)
         broken = tied & (form != was)
         broken |= tied & (np.bincount(owner, minlength=len(trace.before))[owner] != 1)
+        code, old = back.modes.motion[written.block], read.modes.motion[trace.before.block[owner]]
+        broken |= (code != old) & (np.isin(code, PROBES) | np.isin(old, PROBES))
         if broken.any():
             output = int(written.source[np.argmax(broken)])
             message = "a move tied to the spindle or to a probe became another, or several"

@@ -13,8 +13,9 @@ import numpy as np
 
 from gcxform.modal.cyclerule import TAPPING, CycleRule
 from gcxform.modal.cycles import Calls, Cycles, Steps
+from gcxform.modal.cyclesteps import Rows
 from gcxform.registry import default_registry
-from gcxform.toolpath.path import Kind, Plane
+from gcxform.toolpath.path import Flags, Kind, Plane
 
 CODES = (73, 74, 81, 82, 83, 84, 85, 86, 87, 88, 89)
 PLANES = {17: Plane.XY, 18: Plane.ZX, 19: Plane.YZ}
@@ -136,17 +137,27 @@ class Player:
         self.waiting = []
 
     def _take(self, steps: Steps, stretch: Calls) -> None:
-        before = len(self.played.moves)
-        for kind, end in zip(steps.rows.kind, spatial(steps.rows.end, stretch.plane), strict=True):
+        before, rows = len(self.played.moves), steps.rows
+        made = ~_taps_begin_at_r(rows)
+        for kind, end in zip(rows.kind[made], spatial(rows.end[made], stretch.plane), strict=True):
             self.played.moves.append((Kind(kind).name, *map(float, end)))
-        self.played.lines += (stretch.line[steps.rows.call] + 1).tolist()
-        for event in steps.rows.events:
+        self.played.lines += (stretch.line[rows.call[made]] + 1).tolist()
+        for event in rows.events:
             time = f" {event.values[0][1]:.10g}" if event.values else ""
-            self.played.events.append((before + event.row, f"{event.what}{time}"))
+            row = before + int(made[: event.row].sum())
+            self.played.events.append((row, f"{event.what}{time}"))
         self.position = spatial(steps.after[-1:], stretch.plane)[0].tolist()
         if steps.refusals:
             self.played.refused = int(stretch.line[steps.refusals[0].call]) + 1
             self.played.why = steps.refusals[0].message
+
+
+def _taps_begin_at_r(rows: Rows) -> Flags:
+    """Return the moves of taps down to R that lead nowhere; LinuxCNC makes none of them."""
+    tied = rows.synchronised
+    to_r = np.append(tied[1:], False)[: len(tied)] & ~tied
+    to_r[1:] &= (rows.end[1:] == rows.end[:-1]).all(axis=1)
+    return np.asarray(to_r)
 
 
 # --- cases worked out by hand ---

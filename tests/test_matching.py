@@ -53,6 +53,10 @@ SAME = {
     "only an axis that turns": ("A0\nA90\n", "A0\nA30\nA60\nA90\n"),
     "no way": ("X5\nX5\nY5\n", "X5\nY5\nY5\n"),
     "hardly a way": ("X5\nX5.0004\nG0 Y5\n", "X5\nG0 Y5\n"),
+    "hardly an arc": (
+        "G2 X0 Y0 I5 J0\nG0 Y5\n",
+        "G2 X10 Y0 I5 J0\nX0 Y-0.0004 I-5 J0\nX0 Y0 I5 J0.0004\nG0 Y5\n",
+    ),
     "rapids": ("G0 X5\nG1 Y5\n", "G0 X5\nG1 Y2\nY5\n"),
     "nothing": ("", ""),
 }
@@ -240,6 +244,18 @@ def test_feed_modes_and_work_offsets() -> None:
     assert "feed mode G94 became G95" in compared("X5\n", "G95 F100 X5\n").feeds[0].what
     found = compared("G55 G1 X5 Y0 Z0\n", "G56 G1 X5 Y0 Z0\n")
     assert found.feeds[0].what == "G55 became G56"
+
+
+@pytest.mark.parametrize(
+    ("tied", "plain", "what"),
+    [
+        ("G38.2 Z5 F100\n", "G1 Z5\n", "a probe move became a plain move"),
+        ("S100 M3\nG33 Z5 K1\n", "S100 M3\nG95 G1 Z5 F1\n", "a thread move became a plain move"),
+    ],
+)
+def test_what_is_tied_is_no_plain_move(tied: str, plain: str, what: str) -> None:
+    assert [difference.what for difference in compared(tied, plain).feeds] == [what]
+    assert compared(tied, tied).same
 
 
 EVENTS = {

@@ -257,15 +257,51 @@ def test_a_feed_keeps_the_unit_it_was_given_in(tmp_path: Path) -> None:
 
 
 def test_a_note_says_where_the_proof_ends(tmp_path: Path) -> None:
-    text = HEAD + "X1.\nX2.\nG81 X3. Z-1. R1.\nM30\n"
-    (tmp_path / "p.nc").write_text(text)
+    (tmp_path / "p.nc").write_text(HEAD + "X1.\nX2.\nM98 P100\nX3.\nM30\n")
     words = ["resume", "-f", "fanuc", "--clearance", "50", str(tmp_path / "p.nc")]
     found = call(*words, "--line", "5")
     assert found.exit_code == 0
     assert "G0 X1." in found.stdout
-    if "G81" in found.stderr or "note" in found.stderr:
-        assert "compared up to line 5" in found.stderr
-        assert call(*words, "--line", "6").exit_code == 3
+    assert "compared up to line 5: line 6 is not read (GX210)" in found.stderr
+    assert call(*words, "--line", "6").exit_code == 3
+
+
+@pytest.mark.parametrize("dialect", ["fanuc", "haas"])
+def test_a_tool_change_that_moves_axes_needs_a_clearance(tmp_path: Path, dialect: str) -> None:
+    (tmp_path / "p.nc").write_text("T1 M6\nG43 H1\n" + HEAD + "X1.\nX2.\nM30\n")
+    words = ["resume", "-f", dialect, "--line", "7", str(tmp_path / "p.nc")]
+    found = call(*words)
+    assert (found.exit_code, found.stdout) == (3, "")
+    assert "GX732" in found.stderr
+    assert "--clearance" in found.stderr
+    assert call(*words, "--clearance", "50").exit_code == 0
+
+
+def test_the_length_of_the_tool_in_the_spindle_waits_for_the_tool(tmp_path: Path) -> None:
+    text = "T1 M6\nG43\n" + HEAD + "X1.\nX2.\nM2\n"
+    found = resumed(tmp_path, text, "linuxcnc", 7)
+    assert found.index("T1 M6") < found.index("G43")
+    assert "G0 G43 Z50." in resumed(tmp_path, text, "linuxcnc", 7, "--clearance", "50")
+    loaded = resumed(tmp_path, text, "linuxcnc", 7, "--clearance", "50", "--tool-loaded")
+    assert "(T1 MUST BE IN THE SPINDLE)" in loaded
+    restart = Restart(
+        default_registry().dialect("linuxcnc"), Source.of_bytes(text.encode()), Reading(), 7
+    )
+    preamble = restart.preamble(None, None, True)
+    blocks = [block for block in preamble.blocks() if block != "G43"]
+    with pytest.raises(gx.InputError, match="tool in the spindle"):
+        restart.prove(preamble, "\n".join([blocks[0], "G43", *blocks[1:], ""]).encode())
+
+
+def test_parameters_that_a_line_not_read_may_take_are_no_restart(tmp_path: Path) -> None:
+    text = HEAD + "#1=5\nX1.\no100 if [#1 gt 2]\nX3.\no100 endif\nM2\n"
+    words = ["resume", "-f", "linuxcnc", "--line", "5", "--clearance", "50"]
+    (tmp_path / "p.nc").write_text(text)
+    found = call(*words, str(tmp_path / "p.nc"))
+    assert (found.exit_code, found.stdout) == (3, "")
+    assert "line 6, which is not read, may take them" in found.stderr
+    (tmp_path / "p.nc").write_text(text.replace("#1=5\n", "\n"))
+    assert call(*words, str(tmp_path / "p.nc")).exit_code == 0
 
 
 def test_the_proof_sees_a_wrong_preamble() -> None:
@@ -279,6 +315,8 @@ def test_the_proof_sees_a_wrong_preamble() -> None:
         ("G91", "G90"),
         ("F100\n", "F90\n"),
         ("X1.", "X1.01"),
+        ("G94 F", "G93 F"),
+        ("G21", "G20"),
         ("Z1.", "Z1.1"),
         ("G17", "G18"),
     ):

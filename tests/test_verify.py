@@ -119,6 +119,16 @@ def inserted(text: str, number: int) -> Change:
     return change
 
 
+def led_by(text: str, number: int) -> Change:
+    """Write one line more before what was written for a line of the input."""
+
+    def change(lines: list[Line]) -> Iterable[Line]:
+        place = next(k for k, line in enumerate(lines) if line[1] == number)
+        return [*lines[:place], (text.encode() + b"\n", number), *lines[place:]]
+
+    return change
+
+
 TAMPERED = {
     "the sign of a position": (said("Y-10", "Y10"), "off"),
     "another depth": (said("Z-1.5 F100", "Z-1.6 F100"), "off"),
@@ -136,6 +146,8 @@ TAMPERED = {
     "a feed is dropped": (said(" F300", ""), "feed"),
     "another time in G93": (said("F2\n", "F2.01\n"), "time"),
     "another feed mode": (said("G93 G1", "G1"), "feed mode"),
+    "a rapid goes astray on its way": (led_by("G0 Z-9", 14), "off"),
+    "the first rapid goes astray": (led_by("G0 Z-9", 2), "off"),
     "a rapid cuts": (said("G0 Z5", "G1 Z5"), "rapid"),
     "a cut becomes a rapid": (said("G1 X60", "G0 X60"), "rapid"),
     "the sense of an arc": (said("G2 X60", "G3 X60"), "."),
@@ -208,6 +220,41 @@ def test_nodes_that_are_not_stopped_at_are_seen() -> None:
 
     with pytest.raises(gx.VerificationError, match="off"):
         run(change, COMPENSATED, program)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        said("(LOG,X)\n", "\n"),
+        said("(LOG,X)", "(LOG,Y)"),
+        said("(plain)", "(MSG,plain)"),
+        moved_on("(LOG,X)"),
+    ],
+)
+def test_comments_that_act_are_events(change: Change) -> None:
+    program = b"G21 G90 G94 G17\nG0 X0 Y0 Z0\n(LOG,X)\nX5\nG1 X10 F100 (plain)\nM2\n"
+    run(program=program)
+    with pytest.raises(gx.VerificationError, match=r"became|moved|missing"):
+        run(change, program=program)
+
+
+@pytest.mark.parametrize("other", ["G38.3", "G38.4", "G38.5"])
+def test_a_probing_move_stays_what_it_is(other: str) -> None:
+    program = b"G21 G90 G94\nG0 X0 Y0 Z5\nG38.2 Z-5 F50\nM2\n"
+    run(program=program)
+    with pytest.raises(gx.VerificationError, match="tied to the spindle or to a probe"):
+        run(said("G38.2", other), program=program)
+
+
+@pytest.mark.parametrize("code", ["G0", "G1"])
+def test_short_moves_left_out_may_not_lead_far_away(code: str) -> None:
+    """A thousand steps of 0.2 um are a tenth of a millimetre there and as much back."""
+    there = [f"X{1 + 0.0002 * k:.4f} F{100 + k}" for k in range(1, 500)]
+    back = [f"X{1 + 0.0002 * k:.4f} F{100 - k / 10:g}" for k in range(498, -1, -1)]
+    moves = "\n".join([f"{code} {there[0]}", *there[1:], *back])
+    program = f"G21 G90 G94\nG0 X0 Y0 Z0\nG1 X1 F100\n{moves}\nG1 X5 F100\nM2\n".encode()
+    with pytest.raises(gx.VerificationError, match="missing"):
+        run(dropped(*range(3, 3 + 998)), program=program)
 
 
 def test_an_event_stays_before_the_first_piece_of_its_move() -> None:
@@ -300,6 +347,24 @@ def test_a_feed_converted_wrong_is_refused(name: str) -> None:
     assert run(chain=chain, program=CONVERTED).count(b"F") == 5
     with pytest.raises(gx.VerificationError, match=message):
         run(change, chain, CONVERTED)
+
+
+@pytest.mark.parametrize("chain", ["segment chord-error=1um", "segment | feed mode=inverse-time"])
+def test_one_piece_of_many_may_not_be_faster(chain: str) -> None:
+    """A piece takes less of the time of its move than the rounding of feeds may change."""
+    mode = "G94 F3" if "feed" in chain else "G93 F3"
+    program = f"G21 G90 {mode}\nG0 X0 Y0\nG2 X0 Y0 I500 {mode[4:]}\nG94 M2\n".encode()
+    chain = chain.replace("segment |", "segment chord-error=1um |")
+
+    def change(lines: list[Line]) -> Iterable[Line]:
+        text, number = lines[700]
+        word = next(word for word in text.split() if word[:1] == b"F")
+        lines[700] = text.replace(word, b"F%.3f" % (3 * float(word[1:]))), number
+        return lines
+
+    assert run(chain=chain, program=program).count(b"F") > 1000
+    with pytest.raises(gx.VerificationError, match="faster or slower"):
+        run(change, chain, program)
 
 
 def test_a_feed_per_minute_converted_wrong_is_refused() -> None:

@@ -80,17 +80,17 @@ class Preamble:
             yield text
         if now != inch:
             yield code_of("units", int(inch))
-        if self.memory.length and self.approach is None:
-            yield self.memory.length
 
     def _tool(self) -> Iterator[str]:
-        """Yield the tool change, then the tool that waits; or say which tool must be there."""
+        """Yield the tool change, or say which tool must be there; the tool that waits; a length."""
         loaded, ready = self.memory.loaded, self.memory.ready
         if loaded is not None:
             change = " ".join(part for part in loaded if part)
             yield change if self.change_tool else f"({loaded[0] or 'TOOL'} MUST BE IN THE SPINDLE)"
         if ready is not None and (loaded is None or loaded[0] != ready):
             yield ready
+        if self.memory.length and self.approach is None:
+            yield self.memory.length  # behind the tool: G43 may take the one in the spindle
 
     def _spindle(self) -> Iterator[str]:
         """Yield speed and direction, then coolant."""

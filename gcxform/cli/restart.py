@@ -41,8 +41,7 @@ class Restart:
     line: int
 
     def __post_init__(self) -> None:
-        letters = self.source.letters()
-        self.axes = "".join(a for a in self.dialect.axes if a in letters or a in "XYZ")
+        self.axes = self.source.axes(self.dialect.axes)
         self.placed: set[str] = set()  # axes that are programmed before the line
         self.reader = WindowReader(self.dialect)
         self.interpreter = self._interpreter(self.reading)
@@ -232,11 +231,21 @@ class Restart:
         other = self._interpreter(reading)
         if preamble.approach is None:
             other.state.position[:] = self.state.position
-            other.state.frames = replace(self.state.frames, known=True)
+            tool = other.state.frames.in_spindle
+            other.state.frames = replace(self.state.frames, known=True, in_spindle=tool)
+        if not preamble.change_tool:
+            tool = self.state.frames.in_spindle
+            other.state.frames = replace(other.state.frames, in_spindle=tool)
+            other.state.tool = self.state.tool
         reader = WindowReader(self.dialect)
         other.interpret(reader.read(text), reader.table)
         if "frame" not in self.state.stated:
             other.state.frames = replace(other.state.frames, known=self.state.frames.known)
+        lost = np.isnan(other.state.position) & ~np.isnan(self.state.position)
+        if preamble.approach is None and lost.any():
+            names = ", ".join(a for a, gone in zip(self.axes, lost.tolist(), strict=True) if gone)
+            message = f"the blocks of the restart move {names}, and to where is not known"
+            raise self.refusal(message, "--clearance 50mm, with a Z that is clear of all")
         self._compare_states(self.state, other.state, preamble)
         other.state.percents = self.state.percents
         other.state.rapid = self.state.rapid
@@ -274,6 +283,11 @@ class Restart:
             before = self.reader.read(window.text[: int(window.start[count])])
             expected = mine.interpret(before, self.reader.table)
             self._compare(expected, theirs.interpret(before, self.reader.table))
+        if mine.state.parameters != theirs.state.parameters:
+            raise self.refusal(
+                "no restart is safe here: the program has set parameters before, which are not "
+                f"restated, and line {line}, which is not read, may take them"
+            )
         hint = "from there on the program does what it did, if all is as it was in this line"
         message = f"compared up to line {line - 1}: line {line} is not read ({first.code})"
         return replace(first, code="GX732", message=message, hint=hint)

@@ -69,6 +69,7 @@ class Copying:
         if self.path.blocks.uncompensated:
             self.lines &= ~self.task.table.flag("compensates", self.task.shape)
         self.lines[pieces.line[pieces.repaired]] = False
+        self.lines &= ~pieces.taps.lines
         self._skipped()
         self._refuse_unknown()
 

@@ -18,13 +18,32 @@ from gcxform.diagnostics import Diagnostic, InputError
 from gcxform.dialect import Dialect
 from gcxform.emit.centres import Centres
 from gcxform.emit.copying import Copying
-from gcxform.emit.fields import Axis, Centre, Computed, Copied, Feed, Field, Key, Literal, Role
+from gcxform.emit.fields import (
+    Axis,
+    Centre,
+    Computed,
+    Copied,
+    CycleWord,
+    Feed,
+    Field,
+    Key,
+    Literal,
+    Role,
+)
 from gcxform.emit.manner import Believed, Manner, Task
 from gcxform.emit.numbers import MOST_DECIMALS, decimals_for, decimals_of, quantise
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, motion_kinds
-from gcxform.emit.render import Renderer, interleave
-from gcxform.emit.saying import CannotSayError, event_text, gaps_between, left_out, nothing_left
+from gcxform.emit.render import Renderer, groups_of, interleave
+from gcxform.emit.saying import (
+    CannotSayError,
+    event_text,
+    gaps_between,
+    left_out,
+    nothing_left,
+    slash_of,
+)
+from gcxform.emit.tapping import Taps
 from gcxform.emit.templates import TemplateWriter
 from gcxform.modal.arcs import TURN
 from gcxform.modal.interpreter import Interpreted
@@ -39,7 +58,6 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 
-PEELED_AT_MOST = 16
 FEED_SLIP = 1.5e-4  # relative; a feed that would be written farther off is refused
 
 
@@ -94,8 +112,9 @@ class _Job:
         self.emitter = emitter
         self.path = task.path
         self.positions = Positions(task, emitter.believed)
+        self.taps = Taps(task, self.positions, emitter.believed)
         self.kind = motion_kinds(task, self.positions)
-        self.pieces = Pieces(task, self.kind, emitter.believed)
+        self.pieces = Pieces(task, self.kind, emitter.believed, self.taps)
         self.copying = Copying(task, self.pieces, self.positions, emitter.believed)
 
     def run(self) -> Emitted:
@@ -116,7 +135,7 @@ class _Job:
     def _without_words(self) -> Flags:
         """Return the inner pieces of split blocks that would have no word: nothing moves."""
         still: Flags = ~self.positions.write.any(axis=1) & (self.kind < Kind.ARC_CW)
-        inner: Flags = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row
+        inner: Flags = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row & ~self.pieces.tap
         inner &= ~self.pieces.expanded_line[self.pieces.line] | (self.pieces.motion < 0)
         return np.asarray(inner & self.pieces.of_rows(still, False))
 
@@ -198,6 +217,8 @@ class _Job:
             (pieces.feed_mode + 1, 128),
             (pieces.silent, 2),
             (pieces.thread, 2),
+            (pieces.tap, 2),
+            (pieces.apart, 2),
             (pieces.feed, 3),
             (inch, 2),
         ]
@@ -206,12 +227,13 @@ class _Job:
             turns = pieces.of_rows(self._turns(), 0)
             parts += [(arc, 2), (plane * arc, 3), (turns * arc, int(turns.max()) + 1)]
         for part, size in parts:
-            way = way * size + part
+            if part.any():
+                way = way * size + part
         return np.asarray(way[chosen])
 
     def _render(self, chosen: Ints, renderer: Renderer) -> None:
         """Render the pieces, one template after another."""
-        for places in _groups(self._ways(chosen)):
+        for places in groups_of(self._ways(chosen)):
             members = chosen[places]
             renderer.begin(self.pieces.line[members])
             for field in self._template(int(members[0])):
@@ -240,6 +262,8 @@ class _Job:
             Feed(int(pieces.feed[piece])),
             bool(pieces.expanded_line[line]),
             bool(pieces.thread[piece]),
+            bool(pieces.tap[piece]),
+            bool(pieces.apart[piece]),
             arc,
             int(self.path.plane[row]) if arc else 0,
             int(self._turns()[row]) if arc else 0,
@@ -262,12 +286,14 @@ class _Job:
     def _event_text(self, piece: int) -> tuple[Field, ...]:
         """Return the block of something that a canned cycle does between its moves."""
         event, target = self.pieces.events[int(self.pieces.event[piece])], self.task.manner.target
+        line = int(self.pieces.line[piece])
         text = event_text(event, target, self.emitter.gap or b"")
         if text is None:
-            where = self.task.location(int(self.pieces.line[piece]))
+            where = self.task.location(line)
             message = f"{target.name} cannot say the {event.what} of this cycle"
             raise InputError.one("GX501", message, where)
-        return (Literal(text),)
+        shape = self.task.table.shapes.shapes[int(self.task.shape[line])]
+        return (Literal(slash_of(shape) + text),)
 
     def _field(self, field: Field, members: Ints, renderer: Renderer) -> None:
         """Render one field of the pieces of a template."""
@@ -287,6 +313,11 @@ class _Job:
                 self._check_known(field.address, whole, present, rows)
                 decimals = manner.decimals_of(field.address, inch)
                 renderer.number(field.gap, field.address, whole, decimals, present)
+        elif isinstance(field, CycleWord):
+            whole = self.taps.words[field.address][rows]
+            decimals = manner.decimals_of(field.address, inch)
+            everywhere = np.ones(len(rows), np.bool_)
+            renderer.number(field.gap, field.address, whole, decimals, everywhere)
         elif isinstance(field, Centre):
             whole = self.centre[rows, field.index]
             decimals = manner.decimals_of(field.address, inch)
@@ -365,6 +396,8 @@ class _Job:
     def _carry(self) -> None:
         """Leave what the control believes after the window."""
         believed, pieces = self.emitter.believed, self.pieces
+        taps = self.taps
+        believed.level, believed.tapping, believed.aside = taps.level, taps.moved, taps.aside
         if len(self.path):
             exact = bool(self.copying.exact[-1])
             held = self.path.end[-1] if exact else self.positions.after[-1]
@@ -380,20 +413,6 @@ class _Job:
                 if len(last):
                     setattr(believed, name, int(stated[last[-1]]))
             self._leave_end(believed)
-
-
-def _groups(ways: Ints) -> list[Ints]:
-    """Return the places of each value, by peeling off one value after another."""
-    groups: list[Ints] = []
-    left = np.arange(len(ways))
-    while len(left) and len(groups) < PEELED_AT_MOST:
-        same = ways[left] == ways[left[0]]
-        groups.append(left[same])
-        left = left[~same]
-    if len(left):
-        order = left[np.argsort(ways[left], kind="stable")]
-        groups += np.split(order, np.flatnonzero(np.diff(ways[order])) + 1)
-    return groups
 
 
 def _is_path_mode(what: str, source: type[Dialect]) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -39,8 +40,9 @@ class Key:
     `motion`, `inch`, `incremental`, `absolute_centre`, `feed_mode`: what has to be stated; -1:
     nothing. `silent`: a motion code that moves nothing is left out.
     `expanded`: the block called a canned cycle, of which this is a move. `thread`: it is one whose
-    code and K stay. `arc`: whether centre words are written, in `plane`; `turns`: full turns beyond
-    the arc.
+    code and K stay. `tap`: it is a canned cycle whose ends have moved; `apart`: one of its repeats,
+    which become blocks of their own. `arc`: whether centre words are written, in `plane`; `turns`:
+    full turns beyond the arc.
     """
 
     role: Role
@@ -53,6 +55,8 @@ class Key:
     feed: Feed
     expanded: bool
     thread: bool
+    tap: bool
+    apart: bool
     arc: bool
     plane: int
     turns: int
@@ -89,6 +93,14 @@ class Axis:
 
 
 @dataclass(frozen=True, slots=True)
+class CycleWord:
+    """A word that says where a canned cycle goes."""
+
+    gap: bytes
+    address: str
+
+
+@dataclass(frozen=True, slots=True)
 class Centre:
     """A centre word; `index` is 0 for the plane's first axis, 1 for its second."""
 
@@ -104,4 +116,28 @@ class FeedWord:
     gap: bytes
 
 
-Field = Literal | Copied | Computed | Axis | Centre | FeedWord
+Field = Literal | Copied | Computed | Axis | CycleWord | Centre | FeedWord
+
+
+class CycleWords:
+    """The words that say where a canned cycle goes, as they are written anew.
+
+    They stand where the block has them; those that it has not stand behind its last one.
+    """
+
+    def __init__(self, addresses: str, named: Sequence[str], gap: bytes) -> None:
+        self.waiting = list(addresses)
+        self.named = set(named)
+        self.gap = gap
+
+    def at(self, address: str, lead: bytes) -> list[Field]:
+        """Return what is written in the place of a word of the block."""
+        self.waiting.remove(address)
+        rest = [] if self.named & set(self.waiting) else self.rest(self.gap)
+        return [CycleWord(lead, address), *rest]
+
+    def rest(self, lead: bytes) -> list[Field]:
+        """Return all that has not been written."""
+        left, self.waiting = self.waiting, []
+        gaps = [lead] + [self.gap] * len(left)
+        return [CycleWord(gap, address) for gap, address in zip(gaps, left, strict=False)]

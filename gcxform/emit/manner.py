@@ -27,6 +27,7 @@ class Manner:
     words     "changed": what changes or was programmed; "programmed": only that; "all": every axis
     decimals  by address, where they differ from the number format
     expands   whether canned cycles have become plain moves
+    promised  mm; how far the passes may be off, which a tap may use up
     """
 
     source: type[Dialect]
@@ -35,6 +36,7 @@ class Manner:
     words: str = "changed"
     decimals: Mapping[str, int] = field(default_factory=dict)
     expands: bool = False
+    promised: float = 0.0
 
     @property
     def crossing(self) -> bool:
@@ -66,6 +68,9 @@ class Believed:
     """What the control believes after the text written so far.
 
     `exact`: its position is that of the source to the last bit, because all was copied.
+    `level`: from where the canned cycle in force has begun, along its axis; nan: there is none, or
+    it has no moves. `tapping`: its taps have moved, so that each needs words of its own.
+    `aside`: how far (mm) it stands from where it shall be, after a tap.
     """
 
     position: Floats
@@ -77,6 +82,9 @@ class Believed:
     feed: float = np.nan
     feed_unit: float = 1.0
     exact: bool = True
+    level: float = np.nan
+    tapping: bool = False
+    aside: float = 0.0
 
     @classmethod
     def at_start(cls, manner: Manner, position: Floats) -> Believed:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gcxform.dialect import INCH
 from gcxform.emit.fields import Feed, Role
 from gcxform.emit.manner import Believed, Task
+from gcxform.emit.tapping import Taps
 from gcxform.modal.lines import fill
 from gcxform.modal.moves import turns_only
 from gcxform.modal.state import CYCLE_OFF
@@ -37,6 +38,8 @@ class Pieces:
               (pieces,) code to be stated, -1 for none
     silent    (pieces,) whether a motion code that moves nothing is left out
     thread    (pieces,) whether it is a move whose code and K stay as they stand
+    tap       (pieces,) whether it is a canned cycle whose ends have moved; `apart`: one of several
+              into which its repeats are taken apart
     feed      (pieces,) `Feed`; `feed_value` is the number to write
     special   (pieces,) whether it stands for all moves of a block that is written as it stands
     event     (pieces,) index into `events`, one of each kind, -1 for none: what a cycle does
@@ -44,8 +47,9 @@ class Pieces:
     repaired  (pieces,) whether something is stated that the source line did not state
     """
 
-    def __init__(self, task: Task, kind: Small, believed: Believed) -> None:
+    def __init__(self, task: Task, kind: Small, believed: Believed, taps: Taps) -> None:
         self.task = task
+        self.taps = taps
         self.kind = kind
         self.believed = believed
         self._lay_out()
@@ -68,14 +72,17 @@ class Pieces:
         self.count = np.bincount(path.block, minlength=live)
         special = np.zeros(live, np.bool_)
         special[path.block[~np.isin(path.form, FREE)]] = True
+        special &= ~self.taps.lines
         drilling = self.task.read.modes.cycle != CYCLE_OFF
-        self.expanded_line = drilling & ~special & self.task.manner.expands
+        self.expanded_line = drilling & ~special & ~self.taps.lines & self.task.manner.expands
         inner = [e for e in path.events if e.within and self._is_expanded(e)]
         self.events = list({(e.what, e.values): e for e in reversed(inner)}.values())
         pieces = np.where(special, 1, np.maximum(self.count, 1))
+        pieces = np.where(self.taps.lines, self.taps.count, pieces)
         self.line = np.repeat(np.arange(live), pieces)
         nth = np.arange(len(self.line)) - (np.cumsum(pieces) - pieces)[self.line]
         self.row = (np.cumsum(self.count) - self.count)[self.line] + nth
+        self.row[self.taps.lines[self.line]] = self.taps.rows
         self.event = np.full(len(self.line), -1)
         if inner:
             self._put_events_between(inner)
@@ -105,6 +112,9 @@ class Pieces:
         role[self.has_row & self.ends] = Role.LAST
         role[self.has_row & self.leads & self.ends] = Role.ONLY
         self.special = special[self.line]
+        cycle = self.task.read.modes.cycle[: len(special)] != CYCLE_OFF
+        self.tap = (self.taps.lines & cycle)[self.line]
+        self.apart = self.tap & (self.taps.count > 1)[self.line]
         if self.task.path.joined:
             role[self._gone()[self.line]] = Role.GONE
         role[self.special] = Role.VERBATIM
@@ -190,7 +200,8 @@ class Pieces:
         changes = moves & (before != self.motion_after)
         self.repaired |= changes & ~explicit
         self.motion = np.where(moves & (explicit | changes), self.motion_after, NOTHING)
-        self.thread = self.has_row & (form == Form.THREAD)
+        self.thread = self.has_row & ((form == Form.THREAD) | (form == Form.SYNCHRONISED))
+        self.thread &= ~self.special
 
     def _feeds(self) -> None:
         """State a feed where the source stated one, where it changes, and always in G93.
@@ -205,10 +216,11 @@ class Pieces:
         inverse = path.blocks.feed_mode == FeedMode.INVERSE_TIME
         unit_here = np.where(self._inch_for_feed(), INCH, 1.0)
         plain = turns_only(path) & (self.kind < Kind.ARC_CW)
-        has_unit = self.of_rows(~plain, True) & ~inverse[self.line]
+        timed = inverse[self.line]
+        has_unit = self.of_rows(~plain, True) & ~timed
         unit = np.where(has_unit, unit_here, 1.0)
         given = modes.feed * np.where(inverse, 1.0, modes.feed_unit)
-        given = given[self.line] / np.where(inverse[self.line], 1.0, unit_here)
+        given = given[self.line] / np.where(timed, 1.0, unit_here)
         need = np.where(word & ~self.other_mode, given, np.nan)
         need = np.where(feeding, self.of_rows(path.feed, np.nan) / unit, need)
         lost = self._feed_lost()
@@ -219,7 +231,7 @@ class Pieces:
         size = np.append(self.believed.feed_unit, self.unit_after[:-1])[: len(need)]
         held = np.where(has_unit, number * size / unit_here, number)
         held = np.where(lost, np.nan, held)
-        changes = feeding & (~_close(held, need) | inverse[self.line])
+        changes = feeding & (~_close(held, need) | timed)
         kept = word & _close(need, modes.feed[self.line]) & ~self._must_have_point()
         self.feed = np.where(
             kept,

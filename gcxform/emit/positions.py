@@ -75,6 +75,12 @@ class Positions:
             held = fill(held, ~stays, self.entry[column])
         self.held[:, column] = held
 
+    def look_again(self) -> None:
+        """Take over what has been changed in `held`."""
+        self._look_back()
+        for column in range(len(self.task.path.axes)):
+            self._choose(column)
+
     def _look_back(self) -> None:
         """Find what the control believes before each row, in the frame of that row."""
         path = self.task.path

@@ -14,6 +14,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+PEELED_AT_MOST = 16
+
 
 class Renderer:
     """Collects rendered templates and puts them in order."""
@@ -118,12 +120,24 @@ class Renderer:
         return matrix[kept].tobytes(), np.count_nonzero(kept, axis=1)
 
 
+def groups_of(ways: Ints) -> list[Ints]:
+    """Return the places of each value, by peeling off one value after another."""
+    groups: list[Ints] = []
+    left = np.arange(len(ways))
+    while len(left) and len(groups) < PEELED_AT_MOST:
+        same = ways[left] == ways[left[0]]
+        groups.append(left[same])
+        left = left[~same]
+    if len(left):
+        order = left[np.argsort(ways[left], kind="stable")]
+        groups += np.split(order, np.flatnonzero(np.diff(ways[order])) + 1)
+    return groups
+
+
 def interleave(
     task: Task, copied: Flags, written: Ints, nth: Ints, text: bytes, lengths: Ints
 ) -> tuple[bytes, Ints, Ints]:
-    """Return a window's new text and, for each of its lines, the line it came from.
-
-    The third value is the order in which the copied lines and then the written ones stand.
+    """Return a window's new text and, for each of its lines, line and move that it came from.
 
     `copied` (live,) says which lines are copied; `written` (k,) are the lines of the pieces whose
     texts, of these lengths, follow one another in `text`. `nth` (k,) says which move of its line
@@ -164,7 +178,8 @@ def _unreached(task: Task) -> Flags:
     if not task.manner.crossing:
         return np.ones(len(shapes), np.bool_)
     percent = task.table.flag("percent", shapes) & task.manner.target.has_percent
-    blank = [not task.table.shapes.shapes[int(shape)].block.items for shape in shapes]
+    blocks = [task.table.shapes.shapes[int(shape)].block for shape in shapes]
+    blank = [not block.items and block.error is None for block in blocks]
     return np.asarray(percent | np.array(blank, np.bool_))
 
 

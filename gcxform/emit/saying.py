@@ -8,7 +8,8 @@ from itertools import pairwise
 from gcxform.dialect import Dialect
 from gcxform.emit.manner import Manner
 from gcxform.modal.codes import Code, MCode
-from gcxform.modal.meaning import FRAMING, Meaning, only_for_cycles
+from gcxform.modal.meaning import FRAMING, Meaning
+from gcxform.modal.sorting import only_for_cycles
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import BLANKS, Item, Mark, Number, Statement, Word
 from gcxform.toolpath.path import Event
@@ -177,6 +178,12 @@ def comment_in(target: type[Dialect], text: str) -> str:
     if target.comments.startswith("("):
         return "(" + inner.replace("(", "[").replace(")", "]") + ")"
     return ";" + inner
+
+
+def slash_of(shape: Shape) -> bytes:
+    """Return the slash with which the blocks of a shape may be skipped, if they have one."""
+    marks = [i for i in shape.block.items if isinstance(i, Mark) and i.kind == "block_delete"]
+    return "".join(shape.block.text[mark.start : mark.end] for mark in marks).encode("latin-1")
 
 
 def own_gap(shape: Shape, usual: bytes) -> bytes:

@@ -15,6 +15,7 @@ from gcxform.emit.fields import (
     Centre,
     Computed,
     Copied,
+    CycleWords,
     Feed,
     FeedWord,
     Field,
@@ -36,12 +37,8 @@ from gcxform.emit.saying import (
     own_gap,
     same_m,
 )
-from gcxform.modal.meaning import (
-    DRILL_WORDS,
-    Meaning,
-    only_for_cycles,
-    program_number_fits,
-)
+from gcxform.modal.meaning import DRILL_WORDS, Meaning
+from gcxform.modal.sorting import only_for_cycles, program_number_fits
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Item, Mark, Number, Statement, Word
 
@@ -77,7 +74,9 @@ class TemplateWriter:
         self.fields: list[Field] = []
         self.key = key
         self.as_it_stands = key.role in (Role.NONE, Role.VERBATIM)
-        self.axes_written = self.as_it_stands
+        self.axes_written = self.as_it_stands or key.tap
+        named = [word.address for word in self.shape.block.words]
+        self.cycle_words = CycleWords("XYZR" if key.tap else "", named, self.gap)
         self.centre_written = not key.arc
         self.stated: set[str] = set()
         if key.role is Role.GONE:
@@ -117,6 +116,7 @@ class TemplateWriter:
     def _rest(self) -> None:
         """Write what the piece needs and no item of the block has stood for."""
         self._repair()
+        self.fields += self.cycle_words.rest(self._gap(b""))
         self._axes(b"")
         self._centre(b"")
         self._feed_at_end()
@@ -200,6 +200,8 @@ class TemplateWriter:
 
     def _motion(self, word: Word, lead: bytes) -> bool:
         """Write what a word of the motion stands for; return whether it is one."""
+        if self.key.tap:
+            return self._cycle_word(word.address, lead)
         if word.address in self.axes:
             self._axes(lead)
         elif self.key.thread:
@@ -210,6 +212,17 @@ class TemplateWriter:
             spline = self.meaning.groups.get("motion") in ("G5", "G5.1")
             return word.address == self.source.turns_address or (spline and word.address in "PQ")
         return True
+
+    def _cycle_word(self, address: str, lead: bytes) -> bool:
+        """Write a word of a canned cycle that has moved; return whether it is no more to be copied.
+
+        The one that counts repeats is left out where they are blocks of their own.
+        """
+        if address in self.cycle_words.waiting:
+            self.fields += self.cycle_words.at(address, self._gap(lead))
+            return True
+        rule = self.source.cycle_rule
+        return self.key.apart and rule is not None and address == rule.repeats
 
     def _said(self, start: int, end: int) -> str:
         """Return a piece of a word, in capitals where the target knows nothing else."""
@@ -272,7 +285,8 @@ class TemplateWriter:
             return False
         # A spline that goes nowhere is left out, and its words are.
         left_out = name in ("G5", "G5.1") and self.key.role is Role.NONE
-        return left_out or not (self.as_it_stands or self.key.thread) or self.key.silent
+        stays = self.as_it_stands or self.key.thread or self.key.tap
+        return left_out or not stays or self.key.silent
 
     def _refuse(self, word: Word, what: str) -> NoReturn:
         raise CannotSayError(

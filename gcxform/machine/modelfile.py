@@ -26,6 +26,7 @@ from gcxform.machine.gridfile import (
 )
 from gcxform.machine.pitchfile import PitchFile, pitch
 from gcxform.machine.sums import Sum, SumFile, checked_sum
+from gcxform.machine.thermalfile import ThermalScrewFile, thermal_screw
 from gcxform.tomltext import Codes, TomlText, convert, did_you_mean, read_toml
 
 FORMAT = 1
@@ -101,6 +102,9 @@ def _sum(document: TomlText, path: Path, formats: Formats, above: tuple[Path, ..
     above = (*above, path.resolve())
     models = []
     for k, name in enumerate(file.models):
+        if "\0" in name:
+            message = f"no file is called {name!r}"
+            raise UsageError.one("GX401", message, document.where("models", k))
         part = path.parent / name
         if part.resolve() in above:
             message = f"the sum {name} is a part of itself"
@@ -121,7 +125,8 @@ def check_version(document: TomlText, what: str) -> None:
 
 def schema() -> dict[str, Any]:
     """Return the JSON Schema of error models."""
-    files = [AxisFunctionsFile, LatticeFile, HeightMapFile, SkewFile, PitchFile, SumFile]
+    functions = [AxisFunctionsFile, PitchFile, ThermalScrewFile]
+    files = [*functions, LatticeFile, HeightMapFile, SkewFile, SumFile]
     kinds, parts = msgspec.json.schema_components(files, ref_template="#/$defs/{name}")
     return {"anyOf": list(kinds), "$defs": parts}
 
@@ -131,5 +136,6 @@ KINDS: dict[str, Callable[[TomlText], ErrorModel]] = {
     "lattice": lattice,
     "height-map": height_map,
     "skew": skew,
+    "thermal-screw": thermal_screw,
     "pitch": pitch,
 }

@@ -93,6 +93,8 @@ class CycleRule:
                     the first one of the program
     stores          a block without X, Y, Z, R, or with no repeats, stores words and drills nothing;
                     otherwise it is refused
+    alone           the setting of the control that must be "drills" for a block to drill which
+                    names no place in the plane; "": it always drills
     one_plane       the plane may not change while a cycle is in force
     repeats         the word that counts the repeats
     initial_level   whether a program starts in G98
@@ -112,6 +114,7 @@ class CycleRule:
     keeps_words: bool = False
     keeps_dwell: bool = False
     stores: bool = False
+    alone: str = ""
     one_plane: bool = True
     repeats: str = "L"
     initial_level: bool = True

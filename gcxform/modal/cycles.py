@@ -42,7 +42,8 @@ class Steps:
 class Cycles:
     """Expands the stretches of one program in order. `mode` is immutable, so a copy is cheap.
 
-    `peck_return` and `peck_clearance` (mm) are for controls in which they are parameters.
+    `zero` is from where levels counted in the last stretch. `peck_return` and `peck_clearance` (mm)
+    are for controls in which they are parameters.
     """
 
     def __init__(
@@ -57,6 +58,7 @@ class Cycles:
             peck_clearance=rule.peck_clearance if peck_clearance is None else peck_clearance,
         )
         self.mode = Mode()
+        self.zero: object = None
 
     def leave(self) -> None:
         """Forget what stays in force: a block has ended cycle mode."""

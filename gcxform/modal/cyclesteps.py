@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from operator import attrgetter
 
 import numpy as np
 
@@ -31,6 +32,9 @@ class Holes:
     dwell      (n,) s
     spindle    (n,) +1 or -1: how the spindle turns before
     line       (n,) of the program, from 0
+
+    A tap has always its move down to R, also where it stands there already: written again with R a
+    little elsewhere, it has as many moves.
     """
 
     call: Ints
@@ -88,7 +92,9 @@ class _Table:
 def rows_of(holes: Holes, rule: CycleRule) -> Rows:
     """Return the moves that drill holes, in their order."""
     table = _Table(rule)
-    approach = holes.rises + 1 + (holes.level != holes.levels[:, Level.CLEARANCE])
+    taps = np.isin(holes.code, list(TAPPING))
+    down = taps | (holes.level != holes.levels[:, Level.CLEARANCE])
+    approach = holes.rises + 1 + down
     pecking = table.between[holes.code] * (holes.pecks - 1)
     count = approach + pecking + table.count[holes.code]
     first = np.cumsum(count) - count
@@ -102,9 +108,9 @@ def rows_of(holes: Holes, rule: CycleRule) -> Rows:
     if len(pecks):
         number = at[pecks] - approach[hole[pecks]]
         _pecks(holes, rule, table, hole[pecks], number, (pecks, end, kind))
-    synchronised = np.isin(holes.code, list(TAPPING))[hole] & (kind == Kind.LINE)
+    synchronised = taps[hole] & (kind == Kind.LINE)
     behind_steps = first + approach + pecking
-    events = tuple(sorted(_events(holes, rule, behind_steps), key=lambda event: event.row))
+    events = tuple(sorted(_events(holes, rule, behind_steps), key=attrgetter("row")))
     return Rows(holes.call[hole], kind, end, synchronised, events)
 
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.modal.meaning import Act
+from gcxform.modal.meaning import OWN_MOVES, Act
 from gcxform.modal.rows import Rows
 from gcxform.modal.tied import probe
 from gcxform.modal.track import Track
-from gcxform.toolpath.path import Form, Kind
+from gcxform.toolpath.path import Form, Kind, Plane
 
 Floats = NDArray[np.float64]
 
@@ -21,6 +21,8 @@ def own_moves(track: Track, line: int) -> Rows | None:
     """Return the moves of a line that has such a code, None if it has none."""
     meaning = track.lines.table.meanings[int(track.lines.shape[line])]
     for act in meaning.acts:
+        if act.name in OWN_MOVES and track.frame.polar:
+            _refuse_polar(track, line, act.code)
         if act.name == "home":
             return _home(track, line, _reference(track, line, act))
         if act.name == "probe":
@@ -28,6 +30,14 @@ def own_moves(track: Track, line: int) -> Rows | None:
         if act.name == "machine":
             return _in_machine(track, line)
     return None
+
+
+def _refuse_polar(track: Track, line: int, code: str) -> None:
+    """Refuse words of the plane's axes, of which controls differ in whether they are polar."""
+    plane = {"XYZ"[k] for k in Plane(int(track.modes.plane[line])).axes[:2]}
+    if plane & set(track.words_on(line)):
+        message = f"{code} in polar words: controls differ in what its words are"
+        track.findings.add(line, "GX213", message, hint="write G15 before")
 
 
 def _reference(track: Track, line: int, act: Act) -> str:

@@ -94,7 +94,7 @@ class Interpreter:
             state.cycles = Cycles(rule, *(_length(control, name) for name in PECKS))
         retract = int(rule is None or rule.initial_level)
         spindle = 0 if self.dialect.spindle_stands else UNKNOWN_SPINDLE
-        state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": spindle}
+        state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": spindle, "behind": 0}
         return state
 
     def _given(self) -> dict[Key, float]:

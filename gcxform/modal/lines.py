@@ -112,7 +112,9 @@ class Lines:
         shape = self.window.shape
         ends = np.zeros(len(shape), np.bool_)
         if self.dialect.stops_at_end:
-            ends |= self.table.flag("ends", shape) & ~self.table.flag("deleted", shape)
+            ends |= self.table.flag("ends", shape)
+            if (self.reading.block_delete or self.dialect.block_delete) != "execute":
+                ends &= ~self.table.flag("deleted", shape)
         percent = np.flatnonzero(self.table.flag("percent", shape))
         for line in percent[max(0, 1 - self.state.percents) :][:1]:
             ends[line] = True
@@ -294,6 +296,18 @@ class Lines:
         if self.live:
             self.state.memory["cycle"] = int(cycle[-1])
         return np.asarray(cycle)
+
+    def behind_cycle(self, cycle: Small) -> Flags:
+        """Return the lines whose motion code was given before a cycle that is over.
+
+        Only of controls on which cycles are of another group than it.
+        """
+        begins: Flags = self.stated("cycle") & (cycle != CYCLE_OFF)
+        if not (begins.any() or self.state.memory["behind"]):
+            return np.zeros(self.live, np.bool_)
+        behind = fill(begins, begins | self.stated("motion"), self.state.memory["behind"])
+        self.state.memory["behind"] = int(behind[-1]) if self.live else 0
+        return np.asarray(behind & (cycle == CYCLE_OFF))
 
     def _tool(self) -> Floats:
         """Return the tool number last programmed on or before each line, -1 for none."""

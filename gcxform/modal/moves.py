@@ -7,7 +7,6 @@ and G53 move in a way of their own (`gcxform/modal/home.py`), and so do canned c
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -23,6 +22,7 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.home import own_moves
 from gcxform.modal.lines import Lines
 from gcxform.modal.rows import Rows
+from gcxform.modal.shifted import Shifted
 from gcxform.modal.splines import read_splines, with_splines
 from gcxform.modal.state import CYCLE_OFF, Modes
 from gcxform.modal.tables import MANY_WORK, NUMBER, of_splines
@@ -51,6 +51,7 @@ class Moves:
         self.track = Track(lines, modes, axes)
         self.drilling = Drilling(self.track)
         self.tied = Tied(self.track)
+        self.shifted: Shifted | None = None
         self.side, self.radius = compensation(lines, modes)
         self.splines = of_splines(modes.motion)
         self.bends = bool(self.splines.any())
@@ -63,16 +64,39 @@ class Moves:
         """Return the moves as a toolpath."""
         moving = self._moving()
         lost = self.lines.loses_position()
-        self._busy_until = np.append(0, np.cumsum(moving | lost | self.track.worded))
-        none = np.empty((0, len(self.axes)))
-        self._nothing = Rows.plain(np.empty(0, np.int64), self.modes.motion[:0], none, 0)
-        parts = [
-            self._stretch(first, last, moving, lost if lost.any() else None)
-            for first, last in self._stretches(moving)
-        ]
-        drilled = iter(self.drilling.rows())
-        rows = [next(drilled) if part is None else part for part in parts]
-        return self._path(Rows.joined(rows, len(self.axes)))
+        self._busy_until = np.append(0, np.cumsum(moving | lost | self.track.worded)).tolist()
+        self._leaving = self._leaves(lost)
+        stretches = self._stretches(moving)
+        if len(stretches) > 1 and not lost.any():
+            self.shifted = Shifted(self.track, moving)
+        losing = lost if lost.any() else None
+        found = [self._stretch(first, last, moving, losing) for first, last in stretches]
+        if self.lines.live in self._leaving:
+            self.track.lose_all(self.lines.live)
+        rows = [part for part in found if part is not None and len(part.line)]
+        if self.shifted is not None:
+            rows.append(self._plain(*self.shifted.rows()))
+        rows += self.drilling.rows()
+        return self._path(Rows.joined(rows or [self._nothing()], len(self.axes)))
+
+    def _nothing(self) -> Rows:
+        """Return no rows at all."""
+        line = np.empty(0, np.int64)
+        return self._plain(line, np.empty((0, len(self.axes))), line)
+
+    def _leaves(self, lost: Flags) -> set[int]:
+        """Return the lines before which positions are lost to an M code beside a move.
+
+        Where an M code may act after the move of its block, what it loses is lost behind it as
+        well. A canned cycle beside one is refused.
+        """
+        if self.dialect.m_first or not lost.any():
+            return set()
+        for line in np.flatnonzero(lost & self.drilling.calls).tolist():
+            message = "a canned cycle beside an M code that may move axes"
+            self.findings.add(line, "GX213", message, hint="write the M code in a block of its own")
+        beside = lost & (self.track.worded | self.lines.flag("own_moves"))
+        return set((np.flatnonzero(beside) + 1).tolist())
 
     # --- which lines move ---
 
@@ -98,13 +122,17 @@ class Moves:
                 "axis words, but no motion code is in force",
                 hint="write G0 or G1 in this block",
             )
+        behind = self.lines.behind_cycle(self.modes.cycle) & (self.modes.motion != Kind.RAPID)
+        for line in np.flatnonzero(behind & moves).tolist():
+            message = (
+                "after a cycle controls differ in whether G0 or the code before it is in force"
+            )
+            self.findings.add(line, "GX209", message, hint="write G0 or G1 in this block")
         for line in np.flatnonzero(centre & ~((arc | self.tied.paced) & ~own)).tolist():
             self.findings.add(line, "GX203", "I, J, K and R belong to arcs, and this is none")
-        for line in np.flatnonzero(centre & arc & self._dwells()).tolist():
-            message = "a dwell and an arc: the control takes some words for both"
-            self.findings.add(line, "GX203", message, hint="write the dwell in a block of its own")
         moves &= self.modes.motion != NUMBER["G80"]
         moves |= centre & arc & ~own
+        self._refuse_lent(moves | self.drilling.calls, arc)
         self.tied.check(moves, own)
         in_machine = self.lines.flag("in_machine") & (self.modes.motion == Kind.LINE)
         feeding = (moves & ~self.tied.paced) | in_machine
@@ -112,12 +140,20 @@ class Moves:
         self._check_feed(feeding, calls)
         return moves
 
-    def _dwells(self) -> Flags:
-        """Return the lines with a dwell that takes a word which arcs take as well."""
-        if self.dialect.turns_address not in self.dialect.dwell:
-            return np.zeros(self.lines.live, np.bool_)
-        dwell = np.array([meaning.dwell for meaning in self.lines.table.meanings], np.bool_)
-        return np.asarray(dwell[self.lines.shape])
+    def _refuse_lent(self, moves: Flags, arc: Flags) -> None:
+        """Refuse words of other codes that the move of their block would take as well."""
+        takes = moves | self.lines.flag("compensates")
+        for line in np.flatnonzero(takes & self.lines.flag("lends")).tolist():
+            meaning = self.lines.table.meanings[int(self.lines.shape[line])]
+            wanted = "D" if meaning.compensates else ""
+            if arc[line]:
+                wanted += "IJKR" + ("PQ" if self.splines[line] else self.dialect.turns_address)
+            rule = self.dialect.cycle_rule
+            if rule is not None and self.modes.cycle[line] != CYCLE_OFF:
+                wanted += "R" + rule.repeats + rule.takes.get(int(self.modes.cycle[line]), "")
+            for address in sorted(meaning.lent.keys() & {*wanted})[:1]:
+                message = f"{address} belongs to {meaning.lent[address]}, and the move takes it too"
+                self.findings.add(line, "GX203", message, hint="write two blocks")
 
     def _check_feed(self, moves: Flags, calls: Flags) -> None:
         """Refuse feed moves without a feed, and blocks in inverse time without a feed word."""
@@ -162,43 +198,50 @@ class Moves:
         """Return the lines that are a tap or a probe."""
         return np.asarray(moving & self.tied.single) if self.tied.any else moving[:0]
 
-    def _stretches(self, moving: Flags) -> Iterator[tuple[int, int]]:
-        """Yield first and last line + 1 of the stretches."""
+    def _stretches(self, moving: Flags) -> list[tuple[int, int]]:
+        """Return first and last line + 1 of the stretches."""
         acting = self._acting()
         own = self.lines.flag("own_moves")[acting]
         drills = self.drilling.borders()
         alone = np.flatnonzero(self._alone(moving))
         self._singles = set(alone.tolist())
         alone = np.concatenate([acting[own], alone])
-        borders = np.concatenate([[0], acting, alone, alone + 1, drills, [self.lines.live]])
-        borders = np.unique(borders).tolist()
+        ends = np.array([0, self.lines.live, *self._leaving], np.int64)
+        borders = np.unique(np.concatenate([acting, alone, alone + 1, drills, ends])).tolist()
         self._acts = set(acting.tolist())
-        if len(borders) == 1:
-            yield 0, 0
-        yield from pairwise(borders)
+        self._resets = set(np.flatnonzero(self._reset).tolist())
+        return list(pairwise(borders)) or [(0, 0)]
 
     def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows | None:
-        """Return the rows of a stretch, None for one of calls: those are made at the end."""
+        """Return the rows of a stretch; None where it has none, or they are made at the end."""
         self._refuse_other_units(first, first + 1)
-        if first < len(self._reset) and self._reset[first]:
+        if first in self._resets:
             self.track.reset_work(first)
+        if first in self._leaving or (first + 1 in self._leaving and first in self._acts):
+            self.track.lose_all(first)
         if first in self._acts:
             self.track.act(first)
             own = own_moves(self.track, first)
             if own is not None:
+                self.drilling.moved()
                 return own
         self._refuse_other_units(first + 1, last)
-        if self.drilling.calls[first:last].any():
-            self.drilling.follow(first, last)
+        if self.drilling.follows(first, last):
             return None
-        self.drilling.leave(first, last)
         if first in self._singles:
             return self.tied.row(first)
         if self._busy_until[last] == self._busy_until[first]:
-            return self._nothing
+            return None
+        if self.shifted is not None and self.shifted.takes(first, last):
+            self.shifted.follow(first, last)
+            return None
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
-        plain = self.tied.plain(rows, ends, len(self.track.frames) - 1)
+        return self._plain(rows, ends, constant(len(self.track.frames) - 1, len(rows), np.int64))
+
+    def _plain(self, line: Ints, ends: Floats, frame: Ints) -> Rows:
+        """Return rows that are one plain move a line, threads and splines among them."""
+        plain = self.tied.plain(line, ends, frame)
         return with_splines(plain) if self.bends else plain
 
     def _refuse_other_units(self, first: int, last: int) -> None:

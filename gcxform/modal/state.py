@@ -75,7 +75,7 @@ class State:
 
     lost        axes, as bits, whose position was lost since the last row
     row_frame   the frame of the last row
-    polar       radius and angle last programmed in G16
+    polar       radius and angle last programmed in G16, in `polar_plane`
     side, radius  cutter compensation in force; `at_side`: that of the last move;
                   `cancelled`: G40 has been in force since
     selected      the T word; `tool`: the tool in the spindle; `stored`: the D word; nan: not known
@@ -94,6 +94,7 @@ class State:
     lost: int = 0
     row_frame: Frame | None = None
     polar: tuple[float, float] = (np.nan, np.nan)
+    polar_plane: int = 0
     side: int = 0
     radius: float = np.nan
     selected: float = np.nan

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import Dialect
-from gcxform.modal.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning, meaning_of
+from gcxform.modal.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning
+from gcxform.modal.sorting import meaning_of
 from gcxform.syntax.shapes import ShapeTable
 
 GROUPS = (
@@ -49,6 +50,7 @@ NUMBER = {
     "G99": 0,
     "G98": 1,
     "M5": 0,
+    "M19": 0,
     "M3": 1,
     "M4": 2,
     "G40": 0,
@@ -80,7 +82,8 @@ def code_of(group: str, number: int) -> str:
 
 
 MANY_WORK = 9
-"""The number of codes that have a P word, so that they name more than one work offset."""
+"""The number of G54.1, whose P names one of many work offsets, and of all codes of that group that
+have no number of their own. Two of them in a row may be two work offsets."""
 
 
 FLAGS = (
@@ -108,6 +111,7 @@ FLAGS = (
     "bars_comp_before",
     "bars_comp_after",
     "compensates",
+    "lends",
 )
 
 
@@ -153,8 +157,10 @@ class MeaningTable:
 
     def _enter(self, index: int, meaning: Meaning) -> None:
         for group, code in meaning.groups.items():
-            if group in COLUMNS and code in NUMBER:
-                self.groups[index, COLUMNS.index(group)] = NUMBER[code]
+            other = MANY_WORK if group == "frame" else None
+            number = NUMBER.get(code, other)
+            if group in COLUMNS and number is not None:
+                self.groups[index, COLUMNS.index(group)] = number
         for address, slot in meaning.slots.items():
             if address.isalpha():
                 self.slots[index, ord(address) - 65] = slot
@@ -183,6 +189,7 @@ class MeaningTable:
             bool(meaning.bars_comp[0]),
             bool(meaning.bars_comp[1]),
             meaning.compensates,
+            bool(meaning.lent),
         )
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:

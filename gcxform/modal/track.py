@@ -12,8 +12,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import INCH
-from gcxform.modal.acts import ACTS, ActError, Asked, is_length
+from gcxform.dialect import INCH, LINEAR
+from gcxform.modal.acts import ACTS
+from gcxform.modal.asking import ActError, Asked
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames import FrameState
 from gcxform.modal.lines import LENGTHS, Lines, fill
@@ -27,6 +28,7 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar", "no-polar"})
+FRAMELESS = frozenset({"change-tool", "set-tool", "user-code", "store-home"})
 LENGTHENED = frozenset({"length", "length-negative", "length-vector", "length-add", "no-length"})
 
 
@@ -94,6 +96,8 @@ class Track:
         before, old = self.state.frames, self.frame
         asked = self._asked(act, line)
         self.state.frames = frames = ACTS[act.name](before, asked)
+        if act.name in FRAMELESS:
+            return
         if act.name == "work" and not before.known:
             self._lose(line, (1 << len(self.axes)) - 1)
         if act.name in LENGTHENED and self.dialect.length_may_move and frames.frame() != old:
@@ -131,7 +135,7 @@ class Track:
         window, first = self.lines.window, int(self.lines.first[line])
         written = {a: float(window.value[first + slot]) for a, slot in act.slots}
         scale = INCH if self.modes.inch[line] else 1.0
-        words = {a: v * scale if is_length(a) else v for a, v in written.items()}
+        words = {a: v * scale if a in LINEAR else v for a, v in written.items()}
         for address, slot in act.slots:
             self.lines.refuse_pointless(line, address, first + slot)
         return Asked(
@@ -161,6 +165,10 @@ class Track:
                 self.state.position[k] = np.nan
         self.breaks.append(Break(line, axes))
 
+    def lose_all(self, line: int) -> None:
+        """Note that from a line on no position is known."""
+        self._lose(line, (1 << len(self.axes)) - 1)
+
     # --- stretches ---
 
     def along(self, first: int, last: int, rows: Ints, lost: Flags | None) -> Floats:
@@ -176,7 +184,7 @@ class Track:
         if lost_here is None and not self._words_until[last] > self._words_until[first]:
             return self.frame.positions(words)
         end = np.array(before)
-        polar = self._polar(here) if self.frame.polar else {}
+        polar = self.polar(here) if self.frame.polar else {}
         for k, axis in enumerate(self.axes):
             if lost_here is None and axis not in polar and self.column(axis) is None:
                 continue
@@ -228,39 +236,48 @@ class Track:
         placed = present & ~incremental
         if lost is not None:
             value = np.where(lost & ~present, np.nan, value)
+            nowhere = incremental & lost & (not self.dialect.m_first)
+            self._refuse_steps(nowhere, axis, here.start)
             placed = placed | (lost & ~incremental)
         if not incremental.any():
             return fill(value, placed, before)
         position = _with_increments(value, placed, incremental, before)
-        for line in np.flatnonzero(incremental & np.isnan(position))[: Findings.enough].tolist():
+        self._refuse_steps(incremental & np.isnan(position), axis, here.start)
+        return position
+
+    def _refuse_steps(self, which: Flags, axis: str, first: int) -> None:
+        """Refuse incremental words of lines, counted from the first, that begin nowhere known."""
+        for line in np.flatnonzero(which)[: Findings.enough].tolist():
             self.findings.add(
-                line + here.start,
+                line + first,
                 "GX207",
                 f"{axis} is incremental, but where {axis} stands is not known",
                 axis,
                 f"begin with an absolute {axis}, or say start = {{ {axis} = ... }} in [input]",
             )
-        return position
 
-    def _polar(self, here: slice) -> dict[str, tuple[Floats, Flags]]:
+    def polar(self, here: slice) -> dict[str, tuple[Floats, Flags]]:
         """Return the words of the plane's axes where radius and angle are programmed."""
         planes = np.unique(self.modes.plane[here])
-        first, second, _ = Plane(int(planes[0])).axes
+        if not np.isnan(self.state.polar).all():
+            planes = np.union1d(planes, self.state.polar_plane)
+        first, second, _ = Plane(int(self.modes.plane[here][0])).axes
         names = "XYZ"[first], "XYZ"[second]
         columns = []
         count = self.modes.plane[here].shape[0]
         any_word = np.zeros(count, np.bool_)
         for k, axis in enumerate(names):
-            word = self.column(axis)
+            word = self.lines.word(axis) if k else self.column(axis)  # an angle has no unit
             value = np.full(count, np.nan) if word is None else word[0][here]
             present = np.zeros(count, np.bool_) if word is None else word[1][here]
             columns.append(fill(np.where(present, value, np.nan), present, self.state.polar[k]))
             any_word |= present
         if count:
             self.state.polar = float(columns[0][-1]), float(columns[1][-1])
+            self.state.polar_plane = int(self.modes.plane[here][-1])
         radius, angle = columns[0], np.deg2rad(columns[1])
         bad = any_word & (np.isnan(radius + angle) | self.modes.incremental[here])
-        bad |= len(planes) > 1
+        bad |= self.worded[here] & (len(planes) > 1)
         for line in np.flatnonzero(bad)[: Findings.enough].tolist():
             message = "in polar words radius and angle must be known, in one plane and in G90"
             self.findings.add(line + here.start, "GX213", message)

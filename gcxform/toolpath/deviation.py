@@ -69,8 +69,8 @@ class _Comparison:
         other = ~self._same(start_of_owner) | unknown | bent
         self.distance[~other] = 0.0
         straight = other & ~owner_arc & ~self.after.is_arc
-        self._ends(np.flatnonzero(straight & ends_only))
-        self._lines(np.flatnonzero(straight & ~ends_only & ~bent), start_of_owner)
+        self._lines(np.flatnonzero(straight & ~unknown & ~bent), start_of_owner)
+        self._ends(np.flatnonzero(straight & ends_only & self.last))
         arcs = np.flatnonzero(other & owner_arc & ~unknown)
         if len(arcs):
             self._arcs(arcs, start_of_owner)
@@ -107,11 +107,14 @@ class _Comparison:
         return np.sqrt(square), angle
 
     def _ends(self, rows: Ints) -> None:
-        """Compare where moves end: rapids, and moves that start at an unknown place."""
+        """Compare where moves end: rapids, and moves that start at an unknown place.
+
+        Where such a move has become several, the ends of all but the last have to be on the way of
+        a rapid; on an unknown way there is none that they could be on.
+        """
         distance, angle = self._between(self.after.end[rows], self.before.end[self.owner[rows]])
-        last = self.last[rows]
-        self.distance[rows] = np.where(last, distance, 0.0)
-        self.angle[rows] = np.where(last, angle, 0.0)
+        self.distance[rows] = distance
+        self.angle[rows] = angle
 
     def _lines(self, rows: Ints, starts: Floats) -> None:
         """Compare lines with the line that owns them: their ends against its points."""

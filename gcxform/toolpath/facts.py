@@ -55,6 +55,28 @@ def inseparable_cycles(path: Toolpath) -> Flags:
     return np.asarray(cycle & np.isin(run, np.unique(run[cycle & tied])))
 
 
+IN_AIR = 0.1
+"""mm; how far the moves between the taps of a pattern may be from where they shall be."""
+
+
+def between_taps(path: Toolpath) -> Flags:
+    """Return the rows (n,) of tapping cycles that no words of their own say where to end.
+
+    Over the hole the tool arrives at a height that an earlier block has settled, and it goes back
+    to one. Where the way out leads past R, it retraces the way in, which has words, up to there.
+    """
+    tied, cycle = path.form == Form.SYNCHRONISED, path.form == Form.CYCLE
+    lines = np.zeros(len(path.blocks.inch), np.bool_)
+    lines[path.block[tied]] = True
+    together = path.block[1:] == path.block[:-1]
+    way_out = np.append(False, tied[1:] & tied[:-1] & together)[: len(path)]
+    to_r = np.append(tied[1:] & together, False)[: len(path)]
+    began = np.empty_like(path.end)
+    began[1:], began[:1] = path.start[:-1], np.nan
+    past = (np.abs(path.end - began)[:, :3] > 1e-7).any(axis=1)
+    return np.asarray(lines[path.block] & ((cycle & ~to_r) | (way_out & past)))
+
+
 def _no_cycles(path: Toolpath) -> bool:
     return not ((path.form == Form.CYCLE) & ~inseparable_cycles(path)).any()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from faults import (
     arcs,
+    calibrating,
     commands,
     computing,
     cutter,
@@ -12,8 +13,10 @@ from faults import (
     passes,
     proof,
     reading,
+    simulating,
     splines,
     tables,
+    thermal,
     tied,
     writing,
 )
@@ -30,7 +33,10 @@ MUTATIONS: tuple[Mutation, ...] = (
     *writing.MUTATIONS,
     *arcs.MUTATIONS,
     *splines.MUTATIONS,
+    *thermal.MUTATIONS,
     *tied.MUTATIONS,
     *tables.MUTATIONS,
     *proof.MUTATIONS,
+    *calibrating.MUTATIONS,
+    *simulating.MUTATIONS,
 )

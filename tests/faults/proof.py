@@ -16,7 +16,7 @@ def _feeds(name: str, old: str) -> Mutation:
 
 
 MUTATIONS = (
-    _verifier("the budget is ignored", "if not off.distance[worst] <= self.budget:"),
+    _verifier("the budget is ignored", "if not distance[worst] <= self.budget:"),
     _verifier("rotary axes are ignored", "if not off.angle[turned] <= self.angle_budget:"),
     _verifier("kinds are ignored", "if wrong.any():"),
     _feeds("feeds are ignored", "if (off & plain).any():"),
@@ -26,6 +26,7 @@ MUTATIONS = (
         "feed modes left behind are ignored",
         "if (mode != read.modes.feed_mode[line]).any():",
     ),
+    _feeds("the pace of a piece is ignored", "if off.any():"),
     _feeds("times are ignored", "if len(wrong):"),
     _verifier(
         "events are ignored",
@@ -46,6 +47,13 @@ MUTATIONS = (
         "gcxform/toolpath/deviation.py",
         "(after.sense[rows] == self.sense)",
         "np.isfinite(self.sense)",
+        VERIFY,
+    ),
+    Mutation(
+        "deviation: what is compared with nothing passes",
+        "gcxform/toolpath/deviation.py",
+        "self.distance = np.full(len(owner), np.inf)",
+        "self.distance = np.zeros(len(owner))",
         VERIFY,
     ),
 )

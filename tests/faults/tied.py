@@ -5,13 +5,65 @@ from __future__ import annotations
 from faults.mutation import PASSES, Mutation
 
 TIED = "tests/properties/test_tied.py"
+TAPPING = "tests/properties/test_tapping.py"
 
 
 def _tied(name: str, old: str, new: str, tests: str = TIED) -> Mutation:
     return Mutation(f"tied: {name}", "gcxform/modal/tied.py", old, new, tests)
 
 
+def _tapping(name: str, old: str, new: str, tests: str = TAPPING) -> Mutation:
+    return Mutation(f"tapping: {name}", "gcxform/emit/tapping.py", old, new, tests)
+
+
 MUTATIONS = (
+    _tapping(
+        "the place is that of the bottom",
+        "(hole.top[place] + hole.bottom[place]) / 2",
+        "hole.bottom[place]",
+        "tests/test_corpus.py::test_case[tied/tapping-moved]",
+    ),
+    _tapping("what leans is not measured", "if off <= self._allowed:", "if off < 1.0:"),
+    _tapping("depths in G91 count from the level", "from_here[normal] = rest", "pass"),
+    _tapping("G98 goes back to R", "max(self.level, rest) if retracts else rest", "rest"),
+    _tapping("the control stands where it shall", "self.positions.held[rows] = standing", "pass"),
+    _tapping(
+        "R rises above the level of the cycle",
+        "return min(top, self.level)",
+        "return top",
+        "tests/test_corpus.py::test_case[tied/tapping-at-r]",
+    ),
+    _tapping(
+        "words in force are relied on",
+        "self.moved |= ",
+        "self.moved = ",
+        "tests/test_corpus.py::test_case[tied/tapping-in-force]",
+    ),
+    _tapping(
+        "feed moves begin where a tap has ended",
+        "self.aside > self._allowed",
+        "self.aside > 1.0",
+        "tests/test_corpus.py::test_case[tied/tapping-then-feed]",
+    ),
+    _tapping(
+        "the level is not carried to the next window",
+        "going_on = 0 if believed.level == believed.level else -1",
+        "going_on = -1",
+        "tests/test_corpus.py::test_windows_make_no_difference[tied/tapping-in-force]",
+    ),
+    _tapping(
+        "mirrored taps are written",
+        "frame.shifts_only and not frame.polar",
+        "not frame.polar",
+        "tests/test_corpus.py::test_case[hazards/tapping-mirrored]",
+    ),
+    Mutation(
+        "the proof leaves R out",
+        "gcxform/toolpath/facts.py",
+        "(cycle & ~to_r) | (way_out & past)",
+        "cycle | tied",
+        "tests/test_tied.py",
+    ),
     _tied("a tap stays down", "track.state.position = start.copy()", "track.state.position = end"),
     _tied("threads in the unit of mm", "word[0][rows.line] * unit", "word[0][rows.line]"),
     _tied("threads without a spindle", "(spindle == 0) |", "(spindle == 9) &"),

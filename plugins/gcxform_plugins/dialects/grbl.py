@@ -5,6 +5,8 @@
 | motion at start | G0 |
 | `/` | is dropped and the block is executed |
 | two codes of a group, a word twice, a word nobody uses | refused |
+| G80 beside a motion code, G49 beside one | refused |
+| G49 beside axis words | does not move: refused |
 | arc centre | incremental only |
 | full circle | at least one plane word must be there |
 | start and end radius | refused beyond 0.5 mm, or beyond 0.005 mm and 0.1 % |
@@ -51,6 +53,8 @@ class Grbl(gx.Dialect):
     }
     initial: ClassVar[Mapping[str, str]] = {**gx.Dialect.initial, "motion": "G0"}
     axis_words_once = True
+    g80_beside_motion = False
+    g49_takes_axes = True
     starts_in_frame = True
     g10_p0_is_active = True
     g10_needs_p = False

@@ -17,12 +17,13 @@ refused. What is not named here is as in `fanuc`.
 | M5 M9 M89, M0 M1 M2 M30 | act after the motion of their block | known |
 | G154, G110 to G129 | more work offsets: as Fanuc's G54.1 | manual |
 | G28 | without axis words every axis goes home at once: refused | known |
-| G52, G92 | Setting 33 decides what they shift: refused unless `[control] g52` is set | manual |
+| G52, G92 | Setting 33: refused unless `[control] g52 = "fanuc"` says that it is FANUC | manual |
 | canned cycles | L counts the holes, L0 stores; I, J, K, and P of G73, G83: refused | known |
+| a cycle without X and Y | Setting 28: refused unless `cycle-without-place = "drills"` | manual |
 | G12 G13 G70 G71 G72 G150, drilling | cycles: refused by name | manual |
 | G31 | as Fanuc's | manual |
 | G47 G35 G36 G37 G136 | engraving and probing: refused by name | manual |
-| G68, G101, G100 | as Fanuc's G68, G51.1, G50.1; G51 is refused | manual |
+| G68, G101, G100 | as Fanuc's G68, G51.1, G50.1; G101 with zeros only; G51 is refused | manual |
 | G107 G112 G113 G234 G253 to G255 G268 G269 | another frame: refused | manual |
 | G103, G187 | look-ahead, smoothness: change no position | manual |
 | M96 M97 M98 M99 M198, G65 | calls and jumps: refused by name | manual |
@@ -100,11 +101,13 @@ class Haas(Fanuc):
         takes={**dict.fromkeys(Fanuc.cycle_rule.takes, "PQL"), 73: "QL", 83: "QL"},
         open_words={**Fanuc.cycle_rule.open_words, 73: "P", 83: "P"},
         repeats="L",
+        alone="cycle-without-place",
     )
     work_names: ClassVar[Mapping[str, str]] = {
         code: f"G154 P{int(code[1:]) - 109}" for code in MORE_OFFSETS
     }
     g52_known = False
+    mirrors_at_zero = True
     words = Fanuc.words + "UVW"
     lower_case = True
     feed_point_required = True

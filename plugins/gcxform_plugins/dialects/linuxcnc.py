@@ -175,6 +175,7 @@ class LinuxCNC(gx.Dialect):
         99: gx.MCode("stop", barrier=v.CALL),
         **{code: USER_CODE for code in range(100, 200)},
     }
+    m_first = True
     axis_words_once = True
     spindle_stands = True
     starts_in_frame = True

@@ -1,4 +1,4 @@
-"""How `volumetric` keeps arcs: one through compensated points, halved until it is near enough."""
+"""How `volumetric` keeps arcs: one through compensated points, cut until it is near enough."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ Flags = NDArray[np.bool_]
 FEWEST, MOST = 8, 256  # points at which a piece is looked at
 AT_ONCE = 200_000  # points looked at together
 HALVINGS = 24
+REFINEMENTS = 3  # a piece is an eighth shorter than it could be, at most
 FLAT = 0.1  # mm; with less between arc and chord, three points say little about the centre
 MARGIN = 0.9  # of the tolerance: what looking at points, and not along the curve, may miss
 LONGEST = 1.9 * np.pi  # rad; rounded, the ends of a longer piece may change places
@@ -37,24 +38,69 @@ class ArcFitter:
         self._turning = (rotary != 0).any(axis=1)
 
     def cuts(self) -> tuple[Ints, Floats]:
-        """Return row and part of the cuts of the arcs."""
+        """Return row and part of the cuts of the arcs.
+
+        Each piece reaches as far as the tolerance lets it, and where pieces of one size hold it as
+        well, as many of these are taken.
+        """
         row = np.flatnonzero(self.path.is_arc)
-        low, high = np.zeros(len(row)), np.ones(len(row))
-        cut_rows, cut_parts = [], []
-        for _ in range(HALVINGS):
-            if not len(row):
-                break
-            far = self._residual(row, low, high) > self.limit
-            far |= self._goes_round(row, low, high)
-            row, low, high = row[far], low[far], high[far]
-            middle = (low + high) / 2
+        row = row[self._too_far(row, np.zeros(len(row)), np.ones(len(row)))]
+        cut_row, cut_part = self._farthest_reaching(row)
+        if not len(row):
+            return cut_row, cut_part
+        pieces = np.bincount(np.searchsorted(row, cut_row), minlength=len(row)) + 1
+        which = np.repeat(np.arange(len(row)), pieces)
+        nth = np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+        low, high = nth / pieces[which], (nth + 1) / pieces[which]
+        even = np.ones(len(row), np.bool_)
+        even[which[self._too_far(row[which], low, high)]] = False
+        own = ~even[np.searchsorted(row, cut_row)]
+        same = even[which] & (nth > 0)
+        cut_row = np.append(cut_row[own], row[which[same]])
+        return cut_row, np.append(cut_part[own], low[same])
+
+    def _farthest_reaching(self, row: Ints) -> tuple[Ints, Floats]:
+        """Return row and part of the cuts of arcs when each piece is as long as it can be."""
+        at, reach = np.zeros(len(row)), np.full(len(row), 0.5)
+        cut_rows, cut_parts = [np.empty(0, np.int64)], [np.empty(0)]
+        while len(row):
+            reach = self._reach(row, at, np.minimum(2 * reach, 1 - at))
+            at = at + reach
+            on = at < 1.0
+            row, at, reach = row[on], at[on], reach[on]
             cut_rows.append(row)
-            cut_parts.append(middle)
-            row = np.concatenate([row, row])
-            low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
-        if not cut_rows:
-            return np.empty(0, np.int64), np.empty(0)
+            cut_parts.append(at)
         return np.concatenate(cut_rows), np.concatenate(cut_parts)
+
+    def _reach(self, row: Ints, at: Floats, most: Floats) -> Floats:
+        """Return how far (part of the arc) pieces that begin at `at` reach, at most `most`."""
+        reach = most.copy()
+        far = np.arange(len(row))
+        for _ in range(HALVINGS):
+            far = far[self._too_far(row[far], at[far], self._stop(at[far], reach[far]))]
+            if not len(far):
+                break
+            reach[far] /= 2
+        step = np.where(reach < most, reach / 2, 0.0)
+        for _ in range(REFINEMENTS):
+            more = np.flatnonzero(step > 0.0)
+            longer = reach[more] + step[more]
+            holds = ~self._too_far(row[more], at[more], self._stop(at[more], longer))
+            reach[more[holds]] = longer[holds]
+            step /= 2
+        return np.where(self._stop(at, reach) == 1.0, 1.0 - at, reach)
+
+    def _stop(self, at: Floats, reach: Floats) -> Floats:
+        """Return where pieces end: at the end of the arc if that is where rounding puts them."""
+        stop = at + reach
+        return np.where(stop > 1.0 - 1e-12, 1.0, stop)
+
+    def _too_far(self, row: Ints, low: Floats, high: Floats) -> Flags:
+        """Return the pieces that an arc cannot stand for."""
+        if not len(row):
+            return np.empty(0, np.bool_)
+        far = self._residual(row, low, high) > self.limit
+        return np.asarray(far | self._goes_round(row, low, high))
 
     def _goes_round(self, row: Ints, low: Floats, high: Floats) -> Flags:
         """Return the pieces of about a turn whose ends are not one point: they would be lost."""

@@ -51,7 +51,9 @@ class Renumber(gx.TextPass):
         if first.address == "N":
             return block.text[: first.start] + new + block.text[first.end :]
         gap = " " if len(words) > 1 and words[1].start > words[0].end else ""
-        return block.text[: first.start] + new + gap + block.text[first.start :]
+        # Before a comment too: LinuxCNC takes a sequence number only at the head of a block.
+        head = next(i for i in block.items if isinstance(i, gx.Word | gx.Comment)).start
+        return block.text[:head] + new + gap + block.text[head:]
 
 
 def _may_jump(word: gx.Word, block: gx.Block) -> bool:

@@ -5,7 +5,7 @@ target p the command solves c + E(c) = p. Between two commands the control goes 
 bends at the nodes of its table, so a line is cut where its command crosses a node, and nowhere else
 unless asked: then the machine is on the line, exactly. With a tolerance, only those cuts stay that
 the tolerance needs. An arc stays an arc where one fitted to the compensated points holds the
-tolerance, and is halved where it does not.
+tolerance, and is cut where it does not.
 """
 
 from __future__ import annotations
@@ -70,6 +70,14 @@ class Volumetric(gx.Pass):
     max_extrapolation: Annotated[
         float, gx.Option("cells by which the table may be extrapolated", above=0.0)
     ] = 1.0
+    time: Annotated[
+        str | None, gx.Option("time (ISO 8601) whose temperatures hold; absent: as the model says")
+    ] = None
+
+    def __post_init__(self) -> None:
+        """Take the model in its state at the time."""
+        if self.time is not None:
+            object.__setattr__(self, "model", self.model.at_time(self.time))
 
     @property
     def promise(self) -> float:
@@ -131,7 +139,7 @@ class Volumetric(gx.Pass):
 
     def _check_frames(self, path: gx.Toolpath, message: str, tools: bool) -> None:
         """Refuse rows whose X, Y, Z count from elsewhere; `tools`: tool lengths matter."""
-        for number in np.unique(path.frame).tolist():
+        for number in np.flatnonzero(np.bincount(path.frame)).tolist():
             origins = path.frames[number].origin[:3]
             named = [name if tools else name.split(" + ")[0] for name in origins]
             if any(name != path.first for name in named):

@@ -1,0 +1,15 @@
+"""From measurements to error models, with the covariance of what is found.
+
+    gcxform/calibrate/csvtext.py        tables: units in the header, places of faults
+    gcxform/calibrate/diagonaldata.py   readings along the body diagonals, and linear tests
+    gcxform/calibrate/diagonalfile.py   the same from CSV files, and back
+    gcxform/calibrate/equations.py      what a reading says about the errors of the axes
+    gcxform/calibrate/solution.py       weighted least squares that knows what it cannot tell
+    gcxform/calibrate/stepdiagonal.py   sequential step diagonal: the nine functions
+    gcxform/calibrate/plaindiagonal.py  four lengths: the squareness
+    gcxform/calibrate/reframe.py        the reference frame of nine functions: end points
+    gcxform/calibrate/words.py          reports and comments for a person
+
+Nothing here prints. What is wrong with a measurement is an InputError, with file, line and column
+where there is one.
+"""

@@ -1,0 +1,164 @@
+"""`gcxform calibrate`: from measurements of a machine to its error model."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+from gcxform.cli import VERBS
+from gcxform.cli.outputs import STDOUT, check_places, destination
+from gcxform.diagnostics import Location, UsageError
+
+_FORMAT = """
+DATA is a table with the stops in the order of the measurement:
+
+\b
+    diagonal, direction, X [mm], Y [mm], Z [mm], reading [mm]
+    ppp,      +,         0,      0,      0,      0.0000
+    ppp,      +,         48,     0,      0,      31.2799
+    ppp,      +,         48,     33,     0,      46.0626
+
+diagonal: the signs of the motions, ppp, npp, pnp and ppn are needed. X, Y, Z: nominal machine
+positions; sequential steps go X, Y, Z in turn, Z, Y, X on the way back. In place of reading there
+may be deviation, reading minus nominal. direction (- on the way back), run, and columns that begin
+with temperature, pressure or humidity are optional. Units: mm, um, nm, m, in.
+
+A linear test has the position of its axis: X [mm], deviation [um].
+
+The model is given in the end-point frame: the error is zero at the low corner, EYX, EZX and EZY end
+at zero, and squareness is in EXY, EXZ and EYZ. With free beams four diagonals tell the squareness,
+the shapes, and of the scales only X^2 sX + Y^2 sY + Z^2 sZ; no model is written then without
+linear tests of two axes. --plain takes the ends of the diagonals alone, and gives the squareness;
+it is blind to scale errors with X^2 sX + Y^2 sY + Z^2 sZ = 0.
+"""
+
+
+@click.group("calibrate", help=VERBS["calibrate"], short_help=VERBS["calibrate"])
+def command() -> None:
+    """Choose the measurement."""
+
+
+@command.command(
+    "diagonal", epilog=_FORMAT, short_help="Body diagonals, step by step: the nine functions."
+)
+@click.option("--plain", is_flag=True, help="The four lengths alone: squareness.")
+@click.option("--linear", metavar="FILE", multiple=True, help="Direct linear tests of an axis.")
+@click.option(
+    "--noise",
+    metavar="LENGTH",
+    default="1 um",
+    show_default=True,
+    help="Standard deviation of one step; with --plain of one length.",
+)
+@click.option(
+    "--linear-noise",
+    metavar="LENGTH",
+    help="Standard deviation of a reading of a linear test.  [default: as --noise]",
+)
+@click.option(
+    "--misalignment",
+    type=click.Choice(["free", "none"]),
+    default="free",
+    show_default=True,
+    help="Whether the beams may be off their diagonals.",
+)
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE",
+    help="Write the model (TOML).  [default: stdout, but none if only --report is given]",
+)
+@click.option("--report", metavar="FILE", help="Write what was found, with covariance (JSON).")
+@click.argument("data", metavar="DATA")
+def diagonal(
+    data: str,
+    plain: bool,
+    linear: tuple[str, ...],
+    noise: str,
+    linear_noise: str | None,
+    misalignment: str,
+    output: str | None,
+    report: str | None,
+) -> None:
+    """Turn readings along the four body diagonals of a volume into an error model.
+
+    Steps of one axis at a time along the diagonals (vector method) give the nine functions with
+    their covariance. Readings that contradict each other are refused: more than 3 times the noise
+    over all, or beams off their diagonals where --misalignment none says that they are not.
+    """
+    check_places({"-o": output, "--report": report}, [data, *linear])
+    sigma = _length(noise, "--noise")
+    reading = None if linear_noise is None else _length(linear_noise, "--linear-noise")
+    if plain and linear:
+        raise UsageError.one("GX728", "--plain and --linear exclude each other")
+    if output is None and report is None:
+        output = STDOUT
+    if plain:
+        model, found = _plain(data, sigma, output is not None)
+    else:
+        free = misalignment == "free"
+        model, found = _steps(data, linear, (sigma, reading, free), output is not None)
+    if output is not None:
+        _write(output, model)
+    if report is not None:
+        _write(report, json.dumps(found, indent=1) + "\n")
+
+
+def _plain(data: str, noise: float, wanted: bool) -> tuple[str, Mapping[str, Any]]:
+    """Return the model, if it is wanted, and the report of a plain test."""
+    from gcxform.calibrate.diagonalfile import read_diagonals
+    from gcxform.calibrate.plaindiagonal import squareness
+    from gcxform.calibrate.words import plain_comments, plain_report
+    from gcxform.machine.modeltext import to_toml
+
+    measured = read_diagonals(_path(data), plain=True)
+    found = squareness(measured.diagonals, noise)
+    files = {"diagonals": measured.file}
+    text = plain_comments(found, files) + to_toml(found.model()) if wanted else ""
+    return text, plain_report(found, files, {measured.file: measured.conditions})
+
+
+def _steps(
+    data: str, linear: tuple[str, ...], said: tuple[float, float | None, bool], wanted: bool
+) -> tuple[str, Mapping[str, Any]]:
+    """Return the model, if it is wanted, and the report of sequential steps."""
+    from gcxform.calibrate.diagonalfile import read_diagonals, read_linear
+    from gcxform.calibrate.stepdiagonal import Assumed, identify
+    from gcxform.calibrate.words import step_comments, step_report
+    from gcxform.machine.modeltext import to_toml
+
+    measured = read_diagonals(_path(data))
+    beside = [read_linear(Path(name), measured.diagonals.volume) for name in linear]
+    tests = [test for file in beside for test in file.tests]
+    found = identify(measured.diagonals, tests, Assumed(*said))
+    files = {"diagonals": measured.file, "linear": [file.file for file in beside]}
+    text = step_comments(found, files) + to_toml(found.model()) if wanted else ""
+    conditions = {file.file: file.conditions for file in beside}
+    conditions[measured.file] = measured.conditions
+    return text, step_report(found, files, conditions)
+
+
+def _path(name: str) -> Path:
+    return Path("/dev/stdin" if name == STDOUT else name)
+
+
+def _length(text: str, option: str) -> float:
+    """Return a length in mm that is above 0. Raises UsageError."""
+    from gcxform.machine.quantities import LENGTH
+
+    try:
+        length = LENGTH.parse(text, bare=True)
+    except ValueError as error:
+        raise UsageError.one("GX708", str(error), Location(option)) from None
+    if not length > 0:
+        raise UsageError.one("GX706", f"{text} is not above 0 mm", Location(option))
+    return length
+
+
+def _write(name: str, text: str) -> None:
+    with destination(name) as put:
+        put(text.encode())

@@ -1,0 +1,50 @@
+"""Options of the command line that are derived from a dataclass of options, as passes have them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from gcxform.diagnostics import Location
+from gcxform.options import Argument, OptionDoc, build, describe
+from gcxform.registry import default_registry
+
+Built = TypeVar("Built")
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def options_of(target: type) -> Callable[[Command], Command]:
+    """Return a decorator that adds an option for each field of a dataclass."""
+
+    def decorate(command: Command) -> Command:
+        for doc in reversed(describe(target)):
+            command = click.option(
+                f"--{doc.name}", metavar=_metavar(doc), required=doc.mandatory, help=_help(doc)
+            )(command)
+        return command
+
+    return decorate
+
+
+def _metavar(doc: OptionDoc) -> str:
+    words = {"error model": "FILE", "three lengths": "X,Y,Z", "whole number": "N"}
+    return words.get(doc.type, "|".join(doc.choices) or doc.type.upper())
+
+
+def _help(doc: OptionDoc) -> str:
+    text = f"{doc.help[:1].upper()}{doc.help[1:]}."
+    return f"{text}  [default: {doc.default}]" if doc.default else text
+
+
+def built(target: type[Built], given: Mapping[str, Any], owner: str) -> Built:
+    """Return the dataclass from what the command line says. Raises UsageError."""
+    raw = {
+        name.replace("_", "-"): Argument(value)
+        for name, value in given.items()
+        if value is not None
+    }
+    formats = default_registry().formats.values()
+    return build(target, raw, Path.cwd(), formats, lambda key: Location(f"--{key}"), owner)

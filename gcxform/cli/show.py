@@ -1,0 +1,92 @@
+"""`gcxform show`: pictures of an error model, or of the errors along the path of a program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import click
+
+from gcxform import plot
+from gcxform.api import Program
+from gcxform.cli import VERBS, options
+from gcxform.cli.asked import Asked, needed_dialect
+from gcxform.cli.described import built, options_of
+from gcxform.cli.outputs import check_places, destination
+from gcxform.cli.programs import opened
+from gcxform.dialect import Dialect
+from gcxform.machine.errors import Outside
+from gcxform.options import Length, ModelFile, Option, Vector
+from gcxform.pipeline import Pipeline
+from gcxform.pipelinefile import parse_chain
+from gcxform.registry import default_registry
+from gcxform.simulate.heat import before_and_after
+
+PASS = "volumetric"
+
+
+@dataclass(frozen=True)
+class ModelOptions:
+    """How the machine of a program is described."""
+
+    model: Annotated[ModelFile | None, Option("error model of the machine that FILE is run on")] = (
+        None
+    )
+    part_origin: Annotated[Vector | None, Option("origin of the program in the machine")] = None
+    table_origin: Annotated[Vector, Option("origin of the measurement")] = (0.0, 0.0, 0.0)
+    outside: Annotated[Outside, Option("what the error is beyond the tables")] = Outside.ERROR
+    tolerance: Annotated[Length, Option("tolerance of the compensation", above=0.0)] = 0.001
+
+
+@click.command("show", help=VERBS["show"], short_help=VERBS["show"])
+@click.option("-o", "--output", metavar="FILE", required=True, help="The picture: SVG or PNG.")
+@options.FROM
+@click.option(
+    "-x",
+    "--chain",
+    metavar="CHAIN",
+    default="absolute",
+    show_default=True,
+    help="Passes before the compensation.",
+)
+@options_of(ModelOptions)
+@options.reading_options
+@options.FILE
+def command(file: str, output: str, dialect: str | None, chain: str, **given: Any) -> None:
+    """Draw FILE: an error model, or with --model a program."""
+    plot.check(output)
+    asked = Asked(**{field.name: given.pop(field.name, None) for field in fields(Asked)})
+    check_places({"-o": output}, [file, given["model"], asked.machine])
+    told = built(ModelOptions, given, "show")
+    if told.model is None:
+        drawn = _model(file)
+    else:
+        kind = default_registry().dialect(needed_dialect(dialect))
+        drawn = _program(file, kind, chain, asked, told)
+    with destination(output) as put:
+        put(plot.rendered(drawn, output))
+
+
+def _model(file: str) -> Any:
+    """Return the picture of an error model."""
+    shown = built(ModelOptions, {"model": file}, "show").model
+    assert shown is not None
+    return plot.model(shown.model, f"{shown.path.name}: {shown.model.kind}")
+
+
+def _program(
+    file: str, dialect: type[Dialect], chain: str, asked: Asked, told: ModelOptions
+) -> Any:
+    """Return the picture of a program on a machine."""
+    first = parse_chain(chain, Path.cwd(), default_registry())
+    compensate: Any = default_registry().pass_(PASS)
+    steps = (*first, compensate(**vars(told)))
+    said = replace(asked, machine=None).reading()
+    pipeline = Pipeline(dialect, dialect, steps, said, asked.loaded_machine)
+    with opened(file) as source:
+        text, name = b"".join(source.windows()), source.name
+    program = Program(text, dialect, pipeline.machine_reading, name)
+    before, after, _ = before_and_after(program, pipeline)
+    assert told.model is not None
+    return plot.heat(before, after, f"{Path(file).name} on {told.model.path.name}")

@@ -1,0 +1,12 @@
+"""Pictures: what instruments print, error models, and errors along a path (extra `plot`).
+
+matplotlib is imported where a picture is drawn, never before.
+"""
+
+from gcxform.plot.canvas import check as check
+from gcxform.plot.canvas import rendered as rendered
+from gcxform.plot.diagrams import circles as circles
+from gcxform.plot.diagrams import diagonals as diagonals
+from gcxform.plot.diagrams import positioning as positioning
+from gcxform.plot.models import model as model
+from gcxform.plot.paths import heat as heat

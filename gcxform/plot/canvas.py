@@ -1,0 +1,122 @@
+"""Figures and files: the style of all pictures, and bytes that are the same on every run."""
+
+from __future__ import annotations
+
+import functools
+import io
+import math
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar, cast
+
+import numpy as np
+
+from gcxform.diagnostics import Location, UsageError
+from gcxform.machine.errors import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Draw = TypeVar("Draw", bound=Callable[..., Any])
+
+KINDS = (".svg", ".png")
+DOTS = 150  # per inch, of PNG
+BEFORE, AFTER, MEAN, GREY = "#b03a2e", "#1f618d", "#1e8449", "#909497"
+STYLE: Any = {
+    "svg.hashsalt": "gcxform",  # names inside the file do not change from run to run
+    "svg.fonttype": "none",  # text stays text
+    "font.size": 8.0,
+    "axes.titlesize": 8.5,
+    "axes.grid": True,
+    "grid.linewidth": 0.4,
+    "lines.linewidth": 0.9,
+    "legend.fontsize": 7.0,
+    "legend.frameon": False,
+    "figure.titlesize": 10.0,
+}
+
+
+def check(file: str) -> None:
+    """Raise UsageError if a picture of this name cannot be drawn here."""
+    if Path(file).suffix.lower() not in KINDS:
+        message = f"{file!r} ends neither in .svg nor in .png"
+        raise UsageError.one("GX737", message, Location("--plot"))
+    if find_spec("matplotlib") is None:
+        raise UsageError.one(
+            "GX736",
+            "pictures are drawn by matplotlib, which is not installed",
+            hint="pip install 'gcxform[plot]'",
+        )
+
+
+def styled(draw: Draw) -> Draw:
+    """Return a function that draws in the style of all pictures."""
+
+    @functools.wraps(draw)
+    def drawn(*args: Any, **options: Any) -> Any:
+        import matplotlib
+
+        with matplotlib.rc_context(STYLE):
+            return draw(*args, **options)
+
+    return cast(Draw, drawn)
+
+
+def figure(width: float, height: float, title: str) -> Figure:
+    """Return an empty figure of a size in inches, under a title."""
+    from matplotlib.figure import Figure
+
+    made = Figure(figsize=(width, height), layout="constrained")
+    made.suptitle(title)
+    return made
+
+
+def rendered(figure: Figure, file: str | None) -> bytes:
+    """Return the bytes of a picture, in the format that the name of the file says."""
+    import matplotlib
+
+    kind = Path(file or "").suffix.lower().lstrip(".")
+    stream = io.BytesIO()
+    with matplotlib.rc_context(STYLE):
+        metadata = {"Date": None} if kind == "svg" else {}
+        figure.savefig(stream, format=kind, dpi=DOTS, metadata=metadata)
+    return stream.getvalue()
+
+
+def nice(value: float) -> float:
+    """Return the least of 1, 2, 5 times a power of ten that is not below a value above 0."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return next((m * power for m in (1.0, 2.0, 5.0) if m * power >= value * (1 - 1e-9)), 10 * power)
+
+
+def empty(axes: Axes, text: str) -> None:
+    """Leave a place of a grid empty but for a word."""
+    axes.set_axis_off()
+    axes.text(0.5, 0.5, text, ha="center", va="center", color=GREY, transform=axes.transAxes)
+
+
+def isometric(points: FloatArray) -> FloatArray:
+    """Return points (..., 3) as they are seen from the front right above, (..., 2)."""
+    right = np.array([1.0, 1.0, 0.0]) / math.sqrt(2.0)
+    up = np.array([-1.0, 1.0, 2.0]) / math.sqrt(6.0)
+    return np.stack([points @ right, points @ up], axis=-1)
+
+
+def triad(axes: Axes, corner: FloatArray, length: float) -> None:
+    """Draw the directions of X, Y and Z, from a point (3,) in mm."""
+    start = isometric(corner)
+    for k, letter in enumerate("XYZ"):
+        way = np.zeros(3)
+        way[k] = length
+        end = isometric(corner + way)
+        axes.update_datalim([tuple(start.tolist()), tuple(end.tolist())])
+        axes.annotate(
+            letter,
+            xy=(float(start[0]), float(start[1])),
+            xytext=(float(end[0]), float(end[1])),
+            arrowprops={"arrowstyle": "<-", "color": GREY},
+            ha="center",
+            va="center",
+        )

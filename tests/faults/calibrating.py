@@ -1,0 +1,237 @@
+"""Faults of calibration by body diagonals, and of the readings that a simulated machine gives."""
+
+from __future__ import annotations
+
+from faults.mutation import Mutation
+
+FIGURES = "tests/test_step_diagonal.py"
+FILES = "tests/test_diagonal_files.py"
+COMMAND = "tests/test_calibrate.py"
+ROUND_TRIP = "tests/properties/test_diagonal.py"
+
+
+def _calibrate(file: str, name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
+    return Mutation(f"diagonal: {name}", f"gcxform/calibrate/{file}.py", old, new, tests)
+
+
+def _simulate(name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
+    return Mutation(f"readings: {name}", "gcxform/simulate/stepdiagonal.py", old, new, tests)
+
+
+MUTATIONS = (
+    # the equations
+    _calibrate(
+        "equations", "a reversed step keeps its sign", "sign * along[direction]", "along[direction]"
+    ),
+    _calibrate(
+        "equations",
+        "cells are counted by time",
+        "if sign < 0:\n                grown",
+        "if sign < -1:\n                grown",
+    ),
+    _calibrate(
+        "equations",
+        "axis and direction are swapped",
+        "column = (3 * axis + direction) * layout.steps",
+        "column = (3 * direction + axis) * layout.steps",
+    ),
+    _calibrate(
+        "equations",
+        "a misaligned beam forgets the sense of a step",
+        "= sign * step * aside",
+        "= step * aside",
+    ),
+    _calibrate("equations", "means count as single readings", "noise / np.sqrt(n)", "noise"),
+    _calibrate(
+        "equations",
+        "a linear test begins at machine zero",
+        "(test.position - volume.low[test.axis])",
+        "test.position",
+        ROUND_TRIP,
+    ),
+    _calibrate(
+        "equations",
+        "a linear test has no constant of its own",
+        "rows[:, layout.errors + 2 * layout.beams + run] = 1.0",
+        "pass",
+        ROUND_TRIP,
+    ),
+    _calibrate(
+        "equations",
+        "scatter is divided by the number of readings",
+        "int((count - 1).sum())",
+        "int(count.sum())",
+    ),
+    # the solution
+    _calibrate(
+        "solution",
+        "the covariance is of whitened directions",
+        "back @ back.T, right",
+        "right[known].T @ right[known], right",
+    ),
+    _calibrate(
+        "solution", "free directions are not seen", "RANK: Final = 1e-9", "RANK: Final = 1e-30"
+    ),
+    _calibrate(
+        "solution",
+        "redundancy counts all readings",
+        "return len(self.residual) - self.rank",
+        "return len(self.residual)",
+    ),
+    _calibrate(
+        "solution",
+        "chi square may be what it is on average",
+        "3.0902 * math.sqrt(part)",
+        "0.0 * math.sqrt(part)",
+    ),
+    # the frame
+    _calibrate(
+        "reframe",
+        "the turn about Z is the other way",
+        "about_z = -slopes[..., 0, 1]",
+        "about_z = slopes[..., 0, 1]",
+    ),
+    _calibrate(
+        "reframe",
+        "the turn about Y is the other way",
+        "about_y = slopes[..., 0, 2]",
+        "about_y = -slopes[..., 0, 2]",
+    ),
+    _calibrate(
+        "reframe",
+        "the turn about X is the other way",
+        "about_x = -slopes[..., 1, 2]",
+        "about_x = slopes[..., 1, 2]",
+    ),
+    _calibrate(
+        "reframe",
+        "removed slopes are not carried over",
+        "    return slopes\n",
+        "    return np.triu(slopes)\n",
+    ),
+    _calibrate(
+        "reframe",
+        "a frame turns about machine zero",
+        "along = function.position - function.position[0]",
+        "along = function.position",
+        ROUND_TRIP,
+    ),
+    _calibrate(
+        "reframe",
+        "the low corner is not zero",
+        "function.values - function.values[0]",
+        "function.values",
+        ROUND_TRIP,
+    ),
+    # what is observable, what is refused
+    _calibrate(
+        "stepdiagonal",
+        "functions that are not determined are given",
+        "if not self.determined.all():",
+        "if not self.determined.any():",
+    ),
+    _calibrate(
+        "stepdiagonal",
+        "beams stay where they were in a turned frame",
+        "angles - volume.diagonal * turned",
+        "angles + volume.diagonal * turned",
+    ),
+    _calibrate(
+        "stepdiagonal",
+        "contradictions are taken",
+        "if not found.redundancy_rms > limit:",
+        "if True:",
+    ),
+    _calibrate(
+        "stepdiagonal", "aligned beams are not questioned", "    if gain > limit:", "    if False:"
+    ),
+    _calibrate(
+        "stepdiagonal",
+        "linear tests are not questioned",
+        "gain > REJECTED**2 * added",
+        "gain > 1e9 * added",
+    ),
+    _calibrate(
+        "stepdiagonal",
+        "the mean scale has equal weights",
+        "square = self.diagonals.volume.travel**2",
+        "square = self.diagonals.volume.travel**0",
+    ),
+    # the plain test
+    _calibrate(
+        "plaindiagonal",
+        "squareness has the sides of another plane",
+        "size / (x * y), size / (x * z)",
+        "size / (x * z), size / (x * y)",
+    ),
+    _calibrate(
+        "plaindiagonal",
+        "the signs of a diagonal are mixed up",
+        "(1.0, x * y, x * z, y * z)",
+        "(1.0, x * y, y * z, x * z)",
+    ),
+    _calibrate(
+        "plaindiagonal",
+        "a way back counts as a way out",
+        "deviation = leg.ahead[1]",
+        "deviation = leg.deviation",
+        f"{ROUND_TRIP}::test_the_squareness_of_any_machine",
+    ),
+    # reports
+    _calibrate("words", "the sign of C0Y is swapped", '("C0Y", -1.0)', '("C0Y", 1.0)', COMMAND),
+    _calibrate("words", "the sign of A0Z is swapped", '("A0Z", -1.0)', '("A0Z", 1.0)', COMMAND),
+    # files
+    _calibrate(
+        "diagonalfile",
+        "readings keep their nominal",
+        "values = values - values[0] - nominal",
+        "values = values - values[0]",
+        FILES,
+    ),
+    _calibrate("csvtext", "inches are millimetres", '"in": 25.4', '"in": 1.0', FILES),
+    _calibrate("diagonaldata", "steps may differ", "if not len(wrong):", "if True:", FILES),
+    _calibrate(
+        "diagonaldata",
+        "volumes may differ",
+        "(np.abs(corner - corners[0]) > TOLERANCE)",
+        "(np.abs(corner - corners[0]) > 1e9)",
+        FILES,
+    ),
+    _calibrate(
+        "diagonaldata",
+        "a diagonal may be missing",
+        "if signs not in lines]",
+        "if signs in ()]",
+        FILES,
+    ),
+    _calibrate(
+        "diagonaldata",
+        "a diagonal may go the other way",
+        "if way * sign * sense <= TOLERANCE:",
+        "if abs(way) <= TOLERANCE:",
+        FILES,
+    ),
+    _calibrate(
+        "diagonaldata",
+        "a way back is a way out",
+        "slice(None) if self.forward else slice(None, None, -1)",
+        "slice(None)",
+    ),
+    # readings
+    _simulate("a step moves the wrong axis", "+ 2 - np.arange(3))", "+ np.arange(3))"),
+    _simulate(
+        "a misaligned beam is too long",
+        "_normalised(ideal + angle @ sideways(signs, size)) - ideal",
+        "2.0 * (angle @ sideways(signs, size))",
+    ),
+    _simulate(
+        "errors do not count from the corner",
+        "(error - error[0]) @ (ideal + aside)",
+        "(error + error[0]) @ (ideal + aside) * 1.001",
+    ),
+    _simulate(
+        "noise does not wander",
+        "np.cumsum(noise * generator.standard_normal(len(stops) - 1))",
+        "noise * generator.standard_normal(len(stops) - 1)",
+    ),
+)

@@ -1,0 +1,118 @@
+"""Faults of virtual tests: standard programs, where the machine is, figures, deviations."""
+
+from __future__ import annotations
+
+from faults.mutation import Mutation
+
+FIGURES = "tests/test_figures.py"
+TESTS = "tests/test_simulate.py"
+PICTURES = "tests/test_pictures.py"
+FOLDER = "gcxform/simulate"
+
+MUTATIONS = (
+    Mutation(
+        "simulate: the machine is off the other way",
+        f"{FOLDER}/positions.py",
+        "return commanded + self.model.error(",
+        "return commanded - self.model.error(",
+        TESTS,
+    ),
+    Mutation(
+        "simulate: the sense of travel is forgotten where an axis stands",
+        f"{FOLDER}/positions.py",
+        "last = np.maximum.accumulate(moved, axis=0)",
+        "last = moved",
+        TESTS,
+    ),
+    Mutation(
+        "simulate: a target is read where its line begins",
+        f"{FOLDER}/positions.py",
+        'side="right") - 1\n        return',
+        'side="left") - 1\n        return',
+        TESTS,
+    ),
+    Mutation(
+        "simulate: the senses of circles are swapped",
+        f"{FOLDER}/programs.py",
+        '{"ccw": "G3", "cw": "G2"}',
+        '{"ccw": "G2", "cw": "G3"}',
+        TESTS,
+    ),
+    Mutation(
+        "simulate: the pivot is the programmed centre",
+        f"{FOLDER}/virtual.py",
+        "[0]\n            paths = {}",
+        "[0] * 0 + self.centre\n            paths = {}",
+        TESTS,
+    ),
+    Mutation(
+        "simulate: runs down are not turned around",
+        f"{FOLDER}/virtual.py",
+        'runs if way == "up" else runs[:, ::-1]',
+        "runs",
+        TESTS,
+    ),
+    Mutation(
+        "simulate: a diagonal of one axis goes the other way",
+        f"{FOLDER}/virtual.py",
+        '[c == "N" for c in name]], [low, high], middle)',
+        '[c == "N" for c in name]], [high, low], middle)',
+        TESTS,
+    ),
+    Mutation(
+        "figures: s with n instead of n - 1",
+        f"{FOLDER}/figures.py",
+        "ddof=1",
+        "ddof=0",
+        FIGURES,
+    ),
+    Mutation(
+        "figures: the reversal error is left out of R",
+        f"{FOLDER}/figures.py",
+        "(up + down) / 2 + np.abs(self.reversal)",
+        "(up + down) / 2",
+        FIGURES,
+    ),
+    Mutation(
+        "figures: A up to the lower limits only",
+        f"{FOLDER}/figures.py",
+        "float(high_up.max() - low_up.min())",
+        "float(low_up.max() - low_up.min())",
+        FIGURES,
+    ),
+    Mutation(
+        "circles: G about the mean of the points",
+        f"{FOLDER}/circles.py",
+        "centre = centre + step[:2]",
+        "centre = centre + 0.5 * step[:2]",
+        FIGURES,
+    ),
+    Mutation(
+        "circles: G(b) of one sense",
+        f"{FOLDER}/circles.py",
+        "return np.vstack([self.cw, self.ccw])",
+        "return np.vstack([self.cw, self.cw])",
+        FIGURES,
+    ),
+    Mutation(
+        "show: squareness without the other straightness",
+        "gcxform/plot/models.py",
+        "sign * (_slope(found[one]) + _slope(found[other]))",
+        "sign * _slope(found[one])",
+        PICTURES,
+    ),
+    Mutation(
+        "show: moves of a cycle are taken for one another",
+        f"{FOLDER}/heat.py",
+        "far <= far.min() + NEAR",
+        "far >= far.min() + NEAR",
+        PICTURES,
+    ),
+    Mutation(
+        "show: the path as commanded, without the machine's error",
+        f"{FOLDER}/heat.py",
+        "bare = pipeline.path_passes[-1].undo(bare, context)",
+        "bare = bare",
+        PICTURES,
+    ),
+)
