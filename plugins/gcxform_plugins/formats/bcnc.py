@@ -41,7 +41,8 @@ class BcncProbe(gx.ErrorFormat):
             where = rows[-1].where() if rows else gx.Location(str(path))
             message = "the file ends before its points: it has X, Y, Z and feed, and points"
             raise gx.UsageError.one("GX417", message, where)
-        x, y = (_limits(row, letter) for row, letter in zip(rows, "XY", strict=False))
+        most = len(rows) - 3
+        x, y = (_limits(row, letter, most) for row, letter in zip(rows, "XY", strict=False))
         rows[2].numbers(3)
         if found := [f for row in rows[3:] for f in gx.number_findings(row, 3)]:
             raise gx.UsageError(tuple(found))
@@ -70,11 +71,12 @@ def _text(value: float) -> str:
     return gx.decimal(value, 10)
 
 
-def _limits(row: gx.TextRow, letter: str) -> heightpoints.Floats:
+def _limits(row: gx.TextRow, letter: str, most: int) -> heightpoints.Floats:
     """Return the positions of the grid: the first, the last, and how many there are."""
     low, high, count = row.numbers(3)
-    if not count >= 2 or count != int(count):
-        raise row.refuse("GX417", f"{row.word(2)} is not a number of positions on {letter}", 2)
+    if not 2 <= count <= most or count != int(count):
+        message = f"{row.word(2)} is not a number of positions on {letter} for {most} points"
+        raise row.refuse("GX417", message, 2)
     if not low < high:
         raise row.refuse("GX408", f"{letter} does not rise from {low:g} to {high:g}", 1)
     return np.linspace(low, high, int(count))

@@ -13,6 +13,7 @@ import numpy as np
 import gcxform as gx
 from gcxform_plugins.tables import heightpoints
 
+POINTS_AT_MOST = 10_000  # on an axis: a slip in a count must not ask for all memory
 SAVED = r"#\*#"  # how Klipper marks the lines that it saves itself
 WORDS = rf"(?<!\S){SAVED}|\[[^\]]*\]|[^\s=:,\[\]]+|[=:]"
 Profile = Annotated[str, gx.Option("name of the profile, where the file has several")]
@@ -184,7 +185,7 @@ def _positions(section: _Section, letter: str) -> heightpoints.Floats:
     low, high = (section.number(f"{end}_{letter}") for end in ("min", "max"))
     count = section.number(f"{letter}_count")
     row = section.keys[f"{letter}_count"]
-    if not count >= 2 or count != int(count):
+    if not 2 <= count <= POINTS_AT_MOST or count != int(count):
         raise row.refuse("GX417", f"{row.word(2)} is not a number of points", 2)
     if not low < high:
         row = section.keys[f"max_{letter}"]

@@ -98,18 +98,13 @@ class Table:
         if not step > 0 or not low < high:
             message = f"there are no steps of {step:g} from {low:g} to {high:g}"
             raise self.rows["_STEP"].refuse("GX408", message, 0)
-        last = (high - low) / step
+        last = min((high - low) / step, 1e9)
         if abs(last - round(last)) > 1e-6:
             message = f"{step:g} does not go into {low:g} to {high:g} a whole number of times"
             raise self.rows["_STEP"].refuse("GX483", message, 0)
         count = round(last) + 1
-        for k in range(count):
-            if k not in self.values:
-                raise self.rows["_STEP"].refuse(
-                    "GX483", f"the table has no value {k} of {count}", 0
-                )
-        if len(self.values) > count:
-            message = f"the table has {len(self.values)} values for {count} positions"
+        if set(self.values) != set(range(min(count, len(self.values) + 1))):
+            message = f"the table has not one value for each of {count} positions"
             raise self.rows["_STEP"].refuse("GX483", message, 0)
         positions: Floats = low + step * np.arange(count, dtype=np.float64)
         return positions, np.array([self.values[k] for k in range(count)])
