@@ -396,6 +396,35 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "The files of a sum name each other, were measured at different points of the tool, or "
         "have no travel in common.",
     ),
+    "GX425": (
+        "The thermal error is above its limit",
+        "Somewhere along the travel the axis is farther off than `limit`. It is never cut off: "
+        "half a compensation is a wrong program. Let the machine cool down, look for a wrong "
+        "sensor, or raise `limit` if the machine really is so far off.",
+    ),
+    "GX426": (
+        "No state of the machine for this time",
+        "The readings have no row at or shortly before the time that is asked for, the time is "
+        "written with an offset from UTC and the readings are not, or the model has no "
+        "temperatures at all. `max-age` is how old (s) the readings may be.",
+    ),
+    "GX427": (
+        "A sensor without a usable reading",
+        "A sensor is not in the file of readings, or has no reading at the time that is used, or "
+        "one outside of `sensor-range`. A guess would move the tool, so nothing is put in its "
+        "place: choose another time, or leave the sensor out of the model.",
+    ),
+    "GX428": (
+        "The sensors do not reach along the travel",
+        "The error at a place is the growth of the rod up to there, so the temperature has to be "
+        "known along all of it. Name the nearest sensor a second time at the end of the rod if it "
+        "is as warm there; otherwise the travel is shorter.",
+    ),
+    "GX429": (
+        "A thermal model that contradicts itself",
+        "A number is out of its range: stiffness, expansion and ages are above 0, and ranges "
+        "ascend. Or an axis has not just one of a screw and a scale.",
+    ),
     "GX431": (
         "The limits of an axis do not ascend",
         "`limits` is the lower end of the travel and then the upper one, in mm or degrees. "

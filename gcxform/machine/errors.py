@@ -38,6 +38,28 @@ class Outside(enum.StrEnum):
     ZERO = "zero"
 
 
+@dataclass(frozen=True)
+class State:
+    """The temperatures of an axis at a time, and what they do to it.
+
+    axis          letter
+    time          ISO 8601, when the sensors were read
+    sensors       names, along the axis
+    temperatures  degC
+    travel        mm
+    largest       mm, largest error along the travel
+    drift         mm per K: how much the error between the ends grows if all gets warmer by 1 K
+    """
+
+    axis: str
+    time: str
+    sensors: tuple[str, ...]
+    temperatures: tuple[float, ...]
+    travel: tuple[float, float]
+    largest: float
+    drift: float
+
+
 class ErrorModel(ABC):
     """A volumetric error field E(c) over machine coordinates c, both in mm."""
 
@@ -108,6 +130,15 @@ class ErrorModel(ABC):
     def backlash(self) -> BoolArray:
         """The axes (3,) whose error depends on the direction of travel."""
         return np.zeros(3, np.bool_)
+
+    @property
+    def states(self) -> tuple[State, ...]:
+        """The states of the machine that the model holds for; none if it always holds."""
+        return ()
+
+    def at_time(self, time: str) -> ErrorModel:
+        """Return the model in its state at a time (ISO 8601). Raises UsageError."""
+        return self
 
     @abstractmethod
     def range_of(self, axis_index: int) -> tuple[float, float]:

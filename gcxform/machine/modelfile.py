@@ -25,6 +25,7 @@ from gcxform.machine.gridfile import (
     skew,
 )
 from gcxform.machine.sums import Sum, SumFile, checked_sum
+from gcxform.machine.thermalfile import ThermalScrewFile, thermal_screw
 from gcxform.tomltext import Codes, TomlText, convert, did_you_mean, read_toml
 
 FORMAT = 1
@@ -114,7 +115,7 @@ def check_version(document: TomlText, what: str) -> None:
 
 def schema() -> dict[str, Any]:
     """Return the JSON Schema of error models."""
-    files = [AxisFunctionsFile, LatticeFile, HeightMapFile, SkewFile, SumFile]
+    files = [AxisFunctionsFile, LatticeFile, HeightMapFile, SkewFile, ThermalScrewFile, SumFile]
     kinds, parts = msgspec.json.schema_components(files, ref_template="#/$defs/{name}")
     return {"anyOf": list(kinds), "$defs": parts}
 
@@ -124,4 +125,5 @@ KINDS: dict[str, Callable[[TomlText], ErrorModel]] = {
     "lattice": lattice,
     "height-map": height_map,
     "skew": skew,
+    "thermal-screw": thermal_screw,
 }

@@ -82,7 +82,7 @@ def _linear(model: Linear) -> list[str]:
 def fingerprint(part: Any) -> bytes:
     """Return bytes that are the same for the same model, whatever files it came from."""
     if dataclasses.is_dataclass(part):
-        values = [getattr(part, f.name) for f in dataclasses.fields(part)]
+        values = [getattr(part, f.name) for f in dataclasses.fields(part) if f.compare]
         return type(part).__name__.encode() + b"(" + b",".join(map(fingerprint, values)) + b")"
     if isinstance(part, tuple):
         return b"(" + b",".join(map(fingerprint, part)) + b")"

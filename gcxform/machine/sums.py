@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 
 from gcxform.diagnostics import UsageError
-from gcxform.machine.errors import BoolArray, ErrorModel, FloatArray, Outside
+from gcxform.machine.errors import BoolArray, ErrorModel, FloatArray, Outside, State
 from gcxform.tomltext import TomlText
 
 
@@ -56,6 +56,15 @@ class Sum(ErrorModel):
     def backlash(self) -> BoolArray:
         """The axes (3,) with an error that depends on the direction of travel in a model."""
         return np.asarray(np.any([model.backlash for model in self.models], axis=0))
+
+    @property
+    def states(self) -> tuple[State, ...]:
+        """The states of all models."""
+        return tuple(state for model in self.models for state in model.states)
+
+    def at_time(self, time: str) -> Sum:
+        """Return the sum of the models at a time."""
+        return Sum(tuple(model.at_time(time) for model in self.models))
 
     @property
     def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:

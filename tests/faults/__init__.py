@@ -15,6 +15,7 @@ from faults import (
     reading,
     simulating,
     splines,
+    thermal,
     tied,
     writing,
 )
@@ -31,6 +32,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     *writing.MUTATIONS,
     *arcs.MUTATIONS,
     *splines.MUTATIONS,
+    *thermal.MUTATIONS,
     *tied.MUTATIONS,
     *proof.MUTATIONS,
     *calibrating.MUTATIONS,

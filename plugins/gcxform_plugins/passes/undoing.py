@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+APART = 1e-9  # of a move; two cuts nearer to each other are one
 STILL = 1e-9  # mm; an axis that moves by less stays where it is
 UNDO_SLACK = 2e-6  # mm; how far pieces of an undone arc are from the curve they stand for
 NO_WAY = 1e-12  # of a row
@@ -188,3 +189,11 @@ class Machine:
         table = point + self.place.offset_of(rows[arcs])
         errors[arcs] = self.step.error(table, self.place.tool_of(rows[arcs]))
         return errors
+
+
+def _apart(rows: Ints, part: Floats) -> tuple[Ints, Floats]:
+    """Return the ends of pieces without those that would leave nothing between two of them."""
+    new = np.append(True, rows[1:] != rows[:-1])
+    before = np.where(new, 0.0, np.append(0.0, part[:-1]))
+    keep = (part == 1.0) | ((part - before > APART) & (part < 1.0 - APART))
+    return rows[keep], part[keep]

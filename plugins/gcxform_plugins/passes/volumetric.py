@@ -70,6 +70,14 @@ class Volumetric(gx.Pass):
     max_extrapolation: Annotated[
         float, gx.Option("cells by which the table may be extrapolated", above=0.0)
     ] = 1.0
+    time: Annotated[
+        str | None, gx.Option("time (ISO 8601) whose temperatures hold; absent: as the model says")
+    ] = None
+
+    def __post_init__(self) -> None:
+        """Take the model in its state at the time."""
+        if self.time is not None:
+            object.__setattr__(self, "model", self.model.at_time(self.time))
 
     @property
     def promise(self) -> float:
@@ -127,7 +135,7 @@ class Volumetric(gx.Pass):
 
     def _check_frames(self, path: gx.Toolpath, message: str, tools: bool) -> None:
         """Refuse rows whose X, Y, Z count from elsewhere; `tools`: tool lengths matter."""
-        for number in np.unique(path.frame).tolist():
+        for number in np.flatnonzero(np.bincount(path.frame)).tolist():
             origins = path.frames[number].origin[:3]
             named = [name if tools else name.split(" + ")[0] for name in origins]
             if any(name != path.first for name in named):
