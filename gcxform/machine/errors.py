@@ -144,6 +144,14 @@ class ErrorModel(ABC):
     def range_of(self, axis_index: int) -> tuple[float, float]:
         """Return the lowest and highest position in mm of axis 0, 1 or 2; infinite if unbounded."""
 
+    def extended(self, axis_index: int, cells: float) -> tuple[float, float]:
+        """Return the range of an axis in mm, wider by a number of its first and last cells."""
+        low, high = self.range_of(axis_index)
+        nodes = self.nodes[axis_index]
+        if len(nodes) < 2 or not cells:
+            return low, high
+        return low - cells * float(nodes[1] - nodes[0]), high + cells * float(nodes[-1] - nodes[-2])
+
     def outside(self, position: FloatArray) -> BoolArray:
         """Return (n, 3): which coordinates (mm) lie beyond the table by more than `BORDER`.
 

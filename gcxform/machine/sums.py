@@ -91,6 +91,11 @@ class Sum(ErrorModel):
         ranges = [model.range_of(axis_index) for model in self.models]
         return max(low for low, _ in ranges), min(high for _, high in ranges)
 
+    def extended(self, axis_index: int, cells: float) -> tuple[float, float]:
+        """Return what all models have in common, each wider by cells of its own."""
+        ranges = [model.extended(axis_index, cells) for model in self.models]
+        return max(low for low, _ in ranges), min(high for _, high in ranges)
+
 
 class SumFile(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     """An error model of the kind `sum`: the files of models that are added."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform_plugins.passes.placing import Place
+from gcxform_plugins.passes.ranges import check_inside
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.volumetric import Volumetric
@@ -52,6 +53,9 @@ class Machine:
     def run(self) -> gx.Toolpath:
         """Return the path of the machine."""
         path = self.path
+        said = (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
+        near = self.step.max_correction  # the table may end between a target and its command
+        check_inside(self.step, path, self.offset, np.flatnonzero(~said), near)
         rows, part = self._crossings()
         whole = np.arange(len(path))
         counts = np.ones(len(path), np.int64)
