@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from gcxform.machine.functions import faults as faults
     from gcxform.machine.lattice import Lattice as Lattice
     from gcxform.machine.linear import Linear as Linear
+    from gcxform.machine.presets import Kinematics as Kinematics
     from gcxform.machine.rigid import RigidBody as RigidBody
     from gcxform.machine.sums import Sum as Sum
     from gcxform.modal.codes import Code as Code
@@ -110,6 +111,7 @@ _HOMES = {
     "machine.functions": "AxisFunction AxisFunctions Fault faults",
     "machine.lattice": "Lattice",
     "machine.linear": "Linear",
+    "machine.presets": "Kinematics",
     "machine.rigid": "RigidBody",
     "machine.sums": "Sum",
     "tomltext": "did_you_mean read_text",

@@ -17,7 +17,7 @@ from simulate_kit import EXAMPLE, file_of, functions
 
 import gcxform as gx
 from gcxform import plot
-from gcxform.machine.machine import load_machine
+from gcxform.machine.machinefile import load_machine
 from gcxform.machine.modelfile import load_model
 from gcxform.plot import canvas
 from gcxform.plot.models import curves, squareness

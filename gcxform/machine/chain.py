@@ -44,7 +44,7 @@ class Rotary:
     def turn(self, points: FloatArray, degrees: FloatArray) -> FloatArray:
         """Return points (..., 3) as the axis carries them when it is commanded to angles (...)."""
         point = np.array(self.point)
-        return turned(points - point, self.direction, self.sign * degrees) + point
+        return np.asarray(turned(points - point, self.direction, self.sign * degrees) + point)
 
     def swing(self, vectors: FloatArray, degrees: FloatArray) -> FloatArray:
         """Return vectors (..., 3) as the axis carries them."""

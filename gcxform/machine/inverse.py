@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import UsageError
-from gcxform.machine.chain import SPINDLE, Chain, Rotary, Triple, turned
+from gcxform.machine.chain import EVERYWHERE, SPINDLE, Chain, Rotary, Triple, turned
 from gcxform.machine.errors import FloatArray
 
 TOLERANCE = 1e-9  # degrees; a tip of a tool of 100 mm is then off by 2e-9 mm
@@ -80,9 +80,7 @@ class Poses:
     attitudes: Attitudes
 
 
-def inverse(
-    chain: Chain, tip: FloatArray, axis: FloatArray, tolerance: float = TOLERANCE
-) -> Poses:
+def inverse(chain: Chain, tip: FloatArray, axis: FloatArray, tolerance: float = TOLERANCE) -> Poses:
     """Return all positions that bring the tip to points (n, 3) with tool axes (n, 3).
 
     Points and vectors are in the frame of the workpiece. Candidates are the branches, each with all
@@ -104,16 +102,14 @@ def turns(chain: Chain, angle: FloatArray) -> tuple[FloatArray, Bools]:
     An axis without limits may be a full turn away from what is returned, to either side.
     """
     count = [_full_turns(axis) for axis in chain.axes]
-    steps = TURN * np.array([*itertools.product(*map(range, count))]).reshape(-1, len(count))
-    low, high = np.array([axis.limits or (-math.inf, math.inf) for axis in chain.axes]).reshape(
-        -1, 2
-    ).T
-    bounded = np.isfinite(low)
-    behind = np.where(bounded, low - SLACK - angle, 0.0)
-    lowest = angle + TURN * np.ceil(behind / TURN)
-    all_of_them = (lowest[:, :, None, :] + steps).reshape(len(angle), -1, len(count))
-    allowed = (all_of_them <= high + SLACK).all(axis=-1)
-    return np.where(bounded, np.maximum(all_of_them, low), all_of_them), allowed
+    steps = TURN * np.array([*itertools.product(*map(range, count))], np.float64)
+    spans = [axis.limits or EVERYWHERE for axis in chain.axes]
+    low, high = np.array(spans).reshape(len(spans), 2).T
+    lowest = np.where(np.isfinite(low), low - SLACK, angle)
+    first = angle + TURN * np.ceil((lowest - angle) / TURN)
+    found = (first[:, :, None, :] + steps).reshape(len(angle), -1 if count else 1, len(count))
+    allowed = np.asarray((found <= high + SLACK).all(axis=-1))
+    return np.where(allowed[..., None], np.clip(found, low, high), found), allowed
 
 
 def _full_turns(axis: Rotary) -> int:
@@ -152,7 +148,7 @@ def attitudes(chain: Chain, axis: FloatArray, tolerance: float = TOLERANCE) -> A
         angle, miss, border = _by_two(loop[0], loop[1], unit, tilt)
     else:
         angle, miss, border = _by_one(loop, unit, tilt)
-    pole = np.sin(tilt) <= math.radians(TOLERANCE)
+    pole = (np.sin(tilt) <= math.radians(TOLERANCE)) & (free is not None)
     if free is not None:
         low, high = chain.axes[free].limits or (0.0, 0.0)
         angle[pole, :, free] = min(max(0.0, low), high)
