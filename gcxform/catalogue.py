@@ -461,6 +461,12 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "the next on the way from the workpiece to the tool, or to the tool itself. For other "
         "machines programs have to give the angles.",
     ),
+    "GX454": (
+        "Parameters of a control that are not taken over",
+        "The kinematics of LinuxCNC are read from the `setp` lines of a HAL file, and those of "
+        "FANUC from the parameters 19666 and 19680 to 19714. Where more decides where the axes "
+        "are, write the machine file by hand, and try it: `gcxform machine jog`.",
+    ),
     "GX470": (
         "Not a table of measurements",
         "A file of measurements has a header that names its columns, with a unit in brackets where "

@@ -27,6 +27,7 @@ VERBS: Final = {
     "resume": "Print the blocks that make a restart at a line safe.",
     "calibrate": "Turn measurements of a machine into its error model.",
     "simulate": "Test a machine with known errors, before and after compensation.",
+    "machine": "Show the rotary axes of a machine, or take them over from a control.",
     "show": "Draw an error model, or the error along the path of a program.",
     "list": "List what is installed, or the options of one thing.",
     "explain": "Explain a diagnostic code, or what a block does.",
