@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from gcxform.machine.linear import Linear as Linear
     from gcxform.machine.pitch import PitchTable as PitchTable
     from gcxform.machine.pitch import PitchTables as PitchTables
+    from gcxform.machine.presets import Kinematics as Kinematics
     from gcxform.machine.rigid import RigidBody as RigidBody
     from gcxform.machine.sums import Sum as Sum
     from gcxform.machine.texttables import TextRow as TextRow
@@ -125,6 +126,7 @@ _HOMES = {
     "machine.functions": "AxisFunction AxisFunctions Fault faults",
     "machine.lattice": "Lattice",
     "machine.linear": "Linear",
+    "machine.presets": "Kinematics",
     "machine.rigid": "RigidBody",
     "machine.pitch": "PitchTable PitchTables",
     "machine.sums": "Sum",

@@ -467,6 +467,35 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "number each: P, X, Y, Z, D; I, J and Q are passed over, and offsets of other axes have to "
         "be 0. What follows a semicolon is a comment.",
     ),
+    "GX450": (
+        "Unknown kinematics",
+        "A machine file may name the kind of its kinematics, `gcxform list kinematics` lists them. "
+        "A machine of no kind is described without: by `table`, `head` and its axes.",
+    ),
+    "GX451": (
+        "A machine file contradicts its kinematics",
+        "`kinematics` says which rotary axes there are, on which side, and about which way they "
+        "point. The file may give calibrated directions, signs, points and limits; other axes make "
+        "another machine. Name another kind, or describe the machine without one.",
+    ),
+    "GX452": (
+        "An axis cannot be followed",
+        "For positions of the tool on the workpiece every rotary axis stands in `table` or `head` "
+        "and has a point on its line; X, Y and Z run along the machine's coordinates, and U, V and "
+        "W stand still. Squareness of linear axes belongs into the error model.",
+    ),
+    "GX453": (
+        "These axes do not give the tool axis angles",
+        "Angles are found for machines with up to two rotary axes, none of which is parallel to "
+        "the next on the way from the workpiece to the tool, or to the tool itself. For other "
+        "machines programs have to give the angles.",
+    ),
+    "GX454": (
+        "Parameters of a control that are not taken over",
+        "The kinematics of LinuxCNC are read from the `setp` lines of a HAL file, and those of "
+        "FANUC from the parameters 19666 and 19680 to 19714. Where more decides where the axes "
+        "are, write the machine file by hand, and try it: `gcxform machine jog`.",
+    ),
     "GX470": (
         "Not a table of measurements",
         "A file of measurements has a header that names its columns, with a unit in brackets where "

@@ -232,7 +232,8 @@ def test_importing_the_registry_imports_no_plugin() -> None:
 
 
 def test_every_kind_has_an_origin(install: Install) -> None:
-    source = HEAD + "def gcxform_kinematics(): return [type('Hexapod', (), {'name': 'hexapod'})]"
+    kind = "type('Hexapod', (gx.Kinematics,), {'name': 'hexapod'})"
+    source = HEAD + f"def gcxform_kinematics(): return [{kind}]"
     install("acme", source)
     registry = Registry.load()
     assert registry.origin("kinematics", "hexapod") == "acme 1.0"

@@ -77,3 +77,31 @@ def gcxform_error_formats() -> list[type[gx.ErrorFormat]]:
         SiemensEec,
         Xyz,
     ]
+
+
+@gx.hookimpl
+def gcxform_kinematics() -> list[type[gx.Kinematics]]:
+    """Return the kinds of machines that files can name."""
+    from gcxform_plugins.kinematics.forks import CaFork, CbFork
+    from gcxform_plugins.kinematics.mixed import ATableBHead, CTableAHead, CTableBHead
+    from gcxform_plugins.kinematics.nutating import ATableNutatingHead, NutatingHead, NutatingTable
+    from gcxform_plugins.kinematics.single import ATable, BTable, CTable
+    from gcxform_plugins.kinematics.trunnions import AbTrunnion, AcTrunnion, BaTrunnion, BcTrunnion
+
+    return [
+        AcTrunnion,
+        BcTrunnion,
+        AbTrunnion,
+        BaTrunnion,
+        CaFork,
+        CbFork,
+        CTableBHead,
+        CTableAHead,
+        ATableBHead,
+        NutatingHead,
+        NutatingTable,
+        ATableNutatingHead,
+        ATable,
+        BTable,
+        CTable,
+    ]
