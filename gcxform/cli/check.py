@@ -52,18 +52,18 @@ def command(file: str | None, **asked: Any) -> int:
 
 def chain(pipeline: Pipeline) -> list[str]:
     """Return the steps of a pipeline with their facts and promises, and the budget."""
-    lines = [f"read   {pipeline.source.name}: {_names(facts_after(()))}"]
-    done: list[Pass] = []
+    lines = [f"read   {pipeline.source.name}: {_names(facts_after(pipeline.path_passes, 0))}"]
+    done = 0
     for number, step in enumerate(pipeline.passes, 1):
         lines.append(f"{number:<6} {step.name}")
         if not isinstance(step, Pass):
             lines.append("       changes text and no meaning")
             continue
-        done.append(step)
+        done += 1
         for name in ("requires", "ensures", "clears"):
             if facts := getattr(step, name):
                 lines.append(f"       {name:8} {_names(facts)}")
-        lines.append(f"       then     {_names(facts_after(done))}")
+        lines.append(f"       then     {_names(facts_after(pipeline.path_passes, done))}")
         lines.append(f"       promise  {_length(step.promise)}")
     return [*lines, f"write  {pipeline.target.name}", *_budget(pipeline)]
 

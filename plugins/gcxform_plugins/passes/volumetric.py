@@ -6,6 +6,9 @@ bends at the nodes of its table, so a line is cut where its command crosses a no
 unless asked: then the machine is on the line, exactly. With a tolerance, only those cuts stay that
 the tolerance needs. An arc stays an arc where one fitted to the compensated points holds the
 tolerance, and is cut where it does not.
+
+With `inverse` the program holds commands, and what is written is where the machine goes with them:
+c + E(c), cut where the error bends. The undo is then the search for the command.
 """
 
 from __future__ import annotations
@@ -19,6 +22,7 @@ from numpy.typing import NDArray
 import gcxform as gx
 from gcxform_plugins.passes.compensation import Compensation
 from gcxform_plugins.passes.placing import Place
+from gcxform_plugins.passes.retracing import Commands
 from gcxform_plugins.passes.undoing import Machine
 
 Floats = NDArray[np.float64]
@@ -70,6 +74,16 @@ class Volumetric(gx.Pass):
     max_extrapolation: Annotated[
         float, gx.Option("cells by which the table may be extrapolated", above=0.0)
     ] = 1.0
+    inverse: Annotated[
+        bool, gx.Option("the program holds commands: write where the machine goes with them")
+    ] = False
+
+    def __post_init__(self) -> None:
+        """Turn the facts round for the inverse."""
+        if self.inverse:
+            turned = {"requires": self.ensures, "ensures": self.requires, "clears": self.ensures}
+            for name, facts in turned.items():
+                object.__setattr__(self, name, facts)
 
     @property
     def promise(self) -> float:
@@ -86,6 +100,8 @@ class Volumetric(gx.Pass):
     def begin(self, context: gx.PassContext) -> None:
         """Refuse a model that cannot be inverted, and a run without origin."""
         gx.check_contraction(self.model.model)
+        if self.inverse:
+            self._check_inverse()
         offsets = context.machine.work_offsets if context.machine else {}
         if self.part_origin is None and not offsets:
             raise gx.UsageError.one(
@@ -94,15 +110,28 @@ class Volumetric(gx.Pass):
                 hint="give part-origin = [x, y, z], or a machine file with work offsets",
             )
 
+    def _check_inverse(self) -> None:
+        """Refuse what the inverse cannot be asked for."""
+        if self.outside is gx.Outside.ZERO:
+            message = "inverse cannot be proved with outside = zero: the error jumps at the border"
+            raise gx.UsageError.one("GX713", message, hint='outside = "clamp" does not jump')
+        if self.iterations:
+            message = "inverse writes where the machine goes, which takes no iterations"
+            raise gx.UsageError.one("GX713", message, hint="leave iterations out")
+
     # --- forward and back ---
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
-        """Return the commands for a path."""
+        """Return the commands for a path; for the inverse, where the machine goes with it."""
         return Compensation(self, path, self._place(path, context)).run() if len(path) else path
 
     def undo(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
-        """Return where the machine goes: command plus error, cut where the error bends."""
-        return Machine(self, path, self._place(path, context)).run() if len(path) else path
+        """Return where the machine goes: command plus error, cut where the error bends.
+
+        For the inverse it is the commands with which the machine goes where the path says.
+        """
+        undoing = Commands if self.inverse else Machine
+        return undoing(self, path, self._place(path, context)).run() if len(path) else path
 
     def _place(self, path: gx.Toolpath, context: gx.PassContext) -> Place:
         """Return where the rows of a path are in the machine."""
@@ -150,6 +179,16 @@ class Volumetric(gx.Pass):
         return self.model.model.error(position, self.outside, tool)
 
     def command(self, target: Floats, tool: Floats | None = None) -> Floats:
-        """Return the commands (n, 3) for targets in the table (n, 3), mm, for tools."""
+        """Return what is written (n, 3) for targets in the table (n, 3), mm, for tools."""
+        return self._actual(target, tool) if self.inverse else self._solved(target, tool)
+
+    def meant(self, written: Floats, tool: Floats | None = None) -> Floats:
+        """Return the targets (n, 3) for which something else (n, 3) is written, mm, for tools."""
+        return self._solved(written, tool) if self.inverse else self._actual(written, tool)
+
+    def _actual(self, command: Floats, tool: Floats | None) -> Floats:
+        return command + self.error(command, tool)
+
+    def _solved(self, target: Floats, tool: Floats | None) -> Floats:
         model = self.model.model
         return gx.compensate(model, target, self.outside, self.iterations, tool).position
