@@ -80,10 +80,13 @@ def _length(size: float) -> str:
 
 def _budget(pipeline: Pipeline) -> list[str]:
     kind = "explicit" if pipeline.budget is not None else "what the steps need"
+    bound = pipeline.growth
+    growth = [] if bound is None else [f"growth    {bound:g} blocks for each one read, at most"]
     return [
         f"steps     {_length(pipeline.promised())}",
         f"rounding  {pipeline.rounding() * 1000:.3g} um",
         f"budget    {pipeline.limit() * 1000:.4g} um, {kind}",
+        *growth,
     ]
 
 

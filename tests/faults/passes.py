@@ -177,6 +177,13 @@ MUTATIONS = (
         "new",
         INVERSE,
     ),
+    Mutation(
+        "growth is not bounded",
+        "gcxform/run.py",
+        "out.lines_out <= limit * out.lines_in",
+        "out.lines_out >= 0 * limit",
+        f"{CORPUS}[bad/gx507-grows]",
+    ),
     # segment
     Mutation(
         "segment: the chord error is doubled",

@@ -79,7 +79,11 @@ class Volumetric(gx.Pass):
     ] = False
 
     def __post_init__(self) -> None:
-        """Turn the facts round for the inverse."""
+        """Turn the facts round for the inverse; raise ValueError for what it cannot do."""
+        if self.inverse and self.outside is gx.Outside.ZERO:
+            raise ValueError("inverse does not go with outside = zero, where the error jumps")
+        if self.inverse and self.iterations:
+            raise ValueError("inverse writes where the machine goes, which takes no iterations")
         if self.inverse:
             turned = {"requires": self.ensures, "ensures": self.requires, "clears": self.ensures}
             for name, facts in turned.items():
@@ -100,8 +104,6 @@ class Volumetric(gx.Pass):
     def begin(self, context: gx.PassContext) -> None:
         """Refuse a model that cannot be inverted, and a run without origin."""
         gx.check_contraction(self.model.model)
-        if self.inverse:
-            self._check_inverse()
         offsets = context.machine.work_offsets if context.machine else {}
         if self.part_origin is None and not offsets:
             raise gx.UsageError.one(
@@ -109,15 +111,6 @@ class Volumetric(gx.Pass):
                 "volumetric needs to know where the program's origin is in the machine",
                 hint="give part-origin = [x, y, z], or a machine file with work offsets",
             )
-
-    def _check_inverse(self) -> None:
-        """Refuse what the inverse cannot be asked for."""
-        if self.outside is gx.Outside.ZERO:
-            message = "inverse cannot be proved with outside = zero: the error jumps at the border"
-            raise gx.UsageError.one("GX713", message, hint='outside = "clamp" does not jump')
-        if self.iterations:
-            message = "inverse writes where the machine goes, which takes no iterations"
-            raise gx.UsageError.one("GX713", message, hint="leave iterations out")
 
     # --- forward and back ---
 
