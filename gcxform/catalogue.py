@@ -616,6 +616,13 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "again with their ends moved, if the place, which is one for top and bottom, is right for "
         "both within what the passes promise; otherwise give the pass a larger tolerance.",
     ),
+    "GX507": (
+        "The program grows beyond the budget",
+        "The output has more blocks for each one read than `growth` in [budget] allows. Nothing "
+        "was written. Passes that cut moves make many blocks of one where their tolerance is small "
+        "and the move long. Give them a larger tolerance, or allow more: a control with little "
+        "memory, or one that reads blocks slowly, sets the limit.",
+    ),
     # --- 6xx: verification ---
     "GX601": (
         "The output does not do what the program does",

@@ -13,7 +13,8 @@ FORMAT = 1
 class Certificate:
     """The proof of one run, as plain values: `to_json` writes it.
 
-    Lengths are mm, hashes SHA-256. `largest` holds the deviation and its source and output line.
+    Lengths are mm, hashes SHA-256. `largest` holds the deviation and its source and output line,
+    `growth` the blocks read and written, their ratio (None where nothing was read) and its limit.
     """
 
     version: str
@@ -21,6 +22,7 @@ class Certificate:
     output: dict[str, Any]
     steps: list[dict[str, Any]]
     budget: dict[str, Any]
+    growth: dict[str, Any]
     verified: bool
     largest: dict[str, Any] = field(default_factory=dict)
     checked: dict[str, int] = field(default_factory=dict)

@@ -10,17 +10,23 @@ from gcxform.registry import default_registry
 from gcxform.toolpath.facts import AT_READING, Fact
 
 
-def facts_after(passes: Sequence[Pass]) -> frozenset[Fact]:
-    """Return the facts that hold after a chain."""
-    facts = set(AT_READING)
-    for step in passes:
+def facts_at_reading(passes: Sequence[Pass]) -> frozenset[Fact]:
+    """Return what a program is taken for: what the first pass requires that asks for it."""
+    asked = (fact for step in passes for fact in AT_READING if fact in step.requires)
+    return frozenset({next(asked, AT_READING[0])})
+
+
+def facts_after(passes: Sequence[Pass], first: int | None = None) -> frozenset[Fact]:
+    """Return the facts that hold after the `first` steps of a chain, or after all."""
+    facts = set(facts_at_reading(passes))
+    for step in passes[:first]:
         facts = (facts - step.clears) | step.ensures
     return frozenset(facts)
 
 
 def check_chain(passes: Sequence[Pass]) -> None:
     """Raise UsageError where a pass requires a fact that the chain does not have there."""
-    facts: set[Fact] = set(AT_READING)
+    facts = set(facts_at_reading(passes))
     cleared: dict[Fact, str] = {}
     _check_resolved(passes)
     for number, step in enumerate(passes, 1):

@@ -49,6 +49,7 @@ class Pipeline:
     """Passes between two dialects. Build it with `load`, `parse` or the constructor.
 
     budget   mm that the path may deviate; None: what the steps promise, and the rounding
+    growth   how many blocks may be written for each one read, over the program; None: any number
     words    which axis words a changed block gets: "changed", "programmed" or "all"
     """
 
@@ -61,6 +62,7 @@ class Pipeline:
     words: str = "changed"
     numbers: NumberFormat | None = None
     decimals: Mapping[str, int] = field(default_factory=dict)
+    growth: float | None = None
 
     def __post_init__(self) -> None:
         check_chain(self.path_passes)
@@ -121,6 +123,7 @@ class Pipeline:
             spec.output.words,
             numbers,
             decimals,
+            spec.growth,
         )
 
     # --- what is known before a run ---
@@ -241,6 +244,7 @@ class Pipeline:
         out = Output(sink, source_map)
         run = Run(self, source, verify)
         run.over(source.windows(), out, progress or (lambda size: None))
+        run.check_growth(out)
         return run.certificate(out)
 
 

@@ -85,11 +85,12 @@ class OutputSpec:
 
 @dataclass(frozen=True)
 class PipelineSpec:
-    """A pipeline as written: input, machine file, budget (mm), passes, output."""
+    """A pipeline as written: input, machine file, budget (mm) and growth, passes, output."""
 
     input: InputSpec = field(default_factory=InputSpec)
     machine: Path | None = None
     budget: float | None = None
+    growth: float | None = None
     passes: tuple[Step, ...] = ()
     output: OutputSpec = field(default_factory=OutputSpec)
     file: Path | None = None
@@ -106,7 +107,12 @@ class _MachineSection:
 class _BudgetSection:
     """The section `[budget]`."""
 
-    deviation: Annotated[Length, Option("what all steps together may deviate", above=0.0)]
+    deviation: Annotated[
+        Length | None, Option("what all steps together may deviate", above=0.0)
+    ] = None
+    growth: Annotated[
+        float | None, Option("blocks that may be written for each one read", above=0.0)
+    ] = None
 
 
 SECTIONS: Final[Mapping[str, type]] = {
@@ -132,11 +138,15 @@ def load(path: Path, registry: Registry) -> PipelineSpec:
         input=reader.section("input", InputSpec) or InputSpec(),
         machine=machine_section.file if machine_section else None,
         budget=budget.deviation if budget else None,
+        growth=budget.growth if budget else None,
         passes=reader.steps(),
         output=reader.section("output", OutputSpec) or OutputSpec(),
         file=path,
     )
     reader.check_dialects(spec)
+    if budget and budget.deviation is None and budget.growth is None:
+        message = "[budget] needs 'deviation' or 'growth'"
+        reader.found.append(Diagnostic(CODES.missing_key, message, document.where("budget")))
     if reader.found:
         raise UsageError(tuple(reader.found))
     return spec

@@ -47,6 +47,11 @@ class Output:
     lines_in: int = 0
     lines_out: int = 0
 
+    @property
+    def growth(self) -> float | None:
+        """Blocks written for each one read; None where nothing was read."""
+        return self.lines_out / self.lines_in if self.lines_in else None
+
     def put(self, text: bytes) -> None:
         """Hand text on."""
         self.written.update(text)
@@ -235,6 +240,18 @@ class Run:
                     )
         return after
 
+    def check_growth(self, out: Output) -> None:
+        """Refuse an output that has more blocks than the budget allows. Raises InputError."""
+        limit = self.pipeline.growth
+        if limit is None or out.lines_out <= limit * out.lines_in:
+            return
+        message = (
+            f"{out.lines_in} blocks became {out.lines_out}, {out.growth:.4g} times as many; "
+            f"the budget allows {limit:g} times"
+        )
+        hint = "give a step that cuts moves a larger tolerance, or raise growth in [budget]"
+        raise InputError.one("GX507", message, Location(self.source.name, out.lines_in), hint)
+
     # --- the certificate ---
 
     def certificate(self, out: Output) -> Certificate:
@@ -249,6 +266,8 @@ class Run:
             | {"sha256": out.written.hexdigest()},
             [_described(step) for step in pipeline.passes],
             _budget(pipeline, self.verifier is not None and self.verifier.inch),
+            {"blocks_in": out.lines_in, "blocks_out": out.lines_out}
+            | {"ratio": out.growth, "limit": pipeline.growth},
             self.verifier is not None or (pipeline.copies and self.verify != "off"),
         )
         self._fill(certificate)

@@ -131,6 +131,51 @@ def test_compare_refuses_what_it_cannot_read(here: Path) -> None:
     assert call("compare", "-f", "linuxcnc", "part.nc", "lost.nc").exit_code == 3
 
 
+# --- growth ---
+
+BUDGET = """\
+format = 1
+[input]
+dialect = "linuxcnc"
+[budget]
+growth = {limit}
+[[pass]]
+use = "absolute"
+[[pass]]
+use = "segment"
+chord-error = "1 um"
+max-length = "1 mm"
+"""
+
+
+def test_growth_is_reported_and_bounded(here: Path) -> None:
+    """The way of 15 mm becomes pieces of at most 1 mm; the limit itself is still allowed."""
+    (here / "job.toml").write_text(BUDGET.format(limit=1000.0))
+    run = call("run", "-p", "job.toml", "-o", "out.nc", "--certificate", "c.json", "part.nc")
+    assert run.exit_code == 0, run.stderr
+    written = len((here / "out.nc").read_bytes().splitlines())
+    told = json.loads((here / "c.json").read_text())["growth"]
+    assert told == {"blocks_in": 6, "blocks_out": written, "ratio": written / 6, "limit": 1000.0}
+    assert written > 20
+    assert f"6 -> {written} blocks (x {written / 6:.3g})" in run.stderr
+    assert "growth    1000 blocks for each one read" in call("check", "-p", "job.toml").stdout
+    (here / "out.nc").unlink()
+    for limit, code in ((written / 6, 0), (written / 6 - 0.001, 3)):
+        (here / "job.toml").write_text(BUDGET.format(limit=limit))
+        run = call("run", "-p", "job.toml", "-o", "out.nc", "part.nc")
+        assert run.exit_code == code, run.stderr
+        assert (here / "out.nc").exists() is (code == 0)
+        (here / "out.nc").unlink(missing_ok=True)
+    assert "GX507" in run.stderr
+    assert f"6 blocks became {written}" in run.stderr
+
+
+def test_growth_without_a_limit_and_of_nothing(here: Path) -> None:
+    empty = call("run", "-x", "absolute", "-f", "linuxcnc", "-o", "out.nc", "-", stdin=b"")
+    assert empty.exit_code == 0
+    assert "0 -> 0 blocks   absolute" in empty.stderr
+
+
 # --- info ---
 
 

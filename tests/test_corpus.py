@@ -34,7 +34,6 @@ ELSEWHERE = {
     "GX604": "test_cutter_comp.py",
     "GX603": "test_corpus.py",  # a text pass that changes words
     "GX712": "test_pipelinefile.py",  # a chain on the command line
-    "GX713": "test_options.py",  # a pass that looks at its options together
     "GX801": "test_plugin_dist.py",
     "GX802": "test_plugin_dist.py",
     "GX901": "test_corpus.py",

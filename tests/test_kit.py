@@ -44,6 +44,9 @@ def instances(name: str) -> list[gx.Pass | gx.TextPass]:
             made(model=model, part_origin=(10.0, 5.0, 1.0), table_origin=HERE, split="nodes"),
             made(model=model, part_origin=HERE, split="none", iterations=1),
             made(model=model, part_origin=(-100.0, 0.0, 0.0), outside=gx.Outside.CLAMP),
+            made(model=model, part_origin=HERE, inverse=True),
+            made(model=model, part_origin=HERE, tolerance=0.003, inverse=True),
+            made(model=model, part_origin=HERE, outside=gx.Outside.CLAMP, inverse=True),
         ]
     if name == "arcs":
         return [
@@ -66,6 +69,9 @@ def test_registered_passes(name):
 def test_volumetric_without_rapids():
     made = passes()["volumetric"]
     check_pass(made, made(model=ModelFile.load(MODEL), part_origin=HERE, rapids="skip"))
+    check_pass(
+        made, made(model=ModelFile.load(MODEL), part_origin=HERE, rapids="skip", inverse=True)
+    )
 
 
 def test_the_paths_cover_what_there_is():

@@ -52,18 +52,18 @@ def command(file: str | None, **asked: Any) -> int:
 
 def chain(pipeline: Pipeline) -> list[str]:
     """Return the steps of a pipeline with their facts and promises, and the budget."""
-    lines = [f"read   {pipeline.source.name}: {_names(facts_after(()))}"]
-    done: list[Pass] = []
+    lines = [f"read   {pipeline.source.name}: {_names(facts_after(pipeline.path_passes, 0))}"]
+    done = 0
     for number, step in enumerate(pipeline.passes, 1):
         lines.append(f"{number:<6} {step.name}")
         if not isinstance(step, Pass):
             lines.append("       changes text and no meaning")
             continue
-        done.append(step)
+        done += 1
         for name in ("requires", "ensures", "clears"):
             if facts := getattr(step, name):
                 lines.append(f"       {name:8} {_names(facts)}")
-        lines.append(f"       then     {_names(facts_after(done))}")
+        lines.append(f"       then     {_names(facts_after(pipeline.path_passes, done))}")
         lines.append(f"       promise  {_length(step.promise)}")
     return [*lines, f"write  {pipeline.target.name}", *_budget(pipeline)]
 
@@ -80,10 +80,13 @@ def _length(size: float) -> str:
 
 def _budget(pipeline: Pipeline) -> list[str]:
     kind = "explicit" if pipeline.budget is not None else "what the steps need"
+    bound = pipeline.growth
+    growth = [] if bound is None else [f"growth    {bound:g} blocks for each one read, at most"]
     return [
         f"steps     {_length(pipeline.promised())}",
         f"rounding  {pipeline.rounding() * 1000:.3g} um",
         f"budget    {pipeline.limit() * 1000:.4g} um, {kind}",
+        *growth,
     ]
 
 

@@ -64,7 +64,9 @@ def _place(file: str, output: str | None, in_place: bool) -> str:
 def summary(pipeline: Pipeline, done: Done) -> str:
     """Return what a run has done in one or two lines."""
     found = done.certificate
+    growth = found.growth["ratio"]
     counts = f"{found.source['lines']} -> {found.output['lines']} blocks"
+    counts += "" if growth is None else f" (x {growth:.3g})"
     if pipeline.copies and not pipeline.text_passes:
         counts = "copied byte for byte"
     steps = " | ".join(step.name for step in pipeline.passes) or "no passes"

@@ -119,7 +119,8 @@ WORKPIECE_FRAME = Fact(
     ),
 )
 
-AT_READING = frozenset({NOMINAL})
+AT_READING = (NOMINAL, COMPENSATED)
+"""What a program may be when it is read; the first unless a pass takes it for the other."""
 FACTS = (
     ABSOLUTE,
     METRIC,

@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
-from faults.mutation import CORPUS, FIGURES, KIT, PASSES, RIGID, RIGID_PASS, VERIFY, Mutation
+from faults.mutation import (
+    CORPUS,
+    FIGURES,
+    INVERSE,
+    KIT,
+    PASSES,
+    RIGID,
+    RIGID_PASS,
+    VERIFY,
+    Mutation,
+)
 
 MUTATIONS = (
     # the error model and the search for commands
@@ -16,8 +26,8 @@ MUTATIONS = (
     Mutation(
         "undo: the sign of the error is swapped",
         f"{PASSES}/undoing.py",
-        "actual = point + self.step.error(table,",
-        "actual = point - self.step.error(table,",
+        "return self.step.error(table, tool)",
+        "return -self.step.error(table, tool)",
         VERIFY,
     ),
     Mutation(
@@ -124,6 +134,55 @@ MUTATIONS = (
         "path.feed[row] / share, path.feed[row]",
         "path.feed[row], path.feed[row]",
         VERIFY,
+    ),
+    Mutation(
+        "inverse: the error is subtracted",
+        f"{PASSES}/volumetric.py",
+        "return command + self.error(command, tool)",
+        "return command - self.error(command, tool)",
+        INVERSE,
+    ),
+    Mutation(
+        "inverse: cut where the machine crosses a node, not where the command does",
+        f"{PASSES}/splitting.py",
+        "bending = np.vstack([work.start[:1], work.end]) if step.inverse else points",
+        "bending = points",
+        f"{CORPUS}[volumetric/inverse]",
+    ),
+    Mutation(
+        "undo of the inverse: one step of the search",
+        f"{PASSES}/retracing.py",
+        "if last < FOUND:",
+        "if last < 1.0:",
+        INVERSE,
+    ),
+    Mutation(
+        "undo of the inverse: no cut at nodes",
+        f"{PASSES}/retracing.py",
+        "(before * after < 0) &",
+        "(before * after < -1.0) &",
+        INVERSE,
+    ),
+    Mutation(
+        "undo of the inverse: curved pieces are not divided",
+        f"{PASSES}/retracing.py",
+        "np.ceil(np.sqrt(sag / BEND_SLACK))",
+        "np.ceil(np.sqrt(0.01 * sag / BEND_SLACK))",
+        INVERSE,
+    ),
+    Mutation(
+        "undo: pieces of helices keep the sweep of their part",
+        f"{PASSES}/undoing.py",
+        "new.replace(sweep=gx.swept_anew(new)) if new.has_arcs else new",
+        "new",
+        INVERSE,
+    ),
+    Mutation(
+        "growth is not bounded",
+        "gcxform/run.py",
+        "out.lines_out <= limit * out.lines_in",
+        "out.lines_out >= 0 * limit",
+        f"{CORPUS}[bad/gx507-grows]",
     ),
     # segment
     Mutation(

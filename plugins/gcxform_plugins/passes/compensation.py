@@ -1,4 +1,8 @@
-"""How `volumetric` works forward: from where the tool shall be to what is commanded."""
+"""How `volumetric` works forward: from where the tool shall be to what is commanded.
+
+For the inverse the same is done with the machine's error in place of its correction: a *target* is
+then a command, and a *command* where the machine goes with it.
+"""
 
 from __future__ import annotations
 
@@ -46,6 +50,8 @@ class Compensation:
         model = step.model.model
         reach = gx.reach_of(model, place.tool)
         self.lipschitz, self.curvature = model.lipschitz(reach), model.curvature(reach)
+        steep = self.lipschitz / (1 - min(self.lipschitz, 0.5))
+        self.undone = steep if step.inverse else self.lipschitz  # of what the undo moves, mm/mm
         self.left = left_alone(path)
 
     def offset_of(self, rows: Ints) -> Floats:
@@ -57,9 +63,9 @@ class Compensation:
         return self.step.command(target, self.place.tool_of(rows))
 
     def correction(self, rows: Ints, part: Floats) -> Floats:
-        """Return the error (n, 3) at parts of the way of arcs."""
-        point = gx.points_on_arcs(self.path, rows, part)
-        return self.step.error(point + self.offset_of(rows), self.place.tool_of(rows))
+        """Return command minus target (n, 3) at parts of the way of arcs."""
+        target = gx.points_on_arcs(self.path, rows, part) + self.offset_of(rows)
+        return self.command(target, rows) - target
 
     def run(self) -> gx.Toolpath:
         """Return the commands."""

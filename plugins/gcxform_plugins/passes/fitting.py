@@ -33,7 +33,7 @@ class ArcFitter:
         self.path = work.path
         self.step = work.step
         self.limit = MARGIN * self.step.limit
-        self.reach = work.lipschitz
+        self.reach = work.undone
         rotary = np.nan_to_num(self.path.end - self.path.start)[:, 3:]
         self._turning = (rotary != 0).any(axis=1)
 
@@ -130,7 +130,7 @@ class ArcFitter:
         size, _, _ = gx.radius_and_angle(self.path, row)
         sag = size * (1 - np.cos((high - low) * self.path.sweep[row] / 2))
         flat = ~np.isfinite(centre).all(axis=1) | (sag < FLAT)
-        return np.where(flat[:, None], self.path.centre[row] - shift, centre)
+        return np.where(flat[:, None], self.path.centre[row] + shift, centre)
 
     def _command(self, row: Ints, part: Floats) -> Floats:
         """Return commands (n, 3), in the program's coordinates, for points of arcs."""
@@ -165,8 +165,8 @@ class ArcFitter:
         part = np.tile((np.arange(number) + 0.5) / number, len(row))
         command = gx.points_on_arcs(pieces, 2 * every + 1, part)
         place = self.work.place
-        table = command + place.offset_of(row[every])
-        actual = command + self.step.error(table, place.tool_of(row[every]))
+        offset = place.offset_of(row[every])
+        actual = self.step.meant(command + offset, place.tool_of(row[every])) - offset
         along = low[every] + part * (high - low)[every]
         wanted = gx.points_on_arcs(self.path, row[every], along)
         off = self._beside(row[every], along, wanted, actual)

@@ -31,9 +31,10 @@ def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
     step, path = work.step, work.path
     points = np.empty((3, len(path) + 1)).T
     points[0], points[1:] = work.entry_command, commands
+    bending = np.vstack([work.start[:1], work.end]) if step.inverse else points
     lines = (path.kind == gx.Kind.LINE) & (path.form == gx.Form.PLAIN)
     lines &= path.starts_known & ~work.left
-    row, part = _at_nodes(work, points, lines)
+    row, part = _at_nodes(work, bending, lines)
     exact = step.tolerance is None or step.split == "nodes"
     residual = NEGLIGIBLE if exact else step.limit
     if work.curvature.any():
@@ -44,14 +45,14 @@ def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
 
 
 def _at_nodes(work: Compensation, points: Floats, lines: Flags) -> tuple[Ints, Floats]:
-    """Return row and part of the places where commands cross a node."""
+    """Return row and part of the places where commands cross a node; `points`: their ends."""
     step = work.step
     row, part, axis, plane = gx.line_crossings(points, lines, step.nodes())
     if not len(row):
         return row, part
     start, way = work.start[row], work.end[row] - work.start[row]
     index = np.arange(len(row))
-    for _ in range(REFINEMENTS):
+    for _ in range(0 if step.inverse else REFINEMENTS):
         command = work.command(start + part[:, None] * way, row)
         with np.errstate(divide="ignore", invalid="ignore"):
             shift = (plane - command[index, axis]) / way[index, axis]
@@ -95,7 +96,7 @@ def _needed(
     A straight command from one exact point to another is off at the places between them, and
     nowhere more than there, by its distance from the exact command.
     """
-    limit = residual * (1 - 1e-6) / (1 + work.lipschitz)
+    limit = residual * (1 - 1e-6) / (1 + work.undone)
     start, way = work.start[row], work.end[row] - work.start[row]
     exact = work.command(start + part[:, None] * way, row)
     straight = points[row] + part[:, None] * (points[row + 1] - points[row])

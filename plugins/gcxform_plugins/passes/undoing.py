@@ -67,8 +67,8 @@ class Machine:
             every, at = _apart(every[order], at[order])
             counts = np.bincount(every, minlength=len(path))
         point = self._points(every, at)
-        table = point + self.place.offset_of(every)
-        actual = point + self.step.error(table, self.place.tool_of(every))
+        offset = self.place.offset_of(every)
+        actual = point + self.moved(point + offset, self.place.tool_of(every))
         if self.step.rapids == "skip":
             rapid = path.kind[every] == gx.Kind.RAPID
             actual[rapid] = point[rapid]
@@ -95,8 +95,12 @@ class Machine:
         entry = self.path.entry[:3].copy()
         skipped = self.step.rapids == "skip" and self.path.after_rapid
         if np.isfinite(entry).all() and not skipped:
-            entry += self.step.error(entry[None, :] + self.offset[:1], self.place.first_tool)[0]
+            entry += self.moved(entry[None, :] + self.offset[:1], self.place.first_tool)[0]
         return entry
+
+    def moved(self, table: Floats, tool: Floats | None) -> Floats:
+        """Return by how much (n, 3) points in the table (n, 3) are moved: the error, mm."""
+        return self.step.error(table, tool)
 
     def _crossings(self) -> tuple[Ints, Floats]:
         """Return where lines and arcs are cut: at nodes, and arcs also where they turn far."""
@@ -176,15 +180,20 @@ class Machine:
             columns["sweep"] = path.sweep[rows] * (part - before)
             middle = self._points_between(rows, (part + before) / 2)
             columns["centre"] = path.centre[rows] + middle
-        slack = UNDO_SLACK if path.has_arcs else 0.0
-        slack += (BEND_SLACK + slack) if self.curvature.any() else 0.0
-        return path.with_rows(counts, **columns).replace(entry=entry, slack=path.slack + slack)
+        new = path.with_rows(counts, **columns)
+        new = new.replace(entry=entry, slack=path.slack + self.slack())
+        return new.replace(sweep=gx.swept_anew(new)) if new.has_arcs else new
+
+    def slack(self) -> float:
+        """Return how far (mm) the pieces are from the curves they stand for."""
+        slack = UNDO_SLACK if self.path.has_arcs else 0.0
+        return slack + ((BEND_SLACK + slack) if self.curvature.any() else 0.0)
 
     def _points_between(self, rows: Ints, part: Floats) -> Floats:
-        """Return the errors (n, 3) in the middle of pieces of arcs; 0 for other rows."""
+        """Return how far the middle of pieces of arcs is moved (n, 3); 0 for other rows."""
         errors = np.zeros((len(rows), 3))
         arcs = np.flatnonzero(self.path.is_arc[rows])
         point = gx.points_on_arcs(self.path, rows[arcs], part[arcs])
         table = point + self.place.offset_of(rows[arcs])
-        errors[arcs] = self.step.error(table, self.place.tool_of(rows[arcs]))
+        errors[arcs] = self.moved(table, self.place.tool_of(rows[arcs]))
         return errors

@@ -6,6 +6,9 @@ bends at the nodes of its table, so a line is cut where its command crosses a no
 unless asked: then the machine is on the line, exactly. With a tolerance, only those cuts stay that
 the tolerance needs. An arc stays an arc where one fitted to the compensated points holds the
 tolerance, and is cut where it does not.
+
+With `inverse` the program holds commands, and what is written is where the machine goes with them:
+c + E(c), cut where the error bends. The undo is then the search for the command.
 """
 
 from __future__ import annotations
@@ -19,6 +22,7 @@ from numpy.typing import NDArray
 import gcxform as gx
 from gcxform_plugins.passes.compensation import Compensation
 from gcxform_plugins.passes.placing import Place
+from gcxform_plugins.passes.retracing import Commands
 from gcxform_plugins.passes.undoing import Machine
 
 Floats = NDArray[np.float64]
@@ -73,11 +77,25 @@ class Volumetric(gx.Pass):
     time: Annotated[
         str | None, gx.Option("time (ISO 8601) whose temperatures hold; absent: as the model says")
     ] = None
+    inverse: Annotated[
+        bool, gx.Option("the program holds commands: write where the machine goes with them")
+    ] = False
 
     def __post_init__(self) -> None:
-        """Take the model in its state at the time."""
+        """Take the model in its state at the time, and turn the facts round for the inverse.
+
+        Raises ValueError for what the inverse cannot do.
+        """
         if self.time is not None:
             object.__setattr__(self, "model", self.model.at_time(self.time))
+        if self.inverse and self.outside is gx.Outside.ZERO:
+            raise ValueError("inverse does not go with outside = zero, where the error jumps")
+        if self.inverse and self.iterations:
+            raise ValueError("inverse writes where the machine goes, which takes no iterations")
+        if self.inverse:
+            turned = {"requires": self.ensures, "ensures": self.requires, "clears": self.ensures}
+            for name, facts in turned.items():
+                object.__setattr__(self, name, facts)
 
     @property
     def promise(self) -> float:
@@ -109,12 +127,16 @@ class Volumetric(gx.Pass):
     # --- forward and back ---
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
-        """Return the commands for a path."""
+        """Return the commands for a path; for the inverse, where the machine goes with it."""
         return Compensation(self, path, self._place(path, context)).run() if len(path) else path
 
     def undo(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
-        """Return where the machine goes: command plus error, cut where the error bends."""
-        return Machine(self, path, self._place(path, context)).run() if len(path) else path
+        """Return where the machine goes: command plus error, cut where the error bends.
+
+        For the inverse it is the commands with which the machine goes where the path says.
+        """
+        undoing = Commands if self.inverse else Machine
+        return undoing(self, path, self._place(path, context)).run() if len(path) else path
 
     def _place(self, path: gx.Toolpath, context: gx.PassContext) -> Place:
         """Return where the rows of a path are in the machine."""
@@ -162,6 +184,16 @@ class Volumetric(gx.Pass):
         return self.model.model.error(position, self.outside, tool)
 
     def command(self, target: Floats, tool: Floats | None = None) -> Floats:
-        """Return the commands (n, 3) for targets in the table (n, 3), mm, for tools."""
+        """Return what is written (n, 3) for targets in the table (n, 3), mm, for tools."""
+        return self._actual(target, tool) if self.inverse else self._solved(target, tool)
+
+    def meant(self, written: Floats, tool: Floats | None = None) -> Floats:
+        """Return the targets (n, 3) for which something else (n, 3) is written, mm, for tools."""
+        return self._solved(written, tool) if self.inverse else self._actual(written, tool)
+
+    def _actual(self, command: Floats, tool: Floats | None) -> Floats:
+        return command + self.error(command, tool)
+
+    def _solved(self, target: Floats, tool: Floats | None) -> Floats:
         model = self.model.model
         return gx.compensate(model, target, self.outside, self.iterations, tool).position

@@ -1,0 +1,96 @@
+"""`gcxform compare --model`: every kind of model, with and without a machine file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from cli_kit import call, workplace
+from test_rigid import lattice, rigid
+from test_rigid_pass import MACHINE, PROGRAM
+
+from gcxform.machine.functions import AxisFunction, AxisFunctions
+from gcxform.machine.linear import Linear
+from gcxform.machine.modeltext import to_toml
+
+RIGID = rigid(1, size=0.01, angle=60e-6, tool=(0.0, 0.0, -30.0))
+STRAIGHT = AxisFunctions(tuple(AxisFunction(f.position, f.values[:, :3]) for f in RIGID.axes))
+SKEW = Linear(np.array([[1e-4, 2e-4, 0.0], [0.0, -1e-4, 1e-4], [0.0, 0.0, 3e-5]]), np.zeros(3))
+SUM = 'format = 1\nkind = "sum"\nmodels = ["straight.toml", "skew.toml", "bed.toml"]\n'
+BED = """\
+format = 1
+kind = "height-map"
+X = [-400.0, 0.0, 400.0]
+Y = [-400.0, 50.0, 400.0]
+height = [[0.0, 0.03, -0.02], [0.01, 0.04, 0.02], [0.03, -0.03, 0.01]]
+"""
+SECOND = PROGRAM.replace(
+    b"M2\n", b"G0 Z60.\nT2 M6\nG43 H2\nG55 G0 X0. Y0. Z60.\nG1 X40. Y-90. Z3. F500.\nX0.\nM2\n"
+)
+MILL = f"{MACHINE}[tool.2]\nlength = 40.0\n[work-offset.G55]\nX = -70.0\nY = 80.0\nZ = 20.0\n"
+KINDS = ["rigid", "straight", "skew", "lattice", "bed", "sum"]
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    workplace(tmp_path, monkeypatch)
+    models = {"rigid": RIGID, "straight": STRAIGHT, "skew": SKEW, "lattice": lattice(4, (6, 5, 4))}
+    for name, model in models.items():
+        (tmp_path / f"{name}.toml").write_text(to_toml(model))
+    (tmp_path / "sum.toml").write_text(SUM)
+    (tmp_path / "bed.toml").write_text(BED)
+    (tmp_path / "mill.toml").write_text(MILL)
+    (tmp_path / "part.nc").write_bytes(SECOND)
+    return tmp_path
+
+
+def compensated(model: str, *words: str) -> None:
+    chain = f"volumetric model={model} outside=extrapolate"
+    run = call("run", "-x", chain, "-f", "linuxcnc", "-m", "mill.toml", "-o", "out.nc", *words)
+    assert run.exit_code == 0, run.stderr
+
+
+def compared(model: str, *words: str) -> int:
+    start = ("compare", "-f", "linuxcnc", "--tolerance", "2 um", "--model", model)
+    found = call(*start, "--outside", "extrapolate", *words, "part.nc", "out.nc")
+    assert found.exit_code in (0, 1), found.output + found.stderr
+    assert ("SAME" in found.stdout) is (found.exit_code == 0)
+    return found.exit_code
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_with_a_machine_file(here: Path, kind: str) -> None:
+    """Two work offsets and two tools reach the model; another machine or model does not do."""
+    compensated(f"{kind}.toml", "part.nc")
+    assert compared(f"{kind}.toml", "-m", "mill.toml") == 0
+    other = "skew" if kind != "skew" else "straight"
+    assert compared(f"{other}.toml", "-m", "mill.toml") == 1
+    moved = MILL.replace("X = -70.0", "X = 170.0")
+    (here / "moved.toml").write_text(moved)
+    assert compared(f"{kind}.toml", "-m", "moved.toml") == 1
+
+
+def test_tool_lengths_reach_the_model(here: Path) -> None:
+    compensated("rigid.toml", "part.nc")
+    (here / "short.toml").write_text(MILL.replace("length = 40.0", "length = 240.0"))
+    assert compared("rigid.toml", "-m", "short.toml") == 1
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_with_an_origin(here: Path, kind: str) -> None:
+    lines = SECOND.replace(b"G43 H1\n", b"").partition(b"G0 Z60.")[0] + b"M2\n"
+    (here / "part.nc").write_bytes(lines.replace(b"G54", b""))
+    origin = "-20,30,-60"
+    chain = f"volumetric model={kind}.toml outside=extrapolate part-origin={origin}"
+    run = call("run", "-x", chain, "-f", "linuxcnc", "-o", "out.nc", "part.nc")
+    assert run.exit_code == 0, run.stderr
+    assert compared(f"{kind}.toml", "--part-origin", origin) == 0
+    assert compared(f"{kind}.toml", "--part-origin", "60,30,-60") == 1
+
+
+def test_without_an_origin_it_is_refused(here: Path) -> None:
+    words = ("compare", "-f", "linuxcnc", "--model", "rigid.toml", "part.nc", "part.nc")
+    found = call(*words)
+    assert found.exit_code == 2
+    assert "GX721" in found.stderr
