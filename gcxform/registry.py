@@ -211,12 +211,19 @@ def _fact_name(offer: Any) -> str:
     return offer.name
 
 
+def _format_name(offer: Any) -> str:
+    name = _named(offer, (ErrorFormat,))
+    if hasattr(offer, "__dataclass_fields__"):
+        describe(offer)
+    return name
+
+
 _CHECKS: Mapping[str, Callable[[Any], str]] = MappingProxyType(
     {
         "dialect": lambda offer: _named(offer, (Dialect,)),
         "pass": _pass_name,
         "kinematics": lambda offer: _named(offer, (Kinematics,)),
         "fact": _fact_name,
-        "format": lambda offer: _named(offer, (ErrorFormat,)),
+        "format": _format_name,
     }
 )

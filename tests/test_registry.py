@@ -64,7 +64,7 @@ def warnings(registry: Registry) -> list[str]:
 def test_the_builtin_dialects_come_through_the_entry_point() -> None:
     registry = Registry.load()
     assert {"fanuc", "grbl", "haas", "linuxcnc"} <= set(registry.dialects)
-    assert set(registry.formats) == {"lddm"}
+    assert {"lddm", "linuxcnc-comp", "isg-csv"} <= set(registry.formats)
     assert registry.origin("dialect", "fanuc").startswith("gcxform ")
     assert registry.facts["ABSOLUTE"].name == "ABSOLUTE"
     assert registry.origin("fact", "ABSOLUTE").startswith("gcxform ")

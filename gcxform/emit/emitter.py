@@ -227,7 +227,8 @@ class _Job:
             turns = pieces.of_rows(self._turns(), 0)
             parts += [(arc, 2), (plane * arc, 3), (turns * arc, int(turns.max()) + 1)]
         for part, size in parts:
-            way = way * size + part
+            if part.any():
+                way = way * size + part
         return np.asarray(way[chosen])
 
     def _render(self, chosen: Ints, renderer: Renderer) -> None:

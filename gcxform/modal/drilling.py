@@ -7,10 +7,8 @@ by `gcxform/modal/cycles.py`, in the coordinates of the program.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +19,7 @@ from gcxform.modal.cyclestretch import Mode, Stretch
 from gcxform.modal.rows import Rows
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.modal.track import Break, Track
+from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Event, Form, Plane, constant
 
 Floats = NDArray[np.float64]
@@ -79,6 +78,7 @@ class Drilling:
         self.calls = self._calls()
         self._words: dict[str, Floats] = {}
         self._lasts: dict[str, Ints] = {}
+        self._steps: dict[str, Floats | None] = {}
         self._followed: list[_Followed] = []
 
     def _calls(self) -> Flags:
@@ -94,11 +94,6 @@ class Drilling:
         way = np.where(calls, 1 + modes.plane + 256 * modes.inch, 0)
         return np.flatnonzero(np.diff(way, prepend=0))
 
-    def leave(self, first: int, last: int) -> None:
-        """Forget what cycles keep where lines end cycle mode, or begin another."""
-        if self.cycles is not None and (self.modes.cycle[first:last] == CYCLE_OFF).any():
-            self.cycles.leave()
-
     def moved(self) -> None:
         """Note that a block has moved in a way of its own, perhaps while a cycle is in force."""
         if self.cycles is not None:
@@ -106,8 +101,23 @@ class Drilling:
 
     # --- stretches, as they come ---
 
-    def follow(self, first: int, last: int) -> None:
-        """Read a stretch of calls, and take over where the tool is after it."""
+    def follows(self, first: int, last: int) -> bool:
+        """Whether a stretch is one of calls; if it is, take over where the tool is after it.
+
+        What cycles keep is forgotten where other lines end cycle mode, or begin another.
+        """
+        cycles = self.cycles
+        if cycles is None or first == last:
+            return False
+        if self.calls[first]:
+            self._follow(first, last)
+            return True
+        if cycles.mode.code and (self.modes.cycle[first:last] == CYCLE_OFF).any():
+            cycles.leave()
+        return False
+
+    def _follow(self, first: int, last: int) -> None:
+        """Read a stretch of calls."""
         assert self.cycles is not None
         track, plane = self.track, Plane(int(self.modes.plane[first]))
         unit = INCH if self.modes.inch[first] else 1.0
@@ -125,7 +135,7 @@ class Drilling:
         frame = len(track.frames) - 1
         self._followed.append(_Followed(first, last, plane, unit, words, frame, dwell, stretch))
         track.state.position = track.frame.positions(after[None, :])[0].copy()
-        if self._manual.any() and self._manual[first:last].any():
+        if self._any_manual and self._manual[first:last].any():
             track.breaks.append(Break(last, 1 << plane.axes[2]))
 
     def _refuse_other_zero(self, first: int, last: int, normal: int) -> None:
@@ -154,19 +164,12 @@ class Drilling:
         return replace(calls, first=first, second=second)
 
     def _is_plain(self, first: int, last: int) -> bool:
-        """Whether a stretch begins without a cycle in force, ends with G80, and has one in G90."""
+        """Whether a stretch begins without a cycle in force, ends with G80, and has one cycle."""
         assert self.cycles is not None
         if self.cycles.mode.code or last == self.lines.live:
             return False
-        odd = self._odd_until[last] - self._odd_until[first]
         changes = self._changes_until[last] - self._changes_until[first + 1]
-        return bool(self.modes.cycle[last] == CYCLE_OFF and not odd and not changes)
-
-    @cached_property
-    def _odd_until(self) -> Ints:
-        """How many lines before each line are in G91 or have repeats."""
-        repeated = ~np.isnan(self._word(self._repeats, slice(None)))
-        return np.append(0, np.cumsum(self.modes.incremental | repeated))
+        return bool(self.modes.cycle[last] == CYCLE_OFF and not changes)
 
     @cached_property
     def _changes_until(self) -> Ints:
@@ -176,39 +179,87 @@ class Drilling:
     def _plain_end(self, first: int, last: int, words: Floats, plane: Plane) -> list[float]:
         """Return where the tool is after a plain stretch; take over the dwell that it leaves."""
         assert self.cycles is not None
-        end = [float(words[axis]) for axis in plane.axes]
+        before = [float(words[axis]) for axis in plane.axes]
         place = self._last("P", last - 1)
         if place >= first:
-            self.cycles.mode = Mode(dwell=float(self._word("P", slice(place, place + 1))[0]))
-        called = -1
-        for nth, axis in enumerate(plane.axes):
-            place = self._last("XYZ"[axis], last - 1)
-            called = max(called, place)
-            if place >= first and nth < 2:
-                end[nth] = float(self._word("XYZ"[axis], slice(place, place + 1))[0])
-        if self.cycles.rule.stores:
-            called = max(called, self._last("R", last - 1))
-        if called >= first:
-            place = self._last("R", called)
-            here = slice(place, place + 1)
-            clearance = float(self._word("R", here)[0]) if place >= first else np.nan
-            initial = bool(self._common.initial[called])
-            end[2] = float(np.maximum(end[2], clearance)) if initial else clearance
-        return end
+            self.cycles.mode = Mode(dwell=float(self._word("P", place)))
+        end = [
+            self._arrived("XYZ"[axis], first, last, standing)
+            for axis, standing in zip(plane.axes[:2], before, strict=False)
+        ]
+        called, initial = int(self._last_drilled[last - 1]), before[2]
+        if called < first:
+            return [*end, initial]
+        place = self._last("R", called)
+        clearance = float(self._word("R", place)) if place >= first else np.nan
+        if self.modes.incremental[called]:
+            clearance += initial
+        high = bool(self._common.initial[called])
+        return [*end, float(np.maximum(initial, clearance)) if high else clearance]
+
+    def _arrived(self, axis: str, first: int, last: int, before: float) -> float:
+        """Return where an axis of the plane is after a plain stretch."""
+        place, steps = self._last(axis, last - 1), self._steps_along(axis)
+        placed = place >= first
+        word = float(self._word(axis, place)) if placed else before
+        if steps is None or self._added_until[first] == self._added_until[last]:
+            return word
+        moved = np.cumsum(steps[first:last])
+        return float((word - moved[place - first] if placed else before) + moved[-1])
+
+    def _steps_along(self, axis: str) -> Floats | None:
+        """Return how far each line goes by increments, all of its repeats; None if none does."""
+        if axis not in self._steps:
+            stepping = self._drilled & self.modes.incremental
+            way = self._word(axis, slice(None)) * self._counts
+            along = np.where(stepping & ~np.isnan(way), way, 0.0)
+            self._steps[axis] = along if stepping.any() else None
+        return self._steps[axis]
+
+    @cached_property
+    def _added_until(self) -> Ints:
+        """How many lines before each line are in G91."""
+        return np.append(0, np.cumsum(self.modes.incremental))
+
+    @cached_property
+    def _counts(self) -> Floats:
+        """How often each line drills."""
+        repeats = self._word(self._repeats, slice(None))
+        return np.where(np.isnan(repeats), 1.0, repeats)
+
+    @cached_property
+    def _drilled(self) -> Flags:
+        """The calls that drill."""
+        assert self.cycles is not None
+        letters = "XYZR" if self.cycles.rule.stores else "XYZ"
+        named = [~np.isnan(self._word(letter, slice(None))) for letter in letters]
+        return np.asarray(self.calls & np.any(named, axis=0) & (self._counts > 0))
+
+    def _latest(self, which: Flags) -> Ints:
+        """Return the last of some lines on each line or before it, -1 for none."""
+        places = np.where(which, np.arange(self.lines.live), -1)
+        return np.asarray(np.maximum.accumulate(places))
+
+    @cached_property
+    def _last_drilled(self) -> Ints:
+        return self._latest(self._drilled)
 
     def _last(self, address: str, line: int) -> int:
-        """Return the last call with a word, on a line or before it; -1 for none."""
+        """Return the last call with a word, on a line or before it; -1 for none.
+
+        Words of axes count where they place a hole in G90.
+        """
         if address not in self._lasts:
-            present = ~np.isnan(self._word(address, slice(None)))
-            places = np.where(present & self.calls, np.arange(self.lines.live), -1)
-            self._lasts[address] = np.maximum.accumulate(places)
+            which = self.calls if address in ("P", "R") else self._drilled & ~self.modes.incremental
+            which = which & ~np.isnan(self._word(address, slice(None)))
+            self._lasts[address] = self._latest(which)
         return int(self._lasts[address][line])
 
-    def _word(self, address: str, here: slice | Ints) -> Floats:
-        """Return a word on lines, nan where there is none; lengths in mm."""
+    def _word(self, address: str, here: int | slice | Ints) -> Floats:
+        """Return a word on lines, or on one, nan where there is none; lengths in mm."""
         if address not in self._words:
             self._words[address] = self._column(address)
-        return self._words[address][here]
+        return np.asarray(self._words[address][here])
 
     def _column(self, address: str) -> Floats:
         """Return a word on all lines of the window, nan where it is none of a call's."""
@@ -256,6 +307,10 @@ class Drilling:
         )
 
     @cached_property
+    def _any_manual(self) -> bool:
+        return bool(self._manual.any())
+
+    @cached_property
     def _manual(self) -> Flags:
         """The lines in a cycle out of which the operator moves the tool."""
         return np.asarray(self.modes.cycle == MANUAL)
@@ -296,15 +351,13 @@ class Drilling:
     # --- all stretches of the window ---
 
     def rows(self) -> list[Rows]:
-        """Return the moves of the stretches, in their order."""
+        """Return the moves of the stretches."""
         self._refuse_other_count()
         self._refuse_without_place()
-        found: dict[int, Rows] = {}
-        kinds = [(f.plane, f.unit, f.stretch is None) for f in self._followed]
-        for kind in dict.fromkeys(kinds):
-            numbers = [number for number, other in enumerate(kinds) if other == kind]
-            found.update(zip(numbers, self._rows_of(numbers), strict=True))
-        return [found[number] for number in range(len(kinds))]
+        kinds: dict[tuple[Plane, float, bool], list[_Followed]] = {}
+        for one in self._followed:
+            kinds.setdefault((one.plane, one.unit, one.stretch is None), []).append(one)
+        return [self._rows_of(followed) for followed in kinds.values()]
 
     def _refuse_other_count(self) -> None:
         """Refuse L where K counts the holes: it would be left out."""
@@ -342,10 +395,9 @@ class Drilling:
         dwells = np.array([one.dwell for one in followed])
         return [self.cycles.follow_fresh(calls, bounds[:-1], positions, dwells)]
 
-    def _rows_of(self, numbers: list[int]) -> Iterator[Rows]:
-        """Yield the moves of stretches of one plane and unit."""
+    def _rows_of(self, followed: list[_Followed]) -> Rows:
+        """Return the moves of stretches of one plane and unit."""
         assert self.cycles is not None
-        followed = [self._followed[number] for number in numbers]
         line = np.concatenate([np.arange(one.first, one.last) for one in followed])
         bounds = np.cumsum([0, *(one.last - one.first for one in followed)])
         steps = self.cycles.steps(self._stretches(followed, line, bounds))
@@ -355,16 +407,18 @@ class Drilling:
         rows = steps.rows
         bounds = np.searchsorted(rows.call, bounds)
         self._place_events(rows.events, bounds, [one.first for one in followed])
-        nth = np.arange(len(rows.call)) - np.searchsorted(rows.call, rows.call)
-        form = np.where(rows.synchronised, Form.SYNCHRONISED, Form.CYCLE).astype(np.int8)
-        for one, (begin, end) in zip(followed, pairwise(bounds.tolist()), strict=True):
-            here = slice(begin, end)
-            words = np.empty((len(one.words), end - begin)).T
-            words[:] = one.words
-            words[:, list(one.plane.axes)] = rows.end[here]
-            ends = self.track.frames[one.frame].positions(words)
-            frame = constant(one.frame, end - begin, np.int64)
-            yield Rows(line[rows.call[here]], rows.kind[here], ends, nth[here], form[here], frame)
+        which = np.repeat(np.arange(len(followed)), np.diff(bounds))
+        words = np.array([one.words for one in followed]).T[:, which].T
+        words[:, list(followed[0].plane.axes)] = rows.end
+        frame = np.array([one.frame for one in followed])[which]
+        return Rows(
+            line[rows.call],
+            rows.kind,
+            by_frame(Frame.positions, self.track.frames, frame, words, 1.0),
+            np.arange(len(rows.call)) - np.searchsorted(rows.call, rows.call),
+            np.where(rows.synchronised, Form.SYNCHRONISED, Form.CYCLE).astype(np.int8),
+            frame,
+        )
 
     def _place_events(self, events: tuple[Event, ...], bounds: Ints, firsts: list[int]) -> None:
         """Keep events by stretch, their rows counted from the first of it."""
@@ -372,5 +426,6 @@ class Drilling:
             return
         lines = [event.line - self.lines.window.first_line for event in events]
         whose = np.searchsorted(firsts, lines, "right") - 1
-        for number, event in zip(whose.tolist(), events, strict=True):
-            self.events.append((firsts[number], event.row - int(bounds[number]), event))
+        behind = np.array([event.row for event in events]) - bounds[whose]
+        stretch = np.array(firsts)[whose]
+        self.events += zip(stretch.tolist(), behind.tolist(), events, strict=True)

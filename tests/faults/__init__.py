@@ -16,6 +16,8 @@ from faults import (
     reading,
     simulating,
     splines,
+    tables,
+    thermal,
     tied,
     writing,
 )
@@ -32,7 +34,9 @@ MUTATIONS: tuple[Mutation, ...] = (
     *writing.MUTATIONS,
     *arcs.MUTATIONS,
     *splines.MUTATIONS,
+    *thermal.MUTATIONS,
     *tied.MUTATIONS,
+    *tables.MUTATIONS,
     *proof.MUTATIONS,
     *calibrating.MUTATIONS,
     *simulating.MUTATIONS,

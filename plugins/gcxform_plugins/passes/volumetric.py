@@ -70,6 +70,14 @@ class Volumetric(gx.Pass):
     max_extrapolation: Annotated[
         float, gx.Option("cells by which the table may be extrapolated", above=0.0)
     ] = 1.0
+    time: Annotated[
+        str | None, gx.Option("time (ISO 8601) whose temperatures hold; absent: as the model says")
+    ] = None
+
+    def __post_init__(self) -> None:
+        """Take the model in its state at the time."""
+        if self.time is not None:
+            object.__setattr__(self, "model", self.model.at_time(self.time))
 
     @property
     def promise(self) -> float:
@@ -86,6 +94,10 @@ class Volumetric(gx.Pass):
     def begin(self, context: gx.PassContext) -> None:
         """Refuse a model that cannot be inverted, and a run without origin."""
         gx.check_contraction(self.model.model)
+        if self.model.model.backlash.any():
+            axes = " ".join(a for a, b in zip("XYZ", self.model.model.backlash, strict=True) if b)
+            message = f"volumetric does not compensate backlash, and the model has some on {axes}"
+            raise gx.UsageError.one("GX484", message)
         offsets = context.machine.work_offsets if context.machine else {}
         if self.part_origin is None and not offsets:
             raise gx.UsageError.one(
@@ -127,7 +139,7 @@ class Volumetric(gx.Pass):
 
     def _check_frames(self, path: gx.Toolpath, message: str, tools: bool) -> None:
         """Refuse rows whose X, Y, Z count from elsewhere; `tools`: tool lengths matter."""
-        for number in np.unique(path.frame).tolist():
+        for number in np.flatnonzero(np.bincount(path.frame)).tolist():
             origins = path.frames[number].origin[:3]
             named = [name if tools else name.split(" + ")[0] for name in origins]
             if any(name != path.first for name in named):
