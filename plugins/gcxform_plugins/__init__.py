@@ -76,6 +76,7 @@ def gcxform_error_formats() -> list[type[gx.ErrorFormat]]:
         SiemensCec,
         SiemensEec,
         Xyz,
+    ]
 
 
 @gx.hookimpl
