@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     from gcxform.guess import Guess as Guess
     from gcxform.guess import guess_dialect as guess_dialect
     from gcxform.hookspecs import hookimpl as hookimpl
+    from gcxform.machine.chain import Chain as Chain
+    from gcxform.machine.chain import Rotary as Rotary
+    from gcxform.machine.chain import chain_of as chain_of
     from gcxform.machine.converting import Fit as Fit
     from gcxform.machine.converting import to_functions as to_functions
     from gcxform.machine.converting import to_lattice as to_lattice
@@ -50,6 +53,12 @@ if TYPE_CHECKING:
     from gcxform.machine.functions import AxisFunctions as AxisFunctions
     from gcxform.machine.functions import Fault as Fault
     from gcxform.machine.functions import faults as faults
+    from gcxform.machine.inverse import Attitudes as Attitudes
+    from gcxform.machine.inverse import Poses as Poses
+    from gcxform.machine.inverse import State as State
+    from gcxform.machine.inverse import attitudes as attitudes
+    from gcxform.machine.inverse import inverse as inverse
+    from gcxform.machine.inverse import turns as turns
     from gcxform.machine.lattice import Lattice as Lattice
     from gcxform.machine.linear import Linear as Linear
     from gcxform.machine.pitch import PitchTable as PitchTable
@@ -121,6 +130,8 @@ _HOMES = {
     "dialect": "ArcRule Dialect NumberFormat",
     "guess": "Evidence Guess guess_dialect",
     "hookspecs": "hookimpl",
+    "machine.chain": "Chain Rotary chain_of",
+    "machine.inverse": "Attitudes Poses State attitudes inverse turns",
     "machine.errors": "ErrorModel Outside check_contraction compensate reach_of",
     "machine.converting": "Fit to_functions to_lattice to_nine to_pitch",
     "machine.functions": "AxisFunction AxisFunctions Fault faults",

@@ -379,6 +379,13 @@ def test_an_axis_without_limits_has_one_angle():
     assert allowed.all()
 
 
+def test_angles_as_the_display_has_them():
+    angles = np.array([0.0, 359.5, 360.0, -90.0, 725.0, -1e-17])
+    line = ("C", (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), -1, None)
+    assert Rotary(*line, 360.0).shown(angles).tolist() == [0.0, 359.5, 0.0, 270.0, 5.0, 0.0]
+    assert Rotary(*line).shown(angles).tolist() == angles.tolist()
+
+
 def test_travel_rules_candidates_out():
     one, two = preset("ac-trunnion", rng()).table
     everywhere = (-np.inf, np.inf)

@@ -50,6 +50,13 @@ class Rotary:
         """Return vectors (..., 3) as the axis carries them."""
         return turned(vectors, self.direction, self.sign * degrees)
 
+    def shown(self, degrees: FloatArray) -> FloatArray:
+        """Return angles as the display has them, from 0 up to the wrap if there is one."""
+        if self.wrap is None:
+            return degrees
+        found = np.mod(degrees, self.wrap)
+        return np.where(found < self.wrap, found, 0.0)  # the remainder of -1e-17 is the wrap
+
 
 def turned(vectors: FloatArray, direction: Triple, degrees: FloatArray) -> FloatArray:
     """Return vectors (..., 3) turned right-handed about a unit vector by angles (...).

@@ -75,7 +75,7 @@ def _about(rotary: Rotary, table: bool) -> Iterator[str]:
 def _across(way: FloatArray) -> FloatArray:
     """Return the coordinate, as a vector (3,), that is most square to an axis, Y before X and Z."""
     order = [1, 0, 2]
-    best = min(order, key=lambda k: round(abs(float(way[k])), 6))
+    best = min(order, key=lambda k: round(abs(float(way[k])), 2))
     return np.asarray(np.eye(3)[best])
 
 
@@ -115,15 +115,10 @@ def _seen(
 
 
 def _point(point: FloatArray) -> str:
-    return " ".join(
-        f"{a}{value:.3f}" for a, value in zip("XYZ", _rounded(point).tolist(), strict=True)
-    )
+    values = zip("XYZ", (np.round(point, 3) + 0.0).tolist(), strict=True)
+    return " ".join(f"{letter}{value:.3f}" for letter, value in values)
 
 
 def _vector(vector: FloatArray, digits: int = 3) -> str:
-    return f"({', '.join(f'{value:.{digits}f}' for value in _rounded(vector).tolist())})"
-
-
-def _rounded(vector: FloatArray) -> FloatArray:
-    """Return a vector without -0."""
-    return np.where(np.abs(vector) < 5e-7, 0.0, vector)
+    values = (np.round(vector, digits) + 0.0).tolist()  # + 0.0: no -0
+    return f"({', '.join(f'{value:.{digits}f}' for value in values)})"

@@ -49,7 +49,7 @@ def _axis(axes: Axes, axis: Rotary, side: tuple[str, str], size: float) -> None:
     _line(axes, ends, f"axis {axis.letter}", color=colour, linestyle="-.")
     across = np.cross(way, np.eye(3)[np.argmin(np.abs(way))])
     rim = point + 0.7 * size * way + 0.25 * size * across / np.linalg.norm(across)
-    around = axis.turn(np.broadcast_to(rim, (len(AROUND), 3)), AROUND)
+    around = axis.turn(np.broadcast_to(rim, (len(AROUND), 3)), AROUND)  # the sense of +
     _line(axes, around, f"{axis.letter}+", color=colour)
     start, end = isometric(around[-2]), isometric(around[-1])
     arrow = {"arrowstyle": "-|>", "color": colour}

@@ -10,6 +10,7 @@ from faults import (
     cutter,
     cycles,
     frames,
+    kinematics,
     passes,
     proof,
     reading,
@@ -39,4 +40,5 @@ MUTATIONS: tuple[Mutation, ...] = (
     *proof.MUTATIONS,
     *calibrating.MUTATIONS,
     *simulating.MUTATIONS,
+    *kinematics.MUTATIONS,
 )
