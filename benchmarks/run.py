@@ -37,6 +37,7 @@ MISSING = "not installed"
 
 READ, PLAIN = "`rs274 -g`", "plain C"
 VERIFIED, UNVERIFIED = "gcxform, verified", "gcxform, `--verify off`"
+TURNING = "gcxform, verified, 21 parameters"
 TENFOLD = "gcxform, verified, ten times the lines"
 SHOP_READ, SHOP_COPIED = "shop: `rs274 -g`", "shop: gcxform, verified"
 SHOP_REWRITTEN, SHOP_UNVERIFIED = "shop: gcxform, rewritten", "shop: gcxform, `--verify off`"
@@ -178,10 +179,12 @@ def reading_job(source: Path, scratch: Path, lines: int) -> Job:
     return job
 
 
-def gcxform_job(name: str, source: Path, out: Path, lines: int, *options: str) -> Job:
+def gcxform_job(
+    name: str, source: Path, out: Path, lines: int, *options: str, pipeline: str = "surfacing.toml"
+) -> Job:
     """Return the whole job: absolute, volumetric, emission and, unless it is off, proof."""
-    pipeline = str(HERE / "surfacing.toml")
-    command = [str(GCXFORM), "run", "-p", pipeline, "-o", str(out), *options, str(source)]
+    chain = str(HERE / pipeline)
+    command = [str(GCXFORM), "run", "-p", chain, "-o", str(out), *options, str(source)]
     return Job(name, command, out, lines, b"M30")
 
 
@@ -195,6 +198,9 @@ def main_jobs(scratch: Path, lines: int) -> list[Job]:
         Job(PLAIN, plain, plain_out, lines, b"M30"),
         gcxform_job(VERIFIED, source, scratch / "verified.nc", lines),
         gcxform_job(UNVERIFIED, source, scratch / "unverified.nc", lines, "--verify", "off"),
+        gcxform_job(
+            TURNING, source, scratch / "turning.nc", lines, pipeline="surfacing-21-parameters.toml"
+        ),
     ]
 
 
@@ -247,14 +253,14 @@ def measure(scratch: Path, lines: int, rounds: int, tenfold: bool) -> list[Job]:
         repeat([job], runs, scratch)
     repeat(jobs, rounds, scratch)
     demand_same_output(jobs)
-    parts = shop_jobs(scratch, lines // 2)
+    parts = shop_jobs(scratch, lines)
     repeat(parts, rounds, scratch)
     jobs += [*parts, *(job for job, _ in small)]
     if tenfold:
         source = surfacing(scratch, 10 * lines)
         big = gcxform_job(TENFOLD, source, scratch / "tenfold.nc", 10 * lines)
         repeat([big], 1, scratch)
-        more = shop_job(SHOP_TENFOLD, shop(scratch, 5 * lines), scratch, REWRITTEN)
+        more = shop_job(SHOP_TENFOLD, shop(scratch, 10 * lines), scratch, REWRITTEN)
         repeat([more], 1, scratch)
         jobs += [big, more]
     return jobs
@@ -304,6 +310,7 @@ def limits(jobs: list[Job]) -> list[Limit]:
         Limit(f"{VERIFIED} / {READ}", ratio(wall(VERIFIED), wall(READ)), 1.0),
         Limit(f"{UNVERIFIED} / {READ}", ratio(wall(UNVERIFIED), wall(READ)), 0.5),
         Limit(f"{UNVERIFIED} / {PLAIN}", ratio(wall(UNVERIFIED), wall(PLAIN)), 2.0),
+        Limit(f"{TURNING} / nine functions", ratio(wall(TURNING), wall(VERIFIED)), 2.0),
         Limit(f"{SHOP_COPIED} / {READ}", ratio(wall(SHOP_COPIED), wall(SHOP_READ)), 1.0),
         Limit(f"{SHOP_REWRITTEN} / {READ}", ratio(wall(SHOP_REWRITTEN), wall(SHOP_READ)), 1.0),
         Limit(f"peak memory, {SHOP_REWRITTEN}", shop_peak, 400.0, " MB"),

@@ -33,20 +33,44 @@ if TYPE_CHECKING:
     from gcxform.guess import Guess as Guess
     from gcxform.guess import guess_dialect as guess_dialect
     from gcxform.hookspecs import hookimpl as hookimpl
+    from gcxform.machine.chain import Chain as Chain
+    from gcxform.machine.chain import Rotary as Rotary
+    from gcxform.machine.chain import chain_of as chain_of
+    from gcxform.machine.converting import Fit as Fit
+    from gcxform.machine.converting import to_functions as to_functions
+    from gcxform.machine.converting import to_lattice as to_lattice
+    from gcxform.machine.converting import to_nine as to_nine
+    from gcxform.machine.converting import to_pitch as to_pitch
     from gcxform.machine.errors import ErrorModel as ErrorModel
     from gcxform.machine.errors import Outside as Outside
     from gcxform.machine.errors import check_contraction as check_contraction
     from gcxform.machine.errors import compensate as compensate
     from gcxform.machine.errors import reach_of as reach_of
     from gcxform.machine.formats import ErrorFormat as ErrorFormat
+    from gcxform.machine.formats import cannot_hold as cannot_hold
+    from gcxform.machine.formats import head_of as head_of
     from gcxform.machine.functions import AxisFunction as AxisFunction
     from gcxform.machine.functions import AxisFunctions as AxisFunctions
     from gcxform.machine.functions import Fault as Fault
     from gcxform.machine.functions import faults as faults
+    from gcxform.machine.inverse import Attitudes as Attitudes
+    from gcxform.machine.inverse import Poses as Poses
+    from gcxform.machine.inverse import State as State
+    from gcxform.machine.inverse import attitudes as attitudes
+    from gcxform.machine.inverse import inverse as inverse
+    from gcxform.machine.inverse import turns as turns
     from gcxform.machine.lattice import Lattice as Lattice
     from gcxform.machine.linear import Linear as Linear
+    from gcxform.machine.pitch import PitchTable as PitchTable
+    from gcxform.machine.pitch import PitchTables as PitchTables
+    from gcxform.machine.presets import Kinematics as Kinematics
     from gcxform.machine.rigid import RigidBody as RigidBody
     from gcxform.machine.sums import Sum as Sum
+    from gcxform.machine.texttables import TextRow as TextRow
+    from gcxform.machine.texttables import decimal as decimal
+    from gcxform.machine.texttables import number_findings as number_findings
+    from gcxform.machine.texttables import placed as placed
+    from gcxform.machine.texttables import text_rows as text_rows
     from gcxform.modal.codes import Code as Code
     from gcxform.modal.codes import CutterComp as CutterComp
     from gcxform.modal.codes import MCode as MCode
@@ -106,14 +130,20 @@ _HOMES = {
     "dialect": "ArcRule Dialect NumberFormat",
     "guess": "Evidence Guess guess_dialect",
     "hookspecs": "hookimpl",
+    "machine.chain": "Chain Rotary chain_of",
+    "machine.inverse": "Attitudes Poses State attitudes inverse turns",
     "machine.errors": "ErrorModel Outside check_contraction compensate reach_of",
+    "machine.converting": "Fit to_functions to_lattice to_nine to_pitch",
     "machine.functions": "AxisFunction AxisFunctions Fault faults",
     "machine.lattice": "Lattice",
     "machine.linear": "Linear",
+    "machine.presets": "Kinematics",
     "machine.rigid": "RigidBody",
+    "machine.pitch": "PitchTable PitchTables",
     "machine.sums": "Sum",
+    "machine.texttables": "TextRow decimal number_findings placed text_rows",
     "tomltext": "did_you_mean read_text",
-    "machine.formats": "ErrorFormat",
+    "machine.formats": "ErrorFormat cannot_hold head_of",
     "modal.codes": "Code CutterComp MCode",
     "options": "Angle Length ModelFile Option Vector",
     "pipeline": "Pipeline Result",

@@ -71,8 +71,7 @@ class Program:
     def path(self) -> Toolpath:
         """The moves of the whole program: mm and degrees."""
         source = Source.of_bytes(self.text, self.name)
-        letters = source.letters()
-        axes = "".join(a for a in self.dialect.axes if a in letters or a in "XYZ")
+        axes = source.axes(self.dialect.axes)
         interpreter = Interpreter(self.dialect, self.reading, axes, self.name)
         reader = WindowReader(self.dialect)
         texts = [*source.windows()] or [b""]

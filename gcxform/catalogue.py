@@ -402,6 +402,35 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "The files of a sum name each other, were measured at different points of the tool, or "
         "have no travel in common.",
     ),
+    "GX425": (
+        "The thermal error is above its limit",
+        "Somewhere along the travel the axis is farther off than `limit`. It is never cut off: "
+        "half a compensation is a wrong program. Let the machine cool down, look for a wrong "
+        "sensor, or raise `limit` if the machine really is so far off.",
+    ),
+    "GX426": (
+        "No state of the machine for this time",
+        "The readings have no row at or shortly before the time that is asked for, the time is "
+        "written with an offset from UTC and the readings are not, or the model has no "
+        "temperatures at all. `max-age` is how old (s) the readings may be.",
+    ),
+    "GX427": (
+        "A sensor without a usable reading",
+        "A sensor is not in the file of readings, or has no reading at the time that is used, or "
+        "one outside of `sensor-range`. A guess would move the tool, so nothing is put in its "
+        "place: choose another time, or leave the sensor out of the model.",
+    ),
+    "GX428": (
+        "The sensors do not reach along the travel",
+        "The error at a place is the growth of the rod up to there, so the temperature has to be "
+        "known along all of it. Name the nearest sensor a second time at the end of the rod if it "
+        "is as warm there; otherwise the travel is shorter.",
+    ),
+    "GX429": (
+        "A thermal model that contradicts itself",
+        "A number is out of its range: stiffness, expansion and ages are above 0, and ranges "
+        "ascend. Or an axis has not just one of a screw and a scale.",
+    ),
     "GX431": (
         "The limits of an axis do not ascend",
         "`limits` is the lower end of the travel and then the upper one, in mm or degrees. "
@@ -443,6 +472,35 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "A line of a LinuxCNC tool table has a tool number (T1) once in the file, and words with a "
         "number each: P, X, Y, Z, D; I, J and Q are passed over, and offsets of other axes have to "
         "be 0. What follows a semicolon is a comment.",
+    ),
+    "GX450": (
+        "Unknown kinematics",
+        "A machine file may name the kind of its kinematics, `gcxform list kinematics` lists them. "
+        "A machine of no kind is described without: by `table`, `head` and its axes.",
+    ),
+    "GX451": (
+        "A machine file contradicts its kinematics",
+        "`kinematics` says which rotary axes there are, on which side, and about which way they "
+        "point. The file may give calibrated directions, signs, points and limits; other axes make "
+        "another machine. Name another kind, or describe the machine without one.",
+    ),
+    "GX452": (
+        "An axis cannot be followed",
+        "For positions of the tool on the workpiece every rotary axis stands in `table` or `head` "
+        "and has a point on its line; X, Y and Z run along the machine's coordinates, and U, V and "
+        "W stand still. Squareness of linear axes belongs into the error model.",
+    ),
+    "GX453": (
+        "These axes do not give the tool axis angles",
+        "Angles are found for machines with up to two rotary axes, none of which is parallel to "
+        "the next on the way from the workpiece to the tool, or to the tool itself. For other "
+        "machines programs have to give the angles.",
+    ),
+    "GX454": (
+        "Parameters of a control that are not taken over",
+        "The kinematics of LinuxCNC are read from the `setp` lines of a HAL file, and those of "
+        "FANUC from the parameters 19666 and 19680 to 19714. Where more decides where the axes "
+        "are, write the machine file by hand, and try it: `gcxform machine jog`.",
     ),
     "GX470": (
         "Not a table of measurements",
@@ -491,6 +549,40 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "axes with --linear; --report without -o writes what is known.",
     ),
     # --- 5xx: emission ---
+    "GX480": (
+        "A table does not say all that has to be known",
+        "Files of this format leave something out, such as their units, their axis or their sign, "
+        "and a wrong guess gives a wrong program. Convert the file once with `gcxform table "
+        "convert`, which takes what is missing, and use the native file that it writes.",
+    ),
+    "GX481": (
+        "A format cannot hold the model",
+        "The format has no place for a part of the error model, which would be lost without a "
+        "word. Choose a format that has one, or fit a simpler model with --kind; the fit says what "
+        "it leaves.",
+    ),
+    "GX482": (
+        "Something in a foreign table is not supported",
+        "The file has an entry that is not known, or is known and has no meaning in an error model "
+        "of three linear axes. Leaving it out would change the errors, so the file is refused.",
+    ),
+    "GX483": (
+        "Values of a table are missing, double or out of place",
+        "A height map has one height for every position on X with every position on Y, a "
+        "positioning test a deviation at every target in each direction, a table in equal steps a "
+        "value at each. Look for what is missing, double, or beside the lines of the grid.",
+    ),
+    "GX484": (
+        "Backlash in a pass that does not know the direction of travel",
+        "The error of an axis depends on the direction in which it moved last, and this pass "
+        "takes one error for each position. Leave backlash to the control, or give the mean of "
+        "both directions: forward and reverse alike.",
+    ),
+    "GX485": (
+        "Deviations of a size that no machine has",
+        "The largest deviation of a measured axis is above 1 mm, or none is above a hundredth of a "
+        "micrometre. The unit that was said is probably not that of the file.",
+    ),
     "GX501": (
         "The target cannot say this",
         "The control that is written for has no such code, word, comment or plane of arcs, and "
@@ -564,6 +656,12 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "The path that `cutter-comp` made was checked against the contour by other means, and is "
         "not at the tool's radius from it. Nothing was written. This is a bug of gcxform or of a "
         "plugin; please report it with the program.",
+    ),
+    "GX605": (
+        "A table does not read back as it was meant",
+        "The table that was to be written was read again, and the errors differ. Nothing was "
+        "written. This is a bug of the format: report it to the author of the plugin, see `gcxform "
+        "list formats`.",
     ),
     "GX701": (
         "Unknown key in a pipeline",

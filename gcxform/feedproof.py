@@ -90,12 +90,12 @@ class FeedProof:
         mine, inverse = written.kind != Kind.RAPID, written.feed_mode == FeedMode.INVERSE_TIME
         mine &= inverse | (self._may_be_converted(owner) if self.modes else False)
         along = (way.least + way.most) / 2
-        time = np.where(inverse, 1.0, along) / written.feed
         whole = self._sums(mine, along)[owner]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            slow = self._sums(mine, time)[owner] / whole
         slack = 2 * np.where(way.turns, self.angle_budget, self.budget)
-        off = np.abs(time - slow * along) > slow * (UNEVEN * along + slack)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            time = np.where(inverse, 1.0, along) / written.feed
+            slow = self._sums(mine, time)[owner] / whole
+            off = np.abs(time - slow * along) > slow * (UNEVEN * along + slack)
         off &= mine & (whole > 0)
         if off.any():
             row = int(written.source[np.argmax(off)])

@@ -18,6 +18,7 @@ import pluggy
 from gcxform.contract import Pass, TextPass
 from gcxform.dialect import Dialect
 from gcxform.machine.formats import ErrorFormat
+from gcxform.machine.presets import Kinematics
 from gcxform.toolpath.facts import Fact
 
 PROJECT: Final = "gcxform"
@@ -40,8 +41,8 @@ def gcxform_passes() -> Iterable[type[Pass | TextPass]]:
 
 
 @hookspec
-def gcxform_kinematics() -> Iterable[type]:
-    """Return kinematic models: classes with a name."""
+def gcxform_kinematics() -> Iterable[type[Kinematics]]:
+    """Return kinds of machines: subclasses of `Kinematics` with a name."""
     raise NotImplementedError
 
 

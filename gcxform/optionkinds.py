@@ -10,13 +10,14 @@ import math
 import os
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import msgspec
 
+from gcxform.diagnostics import UsageError
 from gcxform.machine import modelfile
 from gcxform.machine.errors import ErrorModel
 from gcxform.machine.formats import ErrorFormat
@@ -33,7 +34,8 @@ class Argument(str):
 class ModelFile:
     """An error model with the file it came from; equal when the content is.
 
-    `sha256` is that of the file; for a foreign format that of the model in its native form.
+    `sha256` is that of the file; for a foreign format that of the model in its native form. Of a
+    model that comes from more files, or is in another state than its file says, it is its own.
     """
 
     path: Path = field(compare=False)
@@ -48,6 +50,20 @@ class ModelFile:
         data = path.read_bytes() if native else to_toml(model).encode()
         data += fingerprint(model) if model.composed else b""
         return cls(path, model, hashlib.sha256(data).hexdigest())
+
+    def at_time(self, time: str) -> ModelFile:
+        """Return the model in its state at a time (ISO 8601). Raises UsageError.
+
+        A model that is in that state stays as it is, so that a pass may ask again.
+        """
+        if not self.model.states:
+            message = f"{self.path.name} holds at any time: it has no thermal model"
+            raise UsageError.one("GX426", message, hint="leave `time` out")
+        model = self.model.at_time(time)
+        content = fingerprint(model)
+        if content == fingerprint(self.model):
+            return self
+        return replace(self, model=model, sha256=hashlib.sha256(content).hexdigest())
 
 
 class RefusedError(Exception):

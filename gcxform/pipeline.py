@@ -118,7 +118,7 @@ class Pipeline:
             target,
             tuple(spec.passes),
             _reading(source, spec),
-            load_machine(file) if file else None,
+            load_machine(file, registry.kinematics) if file else None,
             spec.budget,
             spec.output.words,
             numbers,

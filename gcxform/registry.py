@@ -23,6 +23,7 @@ from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
 from gcxform.dialect import Dialect
 from gcxform.machine.formats import ErrorFormat
+from gcxform.machine.presets import Kinematics
 from gcxform.options import describe
 from gcxform.tomltext import did_you_mean
 from gcxform.toolpath.facts import FACTS, Fact
@@ -49,7 +50,7 @@ class Registry:
 
     dialects: dict[str, type[Dialect]] = field(default_factory=dict)
     passes: dict[str, type[Pass] | type[TextPass]] = field(default_factory=dict)
-    kinematics: dict[str, type] = field(default_factory=dict)
+    kinematics: dict[str, type[Kinematics]] = field(default_factory=dict)
     facts: dict[str, Fact] = field(default_factory=lambda: {fact.name: fact for fact in FACTS})
     formats: dict[str, type[ErrorFormat]] = field(default_factory=dict)
     diagnostics: list[Diagnostic] = field(default_factory=list)
@@ -210,12 +211,19 @@ def _fact_name(offer: Any) -> str:
     return offer.name
 
 
+def _format_name(offer: Any) -> str:
+    name = _named(offer, (ErrorFormat,))
+    if hasattr(offer, "__dataclass_fields__"):
+        describe(offer)
+    return name
+
+
 _CHECKS: Mapping[str, Callable[[Any], str]] = MappingProxyType(
     {
         "dialect": lambda offer: _named(offer, (Dialect,)),
         "pass": _pass_name,
-        "kinematics": lambda offer: _named(offer, (object,)),
+        "kinematics": lambda offer: _named(offer, (Kinematics,)),
         "fact": _fact_name,
-        "format": lambda offer: _named(offer, (ErrorFormat,)),
+        "format": _format_name,
     }
 )

@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from dataclasses import asdict, dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.emit.emitter import Emitted, Emitter
+from gcxform.heap import give_back
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
@@ -74,8 +75,7 @@ class Run:
 
     def _prepare(self) -> None:
         pipeline = self.pipeline
-        letters = self.source.letters()
-        axes = "".join(a for a in pipeline.source.axes if a in letters or a in "XYZ")
+        axes = self.source.axes(pipeline.source.axes)
         reading = _with_assumed_start(pipeline, axes)
         self.axes = axes
         self.interpreter = Interpreter(pipeline.source, reading, axes, self.source.name)
@@ -146,7 +146,7 @@ class Run:
         feed_modes = any(step.feed_mode is not None for step in self.steps)
         proof: Future[None] | None = None
         try:
-            for window, table in windows:
+            for number, (window, table) in enumerate(windows):
                 read, emitted = self._transform(window, table)
                 if proof is not None:
                     proof.result()
@@ -160,6 +160,7 @@ class Run:
                         emitted.nth,
                     )
                 self._hand_on(window, emitted, out)
+                give_back(number)
                 progress(len(window.text))
             if feed_modes:
                 self._check_end()
@@ -342,12 +343,14 @@ def _first_units(pipeline: Pipeline) -> str:
     return "in" if pipeline.target.initial["units"] == "G20" else "mm"
 
 
-def _described(step: Pass | TextPass) -> dict[str, object]:
+def _described(step: Pass | TextPass) -> dict[str, Any]:
     """Return a step's name, options and promise for the certificate."""
-    entry: dict[str, object] = {"use": step.name, **to_toml(step)}
+    entry: dict[str, Any] = {"use": step.name, **to_toml(step)}
     for key, value in vars(step).items():
         if isinstance(value, ModelFile):
             entry[key] = {"file": value.path.name, "sha256": value.sha256}
+            if value.model.states:
+                entry[key] |= {"states": [asdict(state) for state in value.model.states]}
     if isinstance(step, Pass):
         entry["promise"] = step.promise if np.isfinite(step.promise) else None
     return entry

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
@@ -11,6 +12,7 @@ from gcxform.diagnostics import FileError
 
 WINDOW = 1 << 20  # bytes; what is worked on at once should stay in the processor's cache
 CHUNK = 1 << 22
+COMMENT = re.compile(rb"\([^()\r\n]*\)")  # of every dialect; some have others besides
 
 
 class Source:
@@ -40,15 +42,21 @@ class Source:
         """How many bytes there are."""
         return self.stream.seek(0, io.SEEK_END)
 
-    def letters(self) -> set[str]:
-        """Return the letters, in upper case, that stand anywhere in the program."""
+    def axes(self, among: str) -> str:
+        """Return those of the axes that the program may name, X, Y and Z whether it does or not.
+
+        An axis less is a column less in all that follows, so letters in comments do not count.
+        """
         self.stream.seek(0)
-        found: set[int] = set()
+        found = set("XYZ")
         while chunk := self.stream.read(CHUNK):
-            if len(found) < 52:
-                candidates = [c for c in b"ABCDEFGHIJKLMNOPQRSTUVWXYZ" if c not in found]
-                found |= {c for c in candidates if c in chunk or c + 32 in chunk}
-        return {chr(c) for c in found}
+            text = b""
+            for axis in (axis for axis in among if axis not in found):
+                either = axis.encode(), axis.lower().encode()
+                if either[0] in chunk or either[1] in chunk:
+                    text = text or COMMENT.sub(b"", chunk)
+                    found |= {axis} if either[0] in text or either[1] in text else set()
+        return "".join(axis for axis in among if axis in found)
 
     def windows(self, size: int = WINDOW) -> Iterator[bytes]:
         """Yield the text, a number of whole lines at a time."""

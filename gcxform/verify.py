@@ -19,8 +19,9 @@ from gcxform.diagnostics import Diagnostic, GcxformError, Location, Verification
 from gcxform.dialect import INCH
 from gcxform.feedproof import FeedProof
 from gcxform.modal.interpreter import Interpreted, Interpreter
-from gcxform.modal.meaning import FRAMING, only_for_cycles
+from gcxform.modal.meaning import FRAMING
 from gcxform.modal.reader import WindowReader
+from gcxform.modal.sorting import only_for_cycles
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import PROBES
 from gcxform.syntax.scan import Window

@@ -12,6 +12,8 @@ from cli_kit import ABSOLUTE, COMPENSATED, call, workplace
 from gcxform.modal.tables import FAMILIES, NUMBER, code_of
 from gcxform.source import WINDOW
 
+EXAMPLES = Path(__file__).parents[1] / "examples"
+
 
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
@@ -111,6 +113,17 @@ def test_compare_through_a_model(here: Path) -> None:
     words = [*plain, "--model", "model.toml", "--part-origin", "10,10,10"]
     found = call(*words, "--outside", "extrapolate")
     assert found.exit_code == 0, found.output
+
+
+def test_compare_with_arcs_that_end_on_a_node_of_the_model() -> None:
+    """Where a node and an even cut of an arc meet, nothing is left between them."""
+    bracket = EXAMPLES / "bracket"
+    words = ["-f", "linuxcnc", "-m", str(bracket / "machine.toml"), "--tolerance", "20um"]
+    model = ["--model", str(EXAMPLES / "lddm" / "model.toml")]
+    program = str(bracket / "bracket.nc")
+    found = call("compare", *words, *model, program, program)
+    assert found.exit_code == 0, found.output
+    assert "nan" not in found.stdout
 
 
 def test_compare_refuses_what_it_cannot_read(here: Path) -> None:

@@ -18,6 +18,7 @@ import pytest
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
 from gcxform.cli import VERBS
+from gcxform.machine.chain import chain_of
 from gcxform.machine.machinefile import load_machine
 from gcxform.modal.codes import Effect
 from gcxform.options import describe
@@ -277,6 +278,10 @@ def test_toml_snippets_are_right(folder, tmp_path):
             (tmp_path / "tool.tbl").write_text("T1 P1 Z100.0 D10.0 ;end mill\n", "latin-1")
             (tmp_path / "machine.toml").write_text(snippet, "utf-8")
             assert sorted(load_machine(tmp_path / "machine.toml").tools) == [1, 7]
+        elif "kinematics" in snippet:
+            (tmp_path / "kinds.toml").write_text(f"format = 1\n{snippet}", "utf-8")
+            machine = load_machine(tmp_path / "kinds.toml", REGISTRY.kinematics)
+            assert chain_of(machine).letters == ("A", "C")
         elif snippet.startswith("format"):
             (folder / "snippet.toml").write_text(snippet, "utf-8")
             gx.Pipeline.load(folder / "snippet.toml")

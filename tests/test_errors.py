@@ -65,11 +65,13 @@ def inside(model, count=5000, seed=1) -> np.ndarray:
 
 @pytest.mark.parametrize(("position", "expected"), VECTORS)
 def test_published_vectors(lddm, position, expected):
+    """V2: the errors."""
     found = lddm.error(np.array([position], dtype=float))[0]
     assert found == pytest.approx(expected, abs=1e-9)
 
 
 def test_published_command(lddm):
+    """V2: the command."""
     command = compensate(lddm, np.array([[333.3, 200.1, 111.1]]))
     assert command.position[0] == pytest.approx(
         (333.303154449, 200.110617743, 111.103039873), abs=1e-9
@@ -189,6 +191,7 @@ RAMP = AxisFunctions((axis([0, 10, 30], (0, 0, 0), (0.001, 0.002, 0), (0.003, 0,
     ],
 )
 def test_policies(policy, x, expected):
+    """V7: what each policy makes of a place outside."""
     found = RAMP.error(np.array([[x, 1e6, -1e6]], dtype=float), policy)[0]
     assert found == pytest.approx(expected, abs=1e-12)
 
@@ -275,6 +278,7 @@ def test_nodes_a_hair_apart_are_refused():
 
 @pytest.mark.parametrize("factor", [1, 30])
 def test_fixed_point_keeps_its_bound(lddm, factor):
+    """V8: after k steps it is within L^k |E| / (1 - L); 30 times the errors are |E| of 1 mm."""
     model = AxisFunctions(tuple(axis(f.position, *(factor * f.values)) for f in lddm.axes))
     target = inside(model)
     exact = compensate(model, target, iterations=20).position
@@ -298,6 +302,7 @@ def test_one_iteration_is_target_minus_error(lddm):
 
 
 def test_the_command_reaches_the_target(lddm):
+    """V3: before rounding."""
     target = inside(lddm)
     kept = target.copy()
     command = compensate(lddm, target)
@@ -323,6 +328,7 @@ def test_a_jump_at_the_border_is_refused():
 
 
 def test_a_divergent_model_does_not_loop():
+    """V8: with L of 3 the fixed point is given up, and says so."""
     steep = AxisFunctions((axis([0, 1, 2], (0, 0, 0), (-3, 0, 0), (0, 0, 0)), None, None))
     assert steep.lipschitz() == pytest.approx(3)
     with pytest.raises(InputError, match="GX309"):

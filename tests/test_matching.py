@@ -53,6 +53,10 @@ SAME = {
     "only an axis that turns": ("A0\nA90\n", "A0\nA30\nA60\nA90\n"),
     "no way": ("X5\nX5\nY5\n", "X5\nY5\nY5\n"),
     "hardly a way": ("X5\nX5.0004\nG0 Y5\n", "X5\nG0 Y5\n"),
+    "hardly an arc": (
+        "G2 X0 Y0 I5 J0\nG0 Y5\n",
+        "G2 X10 Y0 I5 J0\nX0 Y-0.0004 I-5 J0\nX0 Y0 I5 J0.0004\nG0 Y5\n",
+    ),
     "rapids": ("G0 X5\nG1 Y5\n", "G0 X5\nG1 Y2\nY5\n"),
     "nothing": ("", ""),
 }

@@ -17,7 +17,7 @@ from simulate_kit import EXAMPLE, file_of, functions
 
 import gcxform as gx
 from gcxform import plot
-from gcxform.machine.machine import load_machine
+from gcxform.machine.machinefile import load_machine
 from gcxform.machine.modelfile import load_model
 from gcxform.plot import canvas
 from gcxform.plot.models import curves, squareness
@@ -246,12 +246,26 @@ def test_squareness_is_the_angle_between_two_axes_whatever_their_frame():
     assert squareness(turned) == pytest.approx(squareness(plain))
 
 
+def test_a_machine_of_21_parameters_fills_the_grid(here):
+    assert call("show", str(EXAMPLES / "rigid-body" / "model.toml"), "-o", "all.svg").exit_code == 0
+    groups, text = drawn("all.svg")
+    names = [f"E{letter}{axis}" for axis in "XYZ" for letter in "XYZABC"]
+    assert [name for name in names if name not in groups] == []
+    assert all(f"{name}, {'um' if name[1] in 'XYZ' else 'urad'}" in text for name in names)
+    assert "none" not in text
+
+
 class Lattice(gx.ErrorModel):
     """A model that is no function of one axis at a time."""
 
     kind = "lattice"
     nodes = (np.array([0.0, 50.0]),) * 3
-    lipschitz = largest = 1e-4
+
+    def lipschitz(self, reach=0.0):
+        return 1e-4
+
+    def largest(self, reach=0.0):
+        return 1e-2
 
     def error(self, position, outside=gx.Outside.ERROR, tool=None, sense=None):
         return 1e-6 * position * position[:, ::-1]

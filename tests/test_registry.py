@@ -64,7 +64,7 @@ def warnings(registry: Registry) -> list[str]:
 def test_the_builtin_dialects_come_through_the_entry_point() -> None:
     registry = Registry.load()
     assert {"fanuc", "grbl", "haas", "linuxcnc"} <= set(registry.dialects)
-    assert set(registry.formats) == {"lddm"}
+    assert {"lddm", "linuxcnc-comp", "isg-csv"} <= set(registry.formats)
     assert registry.origin("dialect", "fanuc").startswith("gcxform ")
     assert registry.facts["ABSOLUTE"].name == "ABSOLUTE"
     assert registry.origin("fact", "ABSOLUTE").startswith("gcxform ")
@@ -232,7 +232,8 @@ def test_importing_the_registry_imports_no_plugin() -> None:
 
 
 def test_every_kind_has_an_origin(install: Install) -> None:
-    source = HEAD + "def gcxform_kinematics(): return [type('Hexapod', (), {'name': 'hexapod'})]"
+    kind = "type('Hexapod', (gx.Kinematics,), {'name': 'hexapod'})"
+    source = HEAD + f"def gcxform_kinematics(): return [{kind}]"
     install("acme", source)
     registry = Registry.load()
     assert registry.origin("kinematics", "hexapod") == "acme 1.0"

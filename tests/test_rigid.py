@@ -9,6 +9,7 @@ import pytest
 from htm import actual
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from thermal_kit import warm
 
 from gcxform.machine.errors import Outside, compensate, reach_of
 from gcxform.machine.functions import AxisFunction, AxisFunctions
@@ -137,6 +138,9 @@ MODELS = [
     lattice(1),
     lattice(2, (2, 1, 5)),
     Sum((rigid(1), lattice(1))),
+    warm(1),
+    warm(2),
+    Sum((rigid(1), warm(3))),
 ]
 
 

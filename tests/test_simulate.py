@@ -9,11 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from simulate_kit import TRAVEL, Loose, chain_of, functions, lddm
+from simulate_kit import EXAMPLE, TRAVEL, Loose, chain_of, functions, lddm
 
 import gcxform as gx
 from gcxform.registry import default_registry
-from gcxform.simulate.positions import VirtualMachine, points_at, senses
+from gcxform.simulate.positions import Chain, VirtualMachine, points_at, senses
 from gcxform.simulate.programs import PLANES, circles, linear_cycles
 from gcxform.simulate.virtual import (
     BODY,
@@ -26,6 +26,7 @@ from gcxform.simulate.virtual import (
     ranges,
 )
 
+RIGID = EXAMPLE.parents[1] / "rigid-body" / "model.toml"
 CENTRE = (200.0, 180.0, 220.0)
 MIDDLE = (240.0, 165.0, 225.0)
 DIALECTS = ("linuxcnc", "fanuc", "haas", "grbl")
@@ -197,6 +198,18 @@ def test_diagonals_go_where_their_names_say():
     assert inner.targets[[0, -1]] == pytest.approx(np.array([[1.0] * 3, [399.0] * 3]))
     flat = BOX * [[1.0], [1.0], [0.0]]
     assert possible(BODY + FACES, flat) == ("PP0", "NP0")
+
+
+def test_a_machine_with_angular_errors_keeps_the_tolerance():
+    chain = Chain(gx.ModelFile.load(RIGID), default_registry().dialect("linuxcnc"), decimals=5)
+    box = ranges(chain.model.model)
+    lines = tuple(diagonal_line(name, box, 5) for name in BODY)
+    outcome = LinearTest(lines, runs=1).run(chain)
+    around = Ballbar((0.0, 0.0, -250.0), 150.0).run(chain)
+    for name in BODY:
+        assert outcome.after[name].figures["E"] < 0.002 < outcome.before[name].figures["E"]
+    for plane in PLANES:
+        assert around.after[plane].figures["G(b)"] < 0.0021 < around.before[plane].figures["G(b)"]
 
 
 # --- programs ---

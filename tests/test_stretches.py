@@ -46,11 +46,22 @@ def stretch(random: Random) -> list[str]:
     return [filled(random, block) for block in blocks]
 
 
+def steps(random: Random) -> list[str]:
+    """Return the blocks of a stretch in G91, and what ends it."""
+    cycle, level = random.choice(CYCLES), random.choice(("G98", "G99"))
+    more = ["X{x}", "X-{x} L2", "Y-{y}", "X{x} Y{y} R-1"]
+    blocks = ["G17", "G0 Z{z}", "G91", f"{level} X{{x}} Y{{y}} {cycle} Z-4 R-2 L3"]
+    blocks += random.choices(more, k=random.randint(0, 4))
+    blocks += random.choice(([], ["G90 X{x} Z-3 R{r}", "X{x}"], ["G90 Y{y} Z-3 R{r}"]))
+    blocks.append("G90 G80")
+    return [filled(random, block) for block in blocks]
+
+
 def program(random: Random) -> str:
     """Return a program of stretches: some end with G80, some run into one another."""
     lines = ["G21 G17 G90 F100 M3 S1", "G0 X0 Y0 Z20"]
     for _ in range(random.randint(3, 9)):
-        lines += stretch(random)
+        lines += stretch(random) if random.random() < 0.7 else steps(random)
     return "\n".join([*lines, "G80", "M2"]) + "\n"
 
 

@@ -1,5 +1,7 @@
 """The proof sees a thread or a probe that became something else."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -25,10 +27,11 @@ def test_the_proof_compares_forms():
 
     lines = np.arange(4)
     same = Trace(written, Window(), written, written, lines, lines * 0, 0)
-    verifier._forms(same)
+    told = SimpleNamespace(modes=SimpleNamespace(motion=np.zeros(4, np.int64)))
+    verifier._forms(same, told, told)
     other = Trace(before, Window(), written, written, lines, lines * 0, 0)
     with pytest.raises(gx.VerificationError, match="tied to the spindle"):
-        verifier._forms(other)
+        verifier._forms(other, told, told)
 
 
 def test_only_what_has_no_words_may_be_off_between_taps():

@@ -145,6 +145,7 @@ def test_the_oracle_knows_the_nodes() -> None:
 
 
 def test_the_default_writes_56_blocks_that_are_right_to_the_rounding(program: bytes) -> None:
+    """V3, V4: within 0.87 um with three decimals, along the whole way."""
     moves = written(pipeline(HERE), program)
     assert after_first(moves) == 56
     assert residual(program, moves) <= 0.87e-3
@@ -162,12 +163,14 @@ def test_the_default_writes_56_blocks_that_are_right_to_the_rounding(program: by
 def test_lines_are_exact_before_rounding(
     program: bytes, option: str, blocks: int, within: float
 ) -> None:
+    """V4: cut at nodes."""
     moves = exact(pipeline(HERE + option), program)
     assert after_first(moves) == blocks
     assert residual(program, moves) <= within
 
 
 def test_a_tolerance_of_a_micrometre_needs_few_blocks(program: bytes) -> None:
+    """V4: at most 21 blocks and 1 um."""
     chain = pipeline(f"{HERE} tolerance=1um")
     assert after_first(written(chain, program)) <= 21
     moves = exact(chain, program)
@@ -201,7 +204,7 @@ def paired_residual(program: bytes, commands: list[Move]) -> float:
 
 
 def test_no_axis_is_left_where_it_was_before_compensation(program: bytes) -> None:
-    """Z240. alone is also where X and Y have another error than before.
+    """V3: Z240. alone is also where X and Y have another error than before.
 
     LDDM writes the axes that the program names and no other: X and Y stay behind there.
     """

@@ -8,6 +8,7 @@ failed; 70 a bug; 130 interrupted.
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections.abc import Sequence
@@ -27,13 +28,16 @@ VERBS: Final = {
     "resume": "Print the blocks that make a restart at a line safe.",
     "calibrate": "Turn measurements of a machine into its error model.",
     "simulate": "Test a machine with known errors, before and after compensation.",
+    "machine": "Show the rotary axes of a machine, or take them over from a control.",
     "show": "Draw an error model, or the error along the path of a program.",
+    "table": "Convert error tables from one format to another, or show one.",
     "list": "List what is installed, or the options of one thing.",
     "explain": "Explain a diagnostic code, or what a block does.",
     "schema": "Print the JSON Schema of a kind of files.",
 }
 FILES: Final = {"list": "listing"}  # a module named `list` would hide the builtin in this one
 DEBUG: Final = "show_traceback"
+OBJECTS_BETWEEN: Final = 50_000  # new objects before garbage is looked for
 
 
 class Verbs(click.Group):
@@ -50,6 +54,8 @@ class Verbs(click.Group):
         command: click.Command = import_module(
             f"gcxform.cli.{FILES.get(cmd_name, cmd_name)}"
         ).command
+        gc.freeze()  # modules stay; looking at them again and again costs a twentieth of a run
+        gc.set_threshold(OBJECTS_BETWEEN)
         if not command.params or command.params[-1].name != DEBUG:
             command.params.append(_debug_option())
         return command

@@ -114,8 +114,7 @@ def reading_findings(pipeline: Pipeline, source: Source) -> Iterator[Diagnostic]
     After the first window that is refused nothing is known of the state any more, so from there on
     only those findings count that are about a block by itself.
     """
-    letters = source.letters()
-    axes = "".join(a for a in pipeline.source.axes if a in letters or a in "XYZ")
+    axes = source.axes(pipeline.source.axes)
     interpreter = Interpreter(pipeline.source, pipeline.machine_reading, axes, source.name)
     ending = Ending(pipeline.source, source.name)
     refused = False

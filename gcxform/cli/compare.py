@@ -35,6 +35,7 @@ SHOWN = 10
 @click.option("--part-origin", metavar="X,Y,Z", help="Origin of the programs in the machine.")
 @click.option("--table-origin", metavar="X,Y,Z", help="Origin of the measurement.")
 @click.option("--outside", metavar="POLICY", help="What the error is beyond the table.")
+@click.option("--time", metavar="TIME", help="Time (ISO 8601) whose temperatures hold.")
 @options.reading_options
 @click.argument("a", metavar="A")
 @click.argument("b", metavar="B")
@@ -48,6 +49,7 @@ def command(
     part_origin: str | None,
     table_origin: str | None,
     outside: str | None,
+    time: str | None,
     **asked: Any,
 ) -> int:
     """Compare two programs; exit 1 if path, feeds or events differ."""
@@ -55,7 +57,7 @@ def command(
         raise excluding("stdin as A and stdin as B")
     limit = _length(tolerance)
     origins = {"part-origin": part_origin, "table-origin": table_origin}
-    through = _model({"model": model, **origins, "outside": outside})
+    through = _model({"model": model, **origins, "outside": outside, "time": time})
     what = Asked(**asked)
     first = _program(a, needed_dialect(dialect), what)
     second = _program(b, to or needed_dialect(dialect), what)

@@ -58,7 +58,7 @@ def _described(thing: Any, kind: str, registry: Registry) -> list[str]:
     """Return all that is known of one thing."""
     lines = [f"{thing.name}   {registry.origin(kind, thing.name)}", ""]
     lines += (inspect.getdoc(thing) or "").splitlines()
-    if issubclass(thing, Pass | TextPass):
+    if issubclass(thing, Pass | TextPass) or hasattr(thing, "__dataclass_fields__"):
         lines += ["", *_options(describe(thing))]
     if issubclass(thing, Pass):
         lines += _facts(thing)
@@ -66,6 +66,8 @@ def _described(thing: Any, kind: str, registry: Registry) -> list[str]:
         lines += ["", *_dialect(thing)]
     if suffixes := getattr(thing, "suffixes", ()):
         lines += ["", f"files: {' '.join(suffixes)}"]
+    if control := getattr(thing, "control", ""):
+        lines.append(f"in the control: {control}")
     return lines
 
 

@@ -41,8 +41,7 @@ class Restart:
     line: int
 
     def __post_init__(self) -> None:
-        letters = self.source.letters()
-        self.axes = "".join(a for a in self.dialect.axes if a in letters or a in "XYZ")
+        self.axes = self.source.axes(self.dialect.axes)
         self.placed: set[str] = set()  # axes that are programmed before the line
         self.reader = WindowReader(self.dialect)
         self.interpreter = self._interpreter(self.reading)

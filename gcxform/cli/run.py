@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import click
@@ -70,7 +71,22 @@ def summary(pipeline: Pipeline, done: Done) -> str:
         counts = "copied byte for byte"
     steps = " | ".join(step.name for step in pipeline.passes) or "no passes"
     head = f"{found.source['name']}: {pipeline.source.name} -> {pipeline.target.name}"
-    return f"{head}   {counts}   {steps}   {done.seconds:.2f} s\n  {_proof(found)}"
+    first = f"{head}   {counts}   {steps}   {done.seconds:.2f} s"
+    return "\n  ".join([first, *_states(found), _proof(found)])
+
+
+def _states(found: Certificate) -> Iterator[str]:
+    """Yield what the temperatures were for which the program is compensated, and the drift."""
+    for step in found.steps:
+        for state in step.get("model", {}).get("states", ()):
+            warm, sensors = state["temperatures"], state["sensors"]
+            travel = state["travel"][1] - state["travel"][0]
+            yield (
+                f"{state['axis']} at {state['time']}: {min(warm):.1f} to {max(warm):.1f} degC at "
+                f"{len(sensors)} sensors ({sensors[0]} to {sensors[-1]}), off by up to "
+                f"{1000 * state['largest']:.1f} um; drift {1000 * state['drift']:.2f} um per K "
+                f"over {travel:g} mm"
+            )
 
 
 def _proof(found: Certificate) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,6 +15,7 @@ from gcxform.cli.asked import Asked, needed_dialect
 from gcxform.cli.described import built, options_of
 from gcxform.cli.outputs import check_places, destination
 from gcxform.cli.programs import opened
+from gcxform.dialect import Dialect
 from gcxform.machine.errors import Outside
 from gcxform.options import Length, ModelFile, Option, Vector
 from gcxform.pipeline import Pipeline
@@ -52,47 +53,40 @@ class ModelOptions:
 @options_of(ModelOptions)
 @options.reading_options
 @options.FILE
-def command(
-    file: str,
-    output: str,
-    dialect: str | None,
-    chain: str,
-    machine: str | None,
-    start: str | None,
-    increment: str | None,
-    feed_increment: str | None,
-    block_delete: str | None,
-    **given: Any,
-) -> None:
+def command(file: str, output: str, dialect: str | None, chain: str, **given: Any) -> None:
     """Draw FILE: an error model, or with --model a program."""
     plot.check(output)
-    check_places({"-o": output}, [file, given["model"], machine])
-    asked = built(ModelOptions, given, "show")
-    if asked.model is None:
-        alone = built(ModelOptions, {"model": file}, "show").model
-        assert alone is not None
-        drawn = plot.model(alone.model, f"{alone.path.name}: {alone.model.kind}")
+    asked = Asked(**{field.name: given.pop(field.name, None) for field in fields(Asked)})
+    check_places({"-o": output}, [file, given["model"], asked.machine])
+    told = built(ModelOptions, given, "show")
+    if told.model is None:
+        drawn = _model(file)
     else:
-        what = Asked(
-            machine=machine,
-            start=start,
-            increment=increment,
-            block_delete=block_delete,
-            feed_increment=feed_increment,
-        )
-        reading = what.reading()
         kind = default_registry().dialect(needed_dialect(dialect))
-        passes = [*parse_chain(chain, Path.cwd(), default_registry()), _step(asked)]
-        pipeline = Pipeline(kind, kind, tuple(passes), reading, what.loaded_machine)
-        with opened(file) as source:
-            program = Program(b"".join(source.windows()), kind, reading, source.name)
-        before, after, _ = before_and_after(program, pipeline)
-        drawn = plot.heat(before, after, f"{Path(file).name} on {asked.model.path.name}")
+        drawn = _program(file, kind, chain, asked, told)
     with destination(output) as put:
         put(plot.rendered(drawn, output))
 
 
-def _step(asked: ModelOptions) -> Any:
-    """Return the pass that compensates."""
-    step: Any = default_registry().pass_(PASS)
-    return step(**vars(asked))
+def _model(file: str) -> Any:
+    """Return the picture of an error model."""
+    shown = built(ModelOptions, {"model": file}, "show").model
+    assert shown is not None
+    return plot.model(shown.model, f"{shown.path.name}: {shown.model.kind}")
+
+
+def _program(
+    file: str, dialect: type[Dialect], chain: str, asked: Asked, told: ModelOptions
+) -> Any:
+    """Return the picture of a program on a machine."""
+    first = parse_chain(chain, Path.cwd(), default_registry())
+    compensate: Any = default_registry().pass_(PASS)
+    steps = (*first, compensate(**vars(told)))
+    said = replace(asked, machine=None).reading()
+    pipeline = Pipeline(dialect, dialect, steps, said, asked.loaded_machine)
+    with opened(file) as source:
+        text, name = b"".join(source.windows()), source.name
+    program = Program(text, dialect, pipeline.machine_reading, name)
+    before, after, _ = before_and_after(program, pipeline)
+    assert told.model is not None
+    return plot.heat(before, after, f"{Path(file).name} on {told.model.path.name}")

@@ -29,8 +29,7 @@ class Tolerant:
     unread: int = 0
 
     def __post_init__(self) -> None:
-        letters = self.source.letters()
-        axes = "".join(a for a in self.dialect.axes if a in letters or a in "XYZ")
+        axes = self.source.axes(self.dialect.axes)
         self.reader = WindowReader(self.dialect)
         self.interpreter = Interpreter(self.dialect, self.reading, axes, self.source.name)
 

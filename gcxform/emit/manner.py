@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.diagnostics import Location
+from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect import INCH, LINEAR, Dialect, NumberFormat
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.tables import NUMBER, MeaningTable
@@ -121,3 +122,10 @@ class Task:
         text = self.window.line(line).decode("latin-1")
         number = self.window.first_line + line + 1
         return Location(self.file, number, column + 1, text, width or max(1, len(text)))
+
+    def refuse(self, rows: NDArray[np.int64], code: str, message: str, hint: str) -> NoReturn:
+        """Raise InputError at the lines of some rows of the path, the first twenty of them."""
+        lines = self.path.block[rows[:20]].tolist()
+        raise InputError(
+            tuple(Diagnostic(code, message, self.location(line), hint) for line in lines)
+        )

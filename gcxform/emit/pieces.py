@@ -216,10 +216,11 @@ class Pieces:
         inverse = path.blocks.feed_mode == FeedMode.INVERSE_TIME
         unit_here = np.where(self._inch_for_feed(), INCH, 1.0)
         plain = turns_only(path) & (self.kind < Kind.ARC_CW)
-        has_unit = self.of_rows(~plain, True) & ~inverse[self.line]
+        timed = inverse[self.line]
+        has_unit = self.of_rows(~plain, True) & ~timed
         unit = np.where(has_unit, unit_here, 1.0)
         given = modes.feed * np.where(inverse, 1.0, modes.feed_unit)
-        given = given[self.line] / np.where(inverse[self.line], 1.0, unit_here)
+        given = given[self.line] / np.where(timed, 1.0, unit_here)
         need = np.where(word & ~self.other_mode, given, np.nan)
         need = np.where(feeding, self.of_rows(path.feed, np.nan) / unit, need)
         lost = self._feed_lost()
@@ -230,7 +231,7 @@ class Pieces:
         size = np.append(self.believed.feed_unit, self.unit_after[:-1])[: len(need)]
         held = np.where(has_unit, number * size / unit_here, number)
         held = np.where(lost, np.nan, held)
-        changes = feeding & (~_close(held, need) | inverse[self.line])
+        changes = feeding & (~_close(held, need) | timed)
         kept = word & _close(need, modes.feed[self.line]) & ~self._must_have_point()
         self.feed = np.where(
             kept,

@@ -8,7 +8,8 @@ from itertools import pairwise
 from gcxform.dialect import Dialect
 from gcxform.emit.manner import Manner
 from gcxform.modal.codes import Code, MCode
-from gcxform.modal.meaning import FRAMING, Meaning, only_for_cycles
+from gcxform.modal.meaning import FRAMING, Meaning
+from gcxform.modal.sorting import only_for_cycles
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import BLANKS, Item, Mark, Number, Statement, Word
 from gcxform.toolpath.path import Event

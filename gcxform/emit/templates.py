@@ -37,12 +37,8 @@ from gcxform.emit.saying import (
     own_gap,
     same_m,
 )
-from gcxform.modal.meaning import (
-    DRILL_WORDS,
-    Meaning,
-    only_for_cycles,
-    program_number_fits,
-)
+from gcxform.modal.meaning import DRILL_WORDS, Meaning
+from gcxform.modal.sorting import only_for_cycles, program_number_fits
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Item, Mark, Number, Statement, Word
 

@@ -38,6 +38,28 @@ class Outside(enum.StrEnum):
     ZERO = "zero"
 
 
+@dataclass(frozen=True)
+class State:
+    """The temperatures of an axis at a time, and what they do to it.
+
+    axis          letter
+    time          ISO 8601, when the sensors were read
+    sensors       names, along the axis
+    temperatures  degC
+    travel        mm
+    largest       mm, largest error along the travel
+    drift         mm per K: how much the error between the ends grows if all gets warmer by 1 K
+    """
+
+    axis: str
+    time: str
+    sensors: tuple[str, ...]
+    temperatures: tuple[float, ...]
+    travel: tuple[float, float]
+    largest: float
+    drift: float
+
+
 class ErrorModel(ABC):
     """A volumetric error field E(c) over machine coordinates c, both in mm."""
 
@@ -109,9 +131,26 @@ class ErrorModel(ABC):
         """The axes (3,) whose error depends on the direction of travel."""
         return np.zeros(3, np.bool_)
 
+    @property
+    def states(self) -> tuple[State, ...]:
+        """The states of the machine that the model holds for; none if it always holds."""
+        return ()
+
+    def at_time(self, time: str) -> ErrorModel:
+        """Return the model in its state at a time (ISO 8601). Raises UsageError."""
+        return self
+
     @abstractmethod
     def range_of(self, axis_index: int) -> tuple[float, float]:
         """Return the lowest and highest position in mm of axis 0, 1 or 2; infinite if unbounded."""
+
+    def extended(self, axis_index: int, cells: float) -> tuple[float, float]:
+        """Return the range of an axis in mm, wider by a number of its first and last cells."""
+        low, high = self.range_of(axis_index)
+        nodes = self.nodes[axis_index]
+        if len(nodes) < 2 or not cells:
+            return low, high
+        return low - cells * float(nodes[1] - nodes[0]), high + cells * float(nodes[-1] - nodes[-2])
 
     def outside(self, position: FloatArray) -> BoolArray:
         """Return (n, 3): which coordinates (mm) lie beyond the table by more than `BORDER`.

@@ -8,8 +8,8 @@ its displacement d and turn e count as -d - e x (its own position), at the nodes
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Literal
+from collections.abc import Iterator, Sequence
+from typing import Any, Literal
 
 import msgspec
 import numpy as np
@@ -164,8 +164,18 @@ def shear(square: Squareness | None) -> FloatArray:
     return slopes
 
 
+def not_finite(
+    document: TomlText, keys: tuple[Any, ...], numbers: Sequence[float]
+) -> Iterator[Diagnostic]:
+    """Yield the numbers of a list in a file that are none, or without end."""
+    for k, value in enumerate(numbers):
+        if not np.isfinite(value):
+            yield Diagnostic("GX412", f"{keys[-1]} holds {value}", document.where(*keys, k))
+
+
 def _refusals(document: TomlText, file: AxisFunctionsFile) -> Iterator[Diagnostic]:
     """Yield what contradicts itself in a file, and what is missing in it."""
+    yield from not_finite(document, ("tool",), file.tool or ())
     if file.convention == "carriage" and FRAME not in file.order:
         yield Diagnostic(
             "GX413",
@@ -213,6 +223,7 @@ def _table_findings(document: TomlText, file: AxisFunctionsFile) -> Iterator[Dia
             row = () if fault.row is None else (fault.row,)
             where = document.where(axis, fault.column, *row)
             yield Diagnostic(fault.code, f"[{axis}] {fault.message}", where)
+        yield from not_finite(document, (axis, "at"), table.at)
 
 
 def _lever_findings(document: TomlText, file: AxisFunctionsFile) -> Iterator[Diagnostic]:

@@ -11,7 +11,7 @@ import numpy as np
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.machine.errors import AXES, FloatArray
 from gcxform.machine.functions import ascending
-from gcxform.machine.functionsfile import Squareness, Triple, shear
+from gcxform.machine.functionsfile import Squareness, Triple, not_finite, shear
 from gcxform.machine.lattice import Lattice
 from gcxform.machine.linear import Linear
 from gcxform.machine.rigid import NOWHERE
@@ -121,7 +121,8 @@ def _positions(document: TomlText, file: msgspec.Struct, axes: str) -> Iterator[
         nodes = getattr(file, axis)
         if not nodes:
             yield Diagnostic("GX411", f"{axis} has no position", document.where(axis))
-        for fault in ascending(nodes):
+        yield from not_finite(document, (axis,), nodes)
+        for fault in ascending(nodes) if np.isfinite(nodes).all() else ():
             yield Diagnostic(
                 fault.code, f"{axis}: {fault.message}", document.where(axis, fault.row or 0)
             )
@@ -130,6 +131,7 @@ def _positions(document: TomlText, file: msgspec.Struct, axes: str) -> Iterator[
 def _turn_findings(
     document: TomlText, file: LatticeFile, turns: Sequence[str]
 ) -> Iterator[Diagnostic]:
+    yield from not_finite(document, ("tool",), file.tool or ())
     if not turns:
         return
     missing = [name for name in ("EA", "EB", "EC") if name not in turns]

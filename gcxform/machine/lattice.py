@@ -144,7 +144,8 @@ class Lattice(ErrorModel):
     def _fields(self) -> tuple[Field, Field]:
         """Return grid and values, and grid and turns, with one extrapolated cell on every side."""
         turns = np.zeros_like(self.values) if self.turns is None else self.turns
-        return self._wider(self.values), self._wider(turns)
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self._wider(self.values), self._wider(turns)
 
     def largest(self, reach: float = 0.0) -> float:
         """Return a bound of |E| in mm inside the grid: it is largest at a node."""
@@ -197,7 +198,8 @@ def _twist(grid: list[FloatArray], values: FloatArray) -> FloatArray:
 def _along(grid: list[FloatArray], values: FloatArray, axis: int) -> FloatArray:
     """Return the slopes of values along an axis, one fewer there."""
     width = np.diff(grid[axis]).reshape([-1 if k == axis else 1 for k in range(4)])
-    return np.asarray(np.diff(values, axis=axis) / width)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.asarray(np.diff(values, axis=axis) / width)
 
 
 def _larger_neighbour(size: FloatArray, axis: int) -> FloatArray:

@@ -18,7 +18,8 @@ class Axis(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="keba
 
     `direction` is a unit vector along the axis and `point` (mm) lies on it, both in machine
     coordinates with all axes at 0; `sign` is +1 where a positive command turns right-handed about
-    `direction`, -1 where left-handed; `wrap` is the modulo of the display in degrees.
+    `direction`, -1 where left-handed; `wrap` is the modulo of the display in degrees. An axis may
+    be given either way round: read from a file, the largest component of its direction is positive.
     """
 
     limits: tuple[Value, Value] | None = None
@@ -62,6 +63,8 @@ class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
 
     format: int
     name: str = ""
+    kinematics: str | None = None
+    inclination: Value | None = None
     table: list[str] = []
     head: list[str] = []
     gauge_point: Triple = (0.0, 0.0, 0.0)

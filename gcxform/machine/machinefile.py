@@ -12,11 +12,13 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import msgspec
 
 from gcxform.diagnostics import Diagnostic, Location, UsageError
+from gcxform.machine import presets
 from gcxform.machine.machine import MARK, Axis, Machine, MachineFile, Offset, Tool
 from gcxform.machine.modelfile import CODES, check_version
 from gcxform.machine.quantities import (
@@ -30,6 +32,7 @@ from gcxform.machine.quantities import (
 from gcxform.machine.toolfile import read_tools
 from gcxform.tomltext import TomlText, convert, did_you_mean, read_toml
 
+NONE: presets.Known = MappingProxyType({})
 EXAMPLES = {"axis": "X", "work-offset": "G54", "home": "G28", "tool": "1"}
 INERT = "inert-m"
 """The setting of the control that lists M codes which move nothing."""
@@ -37,15 +40,17 @@ Keys = tuple[str | int, ...]
 _WORK_OFFSET = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?|G154 P[0-9]+")
 
 
-def load_machine(path: Path) -> Machine:
-    """Return the machine of a TOML file.
+def load_machine(path: Path, kinematics: presets.Known = NONE) -> Machine:
+    """Return the machine of a TOML file, which may name one of some kinds of kinematics.
 
     Raises UsageError, with the place in the file, for all that is wrong with it.
     """
     document = read_toml(path, CODES)
     check_version(document, "machines")
     file = _converted(_without_units(document))
-    if found := tuple(_findings(document, file)):
+    named = tuple(presets.findings(document, file, kinematics))
+    file = presets.filled(file, kinematics)
+    if found := named or tuple(_findings(document, file)):
         raise UsageError(found)
     return Machine(
         file=path,
@@ -154,7 +159,7 @@ def _quantity_at(keys: Keys) -> Quantity | None:
             return LENGTH
         case ("axis", str(letter), "limits", int()) | ("work-offset" | "home", _, str(letter)):
             return quantity_of(letter)
-        case ("axis", _, "wrap"):
+        case ("axis", _, "wrap") | ("inclination",):
             return ANGLE
     return None
 
@@ -237,7 +242,7 @@ def _chain_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnosti
     rotary = [letter for letter in file.axis if letter in ROTARY_AXES]
     for chain, letters in (("table", file.table), ("head", file.head)):
         for k, letter in enumerate(letters):
-            where = document.where(chain, k)
+            where = document.where(chain if file.kinematics is None else "kinematics", k)
             if letter not in rotary:
                 message = f"{chain} names {letter!r}, which is not a rotary axis of this machine"
                 hint = f"add [axis.{letter}]" if letter in ROTARY_AXES else ""
@@ -245,6 +250,11 @@ def _chain_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnosti
             elif letter in seen:
                 message = f"the axis {letter} stands twice in table and head"
                 yield Diagnostic("GX435", message, where)
+            elif file.axis[letter].point is None:
+                stated = letter in document.values.get("axis", {})
+                place = where if not stated else document.where("axis", letter, "point")
+                message = f"the point of axis {letter} is missing"
+                yield Diagnostic("GX452", message, place, "give a point on its line, in mm")
             seen.add(letter)
 
 
@@ -287,8 +297,15 @@ def _tool_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic
 
 
 def _normalised(axis: Axis) -> Axis:
-    """Return the axis with a direction of length 1."""
-    x, y, z = axis.direction or (0.0, 0.0, 1.0)
-    length = math.hypot(x, y, z)
-    unit = (x / length, y / length, z / length)
-    return msgspec.structs.replace(axis, direction=unit) if axis.direction else axis
+    """Return the axis with a direction of length 1, the same whichever way round it was given.
+
+    A rotary axis is a line: turned around, together with its sign, it is the same axis.
+    """
+    if axis.direction is None:
+        return axis
+    length = math.hypot(*axis.direction)
+    largest = max(axis.direction, key=abs)
+    flip = -1 if axis.sign is not None and largest < 0.0 else 1
+    x, y, z = (flip * part / length + 0.0 for part in axis.direction)
+    sign = None if axis.sign is None else flip * axis.sign
+    return msgspec.structs.replace(axis, direction=(x, y, z), sign=sign)

@@ -14,7 +14,7 @@ import msgspec
 
 from gcxform.diagnostics import Location, UsageError
 from gcxform.machine.errors import ErrorModel, check_contraction
-from gcxform.machine.formats import ErrorFormat
+from gcxform.machine.formats import ErrorFormat, chosen_format, unsaid
 from gcxform.machine.functionsfile import AxisFunctionsFile, axis_functions
 from gcxform.machine.gridfile import (
     HeightMapFile,
@@ -24,7 +24,9 @@ from gcxform.machine.gridfile import (
     lattice,
     skew,
 )
+from gcxform.machine.pitchfile import PitchFile, pitch
 from gcxform.machine.sums import Sum, SumFile, checked_sum
+from gcxform.machine.thermalfile import ThermalScrewFile, thermal_screw
 from gcxform.tomltext import Codes, TomlText, convert, did_you_mean, read_toml
 
 FORMAT = 1
@@ -55,9 +57,8 @@ def _foreign(path: Path, formats: Sequence[type[ErrorFormat]]) -> ErrorModel:
     where = Location(str(path))
     if not path.exists():
         raise UsageError.one("GX401", "the file cannot be read: it does not exist", where)
-    for form in formats:
-        if form.recognises(path):
-            return form.read(path)
+    if form := chosen_format(path, formats):
+        return read_foreign(path, form)
     known = [f"TOML ({SUFFIX})", *(f"{f.name} ({', '.join(f.suffixes)})" for f in formats)]
     raise UsageError.one(
         "GX416",
@@ -65,6 +66,16 @@ def _foreign(path: Path, formats: Sequence[type[ErrorFormat]]) -> ErrorModel:
         where,
         f"known: {', '.join(known)}",
     )
+
+
+def read_foreign(path: Path, form: type[ErrorFormat]) -> ErrorModel:
+    """Return the model of a foreign file. Raises UsageError if it needs to be told more."""
+    if missing := unsaid(form):
+        options = " ".join(f"{name}=..." for name in missing)
+        hint = f"gcxform table convert {path.name} model.toml --from '{form.name} {options}'"
+        message = f"the format {form.name!r} does not say {' and '.join(missing)}"
+        raise UsageError.one("GX480", message, Location(str(path)), hint)
+    return form().read(path)
 
 
 def _native(path: Path, formats: Formats, above: tuple[Path, ...]) -> ErrorModel:
@@ -91,6 +102,9 @@ def _sum(document: TomlText, path: Path, formats: Formats, above: tuple[Path, ..
     above = (*above, path.resolve())
     models = []
     for k, name in enumerate(file.models):
+        if "\0" in name:
+            message = f"no file is called {name!r}"
+            raise UsageError.one("GX401", message, document.where("models", k))
         part = path.parent / name
         if part.resolve() in above:
             message = f"the sum {name} is a part of itself"
@@ -111,7 +125,8 @@ def check_version(document: TomlText, what: str) -> None:
 
 def schema() -> dict[str, Any]:
     """Return the JSON Schema of error models."""
-    files = [AxisFunctionsFile, LatticeFile, HeightMapFile, SkewFile, SumFile]
+    functions = [AxisFunctionsFile, PitchFile, ThermalScrewFile]
+    files = [*functions, LatticeFile, HeightMapFile, SkewFile, SumFile]
     kinds, parts = msgspec.json.schema_components(files, ref_template="#/$defs/{name}")
     return {"anyOf": list(kinds), "$defs": parts}
 
@@ -121,4 +136,6 @@ KINDS: dict[str, Callable[[TomlText], ErrorModel]] = {
     "lattice": lattice,
     "height-map": height_map,
     "skew": skew,
+    "thermal-screw": thermal_screw,
+    "pitch": pitch,
 }

@@ -12,6 +12,7 @@ from gcxform.machine.errors import AXES, ErrorModel, FloatArray
 from gcxform.machine.functions import COLUMNS, AxisFunction, AxisFunctions
 from gcxform.machine.lattice import Lattice
 from gcxform.machine.linear import Linear
+from gcxform.machine.pitch import PitchTables
 from gcxform.machine.rigid import RigidBody
 
 
@@ -26,6 +27,8 @@ def to_toml(model: ErrorModel) -> str:
             lines = _lattice(model)
         case Linear():
             lines = _linear(model)
+        case PitchTables():
+            lines = _pitch(model)
         case _:
             raise TypeError(f"models of the kind {model.kind!r} are not written")
     return "\n".join(["format = 1", f'kind = "{model.kind}"', *lines]) + "\n"
@@ -79,10 +82,20 @@ def _linear(model: Linear) -> list[str]:
     ]
 
 
+def _pitch(model: PitchTables) -> list[str]:
+    lines = ['values = "error"']
+    for axis, table in zip(AXES, model.axes, strict=True):
+        if table is not None:
+            lines += ["", f"[{axis}]"]
+            for name in ("position", "forward", "reverse"):
+                lines.append(f"{name} = {getattr(table, name).tolist()}")
+    return lines
+
+
 def fingerprint(part: Any) -> bytes:
     """Return bytes that are the same for the same model, whatever files it came from."""
     if dataclasses.is_dataclass(part):
-        values = [getattr(part, f.name) for f in dataclasses.fields(part)]
+        values = [getattr(part, f.name) for f in dataclasses.fields(part) if f.compare]
         return type(part).__name__.encode() + b"(" + b",".join(map(fingerprint, values)) + b")"
     if isinstance(part, tuple):
         return b"(" + b",".join(map(fingerprint, part)) + b")"

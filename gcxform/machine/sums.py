@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 
 from gcxform.diagnostics import UsageError
-from gcxform.machine.errors import BoolArray, ErrorModel, FloatArray, Outside
+from gcxform.machine.errors import BoolArray, ErrorModel, FloatArray, Outside, State
 from gcxform.tomltext import TomlText
 
 
@@ -58,6 +58,15 @@ class Sum(ErrorModel):
         return np.asarray(np.any([model.backlash for model in self.models], axis=0))
 
     @property
+    def states(self) -> tuple[State, ...]:
+        """The states of all models."""
+        return tuple(state for model in self.models for state in model.states)
+
+    def at_time(self, time: str) -> Sum:
+        """Return the sum of the models at a time."""
+        return Sum(tuple(model.at_time(time) for model in self.models))
+
+    @property
     def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """The nodes of all models."""
         x, y, z = (
@@ -80,6 +89,11 @@ class Sum(ErrorModel):
     def range_of(self, axis_index: int) -> tuple[float, float]:
         """Return what all models have in common."""
         ranges = [model.range_of(axis_index) for model in self.models]
+        return max(low for low, _ in ranges), min(high for _, high in ranges)
+
+    def extended(self, axis_index: int, cells: float) -> tuple[float, float]:
+        """Return what all models have in common, each wider by cells of its own."""
+        ranges = [model.extended(axis_index, cells) for model in self.models]
         return max(low for low, _ in ranges), min(high for _, high in ranges)
 
 

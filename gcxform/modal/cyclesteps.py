@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from operator import attrgetter
 
 import numpy as np
 
@@ -109,7 +110,7 @@ def rows_of(holes: Holes, rule: CycleRule) -> Rows:
         _pecks(holes, rule, table, hole[pecks], number, (pecks, end, kind))
     synchronised = taps[hole] & (kind == Kind.LINE)
     behind_steps = first + approach + pecking
-    events = tuple(sorted(_events(holes, rule, behind_steps), key=lambda event: event.row))
+    events = tuple(sorted(_events(holes, rule, behind_steps), key=attrgetter("row")))
     return Rows(holes.call[hole], kind, end, synchronised, events)
 
 

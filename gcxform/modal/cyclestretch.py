@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -263,9 +264,11 @@ class _Follower:
         if not self.rule.keeps_words:
             return constant(before, len(self.calls), np.bool_)
         given = ~np.isnan(getattr(self.calls, name))
-        if self.many:
-            given[self.starts] = True
-        return np.asarray(fill(self.calls.incremental, given, before))
+        if not self.many:
+            return np.asarray(fill(self.calls.incremental, given, before))
+        incremental = self.calls.incremental & given
+        given[self.starts] = True
+        return np.asarray(fill(incremental, given, before))
 
     def _dwell(self, programmed: Floats) -> Floats:
         """Return how long each call dwells where its cycle does."""
@@ -283,6 +286,14 @@ class _Follower:
         level = np.where(standing > clearance, standing, low)
         return rises, np.where(rises, clearance, level)
 
+    def _summed(self, steps: Floats) -> Floats:
+        """Return the sums of steps since the beginning of each stretch."""
+        if not self.many:
+            return np.cumsum(steps)
+        for first, last in pairwise([*self.starts.tolist(), len(steps)]):
+            np.cumsum(steps[first:last], out=steps[first:last])
+        return steps
+
     def _positions(
         self, drilled: Flags, repeats: Floats, ends: Floats
     ) -> tuple[Floats, Floats, Floats]:
@@ -292,14 +303,13 @@ class _Follower:
         increment = np.zeros((count, 2))
         steps = drilled & calls.incremental
         any_steps = steps.any()
-        assert not (any_steps and self.many)
         for axis, word in enumerate((calls.first, calls.second)):
             present, before = drilled & ~np.isnan(word), self.positions[:, axis]
             if any_steps:
                 stepping = present & steps
-                moved = np.cumsum(np.where(stepping, word * repeats, 0.0))
+                moved = self._summed(np.where(stepping, word * repeats, 0.0))
                 placed = present & ~stepping
-                base = fill(np.where(placed, word - moved, 0.0), placed, float(before[0]))
+                base = self._filled(np.where(placed, word - moved, 0.0), placed, before)
                 after[:, axis] = base + moved
                 given = calls.incremental & ~np.isnan(word)
                 increment[:, axis] = np.where(given, word, 0.0)

@@ -1,49 +1,34 @@
-"""Canned cycles in a program: which blocks call one, with which words, and the rows they become.
+"""Canned cycles in a program: where each pattern leaves the tool, and the rows that it becomes.
 
-The words of a cycle stay in force from block to block, so a block alone does not tell what it does:
-what is a call, and what its words mean, is settled here, on columns. The moves themselves are made
-by `gcxform/modal/cycles.py`, in the coordinates of the program.
+What follows a pattern begins where it ends, so that end is found at once, from the columns of
+`gcxform/modal/cyclecalls.py`. The moves themselves are made by `gcxform/modal/cycles.py`, in the
+coordinates of the program, for all patterns of a window together: that is what makes many short
+patterns cheap.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH
-from gcxform.modal.cycles import UNKNOWN, Calls, Cycles
+from gcxform.modal.cyclecalls import CallColumns
+from gcxform.modal.cycles import Calls, Cycles
 from gcxform.modal.cyclestretch import Mode, Stretch
 from gcxform.modal.rows import Rows
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.modal.track import Break, Track
-from gcxform.toolpath.path import Event, Form, Plane, constant
+from gcxform.toolpath.frames import Frame, by_frame
+from gcxform.toolpath.path import Event, Form, Plane
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-SPINDLE = np.array([0, 1, -1, UNKNOWN])
-"""How the spindle turns, by the number of its mode: stopped, M3, M4, not known."""
-
-
-MANUAL = 88
-
-
-@dataclass(frozen=True, slots=True)
-class _Common:
-    """Columns of a window that the calls of all its stretches are cut from; see `Calls`."""
-
-    code: Ints
-    initial: Flags
-    spindle: Ints
-    other_axes: Flags
-    inverse: Flags
-    line: Ints
+MANUAL = 88  # the cycle out of which the operator moves the tool
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,15 +61,9 @@ class Drilling:
         self.lines, self.modes = track.lines, track.modes
         self.cycles: Cycles | None = self.lines.state.cycles
         self.events: list[tuple[int, int, Event]] = []
-        self.calls = self._calls()
-        self._words: dict[str, Floats] = {}
-        self._lasts: dict[str, Ints] = {}
+        self.columns = CallColumns(track)
+        self.calls = self.columns.calls
         self._followed: list[_Followed] = []
-
-    def _calls(self) -> Flags:
-        """Return the lines that call a cycle."""
-        active = self.modes.cycle != CYCLE_OFF
-        return np.asarray(active & self.lines.flag("drills")) if active.any() else active
 
     def borders(self) -> Ints:
         """Return the lines at which a stretch of calls begins or ends."""
@@ -94,11 +73,6 @@ class Drilling:
         way = np.where(calls, 1 + modes.plane + 256 * modes.inch, 0)
         return np.flatnonzero(np.diff(way, prepend=0))
 
-    def leave(self, first: int, last: int) -> None:
-        """Forget what cycles keep where lines end cycle mode, or begin another."""
-        if self.cycles is not None and (self.modes.cycle[first:last] == CYCLE_OFF).any():
-            self.cycles.leave()
-
     def moved(self) -> None:
         """Note that a block has moved in a way of its own, perhaps while a cycle is in force."""
         if self.cycles is not None:
@@ -106,8 +80,23 @@ class Drilling:
 
     # --- stretches, as they come ---
 
-    def follow(self, first: int, last: int) -> None:
-        """Read a stretch of calls, and take over where the tool is after it."""
+    def follows(self, first: int, last: int) -> bool:
+        """Whether a stretch is one of calls; if it is, take over where the tool is after it.
+
+        What cycles keep is forgotten where other lines end cycle mode, or begin another.
+        """
+        cycles = self.cycles
+        if cycles is None or first == last:
+            return False
+        if self.calls[first]:
+            self._follow(first, last)
+            return True
+        if cycles.mode.code and (self.modes.cycle[first:last] == CYCLE_OFF).any():
+            cycles.leave()
+        return False
+
+    def _follow(self, first: int, last: int) -> None:
+        """Read a stretch of calls."""
         assert self.cycles is not None
         track, plane = self.track, Plane(int(self.modes.plane[first]))
         unit = INCH if self.modes.inch[first] else 1.0
@@ -118,15 +107,20 @@ class Drilling:
         if not track.frame.polar and self._is_plain(first, last):
             after[list(plane.axes)] = self._plain_end(first, last, words, plane)
         else:
-            calls = self._calls_on(slice(first, last), words[list(plane.axes)], plane, unit)
+            calls = self.columns.calls_on(slice(first, last), words[list(plane.axes)], plane, unit)
             calls = self._in_coordinates(calls, slice(first, last))
             stretch = self.cycles.follow(calls)
             after[list(plane.axes)] = stretch.after[-1]
         frame = len(track.frames) - 1
         self._followed.append(_Followed(first, last, plane, unit, words, frame, dwell, stretch))
         track.state.position = track.frame.positions(after[None, :])[0].copy()
-        if self._manual.any() and self._manual[first:last].any():
+        if self._has_manual and (self.modes.cycle[first:last] == MANUAL).any():
             track.breaks.append(Break(last, 1 << plane.axes[2]))
+
+    @cached_property
+    def _has_manual(self) -> bool:
+        """Whether the window has a cycle out of which the operator moves the tool."""
+        return bool((self.modes.cycle == MANUAL).any())
 
     def _refuse_other_zero(self, first: int, last: int, normal: int) -> None:
         """Refuse G98 where coordinates have changed, or G28 has moved, while a cycle is in force.
@@ -140,7 +134,7 @@ class Drilling:
         self.cycles.zero = zero
         if not (other and self.cycles.rule.keeps_words):
             return
-        for line in np.flatnonzero(self._common.initial[first:last])[:1].tolist():
+        for line in np.flatnonzero(self.columns.common.initial[first:last])[:1].tolist():
             message = "another work offset or G28 within a cycle: the level of G98 is not certain"
             hint = "write G80 before, and all words again"
             self.track.findings.add(first + line, "GX215", message, hint=hint)
@@ -154,163 +148,60 @@ class Drilling:
         return replace(calls, first=first, second=second)
 
     def _is_plain(self, first: int, last: int) -> bool:
-        """Whether a stretch begins without a cycle in force, ends with G80, and has one in G90."""
+        """Whether a stretch begins without a cycle in force, ends with G80, and has one cycle."""
         assert self.cycles is not None
         if self.cycles.mode.code or last == self.lines.live:
             return False
-        odd = self._odd_until[last] - self._odd_until[first]
-        changes = self._changes_until[last] - self._changes_until[first + 1]
-        return bool(self.modes.cycle[last] == CYCLE_OFF and not odd and not changes)
-
-    @cached_property
-    def _odd_until(self) -> Ints:
-        """How many lines before each line are in G91 or have repeats."""
-        repeated = ~np.isnan(self._word(self._repeats, slice(None)))
-        return np.append(0, np.cumsum(self.modes.incremental | repeated))
-
-    @cached_property
-    def _changes_until(self) -> Ints:
-        """How many lines before each line have another cycle than the line before them."""
-        return np.append(0, np.cumsum(np.diff(self.modes.cycle, prepend=CYCLE_OFF) != 0))
+        changes = self.columns.changes_until[last] - self.columns.changes_until[first + 1]
+        return bool(self.modes.cycle[last] == CYCLE_OFF and not changes)
 
     def _plain_end(self, first: int, last: int, words: Floats, plane: Plane) -> list[float]:
         """Return where the tool is after a plain stretch; take over the dwell that it leaves."""
         assert self.cycles is not None
-        end = [float(words[axis]) for axis in plane.axes]
-        place = self._last("P", last - 1)
+        before = [float(words[axis]) for axis in plane.axes]
+        place = self.columns.last("P", last - 1)
         if place >= first:
-            self.cycles.mode = Mode(dwell=float(self._word("P", slice(place, place + 1))[0]))
-        called = -1
-        for nth, axis in enumerate(plane.axes):
-            place = self._last("XYZ"[axis], last - 1)
-            called = max(called, place)
-            if place >= first and nth < 2:
-                end[nth] = float(self._word("XYZ"[axis], slice(place, place + 1))[0])
-        if self.cycles.rule.stores:
-            called = max(called, self._last("R", last - 1))
-        if called >= first:
-            place = self._last("R", called)
-            here = slice(place, place + 1)
-            clearance = float(self._word("R", here)[0]) if place >= first else np.nan
-            initial = bool(self._common.initial[called])
-            end[2] = float(np.maximum(end[2], clearance)) if initial else clearance
-        return end
+            self.cycles.mode = Mode(dwell=float(self.columns.word("P", place)))
+        end = [
+            self._arrived("XYZ"[axis], first, last, standing)
+            for axis, standing in zip(plane.axes[:2], before, strict=False)
+        ]
+        called, initial = int(self.columns.last_drilled[last - 1]), before[2]
+        if called < first:
+            return [*end, initial]
+        place = self.columns.last("R", called)
+        clearance = float(self.columns.word("R", place)) if place >= first else np.nan
+        if self.modes.incremental[called]:
+            clearance += initial
+        high = bool(self.columns.common.initial[called])
+        return [*end, float(np.maximum(initial, clearance)) if high else clearance]
 
-    def _last(self, address: str, line: int) -> int:
-        """Return the last call with a word, on a line or before it; -1 for none."""
-        if address not in self._lasts:
-            present = ~np.isnan(self._word(address, slice(None)))
-            places = np.where(present & self.calls, np.arange(self.lines.live), -1)
-            self._lasts[address] = np.maximum.accumulate(places)
-        return int(self._lasts[address][line])
-
-    def _word(self, address: str, here: slice | Ints) -> Floats:
-        """Return a word on lines, nan where there is none; lengths in mm."""
-        if address not in self._words:
-            self._words[address] = self._column(address)
-        return self._words[address][here]
-
-    def _column(self, address: str) -> Floats:
-        """Return a word on all lines of the window, nan where it is none of a call's."""
-        if not address:
-            return constant(np.nan, self.lines.live)
-        axis, count = address in self.track.axes, address in ("P", "L", self._repeats)
-        if axis:
-            word = self.track.column(address)
-        else:
-            word = self.lines.word(address, self.calls, distance=not count)
-        if word is None:
-            return constant(np.nan, self.lines.live)
-        value = np.where(word[1], word[0], np.nan)
-        if address == "P":
-            return self._seconds(value)
-        inches = not (axis or count) and self.modes.inch.any()
-        return value * np.where(self.modes.inch, INCH, 1.0) if inches else value
-
-    def _seconds(self, plain: Floats) -> Floats:
-        """Return P words as seconds."""
-        dialect, lines = self.lines.dialect, self.lines
-        if not dialect.dwell_point_is_seconds:
-            return plain * dialect.dwell["P"]
-        slot = lines.table.slots[lines.shape, ord("P") - 65]
-        number = np.where(slot >= 0, lines.first + slot, 0)
-        pointed = (slot >= 0) & (lines.window.decimals[number] >= 0)
-        return np.where(pointed, plain, plain * dialect.dwell["P"])
-
-    @cached_property
-    def _common(self) -> _Common:
-        """What the modes of all lines are to cycles."""
-        modes, lines = self.modes, self.lines
-        other_axes = np.zeros(lines.live, np.bool_)
-        for axis in self.track.axes:
-            word = None if axis in "XYZ" else self.track.column(axis)
-            if word is not None:
-                other_axes |= word[1]
-        return _Common(
-            modes.cycle.astype(np.int64),
-            modes.retract == 1,
-            SPINDLE[modes.spindle],
-            other_axes,
-            modes.feed_mode == 93,
-            np.arange(lines.live) + lines.window.first_line,
-        )
-
-    @cached_property
-    def _manual(self) -> Flags:
-        """The lines in a cycle out of which the operator moves the tool."""
-        return np.asarray(self.modes.cycle == MANUAL)
-
-    @cached_property
-    def _repeats(self) -> str:
-        rule = self.lines.dialect.cycle_rule
-        return rule.repeats if rule is not None else ""
-
-    def _calls_on(self, here: slice | Ints, position: Floats, plane: Plane, unit: float) -> Calls:
-        """Return the blocks on lines; `position` (3,) is where the tool stands before them."""
-        modes = self.modes
-        first_axis, second_axis, normal = ("XYZ"[axis] for axis in plane.axes)
-        common = self._common
-        return Calls(
-            common.code[here],
-            self._word(first_axis, here),
-            self._word(second_axis, here),
-            self._word(normal, here),
-            self._word("R", here),
-            self._word("Q", here),
-            self._word("P", here),
-            self._word(self._repeats, here),
-            self._word("I", here),
-            self._word("J", here),
-            self._word("" if self._repeats == "K" else "K", here),
-            modes.incremental[here],
-            common.initial[here],
-            common.spindle[here],
-            common.other_axes[here],
-            common.inverse[here],
-            common.line[here],
-            position,
-            plane,
-            unit,
-        )
+    def _arrived(self, axis: str, first: int, last: int, before: float) -> float:
+        """Return where an axis of the plane is after a plain stretch."""
+        place, steps = self.columns.last(axis, last - 1), self.columns.increments_along(axis)
+        placed = place >= first
+        word = float(self.columns.word(axis, place)) if placed else before
+        if steps is None or self.columns.added_until[first] == self.columns.added_until[last]:
+            return word
+        moved = np.cumsum(steps[first:last])
+        return float((word - moved[place - first] if placed else before) + moved[-1])
 
     # --- all stretches of the window ---
 
     def rows(self) -> list[Rows]:
-        """Return the moves of the stretches, in their order."""
+        """Return the moves of the stretches."""
         self._refuse_other_count()
         self._refuse_without_place()
-        found: dict[int, Rows] = {}
-        kinds = [(f.plane, f.unit, f.stretch is None) for f in self._followed]
-        for kind in dict.fromkeys(kinds):
-            numbers = [number for number, other in enumerate(kinds) if other == kind]
-            found.update(zip(numbers, self._rows_of(numbers), strict=True))
-        return [found[number] for number in range(len(kinds))]
+        kinds: dict[tuple[Plane, float, bool], list[_Followed]] = {}
+        for one in self._followed:
+            kinds.setdefault((one.plane, one.unit, one.stretch is None), []).append(one)
+        return [self._rows_of(followed) for followed in kinds.values()]
 
     def _refuse_other_count(self) -> None:
         """Refuse L where K counts the holes: it would be left out."""
-        if self._repeats != "K" or not self._followed:
+        if self.columns.repeats != "K" or not self._followed:
             return
-        counted = self.calls & ~np.isnan(self._word("L", slice(None)))
+        counted = self.calls & ~np.isnan(self.columns.word("L", slice(None)))
         for line in np.flatnonzero(counted).tolist():
             message, hint = "L counts nothing here: this control repeats cycles by K", "write K"
             self.track.findings.add(line, "GX215", message, "L", hint)
@@ -320,8 +211,8 @@ class Drilling:
         rule, control = self.lines.dialect.cycle_rule, self.lines.reading.control
         if rule is None or not rule.alone or control.get(rule.alone) == "drills":
             return
-        drills = self.calls & (self._word(self._repeats, slice(None)) != 0)
-        has = {letter: ~np.isnan(self._word(letter, slice(None))) for letter in "XYZR"}
+        drills = self.calls & (self.columns.word(self.columns.repeats, slice(None)) != 0)
+        has = {letter: ~np.isnan(self.columns.word(letter, slice(None))) for letter in "XYZR"}
         for plane in Plane:
             first, second, normal = ("XYZ"[axis] for axis in plane.axes)
             here = drills & (self.modes.plane == plane) & (has[normal] | has["R"])
@@ -338,14 +229,13 @@ class Drilling:
         assert self.cycles is not None
         axes = list(followed[0].plane.axes)
         positions = np.array([one.words[axes] for one in followed])
-        calls = self._calls_on(line, positions[0], followed[0].plane, followed[0].unit)
+        calls = self.columns.calls_on(line, positions[0], followed[0].plane, followed[0].unit)
         dwells = np.array([one.dwell for one in followed])
         return [self.cycles.follow_fresh(calls, bounds[:-1], positions, dwells)]
 
-    def _rows_of(self, numbers: list[int]) -> Iterator[Rows]:
-        """Yield the moves of stretches of one plane and unit."""
+    def _rows_of(self, followed: list[_Followed]) -> Rows:
+        """Return the moves of stretches of one plane and unit."""
         assert self.cycles is not None
-        followed = [self._followed[number] for number in numbers]
         line = np.concatenate([np.arange(one.first, one.last) for one in followed])
         bounds = np.cumsum([0, *(one.last - one.first for one in followed)])
         steps = self.cycles.steps(self._stretches(followed, line, bounds))
@@ -355,16 +245,18 @@ class Drilling:
         rows = steps.rows
         bounds = np.searchsorted(rows.call, bounds)
         self._place_events(rows.events, bounds, [one.first for one in followed])
-        nth = np.arange(len(rows.call)) - np.searchsorted(rows.call, rows.call)
-        form = np.where(rows.synchronised, Form.SYNCHRONISED, Form.CYCLE).astype(np.int8)
-        for one, (begin, end) in zip(followed, pairwise(bounds.tolist()), strict=True):
-            here = slice(begin, end)
-            words = np.empty((len(one.words), end - begin)).T
-            words[:] = one.words
-            words[:, list(one.plane.axes)] = rows.end[here]
-            ends = self.track.frames[one.frame].positions(words)
-            frame = constant(one.frame, end - begin, np.int64)
-            yield Rows(line[rows.call[here]], rows.kind[here], ends, nth[here], form[here], frame)
+        which = np.repeat(np.arange(len(followed)), np.diff(bounds))
+        words = np.array([one.words for one in followed]).T[:, which].T
+        words[:, list(followed[0].plane.axes)] = rows.end
+        frame = np.array([one.frame for one in followed])[which]
+        return Rows(
+            line[rows.call],
+            rows.kind,
+            by_frame(Frame.positions, self.track.frames, frame, words, 1.0),
+            np.arange(len(rows.call)) - np.searchsorted(rows.call, rows.call),
+            np.where(rows.synchronised, Form.SYNCHRONISED, Form.CYCLE).astype(np.int8),
+            frame,
+        )
 
     def _place_events(self, events: tuple[Event, ...], bounds: Ints, firsts: list[int]) -> None:
         """Keep events by stretch, their rows counted from the first of it."""
@@ -372,5 +264,6 @@ class Drilling:
             return
         lines = [event.line - self.lines.window.first_line for event in events]
         whose = np.searchsorted(firsts, lines, "right") - 1
-        for number, event in zip(whose.tolist(), events, strict=True):
-            self.events.append((firsts[number], event.row - int(bounds[number]), event))
+        behind = np.array([event.row for event in events]) - bounds[whose]
+        stretch = np.array(firsts)[whose]
+        self.events += zip(stretch.tolist(), behind.tolist(), events, strict=True)

@@ -21,27 +21,27 @@ def events_of(
     `rows` (n,) are the lines of the moves. `within` is what happens within canned cycles: the
     first line of a stretch, how many moves behind its first, and what.
     """
-    events: list[tuple[tuple[int, int, int], Event]] = []
+    events: list[Event] = []
+    after: list[bool] = []
     having = np.flatnonzero(lines.flag("has_events"))
     begin, end = np.searchsorted(rows, having), np.searchsorted(rows, having, "right")
-    for line, first_row, last_row in zip(
-        having.tolist(), begin.tolist(), end.tolist(), strict=True
-    ):
-        first = int(lines.first[line])
-        meaning = lines.table.meanings[int(lines.shape[line])]
-        for shape in meaning.events:
+    columns = [c.tolist() for c in (having, lines.shape[having], lines.first[having], begin, end)]
+    meanings, first_line = lines.table.meanings, lines.window.first_line
+    for line, number, first, first_row, last_row in zip(*columns, strict=True):
+        for shape in meanings[number].events:
             values = tuple(_value(lines, shape.what, a, first + n) for a, n in shape.slots)
             where = last_row if shape.after else first_row
-            event = Event(where, shape.what, values, line + lines.window.first_line)
-            events.append(((where, event.line, 2 * shape.after), event))
+            events.append(Event(where, shape.what, values, line + first_line))
+            after.append(shape.after)
     if not within:
-        return tuple(event for _, event in events)
-    offsets = np.searchsorted(rows, [line for line, _, _ in within]).tolist()
-    for offset, (_, behind, event) in zip(offsets, within, strict=True):
-        row = offset + behind
-        moved = Event(row, event.what, event.values, event.line, True)
-        events.append(((row, event.line, 1), moved))
-    return tuple(event for _, event in sorted(events, key=lambda item: item[0]))
+        return tuple(events)
+    firsts, behind, inner = zip(*within, strict=True)
+    at = np.searchsorted(rows, firsts) + behind
+    for row, event in zip(at.tolist(), inner, strict=True):
+        events.append(Event(row, event.what, event.values, event.line, True))
+    rank = [*(2 * np.array(after, np.int64)), *[1] * len(inner)]
+    order = np.lexsort((rank, [event.line for event in events], [event.row for event in events]))
+    return tuple(events[number] for number in order.tolist())
 
 
 def _value(lines: Lines, what: str, address: str, number: int) -> tuple[str, float]:

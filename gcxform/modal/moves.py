@@ -7,7 +7,6 @@ and G53 move in a way of their own (`gcxform/modal/home.py`), and so do canned c
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -23,6 +22,7 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.home import own_moves
 from gcxform.modal.lines import Lines
 from gcxform.modal.rows import Rows
+from gcxform.modal.shifted import Shifted
 from gcxform.modal.splines import read_splines, with_splines
 from gcxform.modal.state import CYCLE_OFF, Modes
 from gcxform.modal.tables import MANY_WORK, NUMBER, of_splines
@@ -51,6 +51,7 @@ class Moves:
         self.track = Track(lines, modes, axes)
         self.drilling = Drilling(self.track)
         self.tied = Tied(self.track)
+        self.shifted: Shifted | None = None
         self.side, self.radius = compensation(lines, modes)
         self.splines = of_splines(modes.motion)
         self.bends = bool(self.splines.any())
@@ -63,19 +64,25 @@ class Moves:
         """Return the moves as a toolpath."""
         moving = self._moving()
         lost = self.lines.loses_position()
-        self._busy_until = np.append(0, np.cumsum(moving | lost | self.track.worded))
-        none = np.empty((0, len(self.axes)))
-        self._nothing = Rows.plain(np.empty(0, np.int64), self.modes.motion[:0], none, 0)
+        self._busy_until = np.append(0, np.cumsum(moving | lost | self.track.worded)).tolist()
         self._leaving = self._leaves(lost)
-        parts = [
-            self._stretch(first, last, moving, lost if lost.any() else None)
-            for first, last in self._stretches(moving)
-        ]
+        stretches = self._stretches(moving)
+        if len(stretches) > 1 and not lost.any():
+            self.shifted = Shifted(self.track, moving)
+        losing = lost if lost.any() else None
+        found = [self._stretch(first, last, moving, losing) for first, last in stretches]
         if self.lines.live in self._leaving:
             self.track.lose_all(self.lines.live)
-        drilled = iter(self.drilling.rows())
-        rows = [next(drilled) if part is None else part for part in parts]
-        return self._path(Rows.joined(rows, len(self.axes)))
+        rows = [part for part in found if part is not None and len(part.line)]
+        if self.shifted is not None:
+            rows.append(self._plain(*self.shifted.rows()))
+        rows += self.drilling.rows()
+        return self._path(Rows.joined(rows or [self._nothing()], len(self.axes)))
+
+    def _nothing(self) -> Rows:
+        """Return no rows at all."""
+        line = np.empty(0, np.int64)
+        return self._plain(line, np.empty((0, len(self.axes))), line)
 
     def _leaves(self, lost: Flags) -> set[int]:
         """Return the lines before which positions are lost to an M code beside a move.
@@ -191,8 +198,8 @@ class Moves:
         """Return the lines that are a tap or a probe."""
         return np.asarray(moving & self.tied.single) if self.tied.any else moving[:0]
 
-    def _stretches(self, moving: Flags) -> Iterator[tuple[int, int]]:
-        """Yield first and last line + 1 of the stretches."""
+    def _stretches(self, moving: Flags) -> list[tuple[int, int]]:
+        """Return first and last line + 1 of the stretches."""
         acting = self._acting()
         own = self.lines.flag("own_moves")[acting]
         drills = self.drilling.borders()
@@ -202,14 +209,13 @@ class Moves:
         ends = np.array([0, self.lines.live, *self._leaving], np.int64)
         borders = np.unique(np.concatenate([acting, alone, alone + 1, drills, ends])).tolist()
         self._acts = set(acting.tolist())
-        if len(borders) == 1:
-            yield 0, 0
-        yield from pairwise(borders)
+        self._resets = set(np.flatnonzero(self._reset).tolist())
+        return list(pairwise(borders)) or [(0, 0)]
 
     def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows | None:
-        """Return the rows of a stretch, None for one of calls: those are made at the end."""
+        """Return the rows of a stretch; None where it has none, or they are made at the end."""
         self._refuse_other_units(first, first + 1)
-        if first < len(self._reset) and self._reset[first]:
+        if first in self._resets:
             self.track.reset_work(first)
         if first in self._leaving or (first + 1 in self._leaving and first in self._acts):
             self.track.lose_all(first)
@@ -220,17 +226,22 @@ class Moves:
                 self.drilling.moved()
                 return own
         self._refuse_other_units(first + 1, last)
-        if self.drilling.calls[first:last].any():
-            self.drilling.follow(first, last)
+        if self.drilling.follows(first, last):
             return None
-        self.drilling.leave(first, last)
         if first in self._singles:
             return self.tied.row(first)
         if self._busy_until[last] == self._busy_until[first]:
-            return self._nothing
+            return None
+        if self.shifted is not None and self.shifted.takes(first, last):
+            self.shifted.follow(first, last)
+            return None
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
-        plain = self.tied.plain(rows, ends, len(self.track.frames) - 1)
+        return self._plain(rows, ends, constant(len(self.track.frames) - 1, len(rows), np.int64))
+
+    def _plain(self, line: Ints, ends: Floats, frame: Ints) -> Rows:
+        """Return rows that are one plain move a line, threads and splines among them."""
+        plain = self.tied.plain(line, ends, frame)
         return with_splines(plain) if self.bends else plain
 
     def _refuse_other_units(self, first: int, last: int) -> None:

@@ -27,7 +27,7 @@ class Rows:
     frame: Ints
 
     @classmethod
-    def plain(cls, line: Ints, kind: Small, end: Floats, frame: int) -> Rows:
+    def plain(cls, line: Ints, kind: Small, end: Floats, frame: Ints) -> Rows:
         """Return rows that are one plain move a line."""
         count = len(line)
         return cls(
@@ -36,7 +36,7 @@ class Rows:
             end,
             constant(0, count, np.int64),
             constant(Form.PLAIN, count, np.int8),
-            constant(frame, count, np.int64),
+            frame,
         )
 
     @classmethod
@@ -54,16 +54,17 @@ class Rows:
 
     @classmethod
     def joined(cls, parts: Sequence[Rows], axes: int) -> Rows:
-        """Return rows one after another."""
+        """Return all rows in the order of their lines; those of one line are in one part."""
         if len(parts) == 1:
             return parts[0]
-        parts = [part for part in parts if len(part.line)] or parts[:1]
-        if len(parts) == 1:
-            return parts[0]
-        end = column_major(sum(len(part.line) for part in parts), axes)
-        np.concatenate([part.end for part in parts], out=end)
-        names = ("line", "kind", "nth", "form", "frame")
-        line, kind, nth, form, frame = (
-            np.concatenate([getattr(part, name) for part in parts]) for name in names
+        line = np.concatenate([part.line for part in parts])
+        order = np.argsort(line, kind="stable")
+        end = column_major(len(line), axes)
+        ends = [part.end for part in parts]
+        for k in range(axes):
+            end[:, k] = np.concatenate([one[:, k] for one in ends])[order]
+        names = ("kind", "nth", "form", "frame")
+        kind, nth, form, frame = (
+            np.concatenate([getattr(part, name) for part in parts])[order] for name in names
         )
-        return cls(line, kind, end, nth, form, frame)
+        return cls(line[order], kind, end, nth, form, frame)

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import Dialect
-from gcxform.modal.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning, meaning_of
+from gcxform.modal.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning
+from gcxform.modal.sorting import meaning_of
 from gcxform.syntax.shapes import ShapeTable
 
 GROUPS = (

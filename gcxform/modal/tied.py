@@ -92,7 +92,7 @@ class Tied:
 
     # --- rows ---
 
-    def plain(self, rows: Ints, ends: Floats, frame: int) -> Rows:
+    def plain(self, rows: Ints, ends: Floats, frame: Ints) -> Rows:
         """Return rows that are one move a line; threads are lines of a form of their own."""
         motion = self.modes.motion[rows]
         found = Rows.plain(rows, motion, ends, frame)

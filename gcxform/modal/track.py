@@ -12,8 +12,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import INCH
-from gcxform.modal.acts import ACTS, ActError, Asked, is_length
+from gcxform.dialect import INCH, LINEAR
+from gcxform.modal.acts import ACTS
+from gcxform.modal.asking import ActError, Asked
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames import FrameState
 from gcxform.modal.lines import LENGTHS, Lines, fill
@@ -27,6 +28,7 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar", "no-polar"})
+FRAMELESS = frozenset({"change-tool", "set-tool", "user-code", "store-home"})
 LENGTHENED = frozenset({"length", "length-negative", "length-vector", "length-add", "no-length"})
 
 
@@ -94,6 +96,8 @@ class Track:
         before, old = self.state.frames, self.frame
         asked = self._asked(act, line)
         self.state.frames = frames = ACTS[act.name](before, asked)
+        if act.name in FRAMELESS:
+            return
         if act.name == "work" and not before.known:
             self._lose(line, (1 << len(self.axes)) - 1)
         if act.name in LENGTHENED and self.dialect.length_may_move and frames.frame() != old:
@@ -131,7 +135,7 @@ class Track:
         window, first = self.lines.window, int(self.lines.first[line])
         written = {a: float(window.value[first + slot]) for a, slot in act.slots}
         scale = INCH if self.modes.inch[line] else 1.0
-        words = {a: v * scale if is_length(a) else v for a, v in written.items()}
+        words = {a: v * scale if a in LINEAR else v for a, v in written.items()}
         for address, slot in act.slots:
             self.lines.refuse_pointless(line, address, first + slot)
         return Asked(

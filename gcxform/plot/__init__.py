@@ -5,6 +5,7 @@ matplotlib is imported where a picture is drawn, never before.
 
 from gcxform.plot.canvas import check as check
 from gcxform.plot.canvas import rendered as rendered
+from gcxform.plot.chains import chain as chain
 from gcxform.plot.diagrams import circles as circles
 from gcxform.plot.diagrams import diagonals as diagonals
 from gcxform.plot.diagrams import positioning as positioning

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gcxform.machine.errors import AXES, ErrorModel, FloatArray, Outside
+from gcxform.machine.thermal import ThermalScrew
 from gcxform.plot.canvas import AFTER, BEFORE, GREY, empty, figure, isometric, nice, styled, triad
 from gcxform.simulate.virtual import ranges
 
@@ -31,6 +32,8 @@ def curves(model: ErrorModel) -> Curves:
     Straightness holds squareness as the model does: in the slopes.
     """
     found: Curves = {}
+    if isinstance(model, ThermalScrew):
+        return _stretches(model)
     for axis, function in zip(AXES, getattr(model, "axes", ()), strict=False):
         if function is None:
             continue
@@ -38,6 +41,16 @@ def curves(model: ErrorModel) -> Curves:
             letter = (AXES + TURNS)[k]
             if k < 3 or value.any():
                 found[f"E{letter}{axis}"] = (function.position, value)
+    return found
+
+
+def _stretches(model: ThermalScrew) -> Curves:
+    """Return the positioning errors of warm axes, which are curved."""
+    found: Curves = {}
+    for axis, stretch in zip(AXES, model.stretches, strict=True):
+        if stretch is not None:
+            position = np.linspace(stretch.position[0], stretch.position[-1], FINE)
+            found[f"E{axis}{axis}"] = position, stretch.at(position)
     return found
 
 

@@ -46,13 +46,9 @@ class VirtualMachine:
     def actual(self, commanded: FloatArray, sense: FloatArray) -> FloatArray:
         """Return where the tool is (n, 3) when the machine is told to be at `commanded` (n, 3), mm.
 
-        `sense` (n, 3) is the direction, -1 or +1, in which each axis moved last; 0: not yet. Only
-        models with backlash by direction of travel are told of it.
+        `sense` (n, 3) is the direction, -1 or +1, in which each axis moved last; 0: not yet.
         """
-        more: dict[str, Any] = {} if self.tool is None else {"tool": self.tool}
-        if np.any(getattr(self.model, "backlash", False)):
-            more["sense"] = sense
-        return np.asarray(commanded + self.model.error(commanded, self.outside, **more))
+        return commanded + self.model.error(commanded, self.outside, self.tool, sense)
 
 
 @dataclass(frozen=True)

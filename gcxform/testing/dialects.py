@@ -11,7 +11,8 @@ from gcxform.diagnostics import GcxformError
 from gcxform.dialect import INCH, Dialect
 from gcxform.emit.numbers import MOST_DECIMALS
 from gcxform.modal.codes import ISO, Effect
-from gcxform.modal.meaning import Meaning, meaning_of
+from gcxform.modal.meaning import Meaning
+from gcxform.modal.sorting import meaning_of
 from gcxform.modal.tables import COLUMNS, GROUPS, NUMBER
 from gcxform.pipeline import Pipeline
 from gcxform.syntax.shapes import Shape, slots_of

@@ -13,12 +13,14 @@ position is lost until it is programmed again.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Vector = tuple[float, ...]
 Matrix = tuple[tuple[float, float, float], ...]
 
@@ -92,6 +94,33 @@ class Frame:
             return False
         m = self.matrix
         return m[first][first] * m[second][second] < m[first][second] * m[second][first]
+
+
+def by_frame(
+    change: Callable[[Frame, Floats], Floats],
+    frames: Sequence[Frame],
+    which: Ints,
+    values: Floats,
+    sign: float,
+) -> Floats:
+    """Return values (n, k) changed, each in its frame; `sign` is that of the shift.
+
+    Frames that only shift are done at once, however many they are: every tool has its own.
+    """
+    if all(frame.plain for frame in frames):
+        return values
+    if len(frames) == 1:
+        return change(frames[0], values)
+    changed = np.empty(values.shape[::-1]).T
+    shifts = sign * np.array([frame.shift for frame in frames])
+    for axis in range(values.shape[1]):
+        shift = shifts[:, axis]
+        changed[:, axis] = values[:, axis] + shift[which] if shift.any() else values[:, axis]
+    for number, frame in enumerate(frames):
+        if not frame.shifts_only:
+            rows = np.flatnonzero(which == number)
+            changed[rows] = change(frame, values[rows])
+    return changed
 
 
 def _scaled(words: Floats, factor: float) -> Floats:

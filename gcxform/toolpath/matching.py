@@ -182,7 +182,7 @@ class _Walk:
 
     def _wait(self, moving: _Side, waiting: _Side) -> bool:
         """Let one path go a little way, which the other does not have; return whether it can."""
-        if moving.over or moving.sweep_left or not len(waiting.rows):
+        if moving.over or moving.turn_left > self.tolerance or not len(waiting.rows):
             return False
         if not _apart(moving.goal, waiting.here()) <= self.tolerance:
             return False
@@ -240,6 +240,15 @@ class _Side:
     def sweep_left(self) -> float:
         """How far (rad) the present row still turns."""
         return float(self.sweep[self.at]) * (1.0 - self.part)
+
+    @property
+    def turn_left(self) -> float:
+        """How far (mm) the present row still goes about its centre."""
+        if not self.sweep[self.at]:
+            return 0.0
+        u, v, centre = self._circle()
+        start = self.start[self.at]
+        return self.sweep_left * math.hypot(start[u] - centre[u], start[v] - centre[v])
 
     def take(self, high: float) -> None:
         """Take the present row up to a part of it."""

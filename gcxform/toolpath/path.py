@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
-from gcxform.toolpath.frames import Frame
+from gcxform.toolpath.frames import Frame, by_frame
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -258,30 +258,13 @@ class Toolpath:
     def _by_frame(
         self, change: Callable[[Frame, Floats], Floats], values: Floats, sign: float
     ) -> Floats:
-        """Return values (n, k) changed, each in the frame of its row; `sign` is that of the shift.
-
-        Frames that only shift are done at once, however many they are: every tool has its own.
-        """
-        if self.plainly_framed:
-            return values
-        if len(self.frames) == 1:
-            return change(self.frames[0], values)
-        changed = column_major(*values.shape)
-        shifts = sign * np.array([frame.shift for frame in self.frames])
-        for axis in range(values.shape[1]):
-            shift = shifts[:, axis]
-            changed[:, axis] = (
-                values[:, axis] + shift[self.frame] if shift.any() else values[:, axis]
-            )
-        for number, frame in enumerate(self.frames):
-            if not frame.shifts_only:
-                rows = np.flatnonzero(self.frame == number)
-                changed[rows] = change(frame, values[rows])
-        return changed
+        return by_frame(change, self.frames, self.frame, values, sign)
 
     @property
     def mirrored(self) -> Flags:
         """(n,) whether left becomes right in the plane of the row, by its frame."""
+        if all(frame.matrix is None for frame in self.frames):
+            return np.zeros(len(self), np.bool_)
         mirrors = [[frame.mirrors(*plane.axes[:2]) for plane in Plane] for frame in self.frames]
         return np.array(mirrors, np.bool_)[self.frame, self.plane]
 

@@ -51,6 +51,57 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
 @gx.hookimpl
 def gcxform_error_formats() -> list[type[gx.ErrorFormat]]:
     """Return the foreign tables of machine errors."""
+    from gcxform_plugins.formats.bcnc import BcncProbe
+    from gcxform_plugins.formats.etalon import Etalon
+    from gcxform_plugins.formats.isg_csv import IsgCsv
+    from gcxform_plugins.formats.iso230_csv import Iso230Csv
+    from gcxform_plugins.formats.klipper import KlipperMesh, KlipperSkew
     from gcxform_plugins.formats.lddm import Lddm
+    from gcxform_plugins.formats.linuxcnc_comp import LinuxCncComp
+    from gcxform_plugins.formats.renishaw_rtl import RenishawRtl
+    from gcxform_plugins.formats.siemens_cec import SiemensCec
+    from gcxform_plugins.formats.siemens_eec import SiemensEec
+    from gcxform_plugins.formats.xyz import Xyz
 
-    return [Lddm]
+    return [
+        BcncProbe,
+        Etalon,
+        IsgCsv,
+        Iso230Csv,
+        KlipperMesh,
+        KlipperSkew,
+        Lddm,
+        LinuxCncComp,
+        RenishawRtl,
+        SiemensCec,
+        SiemensEec,
+        Xyz,
+    ]
+
+
+@gx.hookimpl
+def gcxform_kinematics() -> list[type[gx.Kinematics]]:
+    """Return the kinds of machines that files can name."""
+    from gcxform_plugins.kinematics.forks import CaFork, CbFork
+    from gcxform_plugins.kinematics.mixed import ATableBHead, CTableAHead, CTableBHead
+    from gcxform_plugins.kinematics.nutating import ATableNutatingHead, NutatingHead, NutatingTable
+    from gcxform_plugins.kinematics.single import ATable, BTable, CTable
+    from gcxform_plugins.kinematics.trunnions import AbTrunnion, AcTrunnion, BaTrunnion, BcTrunnion
+
+    return [
+        AcTrunnion,
+        BcTrunnion,
+        AbTrunnion,
+        BaTrunnion,
+        CaFork,
+        CbFork,
+        CTableBHead,
+        CTableAHead,
+        ATableBHead,
+        NutatingHead,
+        NutatingTable,
+        ATableNutatingHead,
+        ATable,
+        BTable,
+        CTable,
+    ]

@@ -6,6 +6,7 @@ from faults.mutation import Mutation
 
 FIGURES = "tests/test_step_diagonal.py"
 FILES = "tests/test_diagonal_files.py"
+COMMAND = "tests/test_calibrate.py"
 ROUND_TRIP = "tests/properties/test_diagonal.py"
 
 
@@ -177,8 +178,8 @@ MUTATIONS = (
         f"{ROUND_TRIP}::test_the_squareness_of_any_machine",
     ),
     # reports
-    _calibrate("words", "the sign of C0Y is swapped", '("C0Y", -1.0)', '("C0Y", 1.0)'),
-    _calibrate("words", "the sign of A0Z is swapped", '("A0Z", -1.0)', '("A0Z", 1.0)'),
+    _calibrate("words", "the sign of C0Y is swapped", '("C0Y", -1.0)', '("C0Y", 1.0)', COMMAND),
+    _calibrate("words", "the sign of A0Z is swapped", '("A0Z", -1.0)', '("A0Z", 1.0)', COMMAND),
     # files
     _calibrate(
         "diagonalfile",

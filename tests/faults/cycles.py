@@ -183,9 +183,15 @@ FAULTS = (
 """Name, file, old, new; the tests are those of cycles."""
 
 TOGETHER = (
-    ("count events from the first of them", "event.row - int(bounds[number])", "event.row"),
-    ("end at R under G98", "if initial else clearance", "if False else clearance"),
+    (
+        "count events from the first of them",
+        "for event in events]) - bounds[whose]",
+        "for event in events])",
+    ),
+    ("end at R under G98", "if high else clearance", "if False else clearance"),
     ("keep the dwell before them", "if place >= first:\n", "if False:\n"),
+    ("forget that R is incremental", "clearance += initial", "pass"),
+    ("forget increments before the last place", "moved[place - first]", "0.0"),
     ("are one", "bounds[:-1], positions", "bounds[:1], positions[:1]"),
 )
 """Name, old, new of faults in stretches that are made together."""

@@ -7,7 +7,7 @@ from faults.mutation import FACTS, FOUND, OFFSETS, SHIFTS, Mutation
 MUTATIONS = (
     Mutation(
         "frames: the sign of G92 is swapped",
-        "gcxform/modal/acts.py",
+        "gcxform/modal/offsets.py",
         "shift[k] += here[k] - value",
         "shift[k] += value - here[k]",
         OFFSETS,
@@ -49,7 +49,7 @@ MUTATIONS = (
     ),
     Mutation(
         "frames: G92.3 restores nothing",
-        "gcxform/modal/acts.py",
+        "gcxform/modal/offsets.py",
         "return replace(state, preset=shift, held=shift)",
         "return replace(state, preset=shift)",
         SHIFTS,
@@ -77,14 +77,14 @@ MUTATIONS = (
     ),
     Mutation(
         "frames: G10 L20 forgets the rotation",
-        "gcxform/modal/acts.py",
+        "gcxform/modal/offsets.py",
         "local[:2] = about @ local[:2]",
         "pass",
         FACTS,
     ),
     Mutation(
         "frames: G10 L20 moves the axis that is not named",
-        "gcxform/modal/acts.py",
+        "gcxform/modal/offsets.py",
         "+ [0, 1] * bool(turned)",
         "+ []",
         FACTS,

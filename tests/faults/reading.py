@@ -100,7 +100,7 @@ MUTATIONS = (
     ),
     Mutation(
         "limits: one M word more",
-        "gcxform/modal/meaning.py",
+        "gcxform/modal/sorting.py",
         'word.address == "M"][most:][:1]',
         'word.address == "M"][most + 1 :][:1]',
         FACTS,

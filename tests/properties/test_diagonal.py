@@ -57,8 +57,9 @@ def test_noise_free_round_trip(machine, senses, back, order):
     machine=machines(),
     angles=st.lists(st.floats(-1e-4, 1e-4), min_size=8, max_size=8),
     axes=st.sampled_from([(0, 1), (0, 2), (1, 2), (0, 1, 2)]),
+    constant=st.sampled_from([0.0, 0.25]),
 )
-def test_two_linear_tests_undo_misaligned_beams(machine, angles, axes):
+def test_two_linear_tests_undo_misaligned_beams(machine, angles, axes, constant):
     model, low, travel, steps = machine
     beams = np.array(angles).reshape(4, 2)
     legs = simulate_step_diagonal(model, low, travel, steps, misalignment=beams)
@@ -66,6 +67,7 @@ def test_two_linear_tests_undo_misaligned_beams(machine, angles, axes):
     tests = []
     for axis in axes:
         runs = simulate_linear(model, axis, volume.nodes(axis), low)
+        runs[0].deviation[:] += constant
         tests += parse_linear(linear_csv(runs), volume).tests
     noise = 0.001  # of which nothing is there: what is left is of second order
     found = identify(step_diagonals(legs), tests, Assumed(noise))

@@ -112,6 +112,23 @@ def test_windows_of_any_size_are_the_same_lines(program: bytes, size: int) -> No
 
 
 @in_every_dialect
+@given(program=lines_of_bytes(), chunk=st.integers(1, 60))
+@example(b"(B)A1\n(C\nU2)V3((W4)\n", 60)
+def test_no_axis_is_overlooked(name: str, program: bytes, chunk: int) -> None:
+    reader, axes = WindowReader(dialect_of(name)), dialect_of(name).axes
+    shapes = [reader.shapes.shapes[number].block for number in reader.read(program).shape]
+    words = {w.address.upper() for block in shapes for w in block.items if isinstance(w, Word)}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("gcxform.source.CHUNK", chunk)
+        assert words & {*axes} <= {*Source.of_bytes(program).axes(axes)}
+
+
+def test_letters_in_comments_are_no_axes() -> None:
+    program = b"(PLATES, C)\nG0 X1 b2 (A\n; U\n"
+    assert Source.of_bytes(program).axes("XYZABCUV") == "XYZABU"
+
+
+@in_every_dialect
 @given(program=st.one_of(st.binary(max_size=200), lines_of_bytes()))
 def test_the_empty_pipeline_changes_no_byte(name: str, program: bytes) -> None:
     dialect = dialect_of(name)

@@ -1,1 +1,1 @@
-"""Importers of foreign error tables, one file each."""
+"""Foreign error tables, one file each."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 import gcxform as gx
 from gcxform_plugins.passes.fitting import ArcFitter
 from gcxform_plugins.passes.placing import Place
+from gcxform_plugins.passes.ranges import check_inside
 from gcxform_plugins.passes.splitting import cuts_of_lines
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ class Compensation:
         """Return the commands."""
         self._refuse_splines()
         self._check_known()
-        self._check_inside()
+        check_inside(self.step, self.path, self.offset, np.flatnonzero(~self.left))
         self.entry_command = self.step.command(self.start[:1], self.place.first_tool)[0]
         if self.step.rapids == "skip" and self.path.after_rapid:
             self.entry_command = self.start[0]
@@ -137,51 +138,6 @@ class Compensation:
                 f"where {axis} stands is not known here, and the error depends on it",
                 f"program {axis} before, or say start = {{ {axis} = ... }} in [input]",
             )
-
-    def _check_inside(self) -> None:
-        """Refuse positions beyond the table, or too far beyond it."""
-        rows = np.flatnonzero(~self.left)
-        points = self.end[rows]
-        if self.path.has_arcs:
-            more, owners = gx.arc_extremes(self.path)
-            offset = self.offset if len(self.offset) == 1 else self.offset[owners]
-            points = np.vstack([points, more + offset])
-            rows = np.append(rows, owners)
-        model = self.step.model.model
-        beyond = model.outside(points)
-        if not beyond.any():
-            return
-        if self.step.outside is gx.Outside.ERROR:
-            self._refuse_outside(points, rows, beyond, "")
-        elif self.step.outside is gx.Outside.EXTRAPOLATE:
-            for axis in range(3):
-                nodes = model.nodes[axis]
-                if len(nodes):
-                    self._check_extrapolation(points, rows, axis, nodes)
-
-    def _refuse_outside(
-        self, points: Floats, rows: Ints, beyond: NDArray[np.bool_], more: str
-    ) -> None:
-        first = int(np.argmax(beyond.any(axis=1)))
-        axis = int(np.argmax(beyond[first]))
-        low, high = self.step.model.model.range_of(axis)
-        value = float(points[first, axis])
-        limit = low if value < low else high
-        raise self.path.refuse(
-            "GX310",
-            rows[first : first + 1],
-            f"{'XYZ'[axis]} {value:.3f} is outside the error table, which ends at {limit:g}{more}",
-            'outside = "clamp" or "extrapolate" goes beyond, or measure a larger volume',
-        )
-
-    def _check_extrapolation(self, points: Floats, rows: Ints, axis: int, nodes: Floats) -> None:
-        allowed = self.step.max_extrapolation
-        low = nodes[0] - allowed * (nodes[1] - nodes[0])
-        high = nodes[-1] + allowed * (nodes[-1] - nodes[-2])
-        beyond = np.zeros(points.shape, np.bool_)
-        beyond[:, axis] = (points[:, axis] < low - 1e-9) | (points[:, axis] > high + 1e-9)
-        if beyond.any():
-            self._refuse_outside(points, rows, beyond, f", by more than {allowed:g} cells")
 
     def refuse_short(self, row: int, shortest: float) -> gx.InputError:
         """Return the error about a move that has to be cut into too short pieces."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform_plugins.passes.placing import Place
+from gcxform_plugins.passes.ranges import check_inside
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.volumetric import Volumetric
@@ -21,7 +22,18 @@ Ints = NDArray[np.int64]
 
 STILL = 1e-9  # mm; an axis that moves by less stays where it is
 UNDO_SLACK = 2e-6  # mm; how far pieces of an undone arc are from the curve they stand for
+NO_WAY = 1e-12  # of a move; two cuts nearer to each other are one
 BEND_SLACK = 1e-5  # mm; the same for pieces of a line, and what the bending adds to an arc
+
+
+def _apart(rows: Ints, part: Floats) -> tuple[Ints, Floats]:
+    """Return sorted cuts and ends of rows without cuts that are no way before the next, or after 0.
+
+    Nodes of two axes may be met together, and an arc be divided where it meets one.
+    """
+    too_near = np.append((rows[1:] == rows[:-1]) & (np.diff(part) <= NO_WAY), False)
+    too_near |= part <= NO_WAY
+    return rows[~too_near], part[~too_near]
 
 
 class Machine:
@@ -41,6 +53,9 @@ class Machine:
     def run(self) -> gx.Toolpath:
         """Return the path of the machine."""
         path = self.path
+        said = (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
+        near = self.step.max_correction  # the table may end between a target and its command
+        check_inside(self.step, path, self.offset, np.flatnonzero(~said), near)
         rows, part = self._crossings()
         whole = np.arange(len(path))
         counts = np.ones(len(path), np.int64)
@@ -49,7 +64,7 @@ class Machine:
             every = np.concatenate([whole, rows])
             at = np.concatenate([at, part])
             order = np.lexsort((at, every))
-            every, at = every[order], at[order]
+            every, at = _apart(every[order], at[order])
             counts = np.bincount(every, minlength=len(path))
         point = self._points(every, at)
         offset = self.place.offset_of(every)

@@ -81,12 +81,20 @@ class Volumetric(gx.Pass):
             at_least=0.0,
         ),
     ] = 0.0
+    time: Annotated[
+        str | None, gx.Option("time (ISO 8601) whose temperatures hold; absent: as the model says")
+    ] = None
     inverse: Annotated[
         bool, gx.Option("the program holds commands: write where the machine goes with them")
     ] = False
 
     def __post_init__(self) -> None:
-        """Turn the facts round for the inverse; raise ValueError for what it cannot do."""
+        """Take the model in its state at the time, and turn the facts round for the inverse.
+
+        Raises ValueError for what the inverse cannot do.
+        """
+        if self.time is not None:
+            object.__setattr__(self, "model", self.model.at_time(self.time))
         if self.inverse and self.outside is gx.Outside.ZERO:
             raise ValueError("inverse does not go with outside = zero, where the error jumps")
         if self.inverse and self.iterations:
@@ -112,6 +120,10 @@ class Volumetric(gx.Pass):
         """Refuse a model that cannot be inverted, and a run without origin."""
         gx.check_contraction(self.model.model)
         self._check_extrapolation()
+        if self.model.model.backlash.any():
+            axes = " ".join(a for a, b in zip("XYZ", self.model.model.backlash, strict=True) if b)
+            message = f"volumetric does not compensate backlash, and the model has some on {axes}"
+            raise gx.UsageError.one("GX484", message)
         offsets = context.machine.work_offsets if context.machine else {}
         if self.part_origin is None and not offsets:
             raise gx.UsageError.one(
@@ -168,7 +180,7 @@ class Volumetric(gx.Pass):
 
     def _check_frames(self, path: gx.Toolpath, message: str, tools: bool) -> None:
         """Refuse rows whose X, Y, Z count from elsewhere; `tools`: tool lengths matter."""
-        for number in np.unique(path.frame).tolist():
+        for number in np.flatnonzero(np.bincount(path.frame)).tolist():
             origins = path.frames[number].origin[:3]
             named = [name if tools else name.split(" + ")[0] for name in origins]
             if any(name != path.first for name in named):

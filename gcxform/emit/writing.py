@@ -1,0 +1,274 @@
+"""Pieces to text: pieces that are written in the same way share a template, rendered as a whole.
+
+Which pieces there are and what each has to say is settled before (`gcxform/emit/pieces.py`). Here
+they are sorted by the way in which they are written, each way gets its template, and what a number
+of a template is worth is looked up in columns. What cannot be written as a number, or makes a block
+too long, is refused.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.diagnostics import InputError
+from gcxform.emit.fields import (
+    Axis,
+    Centre,
+    Computed,
+    Copied,
+    CycleWord,
+    Feed,
+    Field,
+    Key,
+    Literal,
+    Role,
+)
+from gcxform.emit.manner import Task
+from gcxform.emit.numbers import MOST_DECIMALS, decimals_for, decimals_of, quantise
+from gcxform.emit.pieces import Pieces
+from gcxform.emit.positions import Positions
+from gcxform.emit.render import Renderer, groups_of
+from gcxform.emit.saying import CannotSayError, event_text, gaps_between, slash_of
+from gcxform.emit.tapping import Taps
+from gcxform.emit.templates import TemplateWriter
+from gcxform.modal.arcs import TURN
+from gcxform.modal.limits import without_blanks
+from gcxform.modal.tables import MeaningTable
+from gcxform.syntax.scan import Window
+from gcxform.toolpath.path import Kind
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Small = NDArray[np.int8]
+Flags = NDArray[np.bool_]
+
+FEED_SLIP = 1.5e-4  # relative; a feed that would be written farther off is refused
+
+
+@dataclass(slots=True)
+class Style:
+    """What a program shows of how it is written; empty and None until a line shows it."""
+
+    line_end: bytes = b""
+    gap: bytes | None = None
+
+    def look_at(self, window: Window, table: MeaningTable) -> None:
+        """Take line end and gap between words from the first lines that show them."""
+        if not self.line_end and len(window):
+            self.line_end = window.text[int(window.end[0]) : int(window.next[0])] or b"\n"
+        if self.gap is None:
+            for shape in table.shapes.shapes:
+                gaps = list(gaps_between(shape.block.text, list(shape.block.words)))
+                if gaps:
+                    self.gap = b" " if any(gaps) else b""
+                    break
+
+
+@dataclass(frozen=True, slots=True)
+class Writing:
+    """The columns that the text of a window is made of.
+
+    `kind` (rows,) are the motions to be written; `centre` (rows, 2) centre words, in last decimals.
+    """
+
+    task: Task
+    style: Style
+    pieces: Pieces
+    positions: Positions
+    taps: Taps
+    kind: Small
+    centre: Floats
+
+    def text(self, chosen: Ints) -> tuple[bytes, Ints]:
+        """Return the text of pieces, and the length of each. Raises InputError."""
+        renderer = Renderer(self.task)
+        self._render(chosen, renderer)
+        text, lengths = renderer.text(len(chosen))
+        self._check_lengths(text, lengths, chosen)
+        return text, lengths
+
+    def _turns(self) -> Ints:
+        """Return the full turns of each row beyond its arc."""
+        return np.maximum(np.ceil(self.task.path.sweep / TURN - 1 - 1e-9), 0).astype(np.int64)
+
+    def _ways(self, chosen: Ints) -> Ints:
+        """Return, per piece, one number for the way in which it has to be written."""
+        pieces = self.pieces
+        arc = pieces.of_rows((self.kind >= Kind.ARC_CW).astype(np.int64), 0)
+        inch = self.task.path.blocks.inch[pieces.line]
+        way = self.task.shape[pieces.line].astype(np.int64)
+        parts = [
+            (pieces.role, len(Role)),
+            (pieces.event + 1, len(pieces.events) + 1),
+            (pieces.expanded_line[pieces.line], 2),
+            (pieces.motion + 1, 128),
+            (pieces.inch + 1, 3),
+            (pieces.incremental + 1, 3),
+            (pieces.absolute_centre + 1, 3),
+            (pieces.feed_mode + 1, 128),
+            (pieces.silent, 2),
+            (pieces.thread, 2),
+            (pieces.tap, 2),
+            (pieces.apart, 2),
+            (pieces.feed, 3),
+            (inch, 2),
+        ]
+        if arc.any():
+            plane = pieces.of_rows(self.task.path.plane.astype(np.int64), 0)
+            turns = pieces.of_rows(self._turns(), 0)
+            parts += [(arc, 2), (plane * arc, 3), (turns * arc, int(turns.max()) + 1)]
+        for part, size in parts:
+            if part.any():
+                way = way * size + part
+        return np.asarray(way[chosen])
+
+    def _render(self, chosen: Ints, renderer: Renderer) -> None:
+        """Render the pieces, one template after another."""
+        for places in groups_of(self._ways(chosen)):
+            members = chosen[places]
+            renderer.begin(self.pieces.line[members])
+            for field in self._template(int(members[0])):
+                self._field(field, members, renderer)
+            lines = self.pieces.line[members]
+            renderer.line_ends(lines, self.pieces.ends[members], self.style.line_end)
+            renderer.finish(places)
+
+    def _template(self, piece: int) -> tuple[Field, ...]:
+        """Return the fields of a piece, which are those of all pieces written in its way."""
+        pieces = self.pieces
+        if pieces.event[piece] >= 0:
+            return self._event_text(piece)
+        line = int(pieces.line[piece])
+        shape = int(self.task.shape[line])
+        row = int(pieces.row[piece])
+        arc = bool(pieces.has_row[piece]) and int(self.kind[row]) >= Kind.ARC_CW
+        key = Key(
+            Role(int(pieces.role[piece])),
+            int(pieces.motion[piece]),
+            int(pieces.inch[piece]),
+            int(pieces.incremental[piece]),
+            int(pieces.absolute_centre[piece]),
+            int(pieces.feed_mode[piece]),
+            bool(pieces.silent[piece]),
+            Feed(int(pieces.feed[piece])),
+            bool(pieces.expanded_line[line]),
+            bool(pieces.thread[piece]),
+            bool(pieces.tap[piece]),
+            bool(pieces.apart[piece]),
+            arc,
+            int(self.task.path.plane[row]) if arc else 0,
+            int(self._turns()[row]) if arc else 0,
+        )
+        writer = TemplateWriter(
+            self.task.table.shapes.shapes[shape],
+            self.task.table.meanings[shape],
+            self.task.manner,
+            self.task.path.axes,
+            b" " if self.style.gap is None else self.style.gap,
+            self.task.path.frames[0].work if self.task.path.folded else "",
+            self.task.path.blocks.uncompensated,
+        )
+        try:
+            return writer.write(key)
+        except CannotSayError as error:
+            where = self.task.location(line, error.column, error.width)
+            raise InputError.one("GX501", error.message, where) from None
+
+    def _event_text(self, piece: int) -> tuple[Field, ...]:
+        """Return the block of something that a canned cycle does between its moves."""
+        event, target = self.pieces.events[int(self.pieces.event[piece])], self.task.manner.target
+        line = int(self.pieces.line[piece])
+        text = event_text(event, target, self.style.gap or b"")
+        if text is None:
+            where = self.task.location(line)
+            message = f"{target.name} cannot say the {event.what} of this cycle"
+            raise InputError.one("GX501", message, where)
+        shape = self.task.table.shapes.shapes[int(self.task.shape[line])]
+        return (Literal(slash_of(shape) + text),)
+
+    def _field(self, field: Field, members: Ints, renderer: Renderer) -> None:
+        """Render one field of the pieces of a template."""
+        manner, rows = self.task.manner, self.pieces.row[members]
+        inch = bool(self.task.path.blocks.inch[self.pieces.line[members[0]]])
+        if isinstance(field, Literal):
+            renderer.literal(field.text)
+        elif isinstance(field, Copied):
+            renderer.copied(self.pieces.line[members], field.slot)
+        elif isinstance(field, Computed):
+            self._computed(field, self.pieces.line[members], renderer)
+        elif isinstance(field, Axis):
+            column = self.task.path.axes.index(field.address)
+            present = self.positions.write[rows, column]
+            if present.any():
+                whole = self.positions.words_of(column, rows)
+                self._check_known(field.address, whole, present, rows)
+                decimals = manner.decimals_of(field.address, inch)
+                renderer.number(field.gap, field.address, whole, decimals, present)
+        elif isinstance(field, CycleWord):
+            whole = self.taps.words[field.address][rows]
+            decimals = manner.decimals_of(field.address, inch)
+            everywhere = np.ones(len(rows), np.bool_)
+            renderer.number(field.gap, field.address, whole, decimals, everywhere)
+        elif isinstance(field, Centre):
+            whole = self.centre[rows, field.index]
+            decimals = manner.decimals_of(field.address, inch)
+            everywhere = np.ones(len(rows), np.bool_)
+            renderer.number(field.gap, field.address, whole, decimals, everywhere)
+        else:
+            feed = self.pieces.feed_value[members]
+            decimals = decimals_for(feed, manner.decimals_of("F", inch))
+            whole = quantise(feed, decimals)
+            self._check_feed(feed, whole / 10.0**decimals, members)
+            everywhere = np.ones(len(rows), np.bool_)
+            point = manner.target.point_required
+            renderer.number(field.gap, "F", whole, decimals, everywhere, point)
+
+    def _computed(self, field: Computed, lines: Ints, renderer: Renderer) -> None:
+        """Write what expressions are worth as plain numbers, to the last bit."""
+        value = self.task.read.value[self.task.window.first_number[lines] + field.slot]
+        decimals = decimals_of(value)
+        whole = quantise(value, decimals)
+        inexact = whole / 10.0**decimals != value
+        if inexact.any():
+            where = self.task.location(int(lines[np.argmax(inexact)]))
+            message = f"{field.address} is computed, and has more decimals than can be written"
+            raise InputError.one("GX501", message, where)
+        renderer.number(b"", field.address, whole, decimals, np.ones(len(lines), np.bool_), False)
+
+    # --- what is refused ---
+
+    def _check_known(self, address: str, whole: Floats, present: Flags, rows: Ints) -> None:
+        """Refuse increments from where the control only knows: the operator may have moved it."""
+        unknown = rows[present & np.isnan(whole)]
+        if len(unknown):
+            message = f"{address} is incremental, but where {address} stands is not known"
+            self.task.refuse(unknown, "GX207", message, f"program {address} in G90 before")
+
+    def _check_feed(self, feed: Floats, written: Floats, members: Ints) -> None:
+        """Refuse feeds that are too small to be written."""
+        lost = np.flatnonzero(~(np.abs(written - feed) <= FEED_SLIP * feed))
+        for piece in members[lost[:1]].tolist():
+            where = self.task.location(int(self.pieces.line[piece]))
+            message = f"a feed this small has more than {MOST_DECIMALS} decimals"
+            raise InputError.one("GX503", message, where, 'cut the move with "segment"')
+
+    def _check_lengths(self, text: bytes, lengths: Ints, chosen: Ints) -> None:
+        target = self.task.manner.target
+        limit = target.line_length
+        if not limit or not len(lengths) or int(lengths.max()) <= limit:
+            return
+        if target.length_without_blanks:
+            ends = np.cumsum(lengths)
+            lines = [text[int(e - n) : int(e)] for e, n in zip(ends, lengths, strict=True)]
+            lengths = np.array([without_blanks(line) for line in lines], np.int64)
+            if int(lengths.max()) <= limit:
+                return
+        worst = int(np.argmax(lengths))
+        line = int(self.pieces.line[chosen[worst]])
+        message = (
+            f"the block would have {int(lengths[worst])} characters; {target.name} takes {limit}"
+        )
+        raise InputError.one("GX502", message, self.task.location(line))

@@ -1,0 +1,101 @@
+"""Acts on the tool: which one is in the spindle, and the length that is added for it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from gcxform.modal.asking import ActError, Asked
+from gcxform.modal.frames import NO_TOOL, FrameState
+
+
+def change_tool(state: FrameState, asked: Asked) -> FrameState:
+    """M6: the tool that T has named is in the spindle."""
+    return replace(state, in_spindle=int(asked.tool_word))
+
+
+def user_code(state: FrameState, asked: Asked) -> FrameState:
+    """M100 to M199: a program of the machine's maker; where it leaves the axes is not known."""
+    inert = int(asked.code[1:]) in asked.reading.inert_m
+    if not inert and asked.reading.control.get("user-codes") != "keep":
+        raise ActError(
+            "GX214",
+            f"{asked.code} runs a program of this machine, if it has one",
+            'say that it has: [control] user-codes = "keep" in the machine file; positions are '
+            "then lost behind it",
+        )
+    return state
+
+
+def set_tool(state: FrameState, asked: Asked) -> FrameState:
+    """M61 Q: another number for the tool that is in the spindle."""
+    if "Q" not in asked.words:
+        raise ActError("GX213", f"{asked.code} needs a Q word")
+    return replace(state, in_spindle=int(asked.words["Q"]))
+
+
+def length(state: FrameState, asked: Asked) -> FrameState:
+    """G43 H: the length of a tool of the table."""
+    return state.with_tool(*_tool_vector(state, asked, 1.0))
+
+
+def length_negative(state: FrameState, asked: Asked) -> FrameState:
+    """G44 H: the length of a tool of the table, taken off."""
+    return state.with_tool(*_tool_vector(state, asked, -1.0))
+
+
+def length_add(state: FrameState, asked: Asked) -> FrameState:
+    """G43.2 H: the length of a tool more."""
+    if "H" not in asked.words:
+        raise ActError("GX213", f"{asked.code} needs an H word")
+    vector, name = _tool_vector(state, asked, 1.0)
+    total = np.array(state.tool) + np.array(vector)
+    return state.with_tool(tuple(total.tolist()), f"{state.tool_name}+{name}")
+
+
+def _tool_vector(
+    state: FrameState, asked: Asked, sign: float
+) -> tuple[tuple[float, float, float], str]:
+    """Return the vector of a tool, nan along Z where its length is not known, and its name."""
+    number = asked.words.get("H", np.nan)
+    if asked.dialect.g43_takes_spindle_tool:
+        number = number if number > 0 else float(_tool_in_spindle(state, asked))
+    elif np.isnan(number):
+        raise ActError("GX213", f"{asked.code} needs an H word")
+    if number % 1 or number < 0:
+        raise ActError("GX213", "H is not a number of a tool")
+    if number == 0:
+        return NO_TOOL, ""
+    tool = asked.reading.tools.get(int(number))
+    if tool is None:
+        if asked.reading.tools and asked.dialect.g43_takes_spindle_tool:
+            raise ActError("GX213", f"the tool table has no tool {number:g}")
+        return (0.0, 0.0, np.nan), f"H{number:g}"
+    x, y, z = tool.vector
+    return (sign * x, sign * y, sign * z), f"H{number:g}"
+
+
+def _tool_in_spindle(state: FrameState, asked: Asked) -> int:
+    """Return the tool that H0, or no H, stands for."""
+    if asked.words.get("H", 0.0) < 0:
+        raise ActError("GX213", "H is not a number of a tool")
+    if state.in_spindle < 1:
+        message = f"{asked.code} takes the tool in the spindle, and which that is is not known"
+        raise ActError("GX213", message, "write H, or the tool change before")
+    return state.in_spindle
+
+
+def length_vector(state: FrameState, asked: Asked) -> FrameState:
+    """G43.1: the vector given."""
+    vector = np.array(state.tool)
+    for axis, value in asked.axes.items():
+        if axis not in asked.dialect.length_axes:
+            raise ActError("GX213", f"{asked.code} takes no {axis} on this control")
+        vector[asked.column(state, axis)] = value
+    return state.with_tool(tuple(vector.tolist()), "G43.1")
+
+
+def no_length(state: FrameState, asked: Asked) -> FrameState:
+    """G49: no tool length."""
+    return state.with_tool(NO_TOOL, "")

@@ -1,0 +1,1 @@
+"""Kinds of machines, by where their rotary axes are."""

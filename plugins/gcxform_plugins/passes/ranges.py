@@ -1,0 +1,81 @@
+"""How far `volumetric` may go beyond the tables, forward and back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+import gcxform as gx
+
+if TYPE_CHECKING:
+    from gcxform_plugins.passes.volumetric import Volumetric
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+BORDER = 1e-9  # mm
+CURVED_CELLS = 1.0  # the bounds of a curved field hold for one cell beyond the table
+
+
+def check_inside(
+    step: Volumetric, path: gx.Toolpath, offset: Floats, rows: Ints, margin: float = 0.0
+) -> None:
+    """Refuse rows that go beyond the tables, or too far beyond them, by more than `margin` (mm).
+
+    `offset` (n or 1, 3) is table position minus program position.
+    """
+    if step.outside not in (gx.Outside.ERROR, gx.Outside.EXTRAPOLATE):
+        return
+    cells = _cells(step)
+    allowed = [step.model.model.extended(axis, cells) for axis in range(3)]
+    points, rows = _points(path, offset, rows)
+    beyond = np.zeros(len(points), np.bool_)
+    for axis, (low, high) in enumerate(allowed):
+        beyond |= points[:, axis] < low - margin - BORDER
+        beyond |= points[:, axis] > high + margin + BORDER
+    if beyond.any():
+        first = int(np.argmax(beyond))
+        _refuse(step, path, int(rows[first]), points[first], cells, allowed)
+
+
+def _cells(step: Volumetric) -> float:
+    """Return by how many cells the tables may be extrapolated."""
+    if step.outside is gx.Outside.ERROR:
+        return 0.0
+    curved = bool(step.model.model.curvature(1.0).any())
+    return min(step.max_extrapolation, CURVED_CELLS) if curved else step.max_extrapolation
+
+
+def _points(path: gx.Toolpath, offset: Floats, rows: Ints) -> tuple[Floats, Ints]:
+    """Return the ends of rows and what their arcs reach (n, 3), in the table, with their rows."""
+    points = path.end[rows, :3] + (offset if len(offset) == 1 else offset[rows])
+    if path.has_arcs:
+        more, owners = gx.arc_extremes(path)
+        points = np.vstack([points, more + (offset if len(offset) == 1 else offset[owners])])
+        rows = np.append(rows, owners)
+    return points, rows
+
+
+def _refuse(
+    step: Volumetric,
+    path: gx.Toolpath,
+    row: int,
+    point: Floats,
+    cells: float,
+    allowed: list[tuple[float, float]],
+) -> None:
+    model = step.model.model
+    off = [max(low - x, x - high) for x, (low, high) in zip(point.tolist(), allowed, strict=True)]
+    axis = int(np.argmax(np.array(off) > BORDER))
+    low, high = model.range_of(axis)
+    value = float(point[axis])
+    limit = low if value < low else high
+    more = f", by more than {cells:g} cell{'s' * (cells != 1)}" if cells else ""
+    raise path.refuse(
+        "GX310",
+        np.array([row]),
+        f"{'XYZ'[axis]} {value:.3f} is outside the error table, which ends at {limit:g}{more}",
+        'outside = "clamp" or "extrapolate" goes beyond, or measure a larger volume',
+    )

@@ -1,0 +1,106 @@
+"""Places where a compensation or its proof could go wrong: coincidences, borders, windows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gcxform as gx
+from gcxform.machine.functions import AxisFunction, AxisFunctions
+from gcxform.machine.rigid import RigidBody
+from gcxform.machine.sums import Sum
+from gcxform.options import ModelFile
+from gcxform.registry import default_registry
+
+
+def bent(travel=200.0, count=5, size=0.01, angle=0.0, seed=1) -> RigidBody | AxisFunctions:
+    """Return a machine with nodes at round positions, about zero."""
+    rng = np.random.default_rng(seed)
+    position = np.linspace(-travel, travel, count)
+    axes = []
+    for _ in range(3):
+        values = rng.normal(0, size, (count, 6)) * np.repeat([1.0, angle / size], 3)
+        axes.append(AxisFunction(position, values if angle else values[:, :3]))
+    return RigidBody(tuple(axes)) if angle else AxisFunctions(tuple(axes))
+
+
+def volumetric(model, **options):
+    step = default_registry().pass_("volumetric")
+    return step(
+        model=ModelFile(Path("model.toml"), model, ""), part_origin=(0.0, 0.0, 0.0), **options
+    )
+
+
+def undone(step, program: str) -> gx.Toolpath:
+    path = gx.read(program.encode(), "linuxcnc").path
+    return step.undo(path, gx.Pipeline.parse("absolute", "linuxcnc").context)
+
+
+HEAD = "G21 G90 G17 G94 G0 X100. Y0. Z0.\n"
+
+
+@pytest.mark.parametrize("move", [
+    "G2 X100. Y0. I-100. J0. F500.",
+    "G3 X0. Y100. I-100. J0. F500.",
+    "G1 X-100. Y-200. F500.",
+    "G1 X-100. Y-200. Z200. F500.",
+])  # fmt: skip
+@pytest.mark.parametrize(("angle", "count"), [(0.0, 5), (2e-5, 5), (0.0, 11)])
+def test_nodes_that_are_met_together_make_one_cut(move, angle, count):
+    """A quarter of an arc is a node of one axis, and where it is divided anyway."""
+    for size in np.geomspace(0.001, 0.01, 12):
+        step = volumetric(bent(count=count, size=size, angle=angle), outside="extrapolate")
+        path = undone(step, HEAD + move + "\n")
+        assert len(path) > 2
+        assert (path.sweep[path.is_arc] > 1e-6).all()
+        length = np.sqrt(((path.end - path.start)[1:, :3] ** 2).sum(axis=1))
+        assert (length > 1e-6).all()
+
+
+# --- how far beyond the table ---
+
+
+def refusal(step, program: str, back: bool = False) -> str:
+    """Return why a path is refused, forward or back."""
+    path = gx.read(program.encode(), "linuxcnc").path
+    context = gx.Pipeline.parse("absolute", "linuxcnc").context
+    with pytest.raises(gx.InputError) as caught:
+        (step.undo if back else step.apply)(path, context)
+    found = caught.value.diagnostics[0]
+    assert found.code == "GX310"
+    return f"{found.where.line}: {found.message}" if found.where else found.message
+
+
+@pytest.mark.parametrize("back", [False, True])
+def test_what_nobody_measured_is_refused_also_when_two_programs_are_compared(back):
+    """`compare --model` and `show` go back alone: nothing was refused before."""
+    said = refusal(volumetric(bent()), HEAD + "G1 X150. F500.\nY-300.\n", back)
+    assert "Y -300.000 is outside the error table, which ends at -200" in said
+    arc = "G1 X-100. F500.\nG2 X-100. Y0. I-60. J0.\n"  # its ends are inside
+    assert "X -220.000 is outside" in refusal(volumetric(bent()), HEAD + arc, back)
+
+
+def test_a_command_may_be_beyond_the_table_by_its_correction():
+    path = undone(volumetric(bent()), HEAD + "G1 X200.1 F500.\n")
+    assert np.isfinite(path.end).all()
+
+
+@pytest.mark.parametrize("back", [False, True])
+def test_a_sum_is_extrapolated_by_cells_of_each_of_its_models(back):
+    """The narrow model has cells of 5 mm: 100 mm beyond it are twenty of them."""
+    narrow = bent(travel=50.0, count=21)
+    step = volumetric(Sum((bent(), narrow)), outside="extrapolate")
+    said = refusal(step, HEAD.replace("X100.", "X40.") + "G1 X54. F500.\nX100.\n", back)
+    assert "X 100.000 is outside the error table, which ends at 50, by more than 1 cell" in said
+
+
+@pytest.mark.parametrize("back", [False, True])
+def test_a_curved_field_is_extrapolated_by_one_cell_whatever_is_allowed(back):
+    """What bounds its bending holds no farther."""
+    far = HEAD + "G1 X350. F500.\n"
+    straight = volumetric(bent(), outside="extrapolate", max_extrapolation=3.0)
+    assert len(undone(straight, far)) > 1
+    curved = volumetric(bent(angle=2e-5), outside="extrapolate", max_extrapolation=3.0)
+    assert "by more than 1 cell" in refusal(curved, far, back)
