@@ -255,6 +255,12 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "Give a machine file with [work-offset.G54] and the others that are used, in place of "
         "part-origin.",
     ),
+    "GX315": (
+        "The tolerance needs shorter pieces than allowed",
+        "A move has to be cut so that the machine stays within the tolerance, and some piece would "
+        "be shorter than `min-length`. Neither is given up silently. Give a larger tolerance, or "
+        "a smaller `min-length`.",
+    ),
     "GX320": (
         "A feed that cannot be converted",
         "Between G93 and G94 a feed is converted by the length of its move, as the control "

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 PASSES = "plugins/gcxform_plugins/passes"
 VERIFY = "tests/test_verify.py"
 FIGURES = "tests/test_volumetric.py"
+MIN_LENGTH = "tests/test_min_length.py"
 INVERSE = "tests/test_inverse.py"
 FOUND = "tests/properties/test_found.py"
 CORPUS = "tests/test_corpus.py::test_case"

@@ -7,6 +7,7 @@ from faults.mutation import (
     FIGURES,
     INVERSE,
     KIT,
+    MIN_LENGTH,
     PASSES,
     RIGID,
     RIGID_PASS,
@@ -124,8 +125,8 @@ MUTATIONS = (
     Mutation(
         "volumetric: the tolerance is doubled",
         f"{PASSES}/splitting.py",
-        "limit = residual * (1 - 1e-6)",
-        "limit = 2 * residual * (1 - 1e-6)",
+        "(residual * (1 - 1e-6) /",
+        "(2 * residual * (1 - 1e-6) /",
         FIGURES,
     ),
     Mutation(
@@ -176,6 +177,34 @@ MUTATIONS = (
         "new.replace(sweep=gx.swept_anew(new)) if new.has_arcs else new",
         "new",
         INVERSE,
+    ),
+    Mutation(
+        "min-length: a short piece at the end",
+        f"{PASSES}/splitting.py",
+        "long = parts[to] - parts[at] >= least or (at, to) == (0, last)",
+        "long = parts[to] - parts[at] >= least or to == last",
+        MIN_LENGTH,
+    ),
+    Mutation(
+        "min-length: lines ten times the tolerance",
+        f"{PASSES}/splitting.py",
+        "long = _long_pieces(*places, most, least)",
+        "long = _long_pieces(*places, 10 * most, least)",
+        MIN_LENGTH,
+    ),
+    Mutation(
+        "min-length: arcs are not looked at",
+        f"{PASSES}/fitting.py",
+        "if self.step.min_length else (cut_row, cut_part)",
+        "if False else (cut_row, cut_part)",
+        MIN_LENGTH,
+    ),
+    Mutation(
+        "extrapolation of a curved model is not refused",
+        f"{PASSES}/volumetric.py",
+        "if extrapolated and self.model.model.curvature(1.0).any():",
+        "if False:",
+        f"{CORPUS}[bad/gx713-curved-extrapolation]",
     ),
     Mutation(
         "growth is not bounded",

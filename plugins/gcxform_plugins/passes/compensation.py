@@ -139,6 +139,17 @@ class Compensation:
                 f"program {axis} before, or say start = {{ {axis} = ... }} in [input]",
             )
 
+    def refuse_short(self, row: int, shortest: float) -> gx.InputError:
+        """Return the error about a move that has to be cut into too short pieces."""
+        step = self.step
+        return self.path.refuse(
+            "GX315",
+            np.array([row]),
+            f"to be within {step.limit * 1000:g} um takes a piece of {shortest:.3f} mm, shorter "
+            f"than min-length, which is {step.min_length:g} mm",
+            "give a larger tolerance, or a smaller min-length",
+        )
+
     def _check_size(self, command: Floats, target: Floats, rows: Ints) -> None:
         size = np.sqrt(((command - target) ** 2).sum(axis=1))
         size[self.left[rows]] = 0.0

@@ -20,6 +20,7 @@ FEWEST, MOST = 8, 256  # points at which a piece is looked at
 AT_ONCE = 200_000  # points looked at together
 HALVINGS = 24
 REFINEMENTS = 3  # a piece is an eighth shorter than it could be, at most
+EVEN_TRIES = 8  # numbers of equal pieces that are tried, where others would be too short
 FLAT = 0.1  # mm; with less between arc and chord, three points say little about the centre
 MARGIN = 0.9  # of the tolerance: what looking at points, and not along the curve, may miss
 LONGEST = 1.9 * np.pi  # rad; rounded, the ends of a longer piece may change places
@@ -57,7 +58,38 @@ class ArcFitter:
         own = ~even[np.searchsorted(row, cut_row)]
         same = even[which] & (nth > 0)
         cut_row = np.append(cut_row[own], row[which[same]])
-        return cut_row, np.append(cut_part[own], low[same])
+        cut_part = np.append(cut_part[own], low[same])
+        return self._long_pieces(cut_row, cut_part) if self.step.min_length else (cut_row, cut_part)
+
+    def _long_pieces(self, cut_row: Ints, cut_part: Floats) -> tuple[Ints, Floats]:
+        """Return the cuts, others where they make too short pieces. Raises InputError."""
+        order = np.lexsort((cut_part, cut_row))
+        cut_row, cut_part = cut_row[order], cut_part[order]
+        for row in np.unique(cut_row).tolist():
+            mine = cut_row == row
+            length = self._length(row)
+            shortest = length * float(np.diff(cut_part[mine], prepend=0.0, append=1.0).min())
+            if shortest < self.step.min_length:
+                even = self._even(row, int(mine.sum()) + 1, int(length / self.step.min_length))
+                if even is None:
+                    raise self.work.refuse_short(row, shortest)
+                cut_row = np.append(cut_row[~mine], np.full(len(even), row))
+                cut_part = np.append(cut_part[~mine], even)
+        return cut_row, cut_part
+
+    def _length(self, row: int) -> float:
+        """Return the length (mm) of an arc in its plane."""
+        first, last, _ = gx.radius_and_angle(self.path, np.array([row]))
+        return float((first + last)[0] / 2 * self.path.sweep[row])
+
+    def _even(self, row: int, fewest: int, most: int) -> Floats | None:
+        """Return where an arc is cut into equal pieces that hold the tolerance, None if none do."""
+        for count in np.unique(np.linspace(fewest, most, EVEN_TRIES).astype(int)).tolist():
+            part = np.arange(count + 1) / max(count, 1)
+            rows = np.full(count, row)
+            if fewest <= count <= most and not self._too_far(rows, part[:-1], part[1:]).any():
+                return np.asarray(part[1:-1])
+        return None
 
     def _farthest_reaching(self, row: Ints) -> tuple[Ints, Floats]:
         """Return row and part of the cuts of arcs when each piece is as long as it can be."""

@@ -37,11 +37,15 @@ def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
     row, part = _at_nodes(work, bending, lines)
     exact = step.tolerance is None or step.split == "nodes"
     residual = NEGLIGIBLE if exact else step.limit
+    most = step.limit
     if work.curvature.any():
         between = CURVED if exact else CURVED_SHARE * step.limit
         row, part = _divided(work, row, part, lines, between)
         residual -= 0.0 if exact else between
-    return _needed(work, row, part, points, residual) if len(row) else (row, part)
+        most -= between
+    if not len(row):
+        return row, part
+    return _needed(work, row, part, points, (residual, most))
 
 
 def _at_nodes(work: Compensation, points: Floats, lines: Flags) -> tuple[Ints, Floats]:
@@ -89,14 +93,14 @@ def _needed(
     row: Ints,
     part: Floats,
     points: Floats,
-    residual: float,
+    residuals: tuple[float, float],
 ) -> tuple[Ints, Floats]:
-    """Return the cuts that a residual (mm) needs.
+    """Return the cuts that a residual (mm) needs; a larger one where they would be too near.
 
     A straight command from one exact point to another is off at the places between them, and
     nowhere more than there, by its distance from the exact command.
     """
-    limit = residual * (1 - 1e-6) / (1 + work.undone)
+    limit, most = (residual * (1 - 1e-6) / (1 + work.undone) for residual in residuals)
     start, way = work.start[row], work.end[row] - work.start[row]
     exact = work.command(start + part[:, None] * way, row)
     straight = points[row] + part[:, None] * (points[row + 1] - points[row])
@@ -111,7 +115,10 @@ def _needed(
         ends = points[[owner]], points[[owner + 1]]
         way = np.vstack([ends[0], exact[members], ends[1]])
         parts = np.concatenate([[0.0], part[members], [1.0]])
-        kept += [int(begins[which]) + k - 1 for k in _farthest_reaching(way, parts, limit)]
+        inner = _farthest_reaching(way, parts, limit)
+        if work.step.min_length:
+            inner = _long_enough(work, owner, (way, parts), inner, most)
+        kept += [int(begins[which]) + k - 1 for k in inner]
     chosen = np.array(kept, np.int64)
     return row[chosen], part[chosen]
 
@@ -125,6 +132,49 @@ def _farthest_reaching(points: Floats, parts: Floats, limit: float) -> list[int]
             stops.append(reach)
         at = reach
     return stops
+
+
+def _shortest(parts: Floats, inner: list[int]) -> float:
+    """Return the part of the way that is the shortest piece; infinite where nothing is cut."""
+    stops = parts[[0, *inner, len(parts) - 1]]
+    return float(np.diff(stops).min()) if inner else float("inf")
+
+
+def _long_enough(
+    work: Compensation, row: int, places: tuple[Floats, Floats], inner: list[int], most: float
+) -> list[int]:
+    """Return the inner points, or others where they make too short pieces. Raises InputError."""
+    length = float(np.linalg.norm(work.end[row] - work.start[row]))
+    least = work.step.min_length / length
+    if _shortest(places[1], inner) >= least:
+        return inner
+    long = _long_pieces(*places, most, least)
+    if long is None:
+        shortest = _shortest(places[1], _farthest_reaching(*places, most))
+        raise work.refuse_short(row, shortest * length)
+    return long
+
+
+def _long_pieces(points: Floats, parts: Floats, limit: float, least: float) -> list[int] | None:
+    """Return the fewest inner points to stop at so that no piece is shorter than `least`.
+
+    `least` is a part of the way. None where the limit cannot be held by such pieces.
+    """
+    last = len(points) - 1
+    came, reached, k = {0: 0}, [0], 0
+    while k < len(reached) and last not in came:
+        at, k = reached[k], k + 1
+        for to in range(last, at, -1):
+            long = parts[to] - parts[at] >= least or (at, to) == (0, last)
+            if long and to not in came and _holds(points, parts, at, to, limit):
+                came[to] = at
+                reached.append(to)
+    if last not in came:
+        return None
+    inner = [came[last]]
+    while inner[-1]:
+        inner.append(came[inner[-1]])
+    return inner[-2::-1]
 
 
 def _holds(points: Floats, parts: Floats, at: int, to: int, limit: float) -> bool:

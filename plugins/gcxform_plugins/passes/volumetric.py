@@ -74,6 +74,13 @@ class Volumetric(gx.Pass):
     max_extrapolation: Annotated[
         float, gx.Option("cells by which the table may be extrapolated", above=0.0)
     ] = 1.0
+    min_length: Annotated[
+        gx.Length,
+        gx.Option(
+            "shorter pieces are not cut; refused where the tolerance (1 um if absent) needs them",
+            at_least=0.0,
+        ),
+    ] = 0.0
     time: Annotated[
         str | None, gx.Option("time (ISO 8601) whose temperatures hold; absent: as the model says")
     ] = None
@@ -112,6 +119,7 @@ class Volumetric(gx.Pass):
     def begin(self, context: gx.PassContext) -> None:
         """Refuse a model that cannot be inverted, and a run without origin."""
         gx.check_contraction(self.model.model)
+        self._check_extrapolation()
         if self.model.model.backlash.any():
             axes = " ".join(a for a, b in zip("XYZ", self.model.model.backlash, strict=True) if b)
             message = f"volumetric does not compensate backlash, and the model has some on {axes}"
@@ -122,6 +130,17 @@ class Volumetric(gx.Pass):
                 "GX721",
                 "volumetric needs to know where the program's origin is in the machine",
                 hint="give part-origin = [x, y, z], or a machine file with work offsets",
+            )
+
+    def _check_extrapolation(self) -> None:
+        """Refuse to go farther beyond a table than its bounds of the error hold."""
+        extrapolated = self.outside is gx.Outside.EXTRAPOLATE and self.max_extrapolation > 1.0
+        if extrapolated and self.model.model.curvature(1.0).any():
+            raise gx.UsageError.one(
+                "GX713",
+                f"max-extrapolation = {self.max_extrapolation:g}, and the error is curved: how "
+                "steep it is farther than 1 cell beyond the table has no bound",
+                hint='leave max-extrapolation out, or outside = "clamp"',
             )
 
     # --- forward and back ---
