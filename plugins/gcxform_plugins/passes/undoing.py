@@ -114,18 +114,20 @@ class Machine:
         return row, part
 
     def _bends(self, lines: Ints) -> tuple[Ints, Floats]:
-        """Return row and part of the way where lines cross a node, node by node."""
+        """Return row and part of the way where lines cross a node."""
         rows: list[Ints] = [np.empty(0, np.int64)]
         parts: list[Floats] = [np.empty(0)]
         for axis, planes in enumerate(self.step.nodes()):
             a, b = self.start[lines, axis], self.end[lines, axis]
-            moving = np.flatnonzero(a != b)
-            a, way = a[moving], (b - a)[moving]
-            for plane in planes:
-                part = (plane - a) / way
-                inside = np.flatnonzero((part > 0.0) & (part < 1.0))
-                rows.append(lines[moving[inside]])
-                parts.append(part[inside])
+            first = np.searchsorted(planes, np.minimum(a, b), side="right")
+            stop = np.searchsorted(planes, np.maximum(a, b), side="left")
+            count = np.maximum(stop - first, 0)
+            which = np.repeat(np.arange(len(lines)), count)
+            nth = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
+            part = (planes[first[which] + nth] - a[which]) / (b - a)[which]
+            inside = np.flatnonzero((part > 0.0) & (part < 1.0))
+            rows.append(lines[which[inside]])
+            parts.append(part[inside])
         return np.concatenate(rows), np.concatenate(parts)
 
     def _curves(self, lines: Ints, row: Ints, part: Floats) -> tuple[Ints, Floats]:
@@ -138,7 +140,7 @@ class Machine:
         rows, stop = rows[order], stop[order]
         begin = np.where(np.append(True, rows[1:] != rows[:-1]), 0.0, np.append(0.0, stop[:-1]))
         way = np.abs(self.end[rows] - self.start[rows]) * (stop - begin)[:, None]
-        sag = np.einsum("ni,ij,nj->n", way, self.curvature, way) / 8.0
+        sag = np.nan_to_num(np.einsum("ni,ij,nj->n", way, self.curvature, way)) / 8.0
         pieces = np.maximum(np.ceil(np.sqrt(sag / BEND_SLACK)), 1.0).astype(np.int64)
         every = np.repeat(np.arange(len(rows)), pieces)
         nth = np.arange(len(every)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
