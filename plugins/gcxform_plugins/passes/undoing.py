@@ -23,18 +23,7 @@ Ints = NDArray[np.int64]
 APART = 1e-9  # of a move; two cuts nearer to each other are one
 STILL = 1e-9  # mm; an axis that moves by less stays where it is
 UNDO_SLACK = 2e-6  # mm; how far pieces of an undone arc are from the curve they stand for
-NO_WAY = 1e-12  # of a row
 BEND_SLACK = 1e-5  # mm; the same for pieces of a line, and what the bending adds to an arc
-
-
-def _apart(rows: Ints, part: Floats) -> tuple[Ints, Floats]:
-    """Return sorted cuts and ends of rows without cuts that are no way before the next, or after 0.
-
-    Nodes of two axes may be met together, and an arc be divided where it meets one.
-    """
-    too_near = np.append((rows[1:] == rows[:-1]) & (np.diff(part) <= NO_WAY), False)
-    too_near |= part <= NO_WAY
-    return rows[~too_near], part[~too_near]
 
 
 class Machine:
