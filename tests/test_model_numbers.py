@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import warnings
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from test_modelfile import HEAD, X, Z, refused
+from test_rigid import lattice as grid_of_errors
+from test_rigid import rigid as rigid_body
+
+from gcxform.machine.lattice import Lattice
+from gcxform.machine.modelfile import load_model
+from gcxform.machine.modeltext import fingerprint, to_toml
+from gcxform.machine.rigid import RigidBody
 
 Y = X.replace("[X]", "[Y]").replace("X =", "Y =")
 TURNS = "ECX = [0, 1e-6, 0]\n"
@@ -61,3 +71,26 @@ def test_what_is_no_number_is_refused_at_its_place(tmp_path, text, code, line):
     assert found.code == code
     assert found.where is not None
     assert line is None or found.where.line == line
+
+
+def test_numbers_of_numpy_are_written_as_numbers(tmp_path):
+    tool = tuple(np.array([1.0, 2.0, -90.0]))
+    for model in (rigid_body(3, tool=tool, at=(tool, tool, tool)), grid_of_errors(2)):
+        path = tmp_path / "model.toml"
+        path.write_text(to_toml(replace(model, measured=tool)))
+        assert load_model(path).tool.tolist() == [1.0, 2.0, -90.0]
+
+
+def test_an_axis_without_limits_after_one_that_turns_has_no_bound():
+    """Its travel is a lever: files are refused (GX414), models of plugins by their bound."""
+    x, *_ = rigid_body(1).axes
+    with np.errstate(invalid="ignore"):
+        assert RigidBody((x, None, None)).lipschitz() == math.inf
+
+
+def test_models_of_other_shapes_have_other_fingerprints():
+    values = np.zeros((2, 3, 1, 3))
+    nodes = np.arange(5.0)
+    wide = Lattice((nodes[:2], nodes[2:], np.zeros(1)), values)
+    high = Lattice((nodes[:2], nodes[2:], np.zeros(1)), values.reshape(3, 2, 1, 3))
+    assert fingerprint(wide) != fingerprint(high)

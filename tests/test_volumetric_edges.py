@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from gcxform_plugins.passes.splitting import _farthest_reaching
+from hypothesis import given
+from hypothesis import strategies as st
 
 import gcxform as gx
 from gcxform.machine.functions import AxisFunction, AxisFunctions
@@ -104,3 +108,44 @@ def test_a_curved_field_is_extrapolated_by_one_cell_whatever_is_allowed(back):
     assert len(undone(straight, far)) > 1
     curved = volumetric(bent(angle=2e-5), outside="extrapolate", max_extrapolation=3.0)
     assert "by more than 1 cell" in refusal(curved, far, back)
+
+
+# --- many nodes, unknown places ---
+
+
+def test_a_line_across_a_thousand_nodes_takes_no_time_and_few_blocks():
+    """Each stop was looked for from the far end: minutes for a line of a fine table."""
+    rng = np.random.default_rng(1)
+    position = np.linspace(-500.0, 500.0, 1001)
+    function = AxisFunction(position, np.cumsum(rng.normal(0, 0.0005, (1001, 3)), axis=0))
+    step = volumetric(AxisFunctions((function, None, None)), tolerance=0.0005)
+    path = gx.read(b"G21 G90 G94 G0 X-400. Y0. Z0. F100\nG1 X400.\nX-400.\n", "linuxcnc").path
+    begin = time.process_time()
+    written = step.apply(path, gx.Pipeline.parse("absolute", "linuxcnc").context)
+    assert time.process_time() - begin < 5.0
+    assert 100 < len(written) < 1400
+
+
+@given(st.integers(0, 10_000), st.integers(2, 40), st.floats(0.01, 1.0))
+def test_pieces_reach_as_far_as_the_limit_lets_them(seed, count, limit):
+    """Against looking from the far end, one place after the other."""
+    rng = np.random.default_rng(seed)
+    parts = np.sort(rng.uniform(0, 1, count))
+    parts[[0, -1]] = 0.0, 1.0
+    points = parts[:, None] * (5.0, 3.0, 0.0) + rng.normal(0, 0.2, (count, 3))
+
+    def holds(at, to):
+        share = (parts[at + 1 : to] - parts[at]) / (parts[to] - parts[at])
+        way = points[at] + share[:, None] * (points[to] - points[at])
+        return (np.linalg.norm(points[at + 1 : to] - way, axis=1) <= limit).all()
+
+    expected, at = [], 0
+    while at < count - 1:
+        at = next(to for to in range(count - 1, at, -1) if holds(at, to))
+        expected.append(at)
+    assert _farthest_reaching(points, parts, limit) == expected[:-1]
+
+
+def test_a_place_that_is_not_known_is_no_bug():
+    path = undone(volumetric(bent(angle=2e-5)), "G21 G90 G17 G94 G0 X10. Y10.\nG1 X100. F500.\n")
+    assert np.isnan(path.end[:, 2]).all()

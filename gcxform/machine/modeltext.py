@@ -39,12 +39,12 @@ def _functions(
 ) -> list[str]:
     lines = ['values = "error"', 'convention = "relative"', f'order = "{order}"']
     if rigid is not None:
-        lines.append(f"tool = {list(rigid.measured)}")
+        lines.append(f"tool = {_plain(rigid.measured)}")
     for k, (axis, function) in enumerate(zip(AXES, axes, strict=True)):
         if function is not None:
             lines += ["", f"[{axis}]"]
             if rigid is not None and any(rigid.at[k]):
-                lines.append(f"at = {list(rigid.at[k])}")
+                lines.append(f"at = {_plain(rigid.at[k])}")
             lines.append(f"position = {function.position.tolist()}")
             columns = zip(COLUMNS, function.values.T.tolist(), strict=False)
             lines += [f"E{direction}{axis} = {values}" for direction, values in columns]
@@ -54,12 +54,17 @@ def _functions(
 def _lattice(model: Lattice) -> list[str]:
     lines = ['values = "error"']
     if model.measured is not None:
-        lines.append(f"tool = {list(model.measured)}")
+        lines.append(f"tool = {_plain(model.measured)}")
     lines += [f"{axis} = {nodes.tolist()}" for axis, nodes in zip(AXES, model.grid, strict=True)]
     for letters, values in (("XYZ", model.values), ("ABC", model.turns)):
         if values is not None:
             lines += [f"E{a} = {_rows(values[..., k])}" for k, a in enumerate(letters)]
     return lines
+
+
+def _plain(values: Iterable[float]) -> list[float]:
+    """Return numbers that print as such: those of numpy do not."""
+    return [float(value) for value in values]
 
 
 def _rows(values: FloatArray) -> str:
@@ -99,4 +104,6 @@ def fingerprint(part: Any) -> bytes:
         return type(part).__name__.encode() + b"(" + b",".join(map(fingerprint, values)) + b")"
     if isinstance(part, tuple):
         return b"(" + b",".join(map(fingerprint, part)) + b")"
-    return part.tobytes() if isinstance(part, np.ndarray) else repr(part).encode()
+    if isinstance(part, np.ndarray):
+        return repr(part.shape).encode() + part.tobytes()
+    return repr(part).encode()

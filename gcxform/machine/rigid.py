@@ -198,7 +198,8 @@ class RigidBody(ErrorModel):
         found = 0.0
         for corner in itertools.product(*sides):
             moved = rows[:, :3] + np.cross(rows[:, 3:], corner)
-            found = max(found, float(np.sqrt((moved**2).sum(axis=1)).max()))
+            size = float(np.sqrt((moved**2).sum(axis=1)).max())
+            found = max(found, math.inf if math.isnan(size) else size)
         return found
 
 

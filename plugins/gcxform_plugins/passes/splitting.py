@@ -23,6 +23,7 @@ Flags = NDArray[np.bool_]
 REFINEMENTS = 4  # each shrinks the error of a crossing by the Lipschitz constant of the error
 NEGLIGIBLE = 1e-5  # mm; a cut that mends less is not worth a block: a hundredth of the rounding
 CURVED = 1e-4  # mm; what may stay between two cuts, without a tolerance, where the error is curved
+AHEAD, AHEAD_AT_MOST = 64, 1024  # places
 CURVED_SHARE = 0.25  # of a tolerance, for the same
 
 
@@ -124,14 +125,38 @@ def _needed(
 
 
 def _farthest_reaching(points: Floats, parts: Floats, limit: float) -> list[int]:
-    """Return the inner points to stop at, when each piece reaches as far as the limit allows."""
+    """Return the inner points to stop at, when each piece reaches as far as the limit allows.
+
+    It is looked for among the next `AHEAD` points, and among twice as many while the last of them
+    is reached: a line may have thousands of places.
+    """
     stops, at, last = [], 0, len(points) - 1
     while at < last:
-        reach = next(to for to in range(last, at, -1) if _holds(points, parts, at, to, limit))
+        ahead = min(AHEAD, last - at)
+        reach = _reach(points, parts, at, at + ahead, limit)
+        while reach == at + ahead < last and ahead < AHEAD_AT_MOST:
+            ahead = min(2 * ahead, last - at)
+            reach = _reach(points, parts, at, at + ahead, limit)
         if reach < last:
             stops.append(reach)
         at = reach
     return stops
+
+
+def _reach(points: Floats, parts: Floats, at: int, end: int, limit: float) -> int:
+    """Return the last point up to `end` to which the straight way keeps the limit between.
+
+    Seen from `at`, the way to point j has the velocity v_j, and is off point k by |v_j - v_k| times
+    the time to k.
+    """
+    time = np.maximum(parts[at + 1 : end + 1] - parts[at], 1e-15)
+    velocity = (points[at + 1 : end + 1] - points[at]) / time[:, None]
+    square = np.zeros((len(time), len(time)))
+    for axis in range(3):
+        square += (velocity[:, None, axis] - velocity[None, :, axis]) ** 2
+    within = square <= (limit / time) ** 2
+    holds = (within | np.triu(np.ones_like(within))).all(axis=1)
+    return at + 1 + int(np.flatnonzero(holds)[-1])
 
 
 def _shortest(parts: Floats, inner: list[int]) -> float:

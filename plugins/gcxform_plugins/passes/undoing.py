@@ -20,20 +20,10 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+NO_WAY = 1e-12  # of a move; two cuts nearer to each other are one
 STILL = 1e-9  # mm; an axis that moves by less stays where it is
 UNDO_SLACK = 2e-6  # mm; how far pieces of an undone arc are from the curve they stand for
-NO_WAY = 1e-12  # of a move; two cuts nearer to each other are one
 BEND_SLACK = 1e-5  # mm; the same for pieces of a line, and what the bending adds to an arc
-
-
-def _apart(rows: Ints, part: Floats) -> tuple[Ints, Floats]:
-    """Return sorted cuts and ends of rows without cuts that are no way before the next, or after 0.
-
-    Nodes of two axes may be met together, and an arc be divided where it meets one.
-    """
-    too_near = np.append((rows[1:] == rows[:-1]) & (np.diff(part) <= NO_WAY), False)
-    too_near |= part <= NO_WAY
-    return rows[~too_near], part[~too_near]
 
 
 class Machine:
@@ -117,18 +107,20 @@ class Machine:
         return row, part
 
     def _bends(self, lines: Ints) -> tuple[Ints, Floats]:
-        """Return row and part of the way where lines cross a node, node by node."""
+        """Return row and part of the way where lines cross a node."""
         rows: list[Ints] = [np.empty(0, np.int64)]
         parts: list[Floats] = [np.empty(0)]
         for axis, planes in enumerate(self.step.nodes()):
             a, b = self.start[lines, axis], self.end[lines, axis]
-            moving = np.flatnonzero(a != b)
-            a, way = a[moving], (b - a)[moving]
-            for plane in planes:
-                part = (plane - a) / way
-                inside = np.flatnonzero((part > 0.0) & (part < 1.0))
-                rows.append(lines[moving[inside]])
-                parts.append(part[inside])
+            first = np.searchsorted(planes, np.minimum(a, b), side="right")
+            stop = np.searchsorted(planes, np.maximum(a, b), side="left")
+            count = np.maximum(stop - first, 0)
+            which = np.repeat(np.arange(len(lines)), count)
+            nth = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
+            part = (planes[first[which] + nth] - a[which]) / (b - a)[which]
+            inside = np.flatnonzero((part > 0.0) & (part < 1.0))
+            rows.append(lines[which[inside]])
+            parts.append(part[inside])
         return np.concatenate(rows), np.concatenate(parts)
 
     def _curves(self, lines: Ints, row: Ints, part: Floats) -> tuple[Ints, Floats]:
@@ -141,7 +133,7 @@ class Machine:
         rows, stop = rows[order], stop[order]
         begin = np.where(np.append(True, rows[1:] != rows[:-1]), 0.0, np.append(0.0, stop[:-1]))
         way = np.abs(self.end[rows] - self.start[rows]) * (stop - begin)[:, None]
-        sag = np.einsum("ni,ij,nj->n", way, self.curvature, way) / 8.0
+        sag = np.nan_to_num(np.einsum("ni,ij,nj->n", way, self.curvature, way)) / 8.0
         pieces = np.maximum(np.ceil(np.sqrt(sag / BEND_SLACK)), 1.0).astype(np.int64)
         every = np.repeat(np.arange(len(rows)), pieces)
         nth = np.arange(len(every)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
@@ -197,3 +189,13 @@ class Machine:
         table = point + self.place.offset_of(rows[arcs])
         errors[arcs] = self.moved(table, self.place.tool_of(rows[arcs]))
         return errors
+
+
+def _apart(rows: Ints, part: Floats) -> tuple[Ints, Floats]:
+    """Return sorted cuts and ends of rows without cuts that are no way before the next, or after 0.
+
+    Nodes of two axes may be met together, and an arc be divided where it meets one.
+    """
+    too_near = np.append((rows[1:] == rows[:-1]) & (np.diff(part) <= NO_WAY), False)
+    too_near |= part <= NO_WAY
+    return rows[~too_near], part[~too_near]
