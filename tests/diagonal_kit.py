@@ -18,6 +18,7 @@ EXAMPLE = Path(__file__).parents[1] / "examples" / "lddm"
 LOW = (0.0, 0.0, 0.0)
 TRAVEL = (480.0, 330.0, 450.0)
 LENGTHS = [4.254, -26.823, -27.853, -37.184]  # um: what its diagonals are longer by
+SLOPES = [25.264, 34.424, 52.624]  # urad: EXY + EYX, EXZ + EZX, EYZ + EZY
 ALIGNED = Assumed(free_beams=False)
 FREE = Assumed()
 

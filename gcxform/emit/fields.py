@@ -61,6 +61,11 @@ class Key:
     plane: int
     turns: int
 
+    @property
+    def as_it_stands(self) -> bool:
+        """Whether the motion of the block is left as it is."""
+        return self.role in (Role.NONE, Role.VERBATIM)
+
 
 @dataclass(frozen=True, slots=True)
 class Literal:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 FIGURES = "tests/test_step_diagonal.py"
+PLAIN = "tests/test_plain_diagonal.py"
 FILES = "tests/test_diagonal_files.py"
 COMMAND = "tests/test_calibrate.py"
 ROUND_TRIP = "tests/properties/test_diagonal.py"
@@ -156,6 +157,7 @@ MUTATIONS = (
         "the mean scale has equal weights",
         "square = self.diagonals.volume.travel**2",
         "square = self.diagonals.volume.travel**0",
+        PLAIN,
     ),
     # the plain test
     _calibrate(
@@ -163,12 +165,14 @@ MUTATIONS = (
         "squareness has the sides of another plane",
         "size / (x * y), size / (x * z)",
         "size / (x * z), size / (x * y)",
+        PLAIN,
     ),
     _calibrate(
         "plaindiagonal",
         "the signs of a diagonal are mixed up",
         "(1.0, x * y, x * z, y * z)",
         "(1.0, x * y, y * z, x * z)",
+        PLAIN,
     ),
     _calibrate(
         "plaindiagonal",

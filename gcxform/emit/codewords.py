@@ -1,0 +1,130 @@
+"""G and M words of a block that is written again, and the codes that it has to state.
+
+A code of a group whose mode has to be stated becomes the one that is wanted; what the block leaves
+to modes that no longer hold is stated before its first word. Codes that act before the motion stand
+in the first piece of a split block, those that act after it in the last. A code that the target has
+not, or takes otherwise, is refused.
+"""
+
+from __future__ import annotations
+
+from gcxform.emit.draft import Draft
+from gcxform.emit.fields import Key, Role
+from gcxform.emit.manner import Manner
+from gcxform.emit.saying import STATED, like, other_in, same_m
+from gcxform.modal.meaning import Meaning
+from gcxform.modal.sorting import only_for_cycles
+from gcxform.syntax.shapes import Shape
+from gcxform.syntax.tree import Number, Word
+
+
+class CodeWords:
+    """Writes the codes of one piece of a block into its draft."""
+
+    def __init__(
+        self, draft: Draft, key: Key, shape: Shape, meaning: Meaning, manner: Manner
+    ) -> None:
+        self.draft = draft
+        self.key = key
+        self.shape = shape
+        self.meaning = meaning
+        self.source, self.target = manner.source, manner.target
+        self.stated: set[str] = set()
+        self.repairs_wait = True
+
+    def g_word(self, word: Word, lead: bytes) -> None:
+        """Write a G word, or the one that stands for it; `lead` is what stood before it."""
+        assert isinstance(word.value, Number)
+        name = f"G{round(word.value.value, 6):g}"
+        code = self.source.codes.get(name)
+        group = code.group if code is not None else ""
+        text = self.draft.said(word.start, word.end)
+        if self.key.role in (Role.MIDDLE, Role.LAST):
+            lead = self.draft.gap_before(lead)
+        if group == "cycle" and self.key.expanded:
+            return
+        if group in self.stated:
+            return  # of several codes of a group one has been written
+        if group in STATED and self._states(word, name, group, lead):
+            return
+        after = code is not None and code.after
+        if self.key.role in ((Role.FIRST, Role.MIDDLE) if after else (Role.MIDDLE, Role.LAST)):
+            return
+        if only_for_cycles(name, self.source, self.target):
+            return
+        if self.source is not self.target and code is not None:
+            what = other_in(self.source, self.target, name, code, self.meaning.dwell)
+            if what:
+                self.draft.refuse(word, what)
+        self.draft.literal(lead, text)
+
+    def _states(self, word: Word, name: str, group: str, lead: bytes) -> bool:
+        """Write the code that has to be stated for a group; return whether this settles it."""
+        wanted = self._wanted(group)
+        self.stated.add(group)
+        if wanted is not None:
+            if not self._goes_without_saying(word, wanted):
+                text = self.draft.said(word.start, word.end)
+                self.draft.literal(lead, text if wanted == name else like(text, wanted))
+            return True
+        if group != "motion":
+            return False
+        # A spline that goes nowhere is left out, and its words are.
+        left_out = name in ("G5", "G5.1") and self.key.role is Role.NONE
+        stays = self.key.as_it_stands or self.key.thread or self.key.tap
+        return left_out or not stays or self.key.silent
+
+    def m_word(self, word: Word, lead: bytes) -> None:
+        """Write an M word, in the piece in which it acts."""
+        assert isinstance(word.value, Number)
+        number = int(word.value.value)
+        code = self.source.m_codes.get(number, self.source.unknown_m)
+        if self.source is not self.target:
+            other = self.target.m_codes.get(number, self.target.unknown_m)
+            words = {word.address for word in self.shape.block.words}
+            if other is None or code is None or not same_m(code, other, words):
+                self.draft.refuse(word, f"M{number}")
+            if code.after != other.after and self.key.role is not Role.NONE:
+                self.draft.refuse(word, f"M{number}")
+        after = code is not None and code.after
+        whole = self.key.role is Role.ONLY or self.key.as_it_stands
+        if whole or self.key.role is (Role.LAST if after else Role.FIRST):
+            self.draft.literal(self.draft.gap_before(lead), self.draft.said(word.start, word.end))
+
+    # --- what has to be stated ---
+
+    def _wanted(self, group: str) -> str | None:
+        """Return the code that has to be stated for a group, if any."""
+        value = getattr(self.key, STATED[group][0])
+        return None if value < 0 else STATED[group][1][value]
+
+    def _goes_without_saying(self, word: Word, code: str) -> bool:
+        """Whether the target has no such code because it knows nothing else."""
+        if code in self.target.codes:
+            return False
+        if code != "G91.1":
+            self.draft.refuse(word, code)
+        return True
+
+    def repair_before(self, word: Word, lead: bytes) -> bytes:
+        """State before the first word what the block leaves to modes that no longer hold."""
+        self.repairs_wait = False
+        explicit = {code for code in self.meaning.groups if code in STATED}
+        texts = []
+        for group in STATED:
+            wanted = self._wanted(group)
+            if wanted is not None and group not in explicit:
+                if not self._goes_without_saying(word, wanted):
+                    texts.append(wanted)
+                self.stated.add(group)
+        if not texts:
+            return lead
+        self.draft.literal(lead, self.draft.gap.decode().join(texts))
+        return self.draft.gap
+
+    def repair(self) -> None:
+        """State what is still to be stated, in a block that had no word to put it before."""
+        if self.repairs_wait and self.key.role is not Role.NONE:
+            self.repairs_wait = False
+            texts = [w for g in STATED if (w := self._wanted(g)) is not None]
+            self.draft.literal(b"", self.draft.gap.decode().join(texts))
