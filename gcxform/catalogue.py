@@ -498,9 +498,10 @@ CATALOGUE: dict[str, tuple[str, str]] = {
     ),
     "GX454": (
         "Parameters of a control that are not taken over",
-        "The kinematics of LinuxCNC are read from the `setp` lines of a HAL file, and those of "
-        "FANUC from the parameters 19666 and 19680 to 19714. Where more decides where the axes "
-        "are, write the machine file by hand, and try it: `gcxform machine jog`.",
+        "The kinematics of LinuxCNC are read from HAL files, those of FANUC from the parameters "
+        "19666 and 19680 to 19714, those of Siemens from $TC_CARR or $MC_TRAFO5. Where more "
+        "decides where the axes are, write the machine file by hand, and try it: `gcxform machine "
+        "jog`.",
     ),
     "GX470": (
         "Not a table of measurements",

@@ -17,6 +17,7 @@ from gcxform.machine.halfile import UNITS, read_hal
 from gcxform.machine.jog import jog_test
 from gcxform.machine.machine import Machine
 from gcxform.machine.machinetext import to_toml
+from gcxform.machine.siemensfile import read_siemens
 
 
 @click.group("machine", help=VERBS["machine"], short_help=VERBS["machine"])
@@ -113,6 +114,23 @@ def linuxcnc(file: str, units: str, output: str) -> None:
 def fanuc(file: str, output: str) -> None:
     """Take over the parameters 19666 and 19680 to 19714, such as N19700 P5.0, a line each."""
     _write(read_fanuc(Path(file)), file, output)
+
+
+@taken_over.command("siemens")
+@click.option(
+    "--axes", metavar="C,A", required=True, help="First and second rotary axis of the data."
+)
+@_OUTPUT
+@click.argument("file", metavar="DATA")
+def siemens(file: str, axes: str, output: str) -> None:
+    """Take over a swivel data set ($TC_CARR), or machine data of a five-axis transformation.
+
+    The transformation is the first of the channel, of the type 24, 40 or 56.
+    """
+    letters = [letter.strip().upper() for letter in axes.split(",")]
+    if len(letters) != 2:
+        raise UsageError.one("GX707", f"{axes!r} is not two axes", Location("--axes"))
+    _write(read_siemens(Path(file), (letters[0], letters[1])), file, output)
 
 
 def _write(machine: Machine, file: str, output: str) -> None:

@@ -239,6 +239,20 @@ MUTATIONS = (
         CONTROLS,
     ),
     Mutation(
+        "Siemens: the second axis of the table is measured from the machine",
+        "gcxform/machine/siemensfile.py",
+        """_sum(vectors["I2"], vectors["I3"]))""",
+        """_sum(vectors["I3"]))""",
+        CONTROLS,
+    ),
+    Mutation(
+        "Siemens: vectors of axes are turned around",
+        "gcxform/machine/siemensfile.py",
+        "point=point, sign=1)",
+        "point=point, sign=-1)",
+        CONTROLS,
+    ),
+    Mutation(
         "jog: clockwise is said the other way",
         JOG,
         '"counterclockwise" if rotary.sign > 0 else "clockwise"',
