@@ -32,6 +32,7 @@ def bent(travel=200.0, count=5, size=0.01, angle=0.0, seed=1) -> RigidBody | Axi
 
 def volumetric(model, **options):
     step = default_registry().pass_("volumetric")
+    options["outside"] = gx.Outside(options.get("outside", "error"))
     return step(
         model=ModelFile(Path("model.toml"), model, ""), part_origin=(0.0, 0.0, 0.0), **options
     )
