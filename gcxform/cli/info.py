@@ -197,10 +197,7 @@ def _meaning(tolerant: Tolerant, codes: dict[str, int], speeds: dict[str, float]
     for _, path in tolerant.windows():
         if path is None:
             continue
-        splines = int(path.is_spline.sum())
-        kinds, numbers = np.unique(path.kind[~path.is_spline], return_counts=True)
-        moves.update({_KINDS[Kind(k)]: int(n) for k, n in zip(kinds, numbers, strict=True)})
-        moves.update({"splines": splines} if splines else {})
+        moves.update(_moves(path))
         events.update(event.what for event in path.events)
         modes.update(_modes(path))
         rapid = path.kind == Kind.RAPID
@@ -228,6 +225,14 @@ def _meaning(tolerant: Tolerant, codes: dict[str, int], speeds: dict[str, float]
             for line in sorted(refused)[:FIRST]
         },
     }
+
+
+def _moves(path: Toolpath) -> Counter[str]:
+    """Count the moves of each kind."""
+    kinds, numbers = np.unique(path.kind[~path.is_spline], return_counts=True)
+    found = Counter({_KINDS[Kind(k)]: int(n) for k, n in zip(kinds, numbers, strict=True)})
+    splines = int(path.is_spline.sum())
+    return found + Counter({"splines": splines})
 
 
 def _modes(path: Toolpath) -> Counter[str]:

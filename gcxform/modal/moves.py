@@ -256,8 +256,25 @@ class Moves:
 
     def _path(self, rows: Rows) -> Toolpath:
         """Return the rows as a toolpath; arcs get their centres."""
+        line = rows.line
+        path = self._fed(self._unfinished(rows), rows).replace(after_side=self.state.at_side)
+        if len(line):
+            self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
+            self.state.row_frame = self.track.frames[int(path.frame[-1])]
+        refuse_ends(self.lines, self.modes, path.side, path.kind, line)
+        if self.side.any():
+            self._refuse_mirrored(path)
+        if len(line) and (self.state.pull or self.bends):
+            path = read_splines(path, self.lines, self.modes)
+        if not path.has_arcs:
+            return path
+        arcs = np.flatnonzero(path.is_arc)
+        return resolve_arcs(path, self._arc_words(line[arcs]), self.dialect, self.findings)
+
+    def _unfinished(self, rows: Rows) -> Toolpath:
+        """Return the rows as a toolpath with feeds as numbers in force, and without centres."""
         count, line = len(rows.line), rows.line
-        path = Toolpath(
+        return Toolpath(
             self.axes,
             rows.kind,
             rows.end,
@@ -289,19 +306,6 @@ class Moves:
             first=self.state.frames.first,
             after_rapid=self.state.rapid,
         )
-        path = self._fed(path, rows).replace(after_side=self.state.at_side)
-        if count:
-            self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
-            self.state.row_frame = self.track.frames[int(path.frame[-1])]
-        refuse_ends(self.lines, self.modes, path.side, path.kind, line)
-        if self.side.any():
-            self._refuse_mirrored(path)
-        if count and (self.state.pull or self.bends):
-            path = read_splines(path, self.lines, self.modes)
-        if not path.has_arcs:
-            return path
-        arcs = np.flatnonzero(path.is_arc)
-        return resolve_arcs(path, self._arc_words(line[arcs]), self.dialect, self.findings)
 
     def _refuse_mirrored(self, path: Toolpath) -> None:
         """Refuse cutter compensation in a mirror: controls differ in the side it is then on."""

@@ -103,9 +103,7 @@ def arc_cuts(
         longest = np.sqrt(8 * slack / curvature)
         widest = np.minimum(widest, path.sweep[rows] * longest / np.maximum(length, longest))
     count = np.ceil(path.sweep[rows] / np.minimum(widest, 0.5)).astype(np.int64)
-    row = np.repeat(rows, count)
-    nth = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
-    found = [(row[nth > 0], (nth / np.repeat(count, count))[nth > 0])]
+    found = [_even_cuts(rows, count)]
     for plane in Plane:
         here = np.flatnonzero(path.plane[rows] == plane)
         if not len(here):
@@ -120,6 +118,13 @@ def arc_cuts(
         rise = _rise_crossings(path, mine, shift, normal, nodes[normal])
         found.append((mine[rise[0]], rise[1]))
     return np.concatenate([r for r, _ in found]), np.concatenate([p for _, p in found])
+
+
+def _even_cuts(rows: Ints, count: Ints) -> tuple[Ints, Floats]:
+    """Return row and part of the cuts of rows into so many even pieces."""
+    row = np.repeat(rows, count)
+    nth = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+    return row[nth > 0], (nth / np.repeat(count, count))[nth > 0]
 
 
 def _rise(path: Toolpath, rows: Ints) -> Floats:
