@@ -459,9 +459,10 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "spindle; each must have its table [axis.A], [axis.B] or [axis.C], and stand once.",
     ),
     "GX436": (
-        "Unknown work offset",
+        "Unknown work offset or home position",
         "Work offsets are called by their codes, G54 to G59, and further ones such as "
-        '"G59.1" or "G54.1 P1". A name with a point stands in quotes: [work-offset."G59.1"].',
+        '"G59.1" or "G54.1 P1". A name with a point stands in quotes: [work-offset."G59.1"]. Home '
+        "positions are those of G28 and G30.",
     ),
     "GX437": (
         "Not a tool number",

@@ -37,6 +37,7 @@ EXAMPLES = {"axis": "X", "work-offset": "G54", "home": "G28", "tool": "1"}
 INERT = "inert-m"
 """The setting of the control that lists M codes which move nothing."""
 Keys = tuple[str | int, ...]
+_HOME = re.compile(r"G28|G30( P[0-9]+)?")
 _WORK_OFFSET = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?|G154 P[0-9]+")
 
 
@@ -267,11 +268,24 @@ def _offset_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnost
                 document.where("work-offset", code),
                 'known: G54 to G59, "G59.1" to "G59.3", "G54.1 P1"; quote a name with a point',
             )
-        known = [letter for letter in AXIS_LETTERS if letter in (file.axis or AXIS_LETTERS)]
-        for letter in _given(offset):
-            if letter not in known:
-                keys = ("work-offset", code, letter)
-                yield from document.unknown_key(keys, known).diagnostics
+        yield from _strange_axes(document, file, ("work-offset", code), offset)
+    for code, place in file.home.items():
+        if not _HOME.fullmatch(code):
+            where = document.where("home", code)
+            yield Diagnostic(
+                "GX436", f"{code!r} is not a home position", where, 'known: G28, G30, "G30 P2"'
+            )
+        yield from _strange_axes(document, file, ("home", code), place)
+
+
+def _strange_axes(
+    document: TomlText, file: MachineFile, keys: tuple[str, str], place: Offset
+) -> Iterator[Diagnostic]:
+    """Yield the axes of a place which the machine does not have."""
+    known = [letter for letter in AXIS_LETTERS if letter in (file.axis or AXIS_LETTERS)]
+    for letter in _given(place):
+        if letter not in known:
+            yield from document.unknown_key((*keys, letter), known).diagnostics
 
 
 def _tool_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
