@@ -160,7 +160,8 @@ _HOMES = {
     "NO_CUTTER_COMP NO_CYCLES NOMINAL TIP_POSITIONS WORKPIECE_FRAME XY_ARCS Fact "
     "inseparable_cycles",
     "toolpath.frames": "Frame",
-    "toolpath.path": "Blocks Event FREE FeedMode Form Kind OWN_DISTANCES Plane Toolpath column_major",
+    "toolpath.path": "Blocks Event FREE FeedMode Form Kind OWN_DISTANCES Plane Toolpath "
+    "column_major",
     "toolpath.splines": "points_on_splines spline_chords splines_as_lines",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}

@@ -100,7 +100,9 @@ class FeedProof:
         nths = 1 + int(max(after.nth.max(), written.nth.max()))
         row = np.searchsorted(written.source * nths + written.nth, after.source * nths + after.nth)
         way, count = lengths(after), len(written)
-        least, most = (np.bincount(row, size, count) for size in (way.least, way.most))
+        least, most = (
+            np.bincount(row, size, count).astype(float) for size in (way.least, way.most)
+        )
         turns = np.bincount(row, way.turns, count) == np.bincount(row, minlength=count)
         return Lengths(least, most, turns)
 

@@ -11,8 +11,10 @@ are apart by a rotation and an arm that the angles alone fix. So one bound serve
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Literal
+
+import numpy as np
 
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_cutting import Cutting
@@ -74,7 +76,19 @@ class Rtcp(gx.Pass):
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path of the axes for one of tips; the reverse if asked."""
-        return Cutting(self, path, context, Place(path, context)).run() if len(path) else path
+        if len(path):
+            path = Cutting(self, path, context, Place(path, context)).run()
+        return path.replace(blocks=self.timed(path.blocks))
+
+    def timed(self, blocks: gx.Blocks) -> gx.Blocks:
+        """Return blocks in inverse time, if positions of axes are written.
+
+        What runs after a block that leaves the program finds the feed mode of the source.
+        """
+        if self.feed_mode is None:
+            return blocks
+        mode = np.where(blocks.leaves, blocks.feed_mode, np.int8(self.feed_mode))
+        return replace(blocks, feed_mode=mode)
 
     def undo(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path of the tip, in pieces, when the control moves all axes in proportion.

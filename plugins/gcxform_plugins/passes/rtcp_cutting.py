@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,7 +56,7 @@ class Cutting:
         result = end.copy(order="F")
         result[:, :3] = self._converted(end, row)
         new = path.with_rows(pieces, end=result, **self._feeds(pieces, row))
-        return new.replace(entry=self._entry(), blocks=self._blocks())
+        return new.replace(entry=self._entry())
 
     # --- positions ---
 
@@ -131,14 +130,7 @@ class Cutting:
 
     # --- feeds ---
 
-    def _blocks(self) -> gx.Blocks:
-        blocks = self.path.blocks
-        if not self.to_axes:
-            return blocks
-        mode = np.where(blocks.leaves, blocks.feed_mode, np.int8(gx.FeedMode.INVERSE_TIME))
-        return replace(blocks, feed_mode=mode)
-
-    def _feeds(self, pieces: Ints, row: Ints) -> dict[str, Floats]:
+    def _feeds(self, pieces: Ints, row: Ints) -> dict[str, NDArray[Any]]:
         """Return feeds and their modes, in which each piece takes its share of the time."""
         path = self.path
         feed, mode = path.feed.copy(), path.feed_mode.copy()
@@ -158,7 +150,7 @@ class Cutting:
         step = self.end - self.start
         way = np.linalg.norm(step[:, :3], axis=1)
         turned = np.linalg.norm(self.place.angles(step), axis=1)
-        return np.where(way < STILL, turned, way)
+        return np.asarray(np.where(way < STILL, turned, way))
 
     # --- what is refused ---
 
@@ -176,7 +168,9 @@ class Cutting:
         hint = "program all axes before, or say where they are with start in [input]"
         self._refuse("GX311", unknown & ~own, "where the axes stand is not known here", hint)
         known = "turn the axes back to 0 before"
-        self._refuse("GX330", own & turned, "a move in machine coordinates, of a turned tool", known)
+        self._refuse(
+            "GX330", own & turned, "a move in machine coordinates, of a turned tool", known
+        )
         message = "cutter compensation is in force"
         self._refuse("GX330", path.side != 0, message, 'put the pass "cutter-comp" before')
         self._refuse("GX330", other | (path.form == gx.Form.CYCLE), "this is no plain move", known)
@@ -191,7 +185,7 @@ class Cutting:
     def _check_tools(self, turned: Flags) -> None:
         """Refuse another tool length while the tool is turned, and none on a head that is."""
         which = self.place.which
-        changed = np.append(False, which[1:] != which[:-1])[: len(which)]
+        changed = which != self.place.which_before
         hint = "call the tool length while the rotary axes are at 0"
         message = "the tool length changes where the axes are turned"
         self._refuse("GX330", changed & self.turned_before, message, hint)

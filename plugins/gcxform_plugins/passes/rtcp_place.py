@@ -28,7 +28,9 @@ class Place:
 
     A position is that of the gauge point, as words would bring it there with all rotary axes at 0.
     A tip on the workpiece is then position - tool + zero + gauge point, and the axes stand at
-    position + zero, where `zero` (3,) is the work offset. `tool` (n, 3) mm is that of each row.
+    position + zero, where `zero` (3,) is the work offset. `which` (n,) of the `tools` (k, 3) in mm
+    holds in each row, and `which_before` in the one before it: the frame of the row before the
+    first is the first of the frames.
     """
 
     def __init__(self, path: gx.Toolpath, context: gx.PassContext) -> None:
@@ -41,7 +43,9 @@ class Place:
         self._check_frames()
         tools = np.array([frame.tool for frame in path.frames])
         self.tools, which = np.unique(tools, axis=0, return_inverse=True)
-        self.which = np.asarray(which.reshape(-1)[path.frame])
+        of_frame = which.reshape(-1)
+        self.which = np.asarray(of_frame[path.frame])
+        self.which_before = np.append(of_frame[:1], self.which[:-1])
 
     # --- what is refused ---
 
@@ -101,7 +105,7 @@ class Place:
         """Return the positions (n, 3) with which the axes take tips to positions (n, 3)."""
 
         def solve(chain: gx.Chain, points: Floats, turned: Floats) -> Floats:
-            return chain.linear(points + self.gauge - self._tool(chain), turned)
+            return np.asarray(chain.linear(points + self.gauge - self._tool(chain), turned))
 
         return self._by_tool(solve, tips, angles, rows)
 
@@ -109,7 +113,7 @@ class Place:
         """Return the positions (n, 3) of the tips where the axes stand at positions (n, 3)."""
 
         def follow(chain: gx.Chain, points: Floats, turned: Floats) -> Floats:
-            return chain.forward(points, turned)[0] - self.gauge + self._tool(chain)
+            return np.asarray(chain.forward(points, turned)[0] - self.gauge + self._tool(chain))
 
         return self._by_tool(follow, axes, angles, rows)
 

@@ -8,6 +8,7 @@ Nothing here is shared with the cutting of lines.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -115,5 +116,5 @@ def _centres(axes: tuple[gx.Rotary, ...]) -> tuple[Floats, Floats, float]:
             np.stack([ways[0], -ways[1]], axis=1), points[1] - points[0], rcond=None
         )[0]
         points = [point + a * way for point, a, way in zip(points, along, ways, strict=True)]
-    between = sum(float(np.linalg.norm(b - a)) for a, b in zip(points, points[1:], strict=False))
+    between = sum(float(np.linalg.norm(b - a)) for a, b in pairwise(points))
     return points[-1], points[0], between
