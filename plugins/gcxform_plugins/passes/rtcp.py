@@ -30,7 +30,8 @@ class Rtcp(gx.Pass):
 
     The machine file says where the rotary axes are, and the work offset and the tool lengths that
     hold. The work offset is taken on the table with all rotary axes at 0. Axes turn in proportion
-    to the way of the tip. Feeds per minute are those of the tip; they become inverse times.
+    to the way of the tip. Feeds per minute are those of the tip, or in degrees where it rests; they
+    become inverse times.
     """
 
     name = "rtcp"

@@ -168,13 +168,12 @@ class Cutting:
         hint = "program all axes before, or say where they are with start in [input]"
         self._refuse("GX311", unknown & ~own, "where the axes stand is not known here", hint)
         known = "turn the axes back to 0 before"
-        self._refuse(
-            "GX330", own & turned, "a move in machine coordinates, of a turned tool", known
-        )
+        message = "a move in machine coordinates, where axes are turned"
+        self._refuse("GX330", own & turned, message, known)
         message = "cutter compensation is in force"
         self._refuse("GX330", path.side != 0, message, 'put the pass "cutter-comp" before')
         self._refuse("GX330", other | (path.form == gx.Form.CYCLE), "this is no plain move", known)
-        if self.step.rapids == "refuse":
+        if self.step.rapids == "refuse":  # the first one may turn axes from anywhere to 0
             starting = np.isnan(self.place.angles(self.start)).any(axis=1) & ~self.turned
             hint = 'move at a feed, or say rapids = "ends" if the tool is clear on any way'
             message = "where the tip goes in a rapid that turns axes is not known"
@@ -190,7 +189,7 @@ class Cutting:
         message = "the tool length changes where the axes are turned"
         self._refuse("GX330", changed & self.turned_before, message, hint)
         if self.place.chain.head:
-            none = ~self.place.tools.any(axis=1)[which]
+            none = (self.place.tools == 0.0).all(axis=1)[which]
             message = "no tool length is in force, and the head is turned"
             hint = "call it with G43, and give the tools of the machine file their lengths"
             self._refuse("GX330", none & turned, message, hint)

@@ -105,7 +105,7 @@ class Place:
         """Return the positions (n, 3) with which the axes take tips to positions (n, 3)."""
 
         def solve(chain: gx.Chain, points: Floats, turned: Floats) -> Floats:
-            return np.asarray(chain.linear(points + self.gauge - self._tool(chain), turned))
+            return chain.linear(points + self.gauge - self._tool(chain), turned)
 
         return self._by_tool(solve, tips, angles, rows)
 
@@ -118,7 +118,7 @@ class Place:
         return self._by_tool(follow, axes, angles, rows)
 
     def _tool(self, chain: gx.Chain) -> Floats:
-        return self.gauge - np.array(chain.tip)
+        return np.asarray(self.gauge - np.array(chain.tip))
 
     def chains(self, rows: Ints) -> list[tuple[gx.Chain, Ints]]:
         """Return the chain of each tool, and which of the rows it holds for."""
