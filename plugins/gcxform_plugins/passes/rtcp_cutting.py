@@ -39,6 +39,8 @@ class Cutting:
         self.start[1:] = self.end[:-1]
         self.start = path.with_lost(self.start)
         self.start[:1] = self._rounded(self.start[:1])
+        followed = [0, 1, 2, *place.columns]
+        self.unknown_start = np.isnan(self.start[:, followed]).any(axis=1)
         self.turned = turned_at(place.angles(self.end))
         self.turned_before = turned_at(place.angles(self.start))
         self.cuts = (path.kind == gx.Kind.LINE) & (path.form == gx.Form.PLAIN)
@@ -163,7 +165,7 @@ class Cutting:
         own = (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
         rapid = path.kind == gx.Kind.RAPID
         unknown = np.isnan(angles).any(axis=1) | (np.isnan(self.end[:, :3]).any(axis=1) & turned)
-        unknown |= cuts & (turned | moved) & np.isnan(self.start).any(axis=1)
+        unknown |= cuts & (turned | moved) & self.unknown_start
         other = ~own & ~np.isin(path.form, (gx.Form.PLAIN, gx.Form.CYCLE)) & turned
         hint = "program all axes before, or say where they are with start in [input]"
         self._refuse("GX311", unknown & ~own, "where the axes stand is not known here", hint)
@@ -208,8 +210,7 @@ class Cutting:
         leaves = path.blocks.leaves[path.block]
         message = "the block ends the program or calls what may move axes, in its own feed mode"
         self._refuse("GX320", told & leaves, message, "put the move into a block of its own")
-        unknown = np.isnan(self.start).any(axis=1)
-        self._refuse("GX320", told & unknown, "where it starts is not known", hint)
+        self._refuse("GX320", told & self.unknown_start, "where it starts is not known", hint)
 
     def _check_limits(self, end: Floats, row: Ints) -> None:
         """Refuse positions that the machine does not reach."""
