@@ -97,6 +97,7 @@ if TYPE_CHECKING:
     from gcxform.toolpath.crossings import line_crossings as line_crossings
     from gcxform.toolpath.deviation import deviation as deviation
     from gcxform.toolpath.facts import ABSOLUTE as ABSOLUTE
+    from gcxform.toolpath.facts import AXIS_POSITIONS as AXIS_POSITIONS
     from gcxform.toolpath.facts import COMPENSATED as COMPENSATED
     from gcxform.toolpath.facts import KNOWN_POSITIONS as KNOWN_POSITIONS
     from gcxform.toolpath.facts import LINEAR_ONLY as LINEAR_ONLY
@@ -104,6 +105,7 @@ if TYPE_CHECKING:
     from gcxform.toolpath.facts import NO_CUTTER_COMP as NO_CUTTER_COMP
     from gcxform.toolpath.facts import NO_CYCLES as NO_CYCLES
     from gcxform.toolpath.facts import NOMINAL as NOMINAL
+    from gcxform.toolpath.facts import TIP_POSITIONS as TIP_POSITIONS
     from gcxform.toolpath.facts import WORKPIECE_FRAME as WORKPIECE_FRAME
     from gcxform.toolpath.facts import XY_ARCS as XY_ARCS
     from gcxform.toolpath.facts import Fact as Fact
@@ -111,6 +113,7 @@ if TYPE_CHECKING:
     from gcxform.toolpath.frames import Frame as Frame
     from gcxform.toolpath.path import FREE as FREE
     from gcxform.toolpath.path import OWN_DISTANCES as OWN_DISTANCES
+    from gcxform.toolpath.path import Blocks as Blocks
     from gcxform.toolpath.path import Event as Event
     from gcxform.toolpath.path import FeedMode as FeedMode
     from gcxform.toolpath.path import Form as Form
@@ -153,10 +156,12 @@ _HOMES = {
     "swept_anew",
     "toolpath.crossings": "line_crossings",
     "toolpath.deviation": "deviation",
-    "toolpath.facts": "ABSOLUTE COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC NO_CUTTER_COMP "
-    "NO_CYCLES NOMINAL WORKPIECE_FRAME XY_ARCS Fact inseparable_cycles",
+    "toolpath.facts": "ABSOLUTE AXIS_POSITIONS COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC "
+    "NO_CUTTER_COMP NO_CYCLES NOMINAL TIP_POSITIONS WORKPIECE_FRAME XY_ARCS Fact "
+    "inseparable_cycles",
     "toolpath.frames": "Frame",
-    "toolpath.path": "Event FREE FeedMode Form Kind OWN_DISTANCES Plane Toolpath column_major",
+    "toolpath.path": "Blocks Event FREE FeedMode Form Kind OWN_DISTANCES Plane Toolpath "
+    "column_major",
     "toolpath.splines": "points_on_splines spline_chords splines_as_lines",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}

@@ -274,6 +274,18 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "and states that mode in the block with M2 or M30. This program has none, and what runs "
         "after it would find another feed mode. End the program with M2 or M30.",
     ),
+    "GX330": (
+        "A move that is not converted between tip and axes",
+        "`rtcp` converts plain lines in one work offset that is taken with all rotary axes at 0, "
+        "with tool lengths that are known and do not change while axes are turned. Moves to "
+        "machine coordinates, rapids that turn axes and axes that the machine file does not have "
+        "are refused, because where the tip goes is not known.",
+    ),
+    "GX331": (
+        "An axis would go beyond its limits",
+        "Where the tip shall be, the axes of the machine do not reach. Place the part elsewhere, "
+        "take another tool, or let the CAM choose other angles.",
+    ),
     "GX350": (
         "A contour that the tool cannot follow",
         "The tool is too large for an inside corner, a concave arc or a move between two inside "
@@ -834,6 +846,12 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "`cutter-comp` is proved against the contour as programmed, so only steps that leave the "
         "contour as it is may come before it: `absolute` and `metric`. Put the other steps after "
         "it.",
+    ),
+    "GX742": (
+        "rtcp needs a machine with rotary axes",
+        "Where the axes turn, and whether they turn the table or the head, is in the machine "
+        "file: name its `kinematics`, or list its axes in `table` and `head`, and give each axis "
+        "a direction and a point.",
     ),
     "GX801": (
         "Two plugins offer the same name",

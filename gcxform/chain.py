@@ -12,8 +12,12 @@ from gcxform.toolpath.facts import AT_READING, Fact
 
 def facts_at_reading(passes: Sequence[Pass]) -> frozenset[Fact]:
     """Return what a program is taken for: what the first pass requires that asks for it."""
-    asked = (fact for step in passes for fact in AT_READING if fact in step.requires)
-    return frozenset({next(asked, AT_READING[0])})
+    return frozenset(_first_asked(passes, choice) for choice in AT_READING)
+
+
+def _first_asked(passes: Sequence[Pass], choice: Sequence[Fact]) -> Fact:
+    asked = (fact for step in passes for fact in choice if fact in step.requires)
+    return next(asked, choice[0])
 
 
 def facts_after(passes: Sequence[Pass], first: int | None = None) -> frozenset[Fact]:

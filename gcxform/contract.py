@@ -15,7 +15,8 @@ and what comes after it is compared with that path.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 from gcxform.dialect import Dialect, NumberFormat
@@ -29,12 +30,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PassContext:
-    """What surrounds a pass: the dialects it works between, the output's numbers, the machine."""
+    """What surrounds a pass: the dialects it works between, the output's numbers, the machine.
+
+    `decimals` are those of addresses that differ from the number format.
+    """
 
     source: type[Dialect]
     target: type[Dialect]
     numbers: NumberFormat
     machine: Machine | None = None
+    decimals: Mapping[str, int] = field(default_factory=dict)
+
+    def decimals_of_angle(self, letter: str) -> int:
+        """Return with how many decimals a rotary axis is written."""
+        return self.decimals.get(letter, self.numbers.angle)
 
 
 @dataclass(frozen=True)

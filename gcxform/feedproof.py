@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gcxform.modal.interpreter import Interpreted
 from gcxform.toolpath.path import FeedMode, Kind
 from gcxform.toolpath.runs import SAME_FEED
-from gcxform.toolpath.travel import lengths
+from gcxform.toolpath.travel import Lengths, lengths
 from gcxform.trace import Trace
 
 Ints = NDArray[np.int64]
@@ -83,10 +83,32 @@ class FeedProof:
     def _paces(self) -> Iterator[Wrong]:
         """Check that the pieces of a move share its time as they share its way.
 
-        The time of the whole says nothing of one short piece, whose feed might be any.
+        The time of the whole says nothing of one short piece, whose feed might be any. The way is
+        that of the text, or what the machine makes of it: a tip goes evenly while axes do not.
         """
+        off = self._uneven(lengths(self.trace.written))
+        if off.any() and self.trace.after is not self.trace.written:
+            off &= self._uneven(self._gone())
+        if off.any():
+            row = int(self.trace.written.source[np.argmax(off)])
+            message = "a piece of a move is faster or slower than it"
+            yield Wrong(message, self.trace.line_of(row), row)
+
+    def _gone(self) -> Lengths:
+        """Return how far the machine goes in each written move."""
+        after, written = self.trace.after, self.trace.written
+        nths = 1 + int(max(after.nth.max(), written.nth.max()))
+        row = np.searchsorted(written.source * nths + written.nth, after.source * nths + after.nth)
+        way, count = lengths(after), len(written)
+        least, most = (
+            np.bincount(row, size, count).astype(float) for size in (way.least, way.most)
+        )
+        turns = np.bincount(row, way.turns, count) == np.bincount(row, minlength=count)
+        return Lengths(least, most, turns)
+
+    def _uneven(self, way: Lengths) -> NDArray[np.bool_]:
+        """Return which written moves do not take the share of the time that is their way's."""
         written, owner = self.trace.written, self.trace.written_owner
-        way = lengths(written)
         mine, inverse = written.kind != Kind.RAPID, written.feed_mode == FeedMode.INVERSE_TIME
         mine &= inverse | (self._may_be_converted(owner) if self.modes else False)
         along = (way.least + way.most) / 2
@@ -96,11 +118,7 @@ class FeedProof:
             time = np.where(inverse, 1.0, along) / written.feed
             slow = self._sums(mine, time)[owner] / whole
             off = np.abs(time - slow * along) > slow * (UNEVEN * along + slack)
-        off &= mine & (whole > 0)
-        if off.any():
-            row = int(written.source[np.argmax(off)])
-            message = "a piece of a move is faster or slower than it"
-            yield Wrong(message, self.trace.line_of(row), row)
+        return np.asarray(off & mine & (whole > 0))
 
     def _may_be_converted(self, owner: Ints) -> NDArray[np.bool_]:
         """Return the rows whose feeds a pass may have converted, there and back if there are two.

@@ -158,7 +158,11 @@ class Pipeline:
     def context(self) -> PassContext:
         """What the passes are told."""
         return PassContext(
-            self.source, self.target, self.numbers or self.target.numbers, self.machine
+            self.source,
+            self.target,
+            self.numbers or self.target.numbers,
+            self.machine,
+            self.decimals,
         )
 
     @property

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import gcxform as gx
+from gcxform.machine.machinefile import load_machine
 from gcxform.options import ModelFile
 from gcxform.registry import default_registry
 from gcxform.testing import check_pass
@@ -19,6 +20,19 @@ from gcxform.testing.paths import paths
 
 MODEL = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"
 HERE = (0.0, 0.0, 0.0)
+TURNING = """\
+format = 1
+kinematics = "ac-trunnion"
+[axis.X]
+[axis.Y]
+[axis.Z]
+[axis.A]
+point = [0.0, 3.0, -60.0]
+[axis.C]
+point = [7.0, 3.0, 0.0]
+[work-offset.G54]
+X = 4.0
+"""
 
 
 @cache
@@ -61,9 +75,20 @@ def instances(name: str) -> list[gx.Pass | gx.TextPass]:
     return [made()]
 
 
-@pytest.mark.parametrize("name", sorted(passes()))
+@pytest.mark.parametrize("name", sorted({*passes()} - {"rtcp"}))
 def test_registered_passes(name):
     check_pass(passes()[name], *instances(name))
+
+
+@pytest.mark.parametrize("direction", ["to-machine", "to-tip"])
+def test_rtcp(tmp_path, direction):
+    """The law on the path that tilts, there and back; test_rtcp.py has all kinds of machines."""
+    file = tmp_path / "machine.toml"
+    file.write_text(TURNING)
+    machine = load_machine(file, default_registry().kinematics)
+    made = passes()["rtcp"]
+    steps = [made(tolerance=t, rapids="ends", direction=direction) for t in (0.3, 0.01)]
+    check_pass(made, *steps, machine=machine)
 
 
 def test_volumetric_without_rapids():

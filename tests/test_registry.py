@@ -82,6 +82,7 @@ def test_the_builtin_plugin_has_no_fault() -> None:
         "metric",
         "offsets",
         "plane",
+        "rtcp",
         "segment",
         "volumetric",
         "renumber",

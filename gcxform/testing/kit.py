@@ -308,7 +308,8 @@ class _PathCheck:
         timed = (undone.feed_mode == FeedMode.INVERSE_TIME) & (undone.kind != Kind.RAPID)
         timed &= trial.before.feed_mode[owner] == FeedMode.INVERSE_TIME
         self._times(trial, undone, owner, timed)
-        off = deviation_of_runs(trial.before, undone, runs)
+        along = np.isfinite(promise) and type(self.step).undo is not Pass.undo
+        off = deviation_of_runs(trial.before, undone, runs, promise if along else 0.0)
         if not np.isfinite(promise):
             return
         worst = float(off.distance.max(initial=0.0))

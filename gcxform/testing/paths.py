@@ -49,6 +49,7 @@ PROGRAMS: dict[str, str] = {
     + "G0 X20 Y20 Z20\nG91 G1 X30 F100\nY40 Z-5\nG3 X-10 Y10 I-10\nG90 G0 X20\n",
     "inverse time": HEAD + "G0 X20 Y20 Z20\nG93 G1 X180 F2\nG3 X160 Y40 I-20 F4\nG94 G1 X20 F100\n",
     "rotary": HEAD + "G0 X20 Y20 Z20 A0 B0 C0\nG1 X180 A45 F100\nC-90\nG2 X160 Y0 I-20 B10\n",
+    "tilting": HEAD + "G0 X20 Y20 Z20 A0 C0\nG93 G1 X180 A45 F2\nY60 C-90 F3\nG94 Z30 F100\n",
     "many lines": HEAD
     + "G0 X60 Y50 Z20\nF200\n"
     + polygon("XY", 24)

@@ -119,8 +119,13 @@ WORKPIECE_FRAME = Fact(
     ),
 )
 
-AT_READING = (NOMINAL, COMPENSATED)
-"""What a program may be when it is read; the first unless a pass takes it for the other."""
+TIP_POSITIONS = Fact(
+    "TIP_POSITIONS", "X, Y and Z are those of the tool's tip on the workpiece", _always
+)
+AXIS_POSITIONS = Fact("AXIS_POSITIONS", "X, Y and Z are those of the machine's axes", _always)
+
+AT_READING = ((NOMINAL, COMPENSATED), (TIP_POSITIONS, AXIS_POSITIONS))
+"""What a program may be when it is read; the first of each unless a pass takes it for another."""
 FACTS = (
     ABSOLUTE,
     METRIC,
@@ -129,6 +134,8 @@ FACTS = (
     KNOWN_POSITIONS,
     NOMINAL,
     COMPENSATED,
+    TIP_POSITIONS,
+    AXIS_POSITIONS,
     WORKPIECE_FRAME,
     NO_CYCLES,
     NO_CUTTER_COMP,

@@ -28,6 +28,7 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
     from gcxform_plugins.passes.offsets import Offsets
     from gcxform_plugins.passes.plane import PlanePass
     from gcxform_plugins.passes.renumber import Renumber
+    from gcxform_plugins.passes.rtcp import Rtcp
     from gcxform_plugins.passes.segment import Segment
     from gcxform_plugins.passes.strip import Strip
     from gcxform_plugins.passes.volumetric import Volumetric
@@ -40,6 +41,7 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
         Metric,
         Offsets,
         PlanePass,
+        Rtcp,
         Segment,
         Volumetric,
         Arcs,

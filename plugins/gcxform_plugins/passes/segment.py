@@ -34,6 +34,7 @@ class Segment(gx.Pass):
     """
 
     name = "segment"
+    ensures = frozenset({gx.LINEAR_ONLY})
     chord_error: Annotated[
         gx.Length | None, gx.Option("largest distance of a chord from its arc", above=0.0)
     ] = None
@@ -44,6 +45,11 @@ class Segment(gx.Pass):
         gx.Angle | None, gx.Option("largest angle of a piece of an arc", above=0.0, at_most=360.0)
     ] = None
     arcs: Annotated[Literal["lines", "split"], gx.Option("what arcs become")] = "lines"
+
+    def __post_init__(self) -> None:
+        """Ensure no more than is done: pieces of arcs are arcs."""
+        if self.arcs == "split":
+            object.__setattr__(self, "ensures", frozenset())
 
     @property
     def promise(self) -> float:

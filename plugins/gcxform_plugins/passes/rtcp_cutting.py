@@ -1,0 +1,237 @@
+"""How `rtcp` works forward: lines are cut until their pieces hold, then each end is converted."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import gcxform as gx
+from gcxform_plugins.passes.rtcp_bound import leaving
+from gcxform_plugins.passes.rtcp_place import SAME, Place, turned_at
+from gcxform_plugins.passes.rtcp_undoing import SHARE
+
+if TYPE_CHECKING:
+    from gcxform_plugins.passes.rtcp import Rtcp
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+STILL = 1e-7  # mm, degrees; what moves by less stands still
+MOST = 100_000  # pieces of one block
+
+
+class Cutting:
+    """The work on one window: of positions of tips those of axes, or the reverse."""
+
+    def __init__(
+        self, step: Rtcp, path: gx.Toolpath, context: gx.PassContext, place: Place
+    ) -> None:
+        self.step = step
+        self.context = context
+        self.place = place
+        self.path = path
+        self.to_axes = step.direction == "to-machine"
+        self.end = self._rounded(path.end)
+        self.start = path.start
+        self.start[1:] = self.end[:-1]
+        self.start = path.with_lost(self.start)
+        self.start[:1] = self._rounded(self.start[:1])
+        followed = [0, 1, 2, *place.columns]
+        self.unknown_start = np.isnan(self.start[:, followed]).any(axis=1)
+        self.turned = turned_at(place.angles(self.end))
+        self.turned_before = turned_at(place.angles(self.start))
+        self.cuts = (path.kind == gx.Kind.LINE) & (path.form == gx.Form.PLAIN)
+        per_minute = path.feed_mode == gx.FeedMode.PER_MINUTE
+        self.nowhere = self.cuts & self.to_axes & per_minute & (self._ways() < STILL)
+
+    def run(self) -> gx.Toolpath:
+        """Return the path converted."""
+        self._check()
+        path = self.path
+        pieces = np.where(self.nowhere, 0, self._pieces())
+        row = np.repeat(np.arange(len(path)), pieces)
+        end = self._cut(pieces, row)
+        self._check_limits(end, row)
+        result = end.copy(order="F")
+        result[:, :3] = self._converted(end, row)
+        new = path.with_rows(pieces, end=result, **self._feeds(pieces, row))
+        return new.replace(entry=self._entry())
+
+    # --- positions ---
+
+    def _rounded(self, positions: Floats) -> Floats:
+        """Return positions with angles as they will be written: X, Y, Z have to suit those."""
+        rounded = positions.copy()
+        for column in self.place.columns:
+            decimals = self.context.decimals_of_angle(self.path.axes[column])
+            rounded[:, column] = np.round(positions[:, column], decimals)
+        return rounded
+
+    def _converted(self, positions: Floats, rows: Ints) -> Floats:
+        change = self.place.axes_of if self.to_axes else self.place.tips_of
+        return change(positions[:, :3], self.place.angles(positions), rows)
+
+    def _entry(self) -> Floats:
+        """Return where the axes stand before the first row."""
+        entry = self._rounded(self.path.entry[None, :])
+        entry[:, :3] = self._converted(entry, np.array([0]))
+        return np.asarray(entry[0])
+
+    def _cut(self, pieces: Ints, row: Ints) -> Floats:
+        """Return the ends (n, axes) of the pieces of rows, before they are converted."""
+        nth = np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
+        part = (nth / np.maximum(pieces[row], 1))[:, None]
+        start, end = self.start[row], self.end[row]
+        middle = start + part * (end - start)
+        return np.where(part == 1.0, self.end[row], self._rounded(middle))
+
+    # --- pieces ---
+
+    def _pieces(self) -> Ints:
+        """Return into how many pieces each row is cut, so that the tip stays on its line."""
+        pieces = np.ones(len(self.path), np.int64)
+        limit = (1.0 - SHARE) * self.step.tolerance
+        way = np.abs(self.place.angles(self.end - self.start)).max(axis=1, initial=0.0)
+        rows = np.flatnonzero(self.cuts & (way > 0.0))
+        while len(rows):
+            worst = self._worst(rows, pieces[rows])
+            over = worst > limit
+            more = np.ceil(pieces[rows] * np.sqrt(worst / limit) * 0.98)
+            rows, more = rows[over], more[over]
+            pieces[rows] = np.maximum(np.minimum(more, 4 * pieces[rows]), pieces[rows] + 1)
+            if len(rows) and int(pieces[rows].max()) > MOST:
+                row = rows[np.argmax(pieces[rows])]
+                message = f"this block would become more than {MOST} pieces"
+                raise self.path.refuse("GX330", np.array([row]), message, "raise the tolerance")
+        return pieces
+
+    def _worst(self, rows: Ints, count: Ints) -> Floats:
+        """Return how far (mm) the tip can leave its line in any piece of rows."""
+        row = np.repeat(rows, count)
+        first = np.cumsum(count) - count
+        pieces = np.zeros(len(self.path), np.int64)
+        pieces[rows] = count
+        end = self._cut(pieces, row)
+        start = np.empty_like(end)
+        start[1:] = end[:-1]
+        start[first] = self.start[rows]
+        far = np.zeros(len(row))
+        for chain, here in self.place.chains(row):
+            sides = (start[here], end[here])
+            if not self.to_axes:
+                tips = (self._converted(side, row[here]) for side in sides)
+            else:
+                tips = (side[:, :3] for side in sides)
+            points = tuple(self.place.on_workpiece(tip, chain) for tip in tips)
+            angles = tuple(self.place.angles(side) for side in sides)
+            far[here] = leaving(chain, points, angles)  # type: ignore[arg-type]
+        return np.asarray(np.maximum.reduceat(far, first))
+
+    # --- feeds ---
+
+    def _feeds(self, pieces: Ints, row: Ints) -> dict[str, NDArray[Any]]:
+        """Return feeds and their modes, in which each piece takes its share of the time."""
+        path = self.path
+        feed, mode = path.feed.copy(), path.feed_mode.copy()
+        if self.to_axes:
+            leaves = path.blocks.leaves[path.block]
+            told = (mode == gx.FeedMode.PER_MINUTE) & ~leaves
+            moving = told & (path.kind != gx.Kind.RAPID) & ~self.nowhere
+            feed[told] = np.nan
+            feed[moving] = path.feed[moving] / self._ways()[moving]
+            mode[told] = gx.FeedMode.INVERSE_TIME
+        inverse = mode == gx.FeedMode.INVERSE_TIME
+        feed = feed[row] * np.where(inverse[row], pieces[row], 1.0)
+        return {"feed": feed, "feed_mode": mode[row]}
+
+    def _ways(self) -> Floats:
+        """Return how far (n,) tips go, in mm; in degrees where only axes turn."""
+        step = self.end - self.start
+        way = np.linalg.norm(step[:, :3], axis=1)
+        turned = np.linalg.norm(self.place.angles(step), axis=1)
+        return np.asarray(np.where(way < STILL, turned, way))
+
+    # --- what is refused ---
+
+    def _check(self) -> None:
+        path, cuts = self.path, self.cuts
+        turned = self.turned | self.turned_before
+        angles = self.place.angles(self.end)
+        moved = np.nan_to_num(np.abs(self.place.angles(self.end - self.start))).max(axis=1) > STILL
+        moved |= (np.isnan(self.place.angles(self.start)) & ~np.isnan(angles)).any(axis=1)
+        own = (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
+        rapid = path.kind == gx.Kind.RAPID
+        unknown = np.isnan(angles).any(axis=1) | (np.isnan(self.end[:, :3]).any(axis=1) & turned)
+        unknown |= cuts & (turned | moved) & self.unknown_start
+        other = ~own & ~np.isin(path.form, (gx.Form.PLAIN, gx.Form.CYCLE)) & turned
+        hint = "program all axes before, or say where they are with start in [input]"
+        self._refuse("GX311", unknown & ~own, "where the axes stand is not known here", hint)
+        known = "turn the axes back to 0 before"
+        message = "a move in machine coordinates, where axes are turned"
+        self._refuse("GX330", own & turned, message, known)
+        message = "cutter compensation is in force"
+        self._refuse("GX330", path.side != 0, message, 'put the pass "cutter-comp" before')
+        self._refuse("GX330", other | (path.form == gx.Form.CYCLE), "this is no plain move", known)
+        if self.step.rapids == "refuse":  # the first one may turn axes from anywhere to 0
+            starting = np.isnan(self.place.angles(self.start)).any(axis=1) & ~self.turned
+            hint = 'move at a feed, or say rapids = "ends" if the tool is clear on any way'
+            message = "where the tip goes in a rapid that turns axes is not known"
+            self._refuse("GX330", rapid & moved & ~own & ~starting, message, hint)
+        self._check_tools(turned)
+        self._check_feeds(moved)
+
+    def _check_tools(self, turned: Flags) -> None:
+        """Refuse another tool length while the tool is turned, and none on a head that is."""
+        which = self.place.which
+        changed = which != self.place.which_before
+        hint = "call the tool length while the rotary axes are at 0"
+        message = "the tool length changes where the axes are turned"
+        self._refuse("GX330", changed & self.turned_before, message, hint)
+        if self.place.chain.head:
+            none = (self.place.tools == 0.0).all(axis=1)[which]
+            message = "no tool length is in force, and the head is turned"
+            hint = "call it with G43, and give the tools of the machine file their lengths"
+            self._refuse("GX330", none & turned, message, hint)
+
+    def _check_feeds(self, moved: Flags) -> None:
+        path = self.path
+        feeding = path.kind != gx.Kind.RAPID
+        told = feeding & (path.feed_mode != gx.FeedMode.INVERSE_TIME)
+        hint = "let the CAM write this part in the feed mode that is wanted"
+        if not self.to_axes:
+            message = "what a feed of linear and rotary axes together means is not known"
+            self._refuse("GX320", told & moved, message, hint)
+            return
+        turn = path.feed_mode == gx.FeedMode.PER_TURN
+        self._refuse("GX320", feeding & turn, "its speed depends on the spindle", hint)
+        leaves = path.blocks.leaves[path.block]
+        message = "the block ends the program or calls what may move axes, in its own feed mode"
+        self._refuse("GX320", told & leaves, message, "put the move into a block of its own")
+        self._refuse("GX320", told & self.unknown_start, "where it starts is not known", hint)
+
+    def _check_limits(self, end: Floats, row: Ints) -> None:
+        """Refuse positions that the machine does not reach."""
+        place = self.place
+        axes = self._converted(end, row) if self.to_axes else end[:, :3]
+        axes = axes + place.zero
+        angles = place.angles(end)
+        own = np.isin(self.path.form[row], (gx.Form.HOME, gx.Form.MACHINE))
+        named = [*zip("XYZ", place.chain.travel, axes.T, strict=True)]
+        for axis, values in zip(place.chain.axes, angles.T, strict=True):
+            if axis.limits is not None:
+                named.append((axis.letter, axis.limits, values))
+        for letter, (low, high), values in named:
+            beyond = ((values < low - SAME) | (values > high + SAME)) & ~own
+            if beyond.any():
+                at = int(np.argmax(beyond))
+                message = f"{letter} would have to go to {values[at]:.3f}"
+                hint = f"it goes from {low:g} to {high:g}"
+                raise self.path.refuse("GX331", row[at : at + 1], message, hint)
+
+    def _refuse(self, code: str, where: Flags, message: str, hint: str) -> None:
+        rows = np.flatnonzero(where)
+        if len(rows):
+            raise self.path.refuse(code, rows, message, hint)

@@ -1,0 +1,150 @@
+"""Where tip and axes of a path are in the machine, for `rtcp`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+import gcxform as gx
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+SAME = 1e-9  # mm; two tools that differ by less are one
+ENOUGH = "rtcp converts programs in one work offset, with known tool lengths and nothing turned"
+
+
+def turned_at(angles: Floats) -> Flags:
+    """Return where (n,) all angles (n, m) are known and some axis is not at 0."""
+    return np.asarray((angles != 0.0).any(axis=1) & np.isfinite(angles).all(axis=1))
+
+
+class Place:
+    """The machine's chain, and what has to be added to positions of a path.
+
+    A position is that of the gauge point, as words would bring it there with all rotary axes at 0.
+    A tip on the workpiece is then position - tool + zero + gauge point, and the axes stand at
+    position + zero, where `zero` (3,) is the work offset. `which` (n,) of the `tools` (k, 3) in mm
+    holds in each row, and `which_before` in the one before it: the frame of the row before the
+    first is the first of the frames.
+    """
+
+    def __init__(self, path: gx.Toolpath, context: gx.PassContext) -> None:
+        assert context.machine is not None
+        self.path = path
+        self.chain = gx.chain_of(context.machine)
+        self.gauge = np.array(self.chain.tip)
+        self.columns = self._columns()
+        self.zero = self._zero(context)
+        self._check_frames()
+        tools = np.array([frame.tool for frame in path.frames])
+        self.tools, which = np.unique(tools, axis=0, return_inverse=True)
+        of_frame = which.reshape(-1)
+        self.which = np.asarray(of_frame[path.frame])
+        self.which_before = np.append(of_frame[:1], self.which[:-1])
+
+    # --- what is refused ---
+
+    def _columns(self) -> list[int]:
+        """Return the columns of the rotary axes in the order of the chain."""
+        first, own = np.array([0]), self.chain.letters
+        for letter in own:
+            if letter not in self.path.axes:
+                hint = f"program it, or say start = {{ {letter} = ... }} in [input]"
+                message = f"where the axis {letter} of the machine stands is not known"
+                raise self.path.refuse("GX311", first, message, hint)
+        for column, letter in enumerate(self.path.axes[3:], 3):
+            moved = np.flatnonzero(np.isfinite(self.path.end[:, column]))
+            if letter not in own and len(moved):
+                message = f"the machine file has no rotary axis {letter}"
+                raise self.path.refuse("GX330", moved[:1], message, "add it there")
+        return [self.path.axes.index(letter) for letter in own]
+
+    def _zero(self, context: gx.PassContext) -> Floats:
+        """Return the work offset (3,) of the path."""
+        assert context.machine is not None
+        table, first = context.machine.work_offsets, np.array([0])
+        if self.path.first not in table:
+            message = f"the machine file has no work offset {self.path.first}"
+            raise self.path.refuse("GX314", first, message, "add it there")
+        offset = table[self.path.first]
+        if any(offset.get(letter, 0.0) for letter in self.chain.letters):
+            message = f"the work offset {self.path.first} turns axes"
+            hint = "rtcp needs an offset that is taken with all rotary axes at 0"
+            raise self.path.refuse("GX330", first, message, hint)
+        return np.array([offset.get(axis, 0.0) for axis in "XYZ"])
+
+    def _check_frames(self) -> None:
+        """Refuse words that count from anything but the work offset and a known tool."""
+        path = self.path
+        for number in np.flatnonzero(np.bincount(path.frame)).tolist():
+            frame = path.frames[number]
+            names = {name for name in frame.origin if name != path.first}
+            known = not names and frame.work == path.first and bool(np.isfinite(frame.tool).all())
+            shift = np.array(frame.shift)
+            shift[:3] -= np.nan_to_num(frame.tool)
+            plain = frame.shifts_only and not frame.polar and not (np.abs(shift) > SAME).any()
+            if not known or not plain:
+                rows = np.flatnonzero(path.frame == number)[:1]
+                message = "this block counts from another zero"
+                if names:
+                    message += f": {', '.join(sorted(names))}"
+                raise path.refuse("GX330", rows, message, ENOUGH)
+
+    # --- from one to the other ---
+
+    def angles(self, positions: Floats) -> Floats:
+        """Return the angles (n, m) of positions (n, axes), as the chain has them."""
+        return np.asarray(positions[:, self.columns])
+
+    def axes_of(self, tips: Floats, angles: Floats, rows: Ints) -> Floats:
+        """Return the positions (n, 3) with which the axes take tips to positions (n, 3)."""
+
+        def solve(chain: gx.Chain, points: Floats, turned: Floats) -> Floats:
+            return chain.linear(points + self.gauge - self._tool(chain), turned)
+
+        return self._by_tool(solve, tips, angles, rows)
+
+    def tips_of(self, axes: Floats, angles: Floats, rows: Ints) -> Floats:
+        """Return the positions (n, 3) of the tips where the axes stand at positions (n, 3)."""
+
+        def follow(chain: gx.Chain, points: Floats, turned: Floats) -> Floats:
+            return np.asarray(chain.forward(points, turned)[0] - self.gauge + self._tool(chain))
+
+        return self._by_tool(follow, axes, angles, rows)
+
+    def _tool(self, chain: gx.Chain) -> Floats:
+        return np.asarray(self.gauge - np.array(chain.tip))
+
+    def chains(self, rows: Ints) -> list[tuple[gx.Chain, Ints]]:
+        """Return the chain of each tool, and which of the rows it holds for."""
+        found = []
+        for number, tool in enumerate(self.tools):
+            x, y, z = (self.gauge - tool).tolist()
+            here = np.flatnonzero(self.which[rows] == number)
+            if len(here):
+                found.append((replace(self.chain, tip=(x, y, z)), here))
+        return found
+
+    def _by_tool(
+        self,
+        change: Callable[[gx.Chain, Floats, Floats], Floats],
+        points: Floats,
+        angles: Floats,
+        rows: Ints,
+    ) -> Floats:
+        """Return points changed, but those where no axis is known to be turned."""
+        result = points.copy()
+        turned = turned_at(angles)
+        for chain, here in self.chains(rows):
+            here = here[turned[here]]
+            result[here] = change(chain, points[here] + self.zero, angles[here]) - self.zero
+        return result
+
+    def on_workpiece(self, tips: Floats, chain: gx.Chain) -> Floats:
+        """Return positions (n, 3) of tips as points in the frame of the workpiece."""
+        return np.asarray(tips + self.zero + self.gauge - self._tool(chain))

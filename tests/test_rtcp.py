@@ -1,0 +1,174 @@
+"""`rtcp`: where the tip goes with what is written; K5, K6 and K7 are acceptance checks."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from rtcp_kit import (
+    KINDS,
+    ROUNDED,
+    aside,
+    axes,
+    between,
+    chain_of_kind,
+    machine_text,
+    pipeline,
+    positions,
+    program,
+    tips,
+)
+
+import gcxform as gx
+
+EACH = settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=6
+)
+ROOM = 2e-6  # mm; the least decimals of a machine file and of the matrices
+FORMS = ("ac-trunnion", "bc-trunnion", "c-table-b-head", "cb-fork", "nutating-head")
+
+
+@st.composite
+def programs(draw):
+    """Draw poses (n, 5), some of which only turn, some only move."""
+    seed = draw(st.integers(0, 10_000))
+    rng = np.random.default_rng(seed)
+    count = draw(st.integers(2, 6))
+    poses = rng.uniform(-1.0, 1.0, (count, 5)) * [90.0, 90.0, 60.0, 70.0, 170.0]
+    for row in range(1, count):
+        what = draw(st.sampled_from(["both", "both", "turn", "move", "short"]))
+        if what == "turn":
+            poses[row, :3] = poses[row - 1, :3]
+        if what == "move":
+            poses[row, 3:] = poses[row - 1, 3:]
+        if what == "short":
+            poses[row] = poses[row - 1] + (poses[row] - poses[row - 1]) * 0.004
+    return seed, poses.round(3)
+
+
+def walk(text, result, letters):
+    """Yield each source line with its pose before and after, and the written poses in it."""
+    old, new = positions(text, letters), positions(result.text, letters)
+    owner = np.array(result.source_map)
+    for line in range(3, len(old) - 1):
+        rows = np.flatnonzero(owner == line)
+        if len(rows):
+            yield old[line - 1], old[line], new[rows[0] - 1 : rows[-1] + 1]
+
+
+def check_ways(text, result, chain, tolerance, model):
+    """Check that `model` of what is written stays beside the lines of the source."""
+    letters = ("X", "Y", "Z", *chain.letters)
+    worst, count = 0.0, 0
+    for start, end, poses in walk(text, result, letters):
+        for one, other in pairwise(poses):
+            points = model(chain, between(one, other))
+            worst = max(worst, float(aside(points, start[:3], end[:3]).max()))
+            count += 1
+        wanted = between(start[3:], end[3:], len(poses))
+        assert np.abs(poses[:, 3:] - wanted).max() <= 0.0005 + 1e-9
+    assert count
+    assert worst <= tolerance + ROUNDED + ROOM
+    return worst
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@EACH
+@given(drawn=programs(), tolerance=st.sampled_from([0.002, 0.01, 0.05]))
+def test_the_tip_stays_on_its_line(tmp_path, kind, drawn, tolerance):
+    """The law, by matrices of scipy: axes in proportion, at 33 places of every block."""
+    seed, poses = drawn
+    chain = chain_of_kind(kind, seed)
+    text = program(poses, ("X", "Y", "Z", *chain.letters))
+    result = pipeline(tmp_path, machine_text(kind, chain), tolerance=tolerance).run(text, "full")
+    assert result.certificate.verified
+    check_ways(text, result, chain, tolerance, tips)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@EACH
+@given(drawn=programs())
+def test_axes_stay_on_theirs(tmp_path, kind, drawn):
+    """The reverse: a control that follows the tip moves the axes as the source did."""
+    seed, poses = drawn
+    chain = chain_of_kind(kind, seed)
+    text = program(poses, ("X", "Y", "Z", *chain.letters), feed="F2.")
+    options = {"tolerance": 0.01, "direction": "to-tip"}
+    result = pipeline(tmp_path, machine_text(kind, chain), **options).run(text, "full")
+    check_ways(text, result, chain, 0.01, axes)
+
+
+@pytest.mark.parametrize("kind", FORMS)
+def test_rounded_angles_are_made_good(tmp_path, kind):
+    """K6: at the ends of blocks the tip is off by no more than X, Y and Z are rounded."""
+    rng = np.random.default_rng(5)
+    chain = chain_of_kind(kind, 7)
+    letters = ("X", "Y", "Z", *chain.letters)
+    poses = (rng.uniform(-1, 1, (40, 5)) * [90.0, 90.0, 60.0, 50.0, 90.0]).round(3)
+    text = program(poses, letters)
+    result = pipeline(tmp_path, machine_text(kind, chain), tolerance=0.02).run(text)
+    worst = 0.0
+    for start, end, written in walk(text, result, letters):
+        points = tips(chain, written[1:])
+        worst = max(worst, float(aside(points, start[:3], end[:3]).max()))
+    assert worst <= ROUNDED + ROOM
+    assert worst > 0.0003  # and all of that is used
+
+
+def test_rotary_decimals_of_their_own(tmp_path):
+    """Angles of one decimal: X, Y and Z suit them as they are written."""
+    chain = chain_of_kind("ac-trunnion", 3)
+    decimals = "{ A = 1, C = 1 }"
+    text = program(np.array([[0, 0, 0, 0, 0], [80.0, 20, 5, 33, 71]]), "XYZAC")
+    steps = pipeline(tmp_path, machine_text("ac-trunnion", chain), decimals, tolerance=0.02)
+    result = steps.run(text)
+    for start, end, written in walk(text, result, "XYZAC"):
+        assert aside(tips(chain, written[1:]), start[:3], end[:3]).max() <= ROUNDED + ROOM
+        assert (np.abs(written[:, 3:] * 10 - np.round(written[:, 3:] * 10)) < 1e-9).all()
+
+
+def test_the_time_is_that_of_the_tip(tmp_path):
+    """K7: the sum of 1/F is length / feed within 0.1 %, block by block; G94 comes back."""
+    chain = chain_of_kind("cb-fork", 11)
+    poses = np.array([[0.0, 0, 0, 0, 0], [50, 10, 4, 20, 30], [50, 10, 4, 40, 10], [9, 1, 4, 0, 0]])
+    letters = ("X", "Y", "Z", *chain.letters)
+    text = program(np.vstack([poses[1:], poses[1:] + 0.5]), letters)
+    result = pipeline(tmp_path, machine_text("cb-fork", chain), tolerance=0.01).run(text)
+    old, owner = positions(text, letters), np.array(result.source_map)
+    lines = result.text.decode().splitlines()
+    assert lines[0].startswith("G21 G90 G93")
+    assert re.search(r"G94.*M30", lines[-1])
+    for line in range(3, len(old) - 1):
+        feeds = [
+            float(re.search(r"F([\d.]+)", lines[row])[1]) for row in np.flatnonzero(owner == line)
+        ]
+        step = old[line] - old[line - 1]
+        way = np.linalg.norm(step[:3]) or np.linalg.norm(step[3:])
+        assert sum(1.0 / feed for feed in feeds) == pytest.approx(way / 600.0, rel=1e-3)
+
+
+def test_no_rotation_no_change(tmp_path):
+    """With all rotary axes at 0 tip and axes are one, to the last digit."""
+    chain = chain_of_kind("bc-trunnion", 2)
+    text = b"G21 G90 G93 G17 G54\nG0 X1.5 Y2. B0 C0\nG43 H1 Z0.1\nG1 X7. F3.\nY9.25 F3.\nM30\n"
+    steps = pipeline(tmp_path, machine_text("bc-trunnion", chain), tolerance=0.01)
+    assert steps.run(text, "full").text == text
+
+
+def test_a_smaller_tolerance_takes_more_blocks(tmp_path):
+    """Twice as many for a quarter, and the tolerance is used: the bound is not far from it."""
+    chain = chain_of_kind("ac-trunnion", 1)
+    text = program(np.array([[0, 0, 0, 20.0, -50.0], [100, 0, 0, 50, 10]]), "XYZAC")
+    machine = machine_text("ac-trunnion", chain)
+    counts = []
+    for tolerance in (0.05, 0.01, 0.005, 0.001):
+        result = pipeline(tmp_path, machine, tolerance=tolerance).run(text)
+        counts.append(result.source_map.count(4))
+        worst = check_ways(text, result, chain, tolerance, tips)
+        assert worst >= 0.8 * tolerance
+    assert counts[3] / counts[0] == pytest.approx(50**0.5, rel=0.05)
+    assert gx.Pipeline.load(tmp_path / "p.toml").promised() == 0.002
