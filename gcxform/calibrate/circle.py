@@ -79,10 +79,10 @@ def _in_plane(flat: FloatArray) -> tuple[FloatArray, FloatArray, npt.NDArray[np.
 
 def _solve(design: FloatArray, wanted: FloatArray) -> FloatArray:
     """Return the least-squares solutions (..., k) of designs (..., n, k); nan if there is none."""
-    finite = np.isfinite(design).all(axis=(-1, -2)) & np.isfinite(wanted).all(axis=-1)
+    finite = np.asarray(np.isfinite(design).all(axis=(-1, -2)) & np.isfinite(wanted).all(axis=-1))
     q, r = np.linalg.qr(np.where(finite[..., None, None], design, 0.0))
     diagonal = np.abs(np.diagonal(r, axis1=-2, axis2=-1))
-    regular = finite & (diagonal.min(axis=-1) > FLAT * diagonal.max(axis=-1))
+    regular = np.asarray(finite & (diagonal.min(axis=-1) > FLAT * diagonal.max(axis=-1)))
     safe = np.where(regular[..., None, None], r, np.eye(r.shape[-1]))
     right = np.swapaxes(q, -1, -2) @ wanted[..., None]
     found = np.linalg.solve(safe, np.where(regular[..., None, None], right, np.nan))

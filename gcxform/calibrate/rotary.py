@@ -113,11 +113,6 @@ class Placed:
             return self.figure.centre + 0.0
         return np.asarray(self.figure.arm + self.tip)
 
-    @property
-    def lever(self) -> FloatArray:
-        """From the point on the axis to what it turns, all axes at 0, mm: (3,)."""
-        return self.figure.arm if self.tip is None else -self.figure.arm
-
     @cached_property
     def residuals(self) -> FloatArray:
         """Measured minus fitted centres (n, 3), mm."""
@@ -297,7 +292,8 @@ def fitted(centres: Centres, weights: FloatArray, start: Figure | None = None) -
     for _ in range(STEPS):
         design = jacobian(figure, centres.degrees) * root[..., None]
         away = residuals(centres, figure) * root
-        step = np.linalg.lstsq(design.reshape(-1, UNKNOWNS), away.ravel(), rcond=None)[0]
+        solved = np.linalg.lstsq(design.reshape(-1, UNKNOWNS), away.ravel(), rcond=None)
+        step = np.asarray(solved[0], np.float64)
         step[3:6] *= min(1.0, 0.5 / max(1e-12, float(np.linalg.norm(step[3:6]))))
         figure = figure.moved(step)
         size = np.abs(step[[0, 1, 2, 6]]).max() + figure.radius * np.abs(step[3:6]).max()
@@ -334,9 +330,7 @@ def jacobian(figure: Figure, degrees: FloatArray) -> FloatArray:
     return np.concatenate([shift, -crossing(arms), growth], axis=-1)
 
 
-def standardised(
-    centres: Centres, figure: Figure, noise: float, weights: FloatArray
-) -> FloatArray:
+def standardised(centres: Centres, figure: Figure, noise: float, weights: FloatArray) -> FloatArray:
     """Return of each centre its largest residual over the standard deviation of it, (n,)."""
     design = jacobian(figure, centres.degrees)
     weighted = design * weights[:, None, None]
