@@ -53,6 +53,27 @@ def fit_circles(points: FloatArray) -> Circles:
     return Circles(upright(axes[..., 2, :]), centre, radius, singular, converged)
 
 
+def spread(points: FloatArray, circle: Circles, noise: float) -> tuple[FloatArray, FloatArray]:
+    """Return the covariance (6, 6) of centre (mm) and direction of a circle, of its radius (mm^2).
+
+    With G the rows (cos t, sin t, 1) of the points in its plane, centre and radius have noise^2
+    (G'G)^-1, and so have the slopes times the radius, and the height, of the plane.
+    """
+    axis = circle.direction
+    first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    first /= np.linalg.norm(first)
+    plane = np.array([first, np.cross(axis, first)])
+    flat = (points - circle.centre) @ plane.T
+    rows = np.column_stack([flat / np.linalg.norm(flat, axis=1)[:, None], np.ones(len(flat))])
+    inverse = noise**2 * np.linalg.inv(rows.T @ rows)
+    inside = np.hstack([plane.T, np.zeros((3, 1))])
+    height = np.column_stack([np.zeros((3, 2)), axis])
+    effect = np.vstack([height, -inside / circle.radius])
+    both = effect @ inverse @ effect.T
+    both[:3, :3] += inside @ inverse @ inside.T
+    return both, np.asarray(inverse[2, 2])
+
+
 def upright(vectors: FloatArray) -> FloatArray:
     """Return unit vectors (..., 3) turned around where their largest component is negative."""
     largest = np.take_along_axis(vectors, np.abs(vectors).argmax(axis=-1)[..., None], axis=-1)

@@ -6,8 +6,8 @@ was set to zero,
 
     (I - R) d(T) + w x R l - R (w x l)
 
-with l from the axis to the ball there: over half a turn twice the error across the axis, and nothing of
-an error along it.
+with l from the axis to the ball there: over half a turn twice the error across the axis, and
+nothing of an error along it.
 """
 
 from __future__ import annotations
@@ -80,13 +80,13 @@ def dial(true: Rotary, believed: Rotary, ball: FloatArray, degrees: FloatArray) 
 def checked_angles(found: Placed) -> FloatArray:
     """Return the angles (n,) of a check at the measured positions, zero at the first, degrees."""
     degrees = found.centres.degrees
-    return np.unique((degrees - degrees[0]).round(9))
+    return np.asarray(np.unique((degrees - degrees[0]).round(9)))
 
 
 def standing(found: Placed) -> FloatArray:
     """Return from the point on the axis to the ball at the first position, (3,), mm."""
     arm = found.figure.arms(found.centres.degrees[:1])[0]
-    return arm if found.tip is None else -arm
+    return np.asarray(arm if found.tip is None else -arm)
 
 
 # --- what is to be said ---

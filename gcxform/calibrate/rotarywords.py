@@ -13,6 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from gcxform.calibrate.circle import spread
 from gcxform.calibrate.rotary import OUTLYING, Placed, arc, without_each
 from gcxform.calibrate.rotarycheck import (
     advice,
@@ -142,17 +143,25 @@ def report(
         "redundancy": found.redundancy,
         "rms": found.rms,
         "singular": found.free.singular.tolist(),
-        "free-circle": {
-            "centre": found.free.centre.tolist(),
-            "direction": found.free.direction.tolist(),
-            "radius": float(found.free.radius),
-        },
+        "free-circle": _free(found),
         "centres": _centres(found, point, direction),
         "harmonics": harmonics(found),
         "check": {"angles": angles.tolist(), "sd": dial_spread(found, angles).tolist()},
         "warnings": [*warnings(found)],
         "advice": [*advice(found, before.limits if before else None)],
         "conditions": dict(conditions),
+    }
+
+
+def _free(found: Placed) -> dict[str, Any]:
+    """Return the circle without the angles."""
+    free = found.free
+    both, of_radius = spread(found.centres.points[found.kept], free, found.noise)
+    sd = np.sqrt(np.diag(both).clip(0.0)).tolist()
+    return {
+        "centre": {"value": free.centre.tolist(), "sd": sd[:3]},
+        "direction": {"value": free.direction.tolist(), "sd": sd[3:]},
+        "radius": {"value": float(free.radius), "sd": math.sqrt(float(of_radius))},
     }
 
 
