@@ -38,6 +38,11 @@ NOISE = 0.01
 UPRIGHT = Rotary("C", (0.0, 0.0, 1.0), (102.532, 51.230, 128.947), 1)
 
 
+def off(x: float, y: float = 0.0, z: float = 0.0) -> FloatArray:
+    """Return a place (3,) beside the centre."""
+    return np.asarray(CENTRE + np.array((x, y, z)))
+
+
 def around(count: int, degrees: float = 360.0) -> FloatArray:
     """Return angles all around, or on an arc with both of its ends."""
     return np.linspace(0.0, degrees, count, endpoint=degrees < 360.0)
@@ -47,7 +52,7 @@ def measured(
     count: int, arc: float = 360.0, radius: float = 261.0, circles: int = 2000, seed: int = 0
 ) -> FloatArray:
     generator = np.random.default_rng(seed)
-    ball = CENTRE + (radius, 0.0, 0.0)
+    ball = off(radius)
     angles = around(count, arc)
     return simulate_balls(UPRIGHT, ball, angles, noise=NOISE, circles=circles, generator=generator)
 
@@ -95,9 +100,9 @@ SEED_TABLE = {  # points: mean, rms of the centre (um); mean, rms of the directi
 def test_the_table_of_the_published_simulation(count):
     """Reference 6.1: 500 circles, seed 0, in each of its digits."""
     found = fit_circles(measured(count, radius=500.0, circles=500))
-    off = np.linalg.norm(found.centre - CENTRE, axis=1)
+    away = np.linalg.norm(found.centre - CENTRE, axis=1)
     tilt = np.linalg.norm(found.direction[:, :2], axis=1)
-    shown = (1e3 * off.mean(), 1e3 * rms(found.centre - CENTRE))
+    shown = (1e3 * away.mean(), 1e3 * rms(found.centre - CENTRE))
     assert np.round(shown, 2).tolist() == [*SEED_TABLE[count][:2]]
     assert [1e6 * tilt.mean(), 1e6 * rms(found.direction[:, :2])] == pytest.approx(
         SEED_TABLE[count][2:], abs=0.06
@@ -128,7 +133,7 @@ ARCS = {  # arc: sd of the centre along and across (um), radius (um), tilts (ura
 def test_c3_the_covariance_of_a_circle_is_that_of_many(degrees):
     """C3: predicted against 2000 samples within 6 %, and the table of the reference, 6.2."""
     points = measured(11, degrees)
-    exact = simulate_balls(UPRIGHT, CENTRE + (261.0, 0.0, 0.0), around(11, degrees))
+    exact = simulate_balls(UPRIGHT, off(261.0), around(11, degrees))
     both, of_radius = spread(exact, fit_circles(exact), NOISE)
     found = fit_circles(points)
     middle = math.radians(degrees / 2 if degrees < 360 else 0.0)
@@ -181,12 +186,12 @@ def test_c8_an_axis_turned_around_is_the_same_axis():
 @pytest.mark.parametrize(("degrees", "count", "um"), [(360, 8, 5.2), (150, 11, 6.0), (30, 5, 35.0)])
 def test_the_angles_make_the_centre_better(degrees, count, um):
     """Reference 6.3: rms of the centre in its plane 7.3 -> 5.2, 12.5 -> 6.0, 326 -> 35 um."""
-    off = [
+    every = [
         fitted(Centres(around(count, degrees), points), np.ones(count)).centre - CENTRE
         for points in measured(count, degrees, circles=300)
     ]
     # within four standard deviations of such an rms, and of its two digits
-    assert 1e3 * rms(np.array(off)[:, :2]) == pytest.approx(um, rel=0.17)
+    assert 1e3 * rms(np.array(every)[:, :2]) == pytest.approx(um, rel=0.17)
 
 
 @pytest.mark.parametrize("degrees", [360, 150, 60])
@@ -195,14 +200,14 @@ def test_c3_the_covariance_with_angles_is_that_of_many(degrees):
     every = measured(11, degrees, circles=400, seed=3)
     angles = around(11, degrees)
     chosen = [0, 1, 2, 3, 4]
-    off = []
+    away = []
     for points in every:
         found = locate(Centres(angles, points), NOISE, robust=False)
-        off.append(np.concatenate([found.point - CENTRE, found.direction])[chosen])
+        away.append(np.concatenate([found.point - CENTRE, found.direction])[chosen])
     inverse = np.linalg.inv(found.covariance[np.ix_(chosen, chosen)])
-    chi = np.einsum("ni,ij,nj->n", off, inverse, off)
+    chi = np.einsum("ni,ij,nj->n", away, inverse, away)
     assert chi.mean() / len(chosen) == pytest.approx(1.0, abs=4 * math.sqrt(2 / 5 / 400))
-    ratio = np.std(off, axis=0) / np.sqrt(np.diag(found.covariance)[chosen])
+    ratio = np.std(away, axis=0) / np.sqrt(np.diag(found.covariance)[chosen])
     assert ratio == pytest.approx(np.ones(5), abs=4 * math.sqrt(0.5 / 400))
 
 
@@ -226,10 +231,10 @@ def test_c7_an_outlier_does_not_spoil_the_rest():
         plain.append(fitted(found.centres, np.ones(8)).centre - CENTRE)
         best.append(fitted(found.centres, (np.arange(8) != 3).astype(float)).centre - CENTRE)
     circles = fit_circles(points).centre - CENTRE
-    off = rms(np.array(robust))
-    assert off <= 0.45 * rms(circles)
-    assert off <= 0.55 * rms(np.array(plain))
-    assert off <= 1.02 * rms(np.array(best))
+    size = rms(np.array(robust))
+    assert size <= 0.45 * rms(circles)
+    assert size <= 0.55 * rms(np.array(plain))
+    assert size <= 1.02 * rms(np.array(best))
 
 
 def test_few_are_left_out_where_nothing_is_wrong():
@@ -319,7 +324,7 @@ def test_the_check_reads_twice_the_error_over_half_a_turn():
     x, y, z = UPRIGHT.point
     wrong = Rotary("C", UPRIGHT.direction, (x + 0.003, y - 0.004, z + 7.0), 1)
     angles = np.array((0.0, 60.0, 180.0))
-    shown = np.linalg.norm(dial(UPRIGHT, wrong, CENTRE + (80.0, 9.0, 3.0), angles), axis=1)
+    shown = np.linalg.norm(dial(UPRIGHT, wrong, off(80.0, 9.0, 3.0), angles), axis=1)
     assert shown == pytest.approx(0.005 * 2 * np.sin(np.radians(angles / 2)), abs=1e-12)
 
 
@@ -364,13 +369,13 @@ def test_the_covariance_of_the_point_of_a_head():
     degrees = around(7, 180.0) - 90.0
     exact = head_data(axis, np.array(tip), degrees)
     generator = np.random.default_rng(4)
-    off = []
+    away = []
     for _ in range(300):
         noisy = exact + 0.002 * generator.standard_normal(exact.shape)
         found = locate(Centres(degrees, noisy), 0.002, tip, robust=False)
-        off.append(found.point)
+        away.append(found.point)
     sd = np.sqrt(np.diag(found.covariance)[:3])
-    assert np.std(off, axis=0)[1:] == pytest.approx(sd[1:], rel=0.17)
+    assert np.std(away, axis=0)[1:] == pytest.approx(sd[1:], rel=0.17)
 
 
 def test_what_to_measure_next():
@@ -402,7 +407,7 @@ def test_the_next_position_is_the_best_one():
 
 def test_squareness_shows_as_the_second_harmonic():
     """Reference 6.4: the second harmonic in the plane tells of squareness and scales."""
-    points = simulate_balls(UPRIGHT, CENTRE + (200.0, 0.0, 0.0), around(12))
+    points = simulate_balls(UPRIGHT, off(200.0), around(12))
     points[:, 0] += 4e-5 * (points[:, 1] - CENTRE[1])
     found = locate(Centres(around(12), points), 0.002)
     sizes = harmonics(found)
