@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import json
+import os
+import re
+import shutil
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 from cli_kit import call
+from test_docs import commands
 
 from gcxform.calibrate.ballfile import balls_csv, parse_balls
 from gcxform.calibrate.rotary import Centres, locate
 from gcxform.diagnostics import InputError
 from gcxform.machine.chain import Rotary
 from gcxform.machine.machinefile import load_machine
+from gcxform.registry import default_registry
 from gcxform.simulate.balls import simulate_balls
 
 TRUE = Rotary("A", (0.9999999354499963, -0.00021, 0.00029), (5.013, -32.017, -95.032), -1)
@@ -222,3 +229,33 @@ def test_the_head_of_a_machine_by_its_probe(files):
     away = np.cross(np.subtract(found.point, axis.point), axis.direction)
     assert np.linalg.norm(away) < 1e-4
     assert found.sign == 1
+
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+
+
+def test_the_commands_of_the_example_print_what_its_readme_shows(tmp_path):
+    for name in ("ball-circles", "trunnion"):
+        shutil.copytree(EXAMPLES / name, tmp_path / name)
+    page = (EXAMPLES / "ball-circles" / "README.md").read_text("utf-8")
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    shown = [
+        pair for b in re.findall(r"```console\n(.*?)```", page, re.DOTALL) for pair in commands(b)
+    ]
+    assert len(shown) == 4
+    for command, expected in shown:
+        done = subprocess.run(
+            ["bash", "-c", command],
+            cwd=tmp_path / "ball-circles",
+            env={**os.environ, "PATH": path},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        assert done.stdout == expected, command
+    kinds = default_registry().kinematics
+    found = load_machine(tmp_path / "ball-circles" / "machine.toml", kinds).axes["C"]
+    assert found.direction[:2] == pytest.approx((5.4e-5, 7e-5), abs=4e-5)
+    assert found.point[:2] == pytest.approx((5.0093 + 0.0011, -20.0121 + 0.0014), abs=4e-3)

@@ -208,8 +208,9 @@ def _believed(centres: Centres, start: Figure, noise: float) -> Kept:
 def without_each(found: Placed) -> tuple[FloatArray, FloatArray]:
     """Return what leaving out each centre changes: the point (n, 3) in mm, the direction (n, 3).
 
-    nan where the others alone do not determine the axis.
+    A shift along the axis is no change. nan where the others alone do not determine the axis.
     """
+    across = np.eye(3) - np.outer(found.direction, found.direction)
     point, direction = np.full((2, len(found.centres), 3), np.nan)
     for k in np.flatnonzero(found.kept):
         kept = found.kept.copy()
@@ -218,7 +219,7 @@ def without_each(found: Placed) -> tuple[FloatArray, FloatArray]:
         if distinct(degrees) >= 3 and condition(degrees) <= HOPELESS:
             figure = fitted(found.centres, kept.astype(float), found.figure)
             other = Placed(found.centres, found.noise, kept, figure, found.free, found.tip)
-            point[k] = other.point - found.point
+            point[k] = across @ (other.point - found.point)
             direction[k] = other.direction - found.direction
     return point, direction
 

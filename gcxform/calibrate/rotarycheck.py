@@ -140,22 +140,27 @@ def advice(found: Placed, limits: tuple[float, float] | None = None) -> Iterator
     across, tilt = _across(found), _tilt(found)
     if covered < min(270.0, room - GRID):
         best = found.noise * math.sqrt(2.0 / len(degrees)) if room >= TURN else None
-        gain = "" if best is None else f" (all around it would be {1e3 * best:.2g} um)"
+        gain = "" if best is None else f" (all around it would be {two_digits(1e3 * best)} um)"
         yield (
             f"the arc is {covered:.3g} of {room:.3g} degrees: a longer one helps most; across the "
-            f"axis the point is known to {1e3 * across:.2g} um{gain}"
+            f"axis the point is known to {two_digits(1e3 * across)} um{gain}"
         )
     if len(degrees) < FEW:
         yield f"{len(degrees)} centres: with {FEW} or more a bad one shows, and is named"
     yield (
         f"four times as many centres halve every uncertainty: {len(degrees)} give "
-        f"{1e3 * across:.2g} um and {1e6 * tilt:.2g} urad"
+        f"{two_digits(1e3 * across)} um and {two_digits(1e6 * tilt)} urad"
     )
     yield (
-        f"the direction is known to {1e6 * tilt:.2g} urad with the ball at "
+        f"the direction is known to {two_digits(1e6 * tilt)} urad with the ball at "
         f"{found.figure.radius:.4g} mm; that goes with 1 / radius, so put the ball further out"
     )
     yield f"measure next at {next_angle(found, limits):g} degrees: no other position tells more"
+
+
+def two_digits(value: float) -> str:
+    """Return an uncertainty in words."""
+    return f"{float(f'{value:.2g}'):g}"
 
 
 def _across(found: Placed) -> float:

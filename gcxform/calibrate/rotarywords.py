@@ -25,6 +25,7 @@ from gcxform.calibrate.rotarycheck import (
     named,
     rotary_of,
     standing,
+    two_digits,
     warnings,
 )
 from gcxform.machine.axistext import MARK
@@ -188,7 +189,7 @@ def _size(vector: Any) -> float | None:
 
 
 def _list(values: Any) -> str:
-    return ", ".join(f"{value:.2g}" for value in values)
+    return ", ".join(map(two_digits, values))
 
 
 def _um(vector: Any) -> str:
