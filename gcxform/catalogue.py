@@ -597,6 +597,25 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "The largest deviation of a measured axis is above 1 mm, or none is above a hundredth of a "
         "micrometre. The unit that was said is probably not that of the file.",
     ),
+    "GX486": (
+        "Ball centres that are not on a circle",
+        "An axis is found from the centres of a ball at three angles or more, and they have to be "
+        "different and to go round. A row may have been copied, an axis may not have turned, or "
+        "the angles belong to another axis. `gcxform calibrate rotary --help` shows the table.",
+    ),
+    "GX487": (
+        "Positions of a rotary axis that do not determine where it is",
+        "On a short arc a shift of the centre looks like a larger radius, and the direction is "
+        "hardly seen: the errors of the ball centres would be multiplied. Measure along a longer "
+        "arc; what the limits of the axis allow is best.",
+    ),
+    "GX488": (
+        "Ball centres that contradict the machine file",
+        "The axis that was measured is not the one of the machine file: it points elsewhere by "
+        "more than an error of a machine, or positive angles turn the other way. Look at the "
+        "letter, at the sign of the angles and at the file (`gcxform machine jog`); one of them "
+        "is wrong, and a wrong sign breaks machines.",
+    ),
     "GX501": (
         "The target cannot say this",
         "The control that is written for has no such code, word, comment or plane of arcs, and "

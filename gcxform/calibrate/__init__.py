@@ -9,6 +9,12 @@
     gcxform/calibrate/plaindiagonal.py  four lengths: the squareness
     gcxform/calibrate/reframe.py        the reference frame of nine functions: end points
     gcxform/calibrate/words.py          reports and comments for a person
+    gcxform/calibrate/circle.py         circles through points of space, many at once
+    gcxform/calibrate/ballfile.py       ball centres from CSV files, and back
+    gcxform/calibrate/rotary.py         ball centres at angles: where a rotary axis is
+    gcxform/calibrate/rotarymachine.py  the same for an axis of a machine file
+    gcxform/calibrate/rotarycheck.py    the check with RTCP on, warnings, advice
+    gcxform/calibrate/rotarywords.py    its report and comments
 
 Nothing here prints. What is wrong with a measurement is an InputError, with file, line and column
 where there is one.

@@ -35,6 +35,7 @@ LENGTHS: Final[Mapping[str, float]] = {
     "m": 1000.0,
     "in": 25.4,
 }
+ANGLES: Final[Mapping[str, float]] = {"deg": 1.0, "rad": math.degrees(1.0)}
 _HEADING = re.compile(r"(.*?)\s*(?:\[\s*(.*?)\s*\])?")
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
@@ -103,14 +104,24 @@ class CsvTable:
             raise InputError(tuple(found))
         return values
 
+    def angles(self, name: str) -> FloatArray:
+        """Return a column (n,) in degrees. Raises InputError for its unit (GX470), its numbers."""
+        unit = self._unit(name, "an angle", ANGLES)
+        return self.numbers(name) * ANGLES[unit]
+
+    def _unit(self, name: str, kind: str, known: Mapping[str, float]) -> str:
+        """Return the unit of a column. Raises InputError (GX470) unless it is known."""
+        unit = self.headings[name].unit
+        if unit not in known:
+            listed = [u for u in known if u.isascii()]
+            message = f"{unit!r} is not a unit of {kind}" if unit else f"{name!r} has no unit"
+            hint = f"write it as {name} [{listed[0]}]; units are {', '.join(listed)}"
+            raise InputError.one("GX470", message, self.heading_place(name), hint)
+        return unit
+
     def lengths(self, name: str) -> FloatArray:
         """Return a column (n,) in mm. Raises InputError for its unit (GX470) and its numbers."""
-        unit = self.headings[name].unit
-        if unit not in LENGTHS:
-            known = ", ".join(u for u in LENGTHS if u.isascii())
-            message = f"{unit!r} is not a unit of length" if unit else f"{name!r} has no unit"
-            hint = f"write it as {name} [mm]; units are {known}"
-            raise InputError.one("GX470", message, self.heading_place(name), hint)
+        unit = self._unit(name, "length", LENGTHS)
         values = self.numbers(name)
         # Through the decimals, so that 7 um are the double nearest to 0.007 mm.
         return values * LENGTHS[unit] if LENGTHS[unit] >= 1.0 else values / (1.0 / LENGTHS[unit])

@@ -1,4 +1,4 @@
-"""`gcxform calibrate`: from measurements of a machine to its error model."""
+"""`gcxform calibrate`: from measurements of a machine to its error model, or its axes."""
 
 from __future__ import annotations
 
@@ -140,6 +140,76 @@ def _steps(
     conditions = {file.file: file.conditions for file in beside}
     conditions[measured.file] = measured.conditions
     return text, step_report(found, files, conditions)
+
+
+_BALLS = """
+DATA is a table with a row for each position of the axis, all other rotary axes at 0:
+
+\b
+    angle [deg], X [mm],   Y [mm],   Z [mm]
+    0,           363.5312, 51.2288,  128.9411
+    45,          287.0892, 235.7834, 128.9533
+
+X, Y, Z: the centre of the ball in machine coordinates, with the probe in the spindle and the ball
+on the table. Where the axis turns the head the ball is fixed, X, Y and Z are those of the machine
+with the tip at its centre, and --tool names the probe. Units: deg, rad; mm, um, nm, m, in.
+Three centres are the least and test nothing; five and more around the whole turn are good.
+
+An axis V and -V with the other sign are the same, and written the same way. The shift of the point
+along the axis is free: it is in the plane of the circle. A machine file keeps all but direction,
+point and sign of the axis.
+"""
+
+
+@command.command(
+    "rotary", epilog=_BALLS, short_help="Ball centres at angles: where a rotary axis is."
+)
+@click.option("--axis", metavar="A", type=click.Choice([*"ABC"]), required=True, help="A, B or C.")
+@click.option("-m", "--machine", metavar="FILE", help="The machine as it is believed to be.")
+@click.option("--tool", metavar="N", type=int, help="The probe, if the axis turns the head.")
+@click.option(
+    "--noise",
+    metavar="LENGTH",
+    default="2 um",
+    show_default=True,
+    help="Standard deviation of a coordinate of a centre.",
+)
+@click.option("-o", "--output", metavar="FILE", help="Write the machine file with the axis (TOML).")
+@click.option("--report", metavar="FILE", help="Write what was found, with covariance (JSON).")
+@click.argument("data", metavar="DATA")
+def rotary(
+    data: str,
+    axis: str,
+    machine: str | None,
+    tool: int | None,
+    noise: str,
+    output: str | None,
+    report: str | None,
+) -> None:
+    """Turn centres of a ball, probed at angles of a rotary axis, into its direction and point.
+
+    Centres that do not belong to the rest are left out and named. Printed are uncertainties, what
+    the check with RTCP on will read, and what to measure next. Refused are centres that are on no
+    circle, arcs too short, residuals above 3 times the noise, and an axis or a sense that is not
+    that of the machine file.
+    """
+    from gcxform.calibrate import rotarywords
+    from gcxform.calibrate.ballfile import read_balls
+    from gcxform.calibrate.rotarymachine import located, with_found
+    from gcxform.cli.asked import Asked
+
+    check_places({"-o": output, "--report": report}, [data, *filter(None, [machine])])
+    measured = read_balls(_path(data))
+    believed = Asked(machine=machine).loaded_machine
+    found, before = located(measured.centres, axis, _length(noise, "--noise"), believed, tool)
+    said = rotarywords.lines(found, axis, before)
+    text = with_found(found, axis, believed, rotarywords.comments(found, measured.file))
+    whole = rotarywords.report(found, axis, measured.file, measured.conditions, before)
+    if output is not None:
+        _write(output, text)
+    if report is not None:
+        _write(report, json.dumps(whole, indent=1) + "\n")
+    click.echo("\n".join(said), err=STDOUT in (output, report))
 
 
 def _path(name: str) -> Path:

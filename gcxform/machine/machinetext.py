@@ -15,7 +15,7 @@ def to_toml(machine: Machine, comments: Iterable[str] = ()) -> str:
     lines += [f"table = {json.dumps(machine.table)}", f"head = {json.dumps(machine.head)}"]
     lines += [f"gauge-point = {list(map(float, machine.gauge_point))}"]
     for letter, axis in machine.axes.items():
-        lines += ["", f"[axis.{letter}]", *_axis(axis)]
+        lines += ["", f"[axis.{letter}]", *axis_lines(axis)]
     return "\n".join(lines) + "\n"
 
 
@@ -23,7 +23,8 @@ def _text(text: str) -> str:
     return json.dumps(text, ensure_ascii=False)
 
 
-def _axis(axis: Axis) -> list[str]:
+def axis_lines(axis: Axis) -> list[str]:
+    """Return the lines of the table of an axis, without its header."""
     lists = {"direction": axis.direction, "point": axis.point, "limits": axis.limits}
     values = {"wrap": axis.wrap, "max-speed": axis.max_speed}
     lines = [f"{key} = {list(map(float, value))}" for key, value in lists.items() if value]

@@ -14,6 +14,7 @@ from faults import (
     passes,
     proof,
     reading,
+    rotary,
     simulating,
     splines,
     tables,
@@ -40,5 +41,6 @@ MUTATIONS: tuple[Mutation, ...] = (
     *proof.MUTATIONS,
     *calibrating.MUTATIONS,
     *simulating.MUTATIONS,
+    *rotary.MUTATIONS,
     *kinematics.MUTATIONS,
 )

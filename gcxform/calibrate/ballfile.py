@@ -1,0 +1,72 @@
+"""CSV files of ball centres; see `csvtext` for their common form.
+
+    angle [deg], X [mm],   Y [mm],   Z [mm]
+    0,           363.5312, 51.2288,  128.9411
+    45,          287.0892, 235.7834, 128.9533
+
+A row for each position of the axis: the angle as commanded (deg or rad), and the centre of the ball
+in machine coordinates. The other rotary axes stand at 0. Columns whose names begin with
+temperature, pressure or humidity go to the report, with their units.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gcxform.calibrate.csvtext import CsvTable, parse_csv, read_csv
+from gcxform.calibrate.diagonalfile import CONDITIONS
+from gcxform.calibrate.rotary import Centres
+from gcxform.machine.errors import AXES
+
+
+class MeasuredBalls(NamedTuple):
+    """A file as read: its name, the centres, what was carried (column: least, mean, most)."""
+
+    file: str
+    centres: Centres
+    conditions: dict[str, dict[str, Any]]
+
+
+def read_balls(path: Path) -> MeasuredBalls:
+    """Return the centres of a file. Raises FileError, and InputError with the place."""
+    return _measured(read_csv(path))
+
+
+def parse_balls(text: str) -> MeasuredBalls:
+    """Return the same from a text."""
+    return _measured(parse_csv(text))
+
+
+def _measured(table: CsvTable) -> MeasuredBalls:
+    names = ["angle", *(axis.lower() for axis in AXES)]
+    table.refuse_unknown(names, CONDITIONS)
+    table.need(*names)
+    points = np.column_stack([table.lengths(name) for name in names[1:]])
+    centres = Centres(table.angles("angle"), points, table.where)
+    return MeasuredBalls(table.file, centres, _conditions(table))
+
+
+def _conditions(table: CsvTable) -> dict[str, dict[str, Any]]:
+    found: dict[str, dict[str, Any]] = {}
+    for heading in table.headings.values():
+        if heading.name.startswith(CONDITIONS):
+            values = table.numbers(heading.name)
+            least, mean, most = values.min(), values.mean(), values.max()
+            found[heading.name] = {
+                "unit": heading.unit,
+                "least": float(least),
+                "mean": round(float(mean), 6),
+                "most": float(most),
+            }
+    return found
+
+
+def balls_csv(centres: Centres) -> str:
+    """Return centres as a file that reads back as the same bits."""
+    lines = ["angle [deg],X [mm],Y [mm],Z [mm]"]
+    for angle, point in zip(centres.degrees.tolist(), centres.points.tolist(), strict=True):
+        lines.append(",".join(map(repr, [angle, *point])))
+    return "\n".join(lines) + "\n"

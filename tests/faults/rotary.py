@@ -1,0 +1,157 @@
+"""Faults of the calibration of rotary axes, and of what is said about it."""
+
+from __future__ import annotations
+
+from faults.mutation import Mutation
+
+FIGURES = "tests/test_rotary.py"
+FILES = "tests/test_rotary_files.py"
+
+
+def _rotary(file: str, name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
+    return Mutation(f"rotary: {name}", f"gcxform/calibrate/{file}.py", old, new, tests)
+
+
+MUTATIONS = (
+    # circles
+    _rotary("circle", "Kasa forgets a factor", "[2.0 * flat, ones]", "[flat, ones]"),
+    _rotary("circle", "the plane is that of the largest", "axes[..., 2, :]", "axes[..., 0, :]"),
+    _rotary("circle", "one step is enough", "for _ in range(STEPS):", "for _ in range(1):"),
+    _rotary(
+        "circle",
+        "any axis is upright",
+        "np.where(largest < 0.0, -vectors",
+        "np.where(largest < -2.0, -vectors",
+    ),
+    _rotary("circle", "a line is a circle", "converged &= singular", "converged |= singular"),
+    _rotary("circle", "the slopes forget the radius", "-inside / circle.radius", "-inside"),
+    _rotary(
+        "circle",
+        "the height has no variance",
+        "[np.zeros((3, 2)), axis]",
+        "[np.zeros((3, 2)), 0 * axis]",
+    ),
+    # the fit with angles
+    _rotary(
+        "rotary",
+        "the start turns the other way",
+        "(u + np.cross(w, direction))",
+        "(u - np.cross(w, direction))",
+    ),
+    _rotary(
+        "rotary",
+        "the sense is lost",
+        "return 1 if float(self.direction @",
+        "return 1 if float(self.figure.direction @",
+    ),
+    _rotary(
+        "rotary",
+        "a turn of the figure is its opposite",
+        "[shift, -crossing(arms), growth]",
+        "[shift, crossing(arms), growth]",
+    ),
+    _rotary(
+        "rotary",
+        "a tilt is its opposite",
+        "-crossing(self.direction), np.zeros((3, 1))]",
+        "0 * crossing(self.direction), np.zeros((3, 1))]",
+    ),
+    _rotary(
+        "rotary",
+        "unknowns are not counted",
+        "self.kept.sum()) - UNKNOWNS",
+        "self.kept.sum())",
+        FILES,
+    ),
+    _rotary(
+        "rotary",
+        "the covariance is not squared",
+        "self.noise**2 * np.linalg",
+        "self.noise * np.linalg",
+    ),
+    _rotary("rotary", "outliers are kept", "<= OUTLYING)", "<= 1e9)"),
+    _rotary(
+        "rotary",
+        "residuals are not standardised",
+        "noise * np.sqrt(np.clip(1.0 - taken, 1e-6, None))",
+        "10 * noise",
+    ),
+    _rotary("rotary", "the head forgets the tip", "self.figure.arm + self.tip", "self.figure.arm"),
+    _rotary(
+        "rotary",
+        "the head has the covariance of the table",
+        "if self.tip is not None:\n            shift =",
+        "if False:\n            shift =",
+    ),
+    _rotary("rotary", "leaving out leaves in", "kept[k] = False", "kept[k] = True"),
+    # refusals
+    _rotary("rotary", "no arc is too short", "if poor > HOPELESS:", "if poor > 1e9:"),
+    _rotary("rotary", "a copied centre passes", "if first != row and (", "if first == -1 and ("),
+    _rotary(
+        "rotary", "a full turn is a copy", "math.remainder(apart, 360.0) != 0.0", "apart != 0.0"
+    ),
+    _rotary("rotary", "a ball at rest passes", "if singular[0] <= blur:", "if singular[0] < 0.0:"),
+    _rotary(
+        "rotary",
+        "turns are different positions",
+        "np.mod(degrees, 360.0), 6) % 360.0",
+        "degrees, 6)",
+    ),
+    _rotary("rotary", "contradictions pass", "found.rms > REJECTED * noise", "found.rms > 1e9"),
+    _rotary("rotarymachine", "any axis will do", "if off > FAR:", "if off > 360.0:", FILES),
+    _rotary("rotarymachine", "any sense will do", "* cosine < 0.0:", "* cosine < -2.0:", FILES),
+    # what is said
+    _rotary("rotarycheck", "three points are sound", "if count == 3:", "if count == 2:"),
+    _rotary(
+        "rotarycheck",
+        "a short arc is sound",
+        "if found.condition > ILL:",
+        "if found.condition > HOPELESS:",
+    ),
+    _rotary(
+        "rotarycheck",
+        "the dial sees no tilt",
+        "effect = (np.eye(3) - rotation) @ moves + tilt @ turn",
+        "effect = (np.eye(3) - rotation) @ moves",
+    ),
+    _rotary(
+        "rotarycheck",
+        "the dial starts at angle 0",
+        "found.figure.arms(found.centres.degrees[:1])[0]",
+        "found.figure.arm",
+    ),
+    _rotary(
+        "rotarycheck",
+        "the worst position is next",
+        "int(np.argmin(np.round(left",
+        "int(np.argmax(np.round(left",
+    ),
+    _rotary(
+        "rotarycheck",
+        "harmonics are swapped",
+        "np.cos(q), np.sin(q), np.cos(2 * q), np.sin(2 * q)",
+        "np.cos(2 * q), np.sin(2 * q), np.cos(q), np.sin(q)",
+    ),
+    _rotary(
+        "rotarycheck",
+        "the axial part is the radial one",
+        '("radial", "tangential", "axial")',
+        '("axial", "tangential", "radial")',
+    ),
+    # files
+    _rotary("csvtext", "a radian is a degree", '"rad": math.degrees(1.0)', '"rad": 1.0', FILES),
+    Mutation(
+        "rotary: old comments stay",
+        "gcxform/machine/axistext.py",
+        "(?:{re.escape(MARK)}|",
+        "(?:",
+        FILES,
+    ),
+    Mutation(
+        "rotary: what was written is not looked at",
+        "gcxform/machine/axistext.py",
+        "if _read(written) == _wanted(text, letter, axis):",
+        "if _read(written) != 0:",
+        FILES,
+    ),
+)
