@@ -7,10 +7,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from gcxform_plugins.passes.rtcp_bound import leaving
+from gcxform_plugins.passes.rtcp_undoing import SHARE
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from kinematics_kit import leaning, tool
 from rtcp_kit import (
     KINDS,
+    LENGTH,
     ROUNDED,
     aside,
     axes,
@@ -159,6 +163,56 @@ def test_no_rotation_no_change(tmp_path):
     assert steps.run(text, "full").text == text
 
 
+TRUNNION = gx.Chain(
+    (
+        gx.Rotary("A", (1.0, 0.0, 0.0), (0.0, -4.0, 45.0), -1),
+        gx.Rotary("C", (0.0, 0.0, 1.0), (8.0, 2.0, 0.0), -1),
+    ),
+    tip=(0.0, 0.0, -120.0),
+)
+
+
+def great_circle(count):
+    """Return tips (n, 3) and angles (n, 2) of the path of K5, in so many pieces."""
+    one, other = leaning(np.array([20.0, 50.0]), np.array([40.0, 100.0]))
+    part = np.linspace(0.0, 1.0, count + 1)[:, None]
+    whole = np.arccos(one @ other)
+    axis = (np.sin((1.0 - part) * whole) * one + np.sin(part * whole) * other) / np.sin(whole)
+    angles = gx.attitudes(TRUNNION, axis).angle[:, 0]
+    return (part - 0.5) * [100.0, 0.0, 0.0], np.degrees(np.unwrap(np.radians(angles), axis=0))
+
+
+@pytest.mark.parametrize(("limit", "blocks"), [(0.05, 36), (0.01, 81), (0.005, 124), (0.001, 256)])
+def test_blocks_of_a_great_circle(limit, blocks):
+    """K5: the bound that the pass cuts by holds for 1.1 times as many equal pieces, 41 samples."""
+    points, angles = great_circle(int(1.1 * blocks))
+    sides = (points[:-1], points[1:]), (angles[:-1], angles[1:])
+    bound = leaving(TRUNNION, *sides)
+    assert bound.max() <= (1.0 - SHARE) * limit
+    linear = TRUNNION.linear(points, angles)
+    for k in range(len(bound)):
+        ways = (between(way[k], way[k + 1], 41) for way in (linear, angles))
+        far = tool(TRUNNION, *ways)[0] - between(points[k], points[k + 1], 41)
+        worst = np.linalg.norm(far, axis=1).max()
+        assert 0.8 * bound[k] <= worst <= bound[k]
+
+
+@given(st.integers(0, 100_000), st.sampled_from(KINDS), st.sampled_from([0.2, 3.0, 40.0]))
+def test_the_bound_holds_for_any_piece(seed, kind, size):
+    """The tip is nowhere farther from where it should be than the bound, nor is that far off."""
+    rng = np.random.default_rng(seed)
+    chain = chain_of_kind(kind, seed)
+    points = rng.uniform(-100.0, 100.0, (2, 3))
+    angles = rng.uniform(-90.0, 90.0, (1, 2)) + rng.uniform(-size, size, (2, 2))
+    bound = leaving(chain, (points[:1], points[1:]), (angles[:1], angles[1:]))[0]
+    linear = chain.linear(points, angles)
+    found = tool(chain, between(*linear, 41), between(*angles, 41))[0]
+    worst = np.linalg.norm(found - between(*points, 41), axis=1).max()
+    assert worst <= bound + 1e-9
+    if size < 1.0:
+        assert bound <= 1.05 * worst + 1e-9
+
+
 def test_a_smaller_tolerance_takes_more_blocks(tmp_path):
     """Twice as many for a quarter, and the tolerance is used: the bound is not far from it."""
     chain = chain_of_kind("ac-trunnion", 1)
@@ -169,6 +223,47 @@ def test_a_smaller_tolerance_takes_more_blocks(tmp_path):
         result = pipeline(tmp_path, machine, tolerance=tolerance).run(text)
         counts.append(result.source_map.count(4))
         worst = check_ways(text, result, chain, tolerance, tips)
-        assert worst >= 0.8 * tolerance
-    assert counts[3] / counts[0] == pytest.approx(50**0.5, rel=0.05)
+        assert worst >= 0.6 * tolerance  # which is also for how far the tip is ahead
+    assert counts[3] / counts[0] == pytest.approx(50**0.5, rel=0.08)
     assert gx.Pipeline.load(tmp_path / "p.toml").promised() == 0.002
+
+
+def test_limits_are_those_of_the_machine(tmp_path):
+    """The work offset counts: X31 of the machine is X0 of the program."""
+    chain = chain_of_kind("ac-trunnion", 4)
+    machine = machine_text("ac-trunnion", chain)
+    text = b"G21 G90 G93 G17 G54\nG0 X1. Y2. A0 C0\nG43 H1 Z0.\nG1 X7. F3.\nM30\n"
+    for high, good in ((38.5, True), (37.5, False)):
+        limited = machine.replace("[axis.X]\n", f"[axis.X]\nlimits = [-500.0, {high}]\n")
+        steps = pipeline(tmp_path, limited, tolerance=0.01)
+        if good:
+            assert steps.run(text).text == text
+            continue
+        with pytest.raises(gx.InputError) as caught:
+            steps.run(text)
+        assert [d.code for d in caught.value.diagnostics] == ["GX331"]
+
+
+@pytest.mark.parametrize("direction", ["to-machine", "to-tip"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_undone_pieces_stay_beside_the_curve(tmp_path, kind, direction):
+    """What the proof makes of a long move in proportion, against 400 points of it by scipy."""
+    chain = chain_of_kind(kind, 8)
+    letters = ("X", "Y", "Z", *chain.letters)
+    poses = np.array([[0.0, 0, 0, 0, 0], [60, -30, 12, 55, -80], [60, -30, 12, 20, -10]])
+    text = program(poses[1:], letters, feed="F2.")
+    steps = pipeline(tmp_path, machine_text(kind, chain), tolerance=0.05, direction=direction)
+    step = next(step for step in steps.path_passes if step.name == "rtcp")
+    path = gx.Program(text, steps.source, steps.machine_reading).path
+    undone = step.undo(path, steps.context)
+    model = tips if direction == "to-machine" else axes
+    assert 0.0 < undone.slack <= SHARE * 0.05
+    for row in np.flatnonzero(path.kind == gx.Kind.LINE):
+        mine = np.flatnonzero(undone.source == path.source[row])
+        ends = undone.end[mine, :3] - [0.0, 0.0, LENGTH]
+        start = undone.start[mine, :3] - [0.0, 0.0, LENGTH]
+        columns = [path.axes.index(letter) for letter in letters]
+        way = [side[row, columns] - [0, 0, LENGTH, 0, 0] for side in (path.start, path.end)]
+        found = model(chain, between(*way, 401))
+        far = [aside(found, a, b) for a, b in zip(start, ends, strict=True)]
+        assert np.min(far, axis=0).max() <= undone.slack + 1e-6

@@ -1,0 +1,78 @@
+"""Faults of the pass `rtcp`: what is added to positions, the bound, rounding, times."""
+
+from __future__ import annotations
+
+from faults.mutation import PASSES, Mutation
+
+TESTS = "tests/test_rtcp.py"
+BOUND = f"{PASSES}/rtcp_bound.py"
+CUTTING = f"{PASSES}/rtcp_cutting.py"
+PLACE = f"{PASSES}/rtcp_place.py"
+UNDOING = f"{PASSES}/rtcp_undoing.py"
+HOLDS = f"{TESTS}::test_the_bound_holds_for_any_piece"
+
+MUTATIONS = (
+    Mutation(
+        "rtcp: the tool is added where it is taken away",
+        PLACE,
+        "return chain.linear(points + self.gauge - self._tool(chain), turned)",
+        "return chain.linear(points + self.gauge + self._tool(chain), turned)",
+        f"{TESTS}::test_rounded_angles_are_made_good",
+    ),
+    Mutation(
+        "rtcp: the work offset is forgotten on the way back",
+        PLACE,
+        "angles[here]) - self.zero",
+        "angles[here])",
+        f"{TESTS}::test_rounded_angles_are_made_good",
+    ),
+    Mutation(
+        "rtcp: the bound does not know that a point moves while it is turned",
+        BOUND,
+        "self.bend += 2.0 * w[:, None] * np.cross(d, speed) + bend",
+        "self.bend += bend",
+        HOLDS,
+    ),
+    Mutation(
+        "rtcp: the bound of the middle holds for the whole piece",
+        BOUND,
+        "bend + (tip.twisted + arm.twisted) / 2.0",
+        "bend + 0.0 * (tip.twisted + arm.twisted)",
+        HOLDS,
+    ),
+    Mutation(
+        "rtcp: X, Y and Z are computed from angles that are not rounded",
+        CUTTING,
+        "rounded[:, column] = np.round(positions[:, column], decimals)",
+        "rounded[:, column] = np.round(positions[:, column], decimals + 4)",
+        f"{TESTS}::test_rotary_decimals_of_their_own",
+    ),
+    Mutation(
+        "rtcp: each piece takes the time of the whole",
+        CUTTING,
+        "feed = feed[row] * np.where(inverse[row], pieces[row], 1.0)",
+        "feed = feed[row]",
+        f"{TESTS}::test_the_time_is_that_of_the_tip",
+    ),
+    Mutation(
+        "rtcp: limits are those of words, not of the machine",
+        CUTTING,
+        "axes = axes + place.zero",
+        "axes = axes + 0.0 * place.zero",
+        f"{TESTS}::test_limits_are_those_of_the_machine",
+    ),
+    Mutation(
+        "rtcp: the head does not bend the way of the tip that is undone",
+        UNDOING,
+        "return np.asarray(table**2 * far + 2.0 * table * way + head**2 * arm)",
+        "return np.asarray(table**2 * far + 2.0 * table * way)",
+        f"{TESTS}::test_undone_pieces_stay_beside_the_curve",
+    ),
+    Mutation(
+        "rtcp: the table does not bend the way of the tip that is undone",
+        UNDOING,
+        "return np.asarray(table**2 * far + 2.0 * table * way + head**2 * arm)",
+        "return np.asarray(2.0 * table * way + head**2 * arm)",
+        f"{TESTS}::test_undone_pieces_stay_beside_the_curve",
+    ),
+)
