@@ -18,6 +18,7 @@ from gcxform.api import read
 from gcxform.certificate import Certificate
 from gcxform.dialect import Dialect, NumberFormat
 from gcxform.machine.errors import ErrorModel, FloatArray, Outside
+from gcxform.machine.mean import Mean
 from gcxform.options import ModelFile
 from gcxform.pipeline import Pipeline
 from gcxform.registry import default_registry
@@ -99,9 +100,15 @@ class Chain:
         return own if self.decimals is None else replace(own, mm=self.decimals)
 
     def pipeline(self) -> Pipeline:
-        """Return the pipeline that compensates; the program's origin is that of the machine."""
+        """Return the pipeline that compensates; the program's origin is that of the machine.
+
+        Of a machine with backlash the mean of both directions is compensated.
+        """
+        told = self.model
+        if told.model.backlash.any():
+            told = replace(told, model=Mean(told.model))
         options: Mapping[str, Any] = {
-            "model": self.model,
+            "model": told,
             "tolerance": self.tolerance,
             "outside": self.outside,
             "part_origin": (0.0, 0.0, 0.0),
