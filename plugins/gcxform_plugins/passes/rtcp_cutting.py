@@ -180,8 +180,19 @@ class Cutting:
             hint = 'move at a feed, or say rapids = "ends" if the tool is clear on any way'
             message = "where the tip goes in a rapid that turns axes is not known"
             self._refuse("GX330", rapid & moved & ~own & ~starting, message, hint)
+        self._check_ways_round()
         self._check_tools(turned)
         self._check_feeds(moved)
+
+    def _check_ways_round(self) -> None:
+        """Refuse moves that a control may make the other way round."""
+        step = np.abs(self.place.angles(self.end - self.start))
+        for k, axis in enumerate(self.place.chain.axes):
+            if axis.wrap is not None:
+                far = self.cuts & (step[:, k] >= axis.wrap / 2.0)
+                message = f"{axis.letter} turns by half of its wrap or more, either way round"
+                hint = "program a point on the way; or leave out wrap if the axis does not take"
+                self._refuse("GX330", far, message, f"{hint} the shorter way")
 
     def _check_tools(self, turned: Flags) -> None:
         """Refuse another tool length while the tool is turned, and none on a head that is."""
