@@ -616,6 +616,13 @@ CATALOGUE: dict[str, tuple[str, str]] = {
         "letter, at the sign of the angles and at the file (`gcxform machine jog`); one of them "
         "is wrong, and a wrong sign breaks machines.",
     ),
+    "GX489": (
+        "Ball centres that do not determine all that is asked for",
+        "Some unknowns can change together without any reading changing, and the message names "
+        "them. The absolute scale of a machine is never seen by balls alone. Squareness needs "
+        "poses of both rotary axes, all around and in combination, and better two balls; without "
+        "them leave it out (--linear none).",
+    ),
     "GX501": (
         "The target cannot say this",
         "The control that is written for has no such code, word, comment or plane of arcs, and "

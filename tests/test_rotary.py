@@ -147,8 +147,10 @@ def test_c3_the_covariance_of_a_circle_is_that_of_many(degrees):
             seen.append(scale * float((values @ line).std()))
     predicted.insert(2, 1e3 * math.sqrt(of_radius))
     seen.insert(2, 1e3 * float(found.radius.std()))
+    predicted.append(1e3 * math.sqrt(both[2, 2]))
+    seen.append(1e3 * float(found.centre[:, 2].std()))
     assert seen == pytest.approx(predicted, rel=0.06)
-    assert predicted == pytest.approx(ARCS[degrees][:5], rel=0.006)
+    assert predicted[:5] == pytest.approx(ARCS[degrees][:5], rel=0.006)
     assert condition(around(11, degrees)) == pytest.approx(ARCS[degrees][5], rel=0.04)
 
 
@@ -368,7 +370,7 @@ def test_a_probe_in_a_turning_head_finds_the_axis_of_the_head():
 
 def test_the_covariance_of_the_point_of_a_head():
     axis, tip = skew(1, "B"), (7.0, -30.0, -250.0)
-    degrees = around(7, 180.0) - 90.0
+    degrees = around(7, 100.0) + 90.0
     exact = head_data(axis, np.array(tip), degrees)
     generator = np.random.default_rng(4)
     away = []

@@ -197,6 +197,7 @@ def test_outliers_are_named_with_their_lines(files, said):
         (["--axis", "A", "-m", "signed.toml"], "GX488", 3),
         (["--axis", "A", "-m", "headed.toml"], "GX707", 2),
         (["--axis", "A", "-m", "inline.toml"], "GX435", 2),
+        (["--axis", "A", "-m", "lines.toml", "-o", "n.toml"], "GX435", 2),
         (["--axis", "A", "--noise", "0"], "GX706", 2),
         (["--axis", "A", "--noise", "0.1 um"], "GX475", 3),
         (["--axis", "A", "-m", "m.toml", "-o", "a.csv"], "GX727", 2),
@@ -205,11 +206,13 @@ def test_outliers_are_named_with_their_lines(files, said):
 def test_what_does_not_fit_is_refused(files, words, code, exit_code):
     Path("signed.toml").write_text(MACHINE.replace("sign = -1", "sign = 1", 1))
     Path("headed.toml").write_text(MACHINE.replace('["A", "C"]', '["C"]\nhead = ["A"]'))
+    Path("lines.toml").write_text(MACHINE.replace("[1.0, 0.0, 0.0]", "[1.0,\n0.0, 0.0]"))
     inline = "axis.A = {direction = [1.0, 0.0, 0.0], point = [5.0, -32.0, -95.0], sign = -1}"
     Path("inline.toml").write_text(f'format = 1\ntable = ["A"]\n{inline}\n')
     done = call("calibrate", "rotary", *words, "a.csv")
     assert (done.exit_code, code in done.stderr) == (exit_code, True), done.output
     assert Path("m.toml").read_text() == MACHINE
+    assert not Path("n.toml").exists()
 
 
 def test_the_head_of_a_machine_by_its_probe(files):

@@ -15,6 +15,8 @@
     gcxform/calibrate/rotarymachine.py  the same for an axis of a machine file
     gcxform/calibrate/rotarycheck.py    the check with RTCP on, warnings, advice
     gcxform/calibrate/rotarywords.py    its report and comments
+    gcxform/calibrate/bundle.py         balls at any poses: all rotary axes, and squareness
+    gcxform/calibrate/bundlewords.py    its report and comments
 
 Nothing here prints. What is wrong with a measurement is an InputError, with file, line and column
 where there is one.

@@ -7,15 +7,22 @@
 A row for each position of the axis: the angle as commanded (deg or rad), and the centre of the ball
 in machine coordinates. The other rotary axes stand at 0. Columns whose names begin with
 temperature, pressure or humidity go to the report, with their units.
+
+For a bundle there is a column for each rotary axis of the machine, and `ball` tells balls apart:
+
+    ball, A [deg], C [deg], X [mm],  Y [mm],  Z [mm]
+    1,    -30,     45,      82.7912, 40.1623, -35.9984
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from gcxform.calibrate.bundle import Poses
 from gcxform.calibrate.csvtext import CsvTable, parse_csv, read_csv
 from gcxform.calibrate.diagonalfile import CONDITIONS
 from gcxform.calibrate.rotary import Centres
@@ -47,6 +54,34 @@ def _measured(table: CsvTable) -> MeasuredBalls:
     points = np.column_stack([table.lengths(name) for name in names[1:]])
     centres = Centres(table.angles("angle"), points, table.where)
     return MeasuredBalls(table.file, centres, _conditions(table))
+
+
+class MeasuredPoses(NamedTuple):
+    """The same for balls at poses of several axes."""
+
+    file: str
+    poses: Poses
+    conditions: dict[str, dict[str, Any]]
+
+
+def read_poses(path: Path, letters: Sequence[str]) -> MeasuredPoses:
+    """Return balls at poses of some axes. Raises FileError, and InputError with the place."""
+    table = read_csv(path)
+    turns, names = [letter.lower() for letter in letters], [axis.lower() for axis in AXES]
+    table.refuse_unknown(["ball", *turns, *names], CONDITIONS)
+    table.need(*turns, *names)
+    points = np.column_stack([table.lengths(name) for name in names])
+    degrees = np.column_stack([table.angles(name) for name in turns])
+    poses = Poses(degrees, tuple(table.texts("ball")), points, table.where)
+    return MeasuredPoses(table.file, poses, _conditions(table))
+
+
+def poses_csv(poses: Poses, letters: Sequence[str]) -> str:
+    """Return poses as a file that reads back as the same bits."""
+    lines = [",".join(["ball", *(f"{a} [deg]" for a in letters), *(f"{a} [mm]" for a in AXES)])]
+    rows = zip(poses.ball, poses.degrees.tolist(), poses.points.tolist(), strict=True)
+    lines += [",".join([ball, *map(repr, [*angles, *point])]) for ball, angles, point in rows]
+    return "\n".join(lines) + "\n"
 
 
 def _conditions(table: CsvTable) -> dict[str, dict[str, Any]]:

@@ -23,7 +23,7 @@ STEPS: Final = 50
 CONVERGED: Final = 1e-10
 """The last step of the centre, as a part of the radius."""
 FLAT: Final = 1e-9
-"""Singular values below this part of the largest are none."""
+"""Pivots below this part of the largest are none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,6 @@ def fit_circles(points: FloatArray) -> Circles:
     flat = (points - mean) @ np.swapaxes(axes[..., :2, :], -1, -2)
     with np.errstate(all="ignore"):
         inside, radius, converged = _in_plane(flat)
-        converged &= singular[..., 1] > FLAT * singular[..., 0]
     centre = mean[..., 0, :] + np.einsum("...k,...ki->...i", inside, axes[..., :2, :])
     return Circles(upright(axes[..., 2, :]), centre, radius, singular, converged)
 

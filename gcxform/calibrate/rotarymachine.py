@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
+from gcxform.calibrate import bundlewords
+from gcxform.calibrate.bundle import Bundled
 from gcxform.calibrate.rotary import Centres, Placed, locate
 from gcxform.calibrate.rotarycheck import axis_of
 from gcxform.diagnostics import InputError, Location, UsageError
 from gcxform.machine.axistext import MARK, with_axis
-from gcxform.machine.chain import Triple, chain_of
+from gcxform.machine.chain import Chain, Triple, chain_of
 from gcxform.machine.machine import Axis, Machine
 from gcxform.machine.machinetext import axis_lines
 from gcxform.machine.presets import FAR
@@ -72,3 +75,25 @@ def with_found(found: Placed, letter: str, machine: Machine | None, comments: li
     head = ["format = 1", f'table = ["{letter}"]', "", f"[axis.{letter}]"]
     marked = [f"{MARK} {comment}" for comment in comments]
     return "\n".join([*head, *marked, *axis_lines(axis_of(found))]) + "\n"
+
+
+# --- all axes ---
+
+
+def probing(machine: Machine, tool: int | None) -> Chain:
+    """Return the chain of a machine with its probe. Raises UsageError."""
+    chain = chain_of(machine)
+    if not chain.axes:
+        message = "this machine has no rotary axis"
+        raise UsageError.one("GX452", message, Location(str(machine.file)))
+    return replace(chain, tip=_tip(machine, tool)) if chain.head or tool is not None else chain
+
+
+def bundled_text(found: Bundled, machine: Machine, data: str) -> str:
+    """Return the machine file with all axes that were found."""
+    text = machine.file.read_bytes().decode("utf-8")
+    for axis in found.chain.axes:
+        stated = Axis(direction=axis.direction, point=axis.point, sign=axis.sign)
+        comments = bundlewords.comments(found, axis.letter, data)
+        text = with_axis(text, axis.letter, stated, comments, str(machine.file))
+    return text

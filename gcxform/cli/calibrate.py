@@ -212,6 +212,75 @@ def rotary(
     click.echo("\n".join(said), err=STDOUT in (output, report))
 
 
+_POSES = """
+DATA is a table with a row for each pose, and a column for each rotary axis of the machine:
+
+\b
+    ball, A [deg], C [deg], X [mm],  Y [mm],  Z [mm]
+    1,    -30,     45,      82.7912, 40.1623, -35.9984
+
+ball tells balls apart, and may be absent where there is one. 2 balls at 30 poses each, with all
+axes turned in combination, are a good measurement. The direction and point of every rotary axis are
+found together with the places of the balls and, unless --linear none, with what is seen of the
+linear axes: differences of scale and squareness. These are reported and belong into the error
+model. The absolute scale is never seen; --linear absolute asks for it and shows why not.
+"""
+
+
+@command.command("bundle", epilog=_POSES, short_help="Balls at any poses: all rotary axes at once.")
+@click.option("-m", "--machine", metavar="FILE", required=True, help="The machine as believed.")
+@click.option("--tool", metavar="N", type=int, help="The probe, if an axis turns the head.")
+@click.option(
+    "--noise",
+    metavar="LENGTH",
+    default="2 um",
+    show_default=True,
+    help="Standard deviation of a coordinate of a centre.",
+)
+@click.option(
+    "--linear",
+    type=click.Choice(["differences", "none", "absolute"]),
+    default="differences",
+    show_default=True,
+    help="Which errors of the linear axes are unknown.",
+)
+@click.option("-o", "--output", metavar="FILE", help="Write the machine file with the axes (TOML).")
+@click.option("--report", metavar="FILE", help="Write what was found, with covariance (JSON).")
+@click.argument("data", metavar="DATA")
+def bundle(
+    data: str,
+    machine: str,
+    tool: int | None,
+    noise: str,
+    linear: str,
+    output: str | None,
+    report: str | None,
+) -> None:
+    """Turn centres of balls at any poses into all rotary axes, with squareness.
+
+    Centres that do not belong to the rest are left out and named. Refused are unknowns that the
+    poses do not determine, and residuals above 3 times the noise.
+    """
+    from gcxform.calibrate import bundlewords
+    from gcxform.calibrate.ballfile import read_poses
+    from gcxform.calibrate.bundle import bundle as fit
+    from gcxform.calibrate.rotarymachine import bundled_text, probing
+    from gcxform.cli.asked import Asked
+
+    check_places({"-o": output, "--report": report}, [data, machine])
+    believed = Asked(machine=machine).loaded_machine
+    assert believed is not None
+    chain = probing(believed, tool)
+    measured = read_poses(_path(data), chain.letters)
+    found = fit(chain, measured.poses, _length(noise, "--noise"), linear)
+    if output is not None:
+        _write(output, bundled_text(found, believed, measured.file))
+    if report is not None:
+        whole = bundlewords.report(found, measured.file, measured.conditions)
+        _write(report, json.dumps(whole, indent=1) + "\n")
+    click.echo("\n".join(bundlewords.lines(found)), err=STDOUT in (output, report))
+
+
 def _path(name: str) -> Path:
     return Path("/dev/stdin" if name == STDOUT else name)
 

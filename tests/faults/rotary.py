@@ -6,6 +6,7 @@ from faults.mutation import Mutation
 
 FIGURES = "tests/test_rotary.py"
 FILES = "tests/test_rotary_files.py"
+BUNDLE = "tests/test_bundle.py"
 
 
 def _rotary(file: str, name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
@@ -14,7 +15,6 @@ def _rotary(file: str, name: str, old: str, new: str, tests: str = FIGURES) -> M
 
 MUTATIONS = (
     # circles
-    _rotary("circle", "Kasa forgets a factor", "[2.0 * flat, ones]", "[flat, ones]"),
     _rotary("circle", "the plane is that of the largest", "axes[..., 2, :]", "axes[..., 0, :]"),
     _rotary("circle", "one step is enough", "for _ in range(STEPS):", "for _ in range(1):"),
     _rotary(
@@ -23,7 +23,6 @@ MUTATIONS = (
         "np.where(largest < 0.0, -vectors",
         "np.where(largest < -2.0, -vectors",
     ),
-    _rotary("circle", "a line is a circle", "converged &= singular", "converged |= singular"),
     _rotary("circle", "the slopes forget the radius", "-inside / circle.radius", "-inside"),
     _rotary(
         "circle",
@@ -137,6 +136,39 @@ MUTATIONS = (
         "the axial part is the radial one",
         '("radial", "tangential", "axial")',
         '("axial", "tangential", "radial")',
+    ),
+    # all axes
+    _rotary(
+        "bundle", "squareness has the other sign", "[scale, -c0y, b0z]", "[scale, c0y, b0z]", BUNDLE
+    ),
+    _rotary(
+        "bundle",
+        "readings are where the machine stands",
+        "np.linalg.solve(np.eye(3) + self.errors(unknowns), stands.T).T",
+        "stands",
+        BUNDLE,
+    ),
+    _rotary(
+        "bundle",
+        "all balls are the first",
+        "balls[self.poses.index]",
+        "balls[[0] * len(self.poses.ball)]",
+        BUNDLE,
+    ),
+    _rotary(
+        "bundle",
+        "the blind are not refused",
+        "for row in blind(layout, design):",
+        "for row in ():",
+        BUNDLE,
+    ),
+    _rotary("bundle", "outliers are kept", "<= OUTLYING)", "<= 1e9)", BUNDLE),
+    _rotary("bundle", "differences are not halved", "/ (2.0 * size)", "/ size", BUNDLE),
+    _rotary(
+        "bundle", "contradictions pass", "found.rms > REJECTED * noise", "found.rms > 1e9", BUNDLE
+    ),
+    _rotary(
+        "bundlewords", "a shift is a tilt", "for part in parts", "for part in parts[::-1]", BUNDLE
     ),
     # files
     _rotary("csvtext", "a radian is a degree", '"rad": math.degrees(1.0)', '"rad": 1.0', FILES),
