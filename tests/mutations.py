@@ -26,7 +26,7 @@ from faults.mutation import Mutation
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("gcxform", "plugins/gcxform_plugins", "grammars/gcxform_grammars")
 FAILED = 1  # pytest's exit code for tests that failed
-TIMEOUT = 180  # seconds; a mutant that hangs is noticed too
+TIMEOUT = 180  # seconds for one set of tests; a mutant that hangs is noticed too
 
 
 # --- the copy ---
@@ -73,7 +73,7 @@ def run(folder: Path, *tests: str) -> int:
     command = [*own, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *tests]
     try:
         done = subprocess.run(
-            command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=TIMEOUT
+            command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=TIMEOUT * len(tests)
         )
     except subprocess.TimeoutExpired:
         return FAILED
