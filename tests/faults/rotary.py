@@ -162,10 +162,14 @@ MUTATIONS = (
         "for row in ():",
         BUNDLE,
     ),
-    _rotary("bundle", "outliers are kept", "<= OUTLYING)", "<= 1e9)", BUNDLE),
+    _rotary("bundle", "outliers of a bundle are kept", "<= OUTLYING)", "<= 1e9)", BUNDLE),
     _rotary("bundle", "differences are not halved", "/ (2.0 * size)", "/ size", BUNDLE),
     _rotary(
-        "bundle", "contradictions pass", "found.rms > REJECTED * noise", "found.rms > 1e9", BUNDLE
+        "bundle",
+        "contradictions of a bundle pass",
+        "found.rms > REJECTED * noise",
+        "found.rms > 1e9",
+        BUNDLE,
     ),
     _rotary(
         "bundlewords", "a shift is a tilt", "for part in parts", "for part in parts[::-1]", BUNDLE
