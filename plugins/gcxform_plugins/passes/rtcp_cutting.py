@@ -43,6 +43,7 @@ class Cutting:
         self.unknown_start = np.isnan(self.start[:, followed]).any(axis=1)
         self.turned = turned_at(place.angles(self.end))
         self.turned_before = turned_at(place.angles(self.start))
+        self.own = (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
         self.cuts = (path.kind == gx.Kind.LINE) & (path.form == gx.Form.PLAIN)
         per_minute = path.feed_mode == gx.FeedMode.PER_MINUTE
         self.nowhere = self.cuts & self.to_axes & per_minute & (self._ways() < STILL)
@@ -157,32 +158,46 @@ class Cutting:
     # --- what is refused ---
 
     def _check(self) -> None:
-        path, cuts = self.path, self.cuts
+        angles, before = self.place.angles(self.end), self.place.angles(self.start)
+        moved = np.nan_to_num(np.abs(angles - before)).max(axis=1) > STILL
+        moved |= (np.isnan(before) & ~np.isnan(angles)).any(axis=1)
         turned = self.turned | self.turned_before
-        angles = self.place.angles(self.end)
-        moved = np.nan_to_num(np.abs(self.place.angles(self.end - self.start))).max(axis=1) > STILL
-        moved |= (np.isnan(self.place.angles(self.start)) & ~np.isnan(angles)).any(axis=1)
-        own = (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
-        rapid = path.kind == gx.Kind.RAPID
-        unknown = np.isnan(angles).any(axis=1) | (np.isnan(self.end[:, :3]).any(axis=1) & turned)
-        unknown |= cuts & (turned | moved) & self.unknown_start
-        other = ~own & ~np.isin(path.form, (gx.Form.PLAIN, gx.Form.CYCLE)) & turned
-        hint = "program all axes before, or say where they are with start in [input]"
-        self._refuse("GX311", unknown & ~own, "where the axes stand is not known here", hint)
-        known = "turn the axes back to 0 before"
-        message = "a move in machine coordinates, where axes are turned"
-        self._refuse("GX330", own & turned, message, known)
-        message = "cutter compensation is in force"
-        self._refuse("GX330", path.side != 0, message, 'put the pass "cutter-comp" before')
-        self._refuse("GX330", other | (path.form == gx.Form.CYCLE), "this is no plain move", known)
-        if self.step.rapids == "refuse":  # the first one may turn axes from anywhere to 0
-            starting = np.isnan(self.place.angles(self.start)).any(axis=1) & ~self.turned
-            hint = 'move at a feed, or say rapids = "ends" if the tool is clear on any way'
-            message = "where the tip goes in a rapid that turns axes is not known"
-            self._refuse("GX330", rapid & moved & ~own & ~starting, message, hint)
+        self._check_known(turned, moved)
+        self._check_forms(turned)
+        if self.step.rapids == "refuse":
+            self._check_rapids(moved)
         self._check_ways_round()
         self._check_tools(turned)
         self._check_feeds(moved)
+
+    def _check_known(self, turned: Flags, moved: Flags) -> None:
+        unknown = np.isnan(self.place.angles(self.end)).any(axis=1)
+        unknown |= np.isnan(self.end[:, :3]).any(axis=1) & turned
+        unknown |= self.cuts & (turned | moved) & self.unknown_start
+        hint = "program all axes before, or say where they are with start in [input]"
+        message = "where the axes stand is not known here"
+        self._refuse("GX311", unknown & ~self.own, message, hint)
+
+    def _check_forms(self, turned: Flags) -> None:
+        """Refuse what is no plain move, and moves to the machine's own points while turned."""
+        path, hint = self.path, "turn the axes back to 0 before"
+        message = "a move in machine coordinates, where axes are turned"
+        self._refuse("GX330", self.own & turned, message, hint)
+        message = "cutter compensation is in force"
+        self._refuse("GX330", path.side != 0, message, 'put the pass "cutter-comp" before')
+        cycle = np.isin(path.form, (gx.Form.CYCLE, gx.Form.SYNCHRONISED))
+        message = "a canned cycle or a tap is no plain move"
+        self._refuse("GX330", cycle, message, 'put the pass "cycles" before')
+        other = ~self.own & (path.form != gx.Form.PLAIN) & turned
+        self._refuse("GX330", other, "this is no plain move", hint)
+
+    def _check_rapids(self, moved: Flags) -> None:
+        """Refuse rapids that turn axes, but from an unknown angle to 0, as a program begins."""
+        unknown = np.isnan(self.place.angles(self.start)).any(axis=1)
+        rapid = (self.path.kind == gx.Kind.RAPID) & ~self.own & ~(unknown & ~self.turned)
+        message = "where the tip goes in a rapid that turns axes is not known"
+        hint = 'move at a feed, or say rapids = "ends" if the tool is clear on any way'
+        self._refuse("GX330", rapid & moved, message, hint)
 
     def _check_ways_round(self) -> None:
         """Refuse moves that a control may make the other way round."""
@@ -229,13 +244,12 @@ class Cutting:
         axes = self._converted(end, row) if self.to_axes else end[:, :3]
         axes = axes + place.zero
         angles = place.angles(end)
-        own = np.isin(self.path.form[row], (gx.Form.HOME, gx.Form.MACHINE))
         named = [*zip("XYZ", place.chain.travel, axes.T, strict=True)]
         for axis, values in zip(place.chain.axes, angles.T, strict=True):
             if axis.limits is not None:
                 named.append((axis.letter, axis.limits, values))
         for letter, (low, high), values in named:
-            beyond = ((values < low - SAME) | (values > high + SAME)) & ~own
+            beyond = ((values < low - SAME) | (values > high + SAME)) & ~self.own[row]
             if beyond.any():
                 at = int(np.argmax(beyond))
                 message = f"{letter} would have to go to {values[at]:.3f}"
