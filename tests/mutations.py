@@ -73,7 +73,12 @@ def run(folder: Path, *tests: str) -> int:
     command = [*own, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *tests]
     try:
         done = subprocess.run(
-            command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=TIMEOUT * len(tests)
+            command,
+            cwd=ROOT,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=TIMEOUT * len(tests),
         )
     except subprocess.TimeoutExpired:
         return FAILED

@@ -28,6 +28,10 @@ ELSEWHERE = {
     "GX454": "test_controls.py",
     **dict.fromkeys(("GX470", "GX471", "GX472", "GX473", "GX474"), "test_diagonal_files.py"),
     **dict.fromkeys(("GX475", "GX476"), "test_step_diagonal.py"),
+    "GX486": "test_rotary.py",
+    "GX487": "test_rotary.py",
+    "GX488": "test_rotary_files.py",
+    "GX489": "test_bundle.py",
     "GX481": "format_kit.py",  # of writing tables, which no pipeline does
     "GX605": "test_table_verb.py",
     "GX602": "test_corpus.py",  # a pass that does not ensure what it says
