@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from gcxform.machine.inverse import turns as turns
     from gcxform.machine.lattice import Lattice as Lattice
     from gcxform.machine.linear import Linear as Linear
+    from gcxform.machine.mean import Mean as Mean
     from gcxform.machine.pitch import PitchTable as PitchTable
     from gcxform.machine.pitch import PitchTables as PitchTables
     from gcxform.machine.presets import Kinematics as Kinematics
@@ -140,6 +141,7 @@ _HOMES = {
     "machine.functions": "AxisFunction AxisFunctions Fault faults",
     "machine.lattice": "Lattice",
     "machine.linear": "Linear",
+    "machine.mean": "Mean",
     "machine.presets": "Kinematics",
     "machine.rigid": "RigidBody",
     "machine.pitch": "PitchTable PitchTables",

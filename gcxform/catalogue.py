@@ -589,8 +589,8 @@ CATALOGUE: dict[str, tuple[str, str]] = {
     "GX484": (
         "Backlash in a pass that does not know the direction of travel",
         "The error of an axis depends on the direction in which it moved last, and this pass "
-        "takes one error for each position. Leave backlash to the control, or give the mean of "
-        "both directions: forward and reverse alike.",
+        'takes one error for each position. Leave backlash to the control; `backlash = "mean"` '
+        "compensates the mean of both directions, and half the backlash is left in each.",
     ),
     "GX485": (
         "Deviations of a size that no machine has",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gcxform.machine.errors import ErrorModel, FloatArray, Outside
+from gcxform.machine.errors import ErrorModel, FloatArray, Outside, State
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +24,11 @@ class Mean(ErrorModel):
     ) -> FloatArray:
         """Return E (n, 3) in mm at the positions (n, 3) in mm: see `ErrorModel.error`."""
         return self.model.error(position, outside, tool)
+
+    @property
+    def states(self) -> tuple[State, ...]:
+        """The thermal states of the model."""
+        return self.model.states
 
     @property
     def tool(self) -> FloatArray | None:

@@ -18,7 +18,6 @@ from gcxform.api import read
 from gcxform.certificate import Certificate
 from gcxform.dialect import Dialect, NumberFormat
 from gcxform.machine.errors import ErrorModel, FloatArray, Outside
-from gcxform.machine.mean import Mean
 from gcxform.options import ModelFile
 from gcxform.pipeline import Pipeline
 from gcxform.registry import default_registry
@@ -104,11 +103,9 @@ class Chain:
 
         Of a machine with backlash the mean of both directions is compensated.
         """
-        told = self.model
-        if told.model.backlash.any():
-            told = replace(told, model=Mean(told.model))
         options: Mapping[str, Any] = {
-            "model": told,
+            "model": self.model,
+            "backlash": "mean",
             "tolerance": self.tolerance,
             "outside": self.outside,
             "part_origin": (0.0, 0.0, 0.0),

@@ -13,7 +13,7 @@ c + E(c), cut where the error bends. The undo is then the search for the command
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 import numpy as np
@@ -84,17 +84,24 @@ class Volumetric(gx.Pass):
     time: Annotated[
         str | None, gx.Option("time (ISO 8601) whose temperatures hold; absent: as the model says")
     ] = None
+    backlash: Annotated[
+        Literal["refuse", "mean"],
+        gx.Option("of a model with backlash: refuse it, or take the mean of both directions"),
+    ] = "refuse"
     inverse: Annotated[
         bool, gx.Option("the program holds commands: write where the machine goes with them")
     ] = False
 
     def __post_init__(self) -> None:
-        """Take the model in its state at the time, and turn the facts round for the inverse.
+        """Take the model at its time and between its directions; turn facts round for the inverse.
 
         Raises ValueError for what the inverse cannot do.
         """
         if self.time is not None:
             object.__setattr__(self, "model", self.model.at_time(self.time))
+        if self.backlash == "mean" and self.model.model.backlash.any():
+            mean = gx.Mean(self.model.model)
+            object.__setattr__(self, "model", replace(self.model, model=mean))
         if self.inverse and self.outside is gx.Outside.ZERO:
             raise ValueError("inverse does not go with outside = zero, where the error jumps")
         if self.inverse and self.iterations:
@@ -123,7 +130,8 @@ class Volumetric(gx.Pass):
         if self.model.model.backlash.any():
             axes = " ".join(a for a, b in zip("XYZ", self.model.model.backlash, strict=True) if b)
             message = f"volumetric does not compensate backlash, and the model has some on {axes}"
-            raise gx.UsageError.one("GX484", message)
+            hint = 'backlash = "mean" compensates what both directions have in common'
+            raise gx.UsageError.one("GX484", message, hint=hint)
         offsets = context.machine.work_offsets if context.machine else {}
         if self.part_origin is None and not offsets:
             raise gx.UsageError.one(
