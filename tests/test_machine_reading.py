@@ -19,6 +19,8 @@ from gcxform.toolpath.path import Toolpath
 MACHINE = """format = 1
 [axis.X]
 max-speed = 6000.0
+[axis.Y]
+[axis.Z]
 [work-offset.G54]
 X = 100.0
 [work-offset.G55]
