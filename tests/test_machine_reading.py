@@ -65,8 +65,8 @@ def put(folder: Path, body: str, name: str = "p.nc") -> None:
 @pytest.mark.parametrize(
     ("old", "new", "place"),
     [
-        ("Z = 300.0", 'Z = "3 ft"', "m.toml:11:1: error[GX405]: Z: 'ft' is not a unit"),
-        ("[tool.1]", "[tool.one]", "m.toml:12:1: error[GX437]: 'one' is not a tool number"),
+        ("Z = 300.0", 'Z = "3 ft"', "m.toml:13:1: error[GX405]: Z: 'ft' is not a unit"),
+        ("[tool.1]", "[tool.one]", "m.toml:14:1: error[GX437]: 'one' is not a tool number"),
     ],
 )
 def test_a_bad_machine_file(here: Path, words: list[str], old: str, new: str, place: str) -> None:
