@@ -53,7 +53,7 @@ def steps(random: Random) -> list[str]:
     blocks = ["G17", "G0 Z{z}", "G91", f"{level} X{{x}} Y{{y}} {cycle} Z-4 R-2 L3"]
     blocks += random.choices(more, k=random.randint(0, 4))
     blocks += random.choice(([], ["G90 X{x} Z-3 R{r}", "X{x}"], ["G90 Y{y} Z-3 R{r}"]))
-    blocks.append("G90 G80")
+    blocks += ["G90 G80", "G0 X{x}"]  # which shows the level that is left behind
     return [filled(random, block) for block in blocks]
 
 
