@@ -9,7 +9,7 @@ import gcxform_plugins
 import pytest
 
 import gcxform
-from gcxform.catalogue import CATALOGUE
+from gcxform.catalogue import CATALOGUE, machines, reading, usage, writing
 
 PACKAGES = (gcxform, gcxform_plugins)
 CODE = re.compile(r"\bGX[0-9]{3}\b")
@@ -20,7 +20,7 @@ def used() -> set[str]:
     for package in PACKAGES:
         root = Path(str(package.__file__)).parent
         for path in root.rglob("*.py"):
-            if path.name != "catalogue.py":
+            if path.parent.name != "catalogue":
                 found.update(CODE.findall(path.read_text("utf-8")))
     return found
 
@@ -35,6 +35,11 @@ def test_every_explanation_is_of_a_code_in_the_sources() -> None:
 
 def test_codes_are_in_order() -> None:
     assert list(CATALOGUE) == sorted(CATALOGUE)
+
+
+def test_no_code_stands_in_two_files() -> None:
+    parts = [module.CODES for module in (reading, machines, writing, usage)]
+    assert sum(len(codes) for codes in parts) == len(CATALOGUE)
 
 
 @pytest.mark.parametrize("code", CATALOGUE)
