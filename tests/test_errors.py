@@ -156,8 +156,8 @@ def test_uniform_and_searched_cells_agree(function):
         [function.position, np.linspace(-1, 2, 301) * reach + function.position[0]]
     )
     one, other = np.zeros((3, len(points))), np.zeros((3, len(points)))
-    function.add_to(one, points)
-    searched.add_to(other, points)
+    function.add_columns(one, points, range(3))
+    searched.add_columns(other, points, range(3))
     assert one == pytest.approx(other, abs=1e-12, rel=1e-9)
 
 

@@ -17,7 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 from gcxform.diagnostics import Diagnostic, UsageError
-from gcxform.machine.errors import AXES, BLOCK, ErrorModel, FloatArray, Outside
+from gcxform.machine.errors import AXES, FloatArray
+from gcxform.machine.tabled import Positions, Tabled
 
 COMBINATIONS_AT_MOST = 250_000  # cells (50 ms) for which the Lipschitz constant is computed exactly
 COLUMNS = ("X", "Y", "Z", "A", "B", "C")
@@ -110,12 +111,6 @@ class AxisFunction:
         """Whether the function is zero everywhere."""
         return not self.values.any()
 
-    def add_to(self, total: FloatArray, coordinate: FloatArray) -> None:
-        """Add the displacement (3, n) in mm at the coordinates (n,) in mm to `total`, in place."""
-        for first in range(0, len(coordinate), BLOCK):
-            piece = slice(first, first + BLOCK)
-            self.add_columns(total[:, piece], coordinate[piece], range(3))
-
     def add_columns(self, total: FloatArray, coordinate: FloatArray, which: Iterable[int]) -> None:
         """Add some columns at the coordinates (n,) in mm to as many rows of `total`, in place."""
         cell, part = self._uniform_cell(coordinate) if self._uniform else self._cell(coordinate)
@@ -158,7 +153,7 @@ def _is_uniform(position: FloatArray) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class AxisFunctions(ErrorModel):
+class AxisFunctions(Tabled):
     """The model of nine functions, E = Dx(x) + Dy(y) + Dz(z).
 
     It is the first-order rigid-body model without angular errors, hence independent of the tool
@@ -170,40 +165,23 @@ class AxisFunctions(ErrorModel):
     order: str = AXES
     kind: ClassVar[str] = "axis-functions"
 
-    def error(
-        self,
-        position: FloatArray,
-        outside: Outside = Outside.ERROR,
-        tool: FloatArray | None = None,
-        sense: FloatArray | None = None,
-    ) -> FloatArray:
-        """Return E (n, 3) in mm at the positions (n, 3) in mm: see `ErrorModel.error`."""
-        total = np.zeros((3, len(position)))
-        # Unknown coordinates are nan, and a cast of nan to a cell warns.
-        with np.errstate(invalid="ignore"):
-            for k, function in enumerate(self.axes):
-                if function is None or function.trivial:
-                    continue
-                column = position[:, k]
-                if outside is Outside.CLAMP:
-                    column = np.clip(column, *self.range_of(k))
-                function.add_to(total, column)
-        if outside is Outside.ZERO:
-            total[:, self.outside(position).any(axis=1)] = 0.0
-        return total.T
-
     @property
-    def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The node positions of X, Y and Z in mm; empty for an axis without functions."""
-        x, y, z = (np.empty(0) if f is None else f.position for f in self.axes)
+    def positions(self) -> Positions:
+        """The node positions of X, Y and Z in mm."""
+        x, y, z = (None if f is None else f.position for f in self.axes)
         return x, y, z
 
-    def range_of(self, axis_index: int) -> tuple[float, float]:
-        """Return the first and last node of an axis in mm; infinite for an absent axis."""
-        function = self.axes[axis_index]
-        if function is None:
-            return -math.inf, math.inf
-        return float(function.position[0]), float(function.position[-1])
+    def add(
+        self,
+        total: FloatArray,
+        place: FloatArray,
+        tool: FloatArray | None,
+        sense: FloatArray | None,
+    ) -> None:
+        """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
+        for k, function in enumerate(self.axes):
+            if function is not None and not function.trivial:
+                function.add_columns(total, place[:, k], range(3))
 
     def lipschitz(self, reach: float = 0.0) -> float:
         """Return the largest spectral norm of dE/dc (mm/mm): see `ErrorModel.lipschitz`.

@@ -16,7 +16,8 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from gcxform.machine.errors import BLOCK, ErrorModel, FloatArray, Outside, part_of
+from gcxform.machine.errors import FloatArray
+from gcxform.machine.tabled import Positions, Tabled
 
 Cell = npt.NDArray[np.intp]
 Field = tuple[list[FloatArray], FloatArray]
@@ -24,7 +25,7 @@ CORNERS = tuple(itertools.product((0, 1), repeat=3))
 
 
 @dataclass(frozen=True, eq=False)
-class Lattice(ErrorModel):
+class Lattice(Tabled):
     """Errors on a grid.
 
     `grid` holds the positions (mm) on X, Y and Z, ascending; on an axis with one position the error
@@ -48,28 +49,20 @@ class Lattice(ErrorModel):
         """Whether the angular errors are known."""
         return self.turns is not None
 
-    def error(
-        self,
-        position: FloatArray,
-        outside: Outside = Outside.ERROR,
-        tool: FloatArray | None = None,
-        sense: FloatArray | None = None,
-    ) -> FloatArray:
-        """Return E (n, 3) in mm at the positions (n, 3) in mm: see `ErrorModel.error`."""
-        total = np.zeros((3, len(position)))
-        place = position
-        if outside is Outside.CLAMP:
-            place = np.column_stack([np.clip(position[:, k], *self.range_of(k)) for k in range(3)])
-        with np.errstate(invalid="ignore"):
-            for first in range(0, len(position), BLOCK):
-                piece = slice(first, first + BLOCK)
-                self._add(total[:, piece], place[piece], part_of(tool, piece))
-        if outside is Outside.ZERO:
-            total[:, self.outside(position).any(axis=1)] = 0.0
-        return total.T
+    @property
+    def positions(self) -> Positions:
+        """The positions of the grid in mm; None for an axis with one."""
+        x, y, z = (n if len(n) > 1 else None for n in self.grid)
+        return x, y, z
 
-    def _add(self, total: FloatArray, place: FloatArray, tool: FloatArray | None) -> None:
-        """Add the errors (3, n) at some places (n, 3) to `total`, in place."""
+    def add(
+        self,
+        total: FloatArray,
+        place: FloatArray,
+        tool: FloatArray | None,
+        sense: FloatArray | None,
+    ) -> None:
+        """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
         cells = [self._cell(axis, place[:, axis]) for axis in range(3)]
         flat = self._flat
         turning = tool is not None and self.turns is not None
@@ -105,17 +98,6 @@ class Lattice(ErrorModel):
         """The values, and the turns below them, as rows (3 or 6, points)."""
         rows = [self.values] if self.turns is None else [self.values, self.turns]
         return np.ascontiguousarray(np.vstack([r.reshape(-1, 3).T for r in rows]))
-
-    @property
-    def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The positions of the grid in mm; empty for an axis with one."""
-        x, y, z = (n if len(n) > 1 else np.empty(0) for n in self.grid)
-        return x, y, z
-
-    def range_of(self, axis_index: int) -> tuple[float, float]:
-        """Return the first and last position of an axis in mm; infinite if it has one."""
-        nodes = self.grid[axis_index]
-        return (float(nodes[0]), float(nodes[-1])) if len(nodes) > 1 else (-math.inf, math.inf)
 
     # --- bounds ---
 

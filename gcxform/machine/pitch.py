@@ -14,8 +14,9 @@ from typing import ClassVar
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, UsageError
-from gcxform.machine.errors import BoolArray, ErrorModel, FloatArray, Outside
+from gcxform.machine.errors import BoolArray, FloatArray
 from gcxform.machine.functions import AxisFunction, faults
+from gcxform.machine.tabled import Positions, Tabled
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,53 +48,36 @@ class PitchTable:
 
 
 @dataclass(frozen=True, eq=False)
-class PitchTables(ErrorModel):
+class PitchTables(Tabled):
     """The positioning errors of X, Y and Z; an axis which is None has no error and no limits."""
 
     axes: tuple[PitchTable | None, PitchTable | None, PitchTable | None]
     kind: ClassVar[str] = "pitch"
 
-    def error(
+    @property
+    def positions(self) -> Positions:
+        """The positions of X, Y and Z in mm."""
+        x, y, z = (None if t is None else t.position for t in self.axes)
+        return x, y, z
+
+    def add(
         self,
-        position: FloatArray,
-        outside: Outside = Outside.ERROR,
-        tool: FloatArray | None = None,
-        sense: FloatArray | None = None,
-    ) -> FloatArray:
-        """Return E (n, 3) in mm at the positions (n, 3) in mm: see `ErrorModel.error`."""
-        total = np.zeros((3, len(position)))
-        # Unknown coordinates are nan, and a cast of nan to a cell warns.
-        with np.errstate(invalid="ignore"):
-            for k, table in enumerate(self.axes):
-                if table is None:
-                    continue
-                column = position[:, k]
-                if outside is Outside.CLAMP:
-                    column = np.clip(column, *self.range_of(k))
-                found = np.zeros((2, len(column)))
-                table.halves.add_columns(found, column, (0, 1))
-                total[k] = found[0] if sense is None else found[0] + sense[:, k] * found[1]
-        if outside is Outside.ZERO:
-            total[:, self.outside(position).any(axis=1)] = 0.0
-        return total.T
+        total: FloatArray,
+        place: FloatArray,
+        tool: FloatArray | None,
+        sense: FloatArray | None,
+    ) -> None:
+        """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
+        for k, table in enumerate(self.axes):
+            if table is not None:
+                found = np.zeros((2, len(place)))
+                table.halves.add_columns(found, place[:, k], (0, 1))
+                total[k] += found[0] if sense is None else found[0] + sense[..., k] * found[1]
 
     @property
     def backlash(self) -> BoolArray:
         """The axes (3,) whose error depends on the direction of travel."""
         return np.array([table is not None and table.backlash for table in self.axes])
-
-    @property
-    def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The positions of X, Y and Z in mm; empty for an axis without a table."""
-        x, y, z = (np.empty(0) if t is None else t.position for t in self.axes)
-        return x, y, z
-
-    def range_of(self, axis_index: int) -> tuple[float, float]:
-        """Return the first and last position of an axis in mm; infinite for an absent axis."""
-        table = self.axes[axis_index]
-        if table is None:
-            return -math.inf, math.inf
-        return float(table.position[0]), float(table.position[-1])
 
     def lipschitz(self, reach: float = 0.0) -> float:
         """Return the steepest cell of either direction: each axis acts on itself alone."""

@@ -22,15 +22,16 @@ from typing import ClassVar
 
 import numpy as np
 
-from gcxform.machine.errors import AXES, BLOCK, ErrorModel, FloatArray, Outside
+from gcxform.machine.errors import AXES, FloatArray
 from gcxform.machine.functions import AxisFunction
+from gcxform.machine.tabled import Positions, Tabled
 
 Triple = tuple[float, float, float]
 NOWHERE: Triple = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
-class RigidBody(ErrorModel):
+class RigidBody(Tabled):
     """The rigid-body model of linear axes with angular errors.
 
     `axes` holds the functions of X, Y and Z, of six columns each; None is an axis without error
@@ -64,30 +65,21 @@ class RigidBody(ErrorModel):
         """Return the axes which are nearer to the tool than an axis."""
         return [AXES.index(letter) for letter in self.order[self.order.index(AXES[axis]) + 1 :]]
 
-    def error(
-        self,
-        position: FloatArray,
-        outside: Outside = Outside.ERROR,
-        tool: FloatArray | None = None,
-        sense: FloatArray | None = None,
-    ) -> FloatArray:
-        """Return E (n, 3) in mm at the positions (n, 3) in mm: see `ErrorModel.error`."""
-        total = np.zeros((3, len(position)))
-        place = position
-        if outside is Outside.CLAMP:
-            place = np.column_stack([np.clip(position[:, k], *self.range_of(k)) for k in range(3)])
-        away = None if tool is None else np.broadcast_to(tool - self.tool, position.shape)
-        # Unknown coordinates are nan, and a cast of nan to a cell warns.
-        with np.errstate(invalid="ignore"):
-            for first in range(0, len(position), BLOCK):
-                piece = slice(first, first + BLOCK)
-                self._add(total[:, piece], place[piece], None if away is None else away[piece])
-        if outside is Outside.ZERO:
-            total[:, self.outside(position).any(axis=1)] = 0.0
-        return total.T
+    @property
+    def positions(self) -> Positions:
+        """The node positions of X, Y and Z in mm."""
+        x, y, z = (None if f is None else f.position for f in self.axes)
+        return x, y, z
 
-    def _add(self, total: FloatArray, place: FloatArray, away: FloatArray | None) -> None:
-        """Add the errors (3, n) at some places (n, 3) to `total`, in place."""
+    def add(
+        self,
+        total: FloatArray,
+        place: FloatArray,
+        tool: FloatArray | None,
+        sense: FloatArray | None,
+    ) -> None:
+        """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
+        away = None if tool is None else np.broadcast_to(tool - self.tool, place.shape)
         for k, function in enumerate(self.axes):
             if function is None or function.trivial:
                 continue
@@ -113,19 +105,6 @@ class RigidBody(ErrorModel):
                 if away[:, d].any():
                     levers[d] = levers[d] + away[:, d] if d in levers else away[:, d]
         return levers
-
-    @property
-    def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The node positions of X, Y and Z in mm; empty for an axis without functions."""
-        x, y, z = (np.empty(0) if f is None else f.position for f in self.axes)
-        return x, y, z
-
-    def range_of(self, axis_index: int) -> tuple[float, float]:
-        """Return the first and last node of an axis in mm; infinite for an absent axis."""
-        function = self.axes[axis_index]
-        if function is None:
-            return -math.inf, math.inf
-        return float(function.position[0]), float(function.position[-1])
 
     # --- bounds ---
 

@@ -15,7 +15,8 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from gcxform.machine.errors import BORDER, ErrorModel, FloatArray, Outside, State
+from gcxform.machine.errors import BORDER, FloatArray, State
+from gcxform.machine.tabled import Positions, Tabled
 
 
 class Held(NamedTuple):
@@ -172,7 +173,7 @@ def stretch(
 
 
 @dataclass(frozen=True, eq=False)
-class ThermalScrew(ErrorModel):
+class ThermalScrew(Tabled):
     """The positioning errors of axes whose screws or scales are warm; see `Stretch`.
 
     An axis whose stretch is None has no error and no limits. `choose` returns the model in its
@@ -194,37 +195,23 @@ class ThermalScrew(ErrorModel):
         """Return the model in its state at a time (ISO 8601). Raises UsageError."""
         return self if self.choose is None else self.choose(time)
 
-    def error(
-        self,
-        position: FloatArray,
-        outside: Outside = Outside.ERROR,
-        tool: FloatArray | None = None,
-        sense: FloatArray | None = None,
-    ) -> FloatArray:
-        """Return E (n, 3) in mm at the positions (n, 3) in mm: see `ErrorModel.error`."""
-        total = np.zeros((3, len(position)))
-        for k, axis in enumerate(self.stretches):
-            if axis is not None:
-                column = position[:, k]
-                if outside is Outside.CLAMP:
-                    column = np.clip(column, *self.range_of(k))
-                total[k] = axis.at(column)
-        if outside is Outside.ZERO:
-            total[:, self.outside(position).any(axis=1)] = 0.0
-        return total.T
-
     @property
-    def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def positions(self) -> Positions:
         """The sensors as positions of X, Y and Z in mm, and the ends of the travel."""
-        x, y, z = (np.empty(0) if axis is None else axis.position for axis in self.stretches)
+        x, y, z = (None if axis is None else axis.position for axis in self.stretches)
         return x, y, z
 
-    def range_of(self, axis_index: int) -> tuple[float, float]:
-        """Return the travel of an axis in mm; infinite for an absent axis."""
-        axis = self.stretches[axis_index]
-        if axis is None:
-            return -math.inf, math.inf
-        return float(axis.position[0]), float(axis.position[-1])
+    def add(
+        self,
+        total: FloatArray,
+        place: FloatArray,
+        tool: FloatArray | None,
+        sense: FloatArray | None,
+    ) -> None:
+        """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
+        for k, axis in enumerate(self.stretches):
+            if axis is not None:
+                total[k] += axis.at(place[:, k])
 
     def lipschitz(self, reach: float = 0.0) -> float:
         """Return the steepest slope: dE/dc is diagonal, so it is the spectral norm, exactly."""

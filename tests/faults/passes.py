@@ -34,8 +34,8 @@ MUTATIONS = (
     Mutation(
         "E: an axis is dropped",
         "gcxform/machine/functions.py",
-        "self.add_columns(total[:, piece], coordinate[piece], range(3))",
-        "self.add_columns(total[:2, piece], coordinate[piece], range(2))",
+        "function.add_columns(total, place[:, k], range(3))",
+        "function.add_columns(total[:2], place[:, k], range(2))",
         FIGURES,
     ),
     Mutation(

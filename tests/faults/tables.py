@@ -19,8 +19,8 @@ MUTATIONS = (
     Mutation(
         "pitch: forward and reverse are swapped",
         "gcxform/machine/pitch.py",
-        "found[0] + sense[:, k] * found[1]",
-        "found[0] - sense[:, k] * found[1]",
+        "found[0] + sense[..., k] * found[1]",
+        "found[0] - sense[..., k] * found[1]",
         CONVERTING,
     ),
     Mutation(
