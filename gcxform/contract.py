@@ -95,6 +95,15 @@ class Pass:
         """Return what the machine does with a path that came from this pass."""
         return path
 
+    def measure(
+        self, before: Toolpath, after: Toolpath, context: PassContext
+    ) -> Mapping[str, float]:
+        """Return what the certificate shall say of a window besides the deviation, by its name.
+
+        Of each name the largest value of the run is told.
+        """
+        return {}
+
     def prove(self, before: Toolpath, after: Toolpath, context: PassContext) -> None:
         """Check what a pass that resolves has made of the path as read; VerificationError if wrong.
 

@@ -21,7 +21,7 @@ from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import GROUPS, MeaningTable
-from gcxform.options import ModelFile, to_toml
+from gcxform.options import KinematicsFile, ModelFile, to_toml
 from gcxform.source import Source, lines_in
 from gcxform.syntax.scan import Window
 from gcxform.textpasses import TextRun
@@ -68,6 +68,7 @@ class Run:
         self.steps = pipeline.path_passes
         self.text = TextRun(pipeline.text_passes, pipeline.target, source.name)
         self.reader = WindowReader(pipeline.source)
+        self.measured: dict[str, float] = {}
         self.verifier: Verifier | None = None
         self.interpreter: Interpreter | None = None
         if not pipeline.copies:
@@ -232,6 +233,8 @@ class Run:
                 check_compensated(step, path, after)
         except InputError as error:
             raise _located(error, window, self.source.name) from None
+        for what, size in step.measure(path, after, self.pipeline.context).items():
+            self.measured[what] = max(size, self.measured.get(what, size))
         if self.verify == "full":
             for fact in step.ensures:
                 if not fact.check(after):
@@ -270,6 +273,7 @@ class Run:
             | {"ratio": out.growth, "limit": pipeline.growth},
             self.verifier is not None or (pipeline.copies and self.verify != "off"),
         )
+        certificate.measured = self.measured
         self._fill(certificate)
         return certificate
 
@@ -347,9 +351,9 @@ def _described(step: Pass | TextPass) -> dict[str, Any]:
     """Return a step's name, options and promise for the certificate."""
     entry: dict[str, Any] = {"use": step.name, **to_toml(step)}
     for key, value in vars(step).items():
-        if isinstance(value, ModelFile):
+        if isinstance(value, ModelFile | KinematicsFile):
             entry[key] = {"file": value.path.name, "sha256": value.sha256}
-            if value.model.states:
+            if isinstance(value, ModelFile) and value.model.states:
                 entry[key] |= {"states": [asdict(state) for state in value.model.states]}
     if isinstance(step, Pass):
         entry["promise"] = step.promise if np.isfinite(step.promise) else None

@@ -192,6 +192,12 @@ CODES: dict[str, tuple[str, str]] = {
         "file: name its `kinematics`, or list its axes in `table` and `head`, and give each axis "
         "a direction and a point.",
     ),
+    "GX743": (
+        "The calibrated machine is another one",
+        "`rtcp` corrects a program for the measured places of the same rotary axes: both files "
+        "name them in the same order on the same sides, with the same gauge point. Take the file "
+        "that `gcxform calibrate rotary` has written from the one of [machine].",
+    ),
     "GX801": (
         "Two plugins offer the same name",
         "Which one a pipeline means would depend on the order of installation. Uninstall one of "

@@ -9,6 +9,9 @@ BOUND = f"{PASSES}/rtcp_bound.py"
 CUTTING = f"{PASSES}/rtcp_cutting.py"
 PLACE = f"{PASSES}/rtcp_place.py"
 UNDOING = f"{PASSES}/rtcp_undoing.py"
+SMALL = f"{PASSES}/rtcp_small.py"
+WAYS = f"{PASSES}/rtcp_ways.py"
+REPOST = "tests/test_rtcp_repost.py"
 HOLDS = f"{TESTS}::test_the_bound_holds_for_any_piece"
 
 MUTATIONS = (
@@ -74,5 +77,40 @@ MUTATIONS = (
         "return np.asarray(table**2 * far + 2.0 * table * way + head**2 * arm)",
         "return np.asarray(2.0 * table * way + head**2 * arm)",
         f"{TESTS}::test_undone_pieces_stay_beside_the_curve",
+    ),
+    Mutation(
+        "rtcp: a point beside the axis is corrected in proportion",
+        SMALL,
+        "second * far + 2.0 * first * fast + size * bent + step**2 * aside,",
+        "second * far + 2.0 * first * fast + size * bent,",
+        f"{REPOST}::test_the_bound_of_corrections_holds",
+    ),
+    Mutation(
+        "rtcp: an axis that leans is corrected in proportion",
+        SMALL,
+        "size, first, second = 2.0 * lean, step * lean, 2.0 * step**2 * lean",
+        "size, first, second = 2.0 * lean, step * lean, 0.0 * step**2 * lean",
+        f"{REPOST}::test_the_bound_of_corrections_holds",
+    ),
+    Mutation(
+        "rtcp: a program is corrected for the machine that it was posted for",
+        WAYS,
+        "return self.axes.axes_of(tips, angles, rows)",
+        "return self.nominal.axes_of(tips, angles, rows)",
+        f"{REPOST}::test_reposted_before_rounding",
+    ),
+    Mutation(
+        "rtcp: the tool axis that stays off is that of one machine",
+        f"{PASSES}/rtcp.py",
+        "for p in (way.nominal, way.axes))",
+        "for p in (way.nominal, way.nominal))",
+        f"{REPOST}::test_reposted_before_rounding",
+    ),
+    Mutation(
+        "rtcp: what is undone bends as if the tip went straight",
+        UNDOING,
+        "return np.asarray(turns**2 * far + 2.0 * turns * way + 2.0 * head**2 * arm)",
+        "return np.asarray(0.0 * turns * way)",
+        f"{REPOST}::test_undone_pieces_stay_beside_the_curve",
     ),
 )

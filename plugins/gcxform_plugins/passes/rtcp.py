@@ -5,6 +5,9 @@ other takes them for its axes, and between two blocks it moves all axes in propo
 leaves its line, by as much as the axes turn. Here lines are cut until the bound of that is within
 the tolerance, and of each piece the angles are rounded first and X, Y, Z computed from them.
 
+Where the axes are not quite where the kinematics of the post-processor have them, `repost` corrects
+a program in axes: the tip goes where it would have gone, at the angles of the program.
+
 At the same angles the tip is as far from its line as the axes are from theirs, because tip and axes
 are apart by a rotation and an arm that the angles alone fix. So one bound serves both directions.
 """
@@ -18,15 +21,16 @@ import numpy as np
 
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_cutting import Cutting
-from gcxform_plugins.passes.rtcp_place import Place
+from gcxform_plugins.passes.rtcp_place import Place, turned_at
 from gcxform_plugins.passes.rtcp_undoing import Undoing
+from gcxform_plugins.passes.rtcp_ways import Between, Corrected
 
 PLAIN = frozenset({gx.ABSOLUTE, gx.LINEAR_ONLY, gx.NOMINAL})
 
 
 @dataclass(frozen=True)
 class Rtcp(gx.Pass):
-    """Turn positions of the tool tip into those of the machine's axes, or the reverse.
+    """Turn positions of the tool's tip into those of the axes, or the reverse, or correct the axes.
 
     The machine file says where the rotary axes are, and the work offset and the tool lengths that
     hold. The work offset is taken on the table with all rotary axes at 0. Axes turn in proportion
@@ -41,16 +45,28 @@ class Rtcp(gx.Pass):
 
     tolerance: Annotated[gx.Length, gx.Option("how far the tip may leave its line", above=0.0)]
     direction: Annotated[
-        Literal["to-machine", "to-tip"],
-        gx.Option("to-machine: of tips, write axes; to-tip: of axes, write tips"),
+        Literal["to-machine", "to-tip", "repost"],
+        gx.Option(
+            "to-machine: of tips, write axes; to-tip: of axes, write tips; repost: of axes, write "
+            "those that take the tip there on the calibrated machine"
+        ),
     ] = "to-machine"
     rapids: Annotated[
         Literal["refuse", "ends"],
         gx.Option("rapids that turn axes: refuse them, or convert where they end"),
     ] = "refuse"
+    calibrated: Annotated[
+        gx.KinematicsFile | None,
+        gx.Option("repost: the machine as it was measured; [machine] is the one posted for"),
+    ] = None
 
     def __post_init__(self) -> None:
-        """Turn the facts round for the reverse."""
+        """Turn the facts round for the reverse. Raises ValueError for options that do not fit."""
+        if (self.direction == "repost") != (self.calibrated is not None):
+            raise ValueError("repost takes calibrated, the file of the measured machine")
+        if self.direction == "repost":
+            object.__setattr__(self, "requires", PLAIN | self.ensures)
+            object.__setattr__(self, "clears", frozenset())
         if self.direction == "to-tip":
             object.__setattr__(self, "requires", PLAIN | self.ensures)
             object.__setattr__(self, "ensures", self.clears)
@@ -73,13 +89,68 @@ class Rtcp(gx.Pass):
             message = "rtcp needs a machine with rotary axes"
             hint = "[machine] file = ..., with `kinematics`, or `table` and `head`"
             raise gx.UsageError.one("GX742", message, hint=hint)
-        gx.chain_of(machine)
+        self._check_calibrated(gx.chain_of(machine))
+
+    def _check_calibrated(self, posted: gx.Chain) -> None:
+        """Refuse a calibrated machine that is another one."""
+        if self.calibrated is None:
+            return
+        measured = gx.chain_of(self.calibrated.machine)
+        alike = ("letters", "tip"), tuple(len(side) for side in (posted.table, posted.head))
+        names, sides = alike
+        same = all(getattr(posted, name) == getattr(measured, name) for name in names)
+        if not same or sides != (len(measured.table), len(measured.head)):
+            message = "the calibrated machine has other rotary axes, or another gauge point"
+            hint = "take the machine file that `gcxform calibrate` has made of the one of [machine]"
+            raise gx.UsageError.one("GX743", message, hint=hint)
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
-        """Return the path of the axes for one of tips; the reverse if asked."""
-        if len(path):
-            path = Cutting(self, path, context, Place(path, context)).run()
+        """Return the path of the axes for one of tips; if asked the reverse, or one corrected."""
+        if len(path) and not self._nothing_to_correct(context):
+            place = Place(path, context)
+            way = self._corrected(path, context) or Between(place, self.direction == "to-machine")
+            path = Cutting(self, path, context, place, way).run()
         return path.replace(blocks=self.timed(path.blocks))
+
+    def _nothing_to_correct(self, context: gx.PassContext) -> bool:
+        """Whether the calibrated machine is where the one posted for is."""
+        if self.calibrated is None or context.machine is None:
+            return False
+        pairs = zip(
+            gx.chain_of(context.machine).axes,
+            gx.chain_of(self.calibrated.machine).axes,
+            strict=True,
+        )
+        return all(
+            (one.direction, one.point, one.sign) == (other.direction, other.point, other.sign)
+            for one, other in pairs
+        )
+
+    def _corrected(self, path: gx.Toolpath, context: gx.PassContext) -> Corrected | None:
+        if self.calibrated is None:
+            return None
+        measured = gx.chain_of(self.calibrated.machine)
+        return Corrected(Place(path, context), Place(path, context, measured))
+
+    def measure(
+        self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
+    ) -> dict[str, float]:
+        """Return how far the tool axis stays off where angles are kept, and what that is at a tool.
+
+        It is nothing at the tip, and at the other end of the tool it is the length times as much.
+        """
+        way = self._corrected(after, context) if len(after) else None
+        if way is None:
+            return {}
+        angles = way.axes.angles(after.end)
+        rows = np.flatnonzero(turned_at(angles))
+        one, other = (p.chain.tool_axis(angles[rows]) for p in (way.nominal, way.axes))
+        off = np.linalg.norm(one - other, axis=1)
+        length = np.linalg.norm(way.axes.tools[way.axes.which[rows]], axis=1)
+        return {
+            "tool axis off, degrees": float(np.degrees(off.max(initial=0.0))),
+            "tool axis off by tool length, mm": float((off * length).max(initial=0.0)),
+        }
 
     def timed(self, blocks: gx.Blocks) -> gx.Blocks:
         """Return blocks in inverse time, if positions of axes are written.
@@ -94,6 +165,12 @@ class Rtcp(gx.Pass):
     def undo(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path of the tip, in pieces, when the control moves all axes in proportion.
 
-        For the reverse it is the path of the axes when the control follows the tip.
+        For the reverse it is the path of the axes when the control follows the tip; for a corrected
+        program that of the axes which would have brought the tip there on the machine posted for.
         """
-        return Undoing(self, path, Place(path, context)).run() if len(path) else path
+        if not len(path) or self._nothing_to_correct(context):
+            return path
+        way = self._corrected(path, context)
+        if way is not None:
+            return Undoing(self, path, way.axes, posted=way.nominal).run()
+        return Undoing(self, path, Place(path, context)).run()

@@ -24,7 +24,7 @@ def turned_at(angles: Floats) -> Flags:
 
 
 class Place:
-    """The machine's chain, and what has to be added to positions of a path.
+    """The machine's chain, or another given, and what has to be added to positions of a path.
 
     A position is that of the gauge point, as words would bring it there with all rotary axes at 0.
     A tip on the workpiece is then position - tool + zero + gauge point, and the axes stand at
@@ -33,10 +33,12 @@ class Place:
     first is the first of the frames.
     """
 
-    def __init__(self, path: gx.Toolpath, context: gx.PassContext) -> None:
+    def __init__(
+        self, path: gx.Toolpath, context: gx.PassContext, chain: gx.Chain | None = None
+    ) -> None:
         assert context.machine is not None
         self.path = path
-        self.chain = gx.chain_of(context.machine)
+        self.chain = chain or gx.chain_of(context.machine)
         self.gauge = np.array(self.chain.tip)
         self.columns = self._columns()
         self.zero = self._zero(context)
