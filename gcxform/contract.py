@@ -68,6 +68,13 @@ class Pass:
     resolves: ClassVar[bool] = False
     """Whether its output is what the rest of the run is compared with; then it has to `prove` it.
     No window ends where cutter compensation is in force for such a pass."""
+    whole_cuts: ClassVar[bool] = False
+    """Whether it has to see every cut as a whole: a window then ends where a rapid follows one."""
+
+    @property
+    def letters(self) -> str:
+        """The letters of axes that its output may have, whether the program names them or not."""
+        return ""
 
     @property
     def promise(self) -> float:

@@ -13,6 +13,7 @@ import numpy as np
 from gcxform.certificate import Certificate
 from gcxform.compensated import check_compensated, whole_stretches
 from gcxform.contract import Pass, TextPass
+from gcxform.cuts import whole_cuts
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.emit.emitter import Emitted, Emitter
@@ -77,6 +78,8 @@ class Run:
     def _prepare(self) -> None:
         pipeline = self.pipeline
         axes = self.source.axes(pipeline.source.axes)
+        written = set(axes).union(*(step.letters for step in self.steps))
+        axes = "".join(axis for axis in pipeline.source.axes if axis in written)
         reading = _with_assumed_start(pipeline, axes)
         self.axes = axes
         self.interpreter = Interpreter(pipeline.source, reading, axes, self.source.name)
@@ -114,6 +117,8 @@ class Run:
             return
         if any(step.resolves for step in self.steps):
             texts = whole_stretches(texts)
+        if any(step.whole_cuts for step in self.steps):
+            texts = whole_cuts(texts)
         with ThreadPoolExecutor(1) as ahead, ThreadPoolExecutor(1) as behind:
             self._transform_all(behind, self._read_ahead(ahead, texts, out), out, progress)
 

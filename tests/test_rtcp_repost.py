@@ -29,7 +29,7 @@ from rtcp_kit import (
 import gcxform as gx
 
 EACH = settings(
-    suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=8
+    suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=4
 )
 ROOM = 2e-6  # mm; the least decimals of a machine file and of the matrices
 OFF, LEAN = 0.05, 1.5e-4  # mm and rad; errors of a good machine
@@ -200,6 +200,28 @@ def test_the_bound_of_corrections_holds(seed, kind, size):
 
 
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("column", [0, 1])
+def test_the_bound_of_an_axis_that_leans(kind, column):
+    """One axis turns, X, Y and Z stand still, and the lines of both machines meet."""
+    one = chain_of_kind(kind, 3)
+    other = measured(one, 4)
+    pairs = zip(one.axes, other.axes, strict=True)
+    leaning = [replace(b, point=a.point) for a, b in pairs]
+    other = replace(
+        other, table=tuple(leaning[: len(one.table)]), head=tuple(leaning[len(one.table) :])
+    )
+    linear = np.full((2, 3), 120.0)
+    angles = np.zeros((2, 2))
+    angles[1, column] = 40.0
+    bound = bend_of_correction((one, other), (linear[:1], linear[1:]), (angles[:1], angles[1:]))
+    ends = other.linear(one.forward(linear, angles)[0], angles)
+    turned = between(*angles, 65)
+    found = tool(other, between(*ends, 65), turned)[0] - tool(one, between(*linear, 65), turned)[0]
+    worst = np.linalg.norm(found, axis=1).max()
+    assert 0.0 < worst <= bound[0] <= 40.0 * worst
+
+
+@pytest.mark.parametrize("kind", KINDS)
 def test_undone_pieces_stay_beside_the_curve(tmp_path, kind):
     """What the proof makes of a long move, against 400 points of it by scipy."""
     nominal = chain_of_kind(kind, 8)
@@ -232,3 +254,189 @@ def test_the_certificate_tells_what_stays(tmp_path):
     told = certificate.measured
     assert 0.001 < told["tool axis off, degrees"] < 0.05
     assert re.search(r'"calibrated": \{\s*"file": "real.toml",\s*"sha256"', certificate.to_json())
+
+
+# --- angles are corrected too ---
+
+
+def corrected(folder, kind, nominal, real, **options):
+    """Return the pipeline that corrects angles as well."""
+    options = {"before": "", "orientation": "correct", "decimals": 4} | options
+    return reposted(folder, kind, nominal, real, **options)
+
+
+def both(path, after, step, nominal, letters):
+    """Return the poses at the ends of lines as posted, as corrected, and the real chain."""
+    last = np.flatnonzero(np.append(np.diff(after.source) > 0, True))
+    old, new = (poses_of(p, letters)[3:] for p in (path, after.take(last)))
+    return old, new, replace(nominal, **sides_of(gx.chain_of(step.calibrated.machine)))
+
+
+def sides_of(chain):
+    """Return table and head of a chain."""
+    return {"table": chain.table, "head": chain.head}
+
+
+def leaning_poses(chain, rng, count, least=15.0, around=60.0):
+    """Return poses (n, 5) that are away from the pole, and from the end of what is reached."""
+    poses = rng.uniform(-1.0, 1.0, (count, 5)) * [150.0, 150.0, 150.0, 0.0, around]
+    poses[:, 3] = rng.uniform(least, 60.0, count)
+    return (poses[:, [0, 1, 2, 4, 3]] if chain.letters[0] == "C" else poses).round(3)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_corrected_before_rounding(tmp_path, kind):
+    """R5: with angles corrected the tip is within 1e-9 mm, and the tool axis within 1e-9."""
+    nominal = chain_of_kind(kind, 5)
+    real = measured(nominal, 6)
+    letters = ("X", "Y", "Z", *nominal.letters)
+    poses = leaning_poses(nominal, np.random.default_rng(8), 60)
+    steps = corrected(tmp_path, kind, nominal, real, decimals=6, largest_turn=5.0, tolerance=0.05)
+    path = gx.Program(posted(poses, letters), steps.source, steps.machine_reading).path
+    step = step_of(steps)
+    exact = replace(steps.context, numbers=replace(steps.context.numbers, angle=14))
+    after = step.apply(path, exact)
+    old, new, real = both(path, after, step, nominal, letters)
+    wanted, found = (
+        tool(c, p[:, :3] + ZERO + [0, 0, LENGTH], p[:, 3:])
+        for c, p in ((nominal, old), (real, new))
+    )
+    assert np.linalg.norm(found[0] - wanted[0], axis=1).max() <= 1e-9
+    assert np.linalg.norm(found[1] - wanted[1], axis=1).max() <= 1e-9
+    assert 0.001 < np.abs(new[:, 3:] - old[:, 3:]).max() < 5.0
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", [0, 5])
+def test_corrected_programs_keep_the_tool(tmp_path, kind, seed):
+    """By matrices of scipy, at 33 places of each block as written: tip and tool axis."""
+    nominal = chain_of_kind(kind, seed)
+    real = measured(nominal, seed)
+    letters = ("X", "Y", "Z", *nominal.letters)
+    poses = leaning_poses(nominal, np.random.default_rng(seed), 6)
+    poses[1:] = (poses[:1] + 0.2 * (poses[1:] - poses[:1])).round(3)
+    steps = corrected(tmp_path, kind, nominal, real, largest_turn=5.0)
+    text = posted(poses, letters)
+    result = steps.run(text, "full")
+    lean = check_tools(text, result, (nominal, letters), (real, letters), TOLERANCE)
+    assert lean <= 2e-5  # of 3e-4 that were
+
+
+def check_tools(text, result, source, target, tolerance, first=3):
+    """Check tips of what is written beside those of the source; return how far axes lean, rad."""
+    (one, old_letters), (other, new_letters) = source, target
+    old, new = positions(text, old_letters), positions(result.text, new_letters)
+    owner = np.array(result.source_map)
+    worst, lean = 0.0, 0.0
+    for line in range(first, len(old) - 1):
+        rows = np.flatnonzero(owner == line)
+        for nth, row in enumerate(rows):
+            part = (nth + np.linspace(0.0, 1.0, 9)[:, None]) / len(rows)
+            posed = old[line - 1] + part * (old[line] - old[line - 1])
+            found = between(new[row - 1], new[row], 9)
+            off = tips(one, posed) - tips(other, found)
+            worst = max(worst, float(np.linalg.norm(off, axis=1).max()))
+            axis = tool(one, posed[:, :3], posed[:, 3:])[1]
+            axis = axis - tool(other, found[:, :3], found[:, 3:])[1]
+            lean = max(lean, float(np.linalg.norm(axis, axis=1).max()))
+    assert worst <= tolerance + ROUNDED + ROOM
+    return lean
+
+
+@pytest.mark.parametrize("largest", [0.05, 0.5, 3.0])
+def test_no_angle_is_corrected_by_more_than_asked(tmp_path, largest):
+    """R6: the pole rule, on a path that winds around the pole and through it."""
+    nominal = chain_of_kind("ac-trunnion", 3)
+    real = measured(nominal, 4)
+    turn = np.linspace(0.0, 1.0, 120)
+    poses = np.zeros((120, 5))
+    poses[:, 0] = 40.0 * turn
+    poses[:, 3] = 12.0 * np.abs(turn - 0.5) * (turn - 0.3)
+    poses[:, 4] = 160.0 * turn
+    options = {"orientation": "correct-if-tilt", "largest_turn": largest}
+    steps = corrected(tmp_path, "ac-trunnion", nominal, real, **options)
+    text = posted(poses.round(4), "XYZAC")
+    result = steps.run(text, "full")
+    told = result.certificate.measured["angles corrected by, degrees"]
+    assert 0.01 < told <= largest + 0.0001
+    check_tools(text, result, (nominal, "XYZAC"), (real, "XYZAC"), TOLERANCE)
+    with pytest.raises(gx.InputError) as caught:
+        corrected(tmp_path, "ac-trunnion", nominal, real, largest_turn=largest).run(text)
+    assert {d.code for d in caught.value.diagnostics} == {"GX333"}
+
+
+@pytest.mark.parametrize("orientation", ["correct", "correct-if-tilt"])
+def test_the_same_machine_changes_no_angle(tmp_path, orientation):
+    """R7, where angles might be corrected."""
+    chain = chain_of_kind("cb-fork", 5)
+    text = posted(np.random.default_rng(2).uniform(-60, 60, (50, 5)), "XYZCB")
+    steps = corrected(tmp_path, "cb-fork", chain, chain, orientation=orientation)
+    assert steps.run(text, "full").text == text
+
+
+# --- another machine ---
+
+PAIRS = [
+    ("ac-trunnion", "bc-trunnion"),
+    ("ac-trunnion", "ca-fork"),
+    ("bc-trunnion", "c-table-b-head"),
+    ("cb-fork", "ac-trunnion"),
+    ("nutating-head", "bc-trunnion"),
+    ("c-table-a-head", "cb-fork"),
+]
+
+
+def retargeted(folder, source, target, **options):
+    """Return the pipeline from one kind with a chain to another."""
+    (folder / "target.toml").write_text(machine_text(*target))
+    options = {"tolerance": 0.01, "direction": "retarget", "target": "target.toml"} | options
+    options = {"before": "", "rapids": "ends", "decimals": 4} | options
+    return pipeline(folder, machine_text(*source), **options)
+
+
+def timed(text):
+    """Return a posted program in G93."""
+    return (
+        text.replace(b"G94", b"G93")
+        .replace(b"F600.", b"")
+        .replace(b"\n", b" F2.\n")
+        .replace(b"G54 F2.", b"G54")
+        .replace(b"M30 F2.", b"M30")
+    )
+
+
+@pytest.mark.parametrize(("source", "target"), PAIRS)
+@pytest.mark.parametrize("seed", [0, 5])
+def test_a_program_for_another_machine(tmp_path, source, target, seed):
+    """By matrices of scipy: tip and tool axis along every block, from one kind to another."""
+    one, other = chain_of_kind(source, seed), chain_of_kind(target, seed + 1)
+    letters = [("X", "Y", "Z", *chain.letters) for chain in (one, other)]
+    poses = leaning_poses(one, np.random.default_rng(seed), 5, least=20.0, around=50.0)
+    poses[1:] = (poses[:1] + 0.2 * (poses[1:] - poses[:1])).round(3)
+    text = timed(posted(poses, letters[0])).replace(b"G1 X", b"G0 X", 1)
+    text = text.replace(b"F2.\nX", b"F2.\nG1 X", 1)
+    result = retargeted(tmp_path, (source, one), (target, other)).run(text, "full")
+    dropped = set(letters[0]) - set(letters[1])
+    assert not dropped & set(result.text.decode())
+    lean = check_tools(text, result, (one, letters[0]), (other, letters[1]), 0.01, first=4)
+    assert 1e-7 < lean <= np.radians(0.1)
+    told = result.certificate.measured["tool axis off, degrees"]
+    assert told == pytest.approx(np.degrees(lean), rel=0.2)
+
+
+@given(st.integers(0, 100_000), st.sampled_from(KINDS), st.sampled_from([1.0, 10.0]))
+def test_the_bound_holds_with_slips(seed, kind, size):
+    """The same where the angles are corrected too, by amounts that differ at both ends."""
+    rng = np.random.default_rng(seed)
+    one = chain_of_kind(kind, seed)
+    other = measured(one, seed + 1)
+    linear = rng.uniform(-150.0, 150.0, (1, 3)) + rng.uniform(-size, size, (2, 3))
+    angles = rng.uniform(-90.0, 90.0, (1, 2)) + rng.uniform(-size, size, (2, 2))
+    slips = rng.uniform(-0.5, 0.5, (2, 2))
+    ways = [(ends[:1], ends[1:]) for ends in (linear, angles, slips)]
+    bound = bend_of_correction((one, other), *ways)[0]
+    ends = other.linear(one.forward(linear, angles)[0], angles + slips)
+    wanted = tool(one, between(*linear, 65), between(*angles, 65))[0]
+    found = tool(other, between(*ends, 65), between(*(angles + slips), 65))[0]
+    worst = np.linalg.norm(found - wanted, axis=1).max()
+    assert worst <= bound + 1e-9

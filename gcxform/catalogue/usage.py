@@ -10,6 +10,12 @@ CODES: dict[str, tuple[str, str]] = {
         "not at the tool's radius from it. Nothing was written. This is a bug of gcxform or of a "
         "plugin; please report it with the program.",
     ),
+    "GX606": (
+        "A program for another machine does not keep the tool where it was",
+        "The path that `rtcp` made was followed by the forward models of both machines, and tip, "
+        "tool axis or time are not those of the program. Nothing was written. This is a bug of "
+        "gcxform or of a plugin; please report it with the program.",
+    ),
     "GX605": (
         "A table does not read back as it was meant",
         "The table that was to be written was read again, and the errors differ. Nothing was "
@@ -197,6 +203,11 @@ CODES: dict[str, tuple[str, str]] = {
         "`rtcp` corrects a program for the measured places of the same rotary axes: both files "
         "name them in the same order on the same sides, with the same gauge point. Take the file "
         "that `gcxform calibrate rotary` has written from the one of [machine].",
+    ),
+    "GX744": (
+        "A program cannot be written for the target machine",
+        "`rtcp` finds the angles of machines with two rotary axes that count on, and it writes "
+        "for the tools that the program was read with. Mend the file of the target machine.",
     ),
     "GX801": (
         "Two plugins offer the same name",

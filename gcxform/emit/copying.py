@@ -93,6 +93,7 @@ class Copying:
     def _refuse_unknown(self) -> None:
         """Refuse words that have to be written anew while it is not known what they would be."""
         unknown = self.positions.programmed & np.isnan(self.positions.held)
+        unknown[:, [axis in self.path.left_out for axis in self.path.axes]] = False
         anew = ~self.lines[self.path.block] & np.isin(self.path.form, FREE)
         rows = np.flatnonzero(anew & unknown.any(axis=1))
         if len(rows):

@@ -14,6 +14,7 @@ are apart by a rotation and an arm that the angles alone fix. So one bound serve
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
@@ -21,7 +22,9 @@ import numpy as np
 
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_cutting import Cutting
+from gcxform_plugins.passes.rtcp_moving import Correcting, Moving
 from gcxform_plugins.passes.rtcp_place import Place, turned_at
+from gcxform_plugins.passes.rtcp_proof import Proof
 from gcxform_plugins.passes.rtcp_undoing import Undoing
 from gcxform_plugins.passes.rtcp_ways import Between, Corrected
 
@@ -45,10 +48,10 @@ class Rtcp(gx.Pass):
 
     tolerance: Annotated[gx.Length, gx.Option("how far the tip may leave its line", above=0.0)]
     direction: Annotated[
-        Literal["to-machine", "to-tip", "repost"],
+        Literal["to-machine", "to-tip", "repost", "retarget"],
         gx.Option(
             "to-machine: of tips, write axes; to-tip: of axes, write tips; repost: of axes, write "
-            "those that take the tip there on the calibrated machine"
+            "those that take the tip there on the calibrated machine; retarget: on another machine"
         ),
     ] = "to-machine"
     rapids: Annotated[
@@ -59,23 +62,61 @@ class Rtcp(gx.Pass):
         gx.KinematicsFile | None,
         gx.Option("repost: the machine as it was measured; [machine] is the one posted for"),
     ] = None
+    orientation: Annotated[
+        Literal["keep", "correct", "correct-if-tilt"],
+        gx.Option("repost: keep the angles, or correct them too; if-tilt: not near the pole"),
+    ] = "keep"
+    largest_turn: Annotated[
+        gx.Angle, gx.Option("repost: by how much an angle may be corrected", above=0.0)
+    ] = 0.5
+    target: Annotated[
+        gx.KinematicsFile | None,
+        gx.Option("retarget: the machine to write for; [machine] is the one posted for"),
+    ] = None
+    axis_tolerance: Annotated[
+        gx.Angle,
+        gx.Option("how far the tool axis may lean from its way, where angles change", above=0.0),
+    ] = 0.1
 
     def __post_init__(self) -> None:
         """Turn the facts round for the reverse. Raises ValueError for options that do not fit."""
-        if (self.direction == "repost") != (self.calibrated is not None):
-            raise ValueError("repost takes calibrated, the file of the measured machine")
-        if self.direction == "repost":
+        self._check_options()
+        if self.direction in ("repost", "retarget"):
             object.__setattr__(self, "requires", PLAIN | self.ensures)
             object.__setattr__(self, "clears", frozenset())
+        if self.turns_anew:
+            object.__setattr__(self, "requires", self.requires - {gx.LINEAR_ONLY})
+            object.__setattr__(self, "resolves", True)
+            object.__setattr__(self, "whole_cuts", self.direction == "retarget")
         if self.direction == "to-tip":
             object.__setattr__(self, "requires", PLAIN | self.ensures)
             object.__setattr__(self, "ensures", self.clears)
             object.__setattr__(self, "clears", frozenset({gx.AXIS_POSITIONS}))
 
+    def _check_options(self) -> None:
+        if (self.direction == "repost") != (self.calibrated is not None):
+            raise ValueError("repost takes calibrated, the file of the measured machine")
+        if (self.direction == "retarget") != (self.target is not None):
+            raise ValueError("retarget takes target, the file of the machine to write for")
+        if self.direction != "repost" and self.orientation != "keep":
+            raise ValueError("orientation is an option of repost")
+        if self.direction == "retarget" and self.rapids == "refuse":
+            raise ValueError('retarget turns axes in rapids: say rapids = "ends" if all is clear')
+
+    @property
+    def turns_anew(self) -> bool:
+        """Whether other angles are written than those of the program."""
+        return self.direction == "retarget" or self.orientation != "keep"
+
+    @property
+    def letters(self) -> str:
+        """The rotary axes of the target."""
+        return "" if self.target is None else "".join(gx.chain_of(self.target.machine).letters)
+
     @property
     def promise(self) -> float:
-        """The tolerance."""
-        return self.tolerance
+        """The tolerance; nothing where the path is proved before it is written."""
+        return 0.0 if self.turns_anew else self.tolerance
 
     @property
     def feed_mode(self) -> gx.FeedMode | None:
@@ -90,6 +131,7 @@ class Rtcp(gx.Pass):
             hint = "[machine] file = ..., with `kinematics`, or `table` and `head`"
             raise gx.UsageError.one("GX742", message, hint=hint)
         self._check_calibrated(gx.chain_of(machine))
+        self._check_target(machine.tools)
 
     def _check_calibrated(self, posted: gx.Chain) -> None:
         """Refuse a calibrated machine that is another one."""
@@ -104,9 +146,41 @@ class Rtcp(gx.Pass):
             hint = "take the machine file that `gcxform calibrate` has made of the one of [machine]"
             raise gx.UsageError.one("GX743", message, hint=hint)
 
+    def _check_target(self, tools: Mapping[int, object]) -> None:
+        """Refuse a target whose angles are not found, and one with other tools."""
+        for file in (self.calibrated, self.target) if self.turns_anew else ():
+            if file is not None:
+                chain = gx.chain_of(file.machine)
+                gx.attitudes(chain, np.array([[0.0, 0.0, 1.0]]))
+                wrapped = [axis.letter for axis in chain.axes if axis.wrap is not None]
+                if len(chain.axes) != 2 or wrapped:
+                    self._refuse_target(wrapped)
+        if self.target is None:
+            return
+        for number, tool in self.target.machine.tools.items():
+            if tools.get(number, tool) != tool:
+                message = f"tool {number} is another one in the file of the target"
+                hint = "give both machine files the tools that the program is for"
+                raise gx.UsageError.one("GX744", message, hint=hint)
+
+    @staticmethod
+    def _refuse_target(wrapped: list[str]) -> None:
+        message = "angles are found for machines with two rotary axes"
+        hint = ""
+        if wrapped:
+            message = f"which way {wrapped[0]} turns is not known: the machine file gives it a wrap"
+            hint = "leave wrap out, and give limits, if the control counts full turns"
+        raise gx.UsageError.one("GX744", message, hint=hint)
+
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path of the axes for one of tips; if asked the reverse, or one corrected."""
-        if len(path) and not self._nothing_to_correct(context):
+        if not len(path) or self._nothing_to_correct(context):
+            return path.replace(blocks=self.timed(path.blocks))
+        if self.turns_anew:
+            source, target = self._machines(path, context)
+            moving = Moving if self.target else Correcting
+            path = moving(self, path, context, source, target).run()
+        else:
             place = Place(path, context)
             way = self._corrected(path, context) or Between(place, self.direction == "to-machine")
             path = Cutting(self, path, context, place, way).run()
@@ -127,10 +201,39 @@ class Rtcp(gx.Pass):
         )
 
     def _corrected(self, path: gx.Toolpath, context: gx.PassContext) -> Corrected | None:
-        if self.calibrated is None:
-            return None
-        measured = gx.chain_of(self.calibrated.machine)
-        return Corrected(Place(path, context), Place(path, context, measured))
+        return None if self.calibrated is None else Corrected(*self._machines(path, context))
+
+    def _machines(self, path: gx.Toolpath, context: gx.PassContext) -> tuple[Place, Place]:
+        """Return the places of the machine posted for, and of the one that is written for.
+
+        A calibrated machine has the work offset of the other: it is what the operator has set.
+        """
+        if self.target is None:
+            assert self.calibrated is not None
+            measured = gx.chain_of(self.calibrated.machine)
+            return Place(path, context), Place(path, context, measured)
+        assert context.machine is not None
+        there = replace(context, machine=self.target.machine)
+        source = Place(path, context, others=self.letters)
+        return source, Place(path, there, others="".join(source.chain.letters))
+
+    def prove(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> None:
+        """Check tips, tool axes and feeds of a program for another machine."""
+        if len(before) and not self._nothing_to_correct(context):
+            lean, turn = self._leans()
+            self._proof(before, after, context).check(lean, turn)
+
+    def _proof(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> Proof:
+        source, _ = self._machines(before, context)
+        _, target = self._machines(after, context)
+        return Proof(self, before, after, source, target)
+
+    def _leans(self) -> tuple[float, float]:
+        """Return by how much (degrees) the tool axis may lean, and angles may differ."""
+        if self.target is not None:
+            return self.axis_tolerance, np.inf
+        kept = self.orientation == "correct-if-tilt"
+        return np.inf if kept else self.axis_tolerance, self.largest_turn
 
     def measure(
         self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
@@ -139,7 +242,11 @@ class Rtcp(gx.Pass):
 
         It is nothing at the tip, and at the other end of the tool it is the length times as much.
         """
-        way = self._corrected(after, context) if len(after) else None
+        if not len(after):
+            return {}
+        if self.turns_anew:
+            return self._measured(before, after, context)
+        way = self._corrected(after, context)
         if way is None:
             return {}
         angles = way.axes.angles(after.end)
@@ -151,6 +258,15 @@ class Rtcp(gx.Pass):
             "tool axis off, degrees": float(np.degrees(off.max(initial=0.0))),
             "tool axis off by tool length, mm": float((off * length).max(initial=0.0)),
         }
+
+    def _measured(
+        self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
+    ) -> dict[str, float]:
+        """Return what the proof has found."""
+        proof = self._proof(before, after, context)
+        proof.run()
+        found = {"tip off, mm": proof.tip, "tool axis off, degrees": proof.lean}
+        return found if self.target else found | {"angles corrected by, degrees": proof.turn}
 
     def timed(self, blocks: gx.Blocks) -> gx.Blocks:
         """Return blocks in inverse time, if positions of axes are written.
@@ -168,9 +284,10 @@ class Rtcp(gx.Pass):
         For the reverse it is the path of the axes when the control follows the tip; for a corrected
         program that of the axes which would have brought the tip there on the machine posted for.
         """
-        if not len(path) or self._nothing_to_correct(context):
+        if not len(path) or self.turns_anew or self._nothing_to_correct(context):
             return path
         way = self._corrected(path, context)
         if way is not None:
-            return Undoing(self, path, way.axes, posted=way.nominal).run()
-        return Undoing(self, path, Place(path, context)).run()
+            return Undoing(self, path, way.axes, True, way.nominal).run()
+        inwards = self.direction == "to-machine"
+        return Undoing(self, path, Place(path, context), inwards).run()

@@ -247,6 +247,9 @@ class Cutting:
         for axis, values in zip(place.chain.axes, angles.T, strict=True):
             if axis.limits is not None:
                 named.append((axis.letter, axis.limits, values))
+        self._check_named(named, row)
+
+    def _check_named(self, named: list[tuple[str, tuple[float, float], Floats]], row: Ints) -> None:
         for letter, (low, high), values in named:
             beyond = ((values < low - SAME) | (values > high + SAME)) & ~self.own[row]
             if beyond.any():

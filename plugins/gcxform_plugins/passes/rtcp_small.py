@@ -45,8 +45,33 @@ def _signed(axis: gx.Rotary) -> Floats:
     return axis.sign * np.array(axis.direction)
 
 
-def _mended(nominal: gx.Rotary, other: gx.Rotary, step: Floats, point: Curve) -> Curve:
-    """Return the bounds of E p - p of a point p, which is known from the point of the axis."""
+class Slip(NamedTuple):
+    """By how much, at most, one axis turns besides the other, and how much that changes; rad."""
+
+    size: Floats
+    step: Floats
+
+
+def _mended(nominal: gx.Rotary, other: gx.Rotary, step: Floats, slip: Slip, point: Curve) -> Curve:
+    """Return the bounds of E p - p of a point p, which is known from the point of the axis.
+
+    What C turns besides N is turned after E, about the line of C.
+    """
+    mended = _of_lines(nominal, other, step, point)
+    apart = float(np.linalg.norm(np.array(nominal.point) - np.array(other.point)))
+    far, fast, bent = point.plus(mended)
+    far = far + apart
+    size, first, second = slip.size, slip.step, slip.step**2
+    turned = Curve(
+        size * far,
+        first * far + size * fast,
+        second * far + 2.0 * first * fast + size * bent,
+    )
+    return mended.plus(turned)
+
+
+def _of_lines(nominal: gx.Rotary, other: gx.Rotary, step: Floats, point: Curve) -> Curve:
+    """Return the bounds of E p - p while both axes turn by the same."""
     lean = float(np.linalg.norm(_signed(other) - _signed(nominal)))
     apart = np.array(nominal.point) - np.array(other.point)
     aside = float(np.linalg.norm(np.cross(apart, other.direction)))
@@ -60,28 +85,31 @@ def _mended(nominal: gx.Rotary, other: gx.Rotary, step: Floats, point: Curve) ->
 
 
 def bend_of_correction(
-    chains: tuple[gx.Chain, gx.Chain], linear: tuple[Floats, Floats], angles: tuple[Floats, Floats]
+    chains: tuple[gx.Chain, gx.Chain],
+    linear: tuple[Floats, Floats],
+    angles: tuple[Floats, Floats],
+    slips: tuple[Floats, Floats] | None = None,
 ) -> Floats:
     """Return how far (n,) mm corrections in proportion are from what keeps the tip.
 
     `chains` are the machine of the program and the one that is corrected for, of the same axes and
-    the same tip; `linear` (n, 3) mm are X, Y and Z in the first at both ends, `angles` (n, m) in
-    degrees in both.
+    the same tip; `linear` (n, 3) mm are X, Y and Z in the first at both ends, `angles` (n, m)
+    degrees are those in the first, to which `slips` are added in the second.
     """
     one, other = chains
     steps = np.abs(np.radians(angles[1] - angles[0]))
-    tables = len(one.table)
-    arm, zero = _of_head(one, other, steps[:, tables:]), np.zeros(len(steps))
-    held, moved = arm
+    slip = _slips(slips, steps)
+    tables, zero = len(one.table), np.zeros(len(steps))
+    held, moved = _of_head(one, other, steps, slip)
     way = np.linalg.norm(linear[1] - linear[0], axis=1)
     ends = tuple(x + one.arm(a) for x, a in zip(linear, angles, strict=True))
     tip = Curve(zero, way + held.first, held.second)
     total = moved
     for k in range(tables):
         point = _seen_from(np.array(one.table[k].point), ends, tip)
-        mended = _mended(one.table[k], other.table[k], steps[:, k], point)
+        mended = _mended(one.table[k], other.table[k], steps[:, k], slip[k], point)
         for outer in reversed(range(k)):
-            mended = mended.turned(steps[:, outer])
+            mended = mended.turned(steps[:, outer] + slip[outer].step)
         total = total.plus(mended)
         ends = tuple(one.table[k].turn(p, -a[:, k]) for p, a in zip(ends, angles, strict=True))
         tip = point.turned(steps[:, k])
@@ -94,15 +122,28 @@ def _seen_from(place: Floats, ends: tuple[Floats, ...], tip: Curve) -> Curve:
     return Curve(far + tip.first / 2.0, tip.first, tip.second)
 
 
-def _of_head(one: gx.Chain, other: gx.Chain, steps: Floats) -> tuple[Curve, Curve]:
+def _slips(slips: tuple[Floats, Floats] | None, steps: Floats) -> list[Slip]:
+    """Return the slips of the axes."""
+    if slips is None:
+        return [Slip(*np.zeros((2, len(steps)))) for _ in steps.T]
+    one, other = (np.radians(side) for side in slips)
+    sizes = np.maximum(np.abs(one), np.abs(other))
+    return [Slip(*pair) for pair in zip(sizes.T, np.abs(other - one).T, strict=True)]
+
+
+def _of_head(
+    one: gx.Chain, other: gx.Chain, steps: Floats, slips: list[Slip]
+) -> tuple[Curve, Curve]:
     """Return the bounds of the arm, and of what a head puts on top of it."""
     zero = np.zeros(len(steps))
     arm, total = Curve(zero, zero, zero), Curve(zero, zero, zero)
     reach, place = zero, np.array(one.tip)
     for k in reversed(range(len(one.head))):
+        column = len(one.table) + k
+        step, slip = steps[:, column], slips[column]
         point = np.array(one.head[k].point)
         reach, place = reach + np.linalg.norm(place - point), point
-        arm = Curve(reach, arm.first, arm.second).turned(steps[:, k])
-        total = total.turned(steps[:, k])
-        total = total.plus(_mended(one.head[k], other.head[k], steps[:, k], arm))
+        arm = Curve(reach, arm.first, arm.second).turned(step)
+        total = total.turned(step + slip.step)
+        total = total.plus(_mended(one.head[k], other.head[k], step, slip, arm))
     return arm, total

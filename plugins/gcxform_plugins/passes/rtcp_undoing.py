@@ -31,19 +31,24 @@ class Undoing:
     """The work on one window."""
 
     def __init__(
-        self, step: Rtcp, path: gx.Toolpath, place: Place, posted: Place | None = None
+        self,
+        step: Rtcp,
+        path: gx.Toolpath,
+        place: Place,
+        to_tips: bool,
+        posted: Place | None = None,
     ) -> None:
         self.step = step
         self.path = path
         self.place = place
         self.posted = posted
-        self.to_tips = step.direction != "to-tip"
+        self.to_tips = to_tips
         self.start, self.end = path.start, path.end
 
     def run(self) -> gx.Toolpath:
         """Return the path of tips; of axes for the reverse, and of those that were posted for."""
         path = self.path
-        bend = self._bends()
+        bend = self.bends()
         pieces = np.ceil(np.sqrt(bend / (SHARE * self.step.tolerance)) - 1e-9)
         pieces = np.maximum(pieces, 1.0).astype(np.int64)
         row = np.repeat(np.arange(len(path)), pieces)
@@ -71,7 +76,7 @@ class Undoing:
         entry[:3] = self._turned(entry[None, :], np.array([0]))[0]
         return entry
 
-    def _bends(self) -> Floats:
+    def bends(self) -> Floats:
         """Return an eighth of the bound of the second derivative of each row, mm."""
         path = self.path
         bend = np.zeros(len(path))
