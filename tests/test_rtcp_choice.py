@@ -10,8 +10,20 @@ from gcxform_plugins.passes.rtcp_choice import Choice, NoWayError, Trouble, near
 from gcxform_plugins.passes.rtcp_proof import Proof
 from hypothesis import given
 from hypothesis import strategies as st
-from kinematics_kit import leaning
-from rtcp_kit import KINDS, chain_of_kind
+from kinematics_kit import leaning, tool
+from rtcp_kit import (
+    KINDS,
+    LENGTH,
+    ROUNDED,
+    ZERO,
+    between,
+    chain_of_kind,
+    machine_text,
+    pipeline,
+    positions,
+    tips,
+)
+from scipy.spatial.transform import Rotation
 from test_rtcp_repost import leaning_poses, posted, retargeted, step_of, timed
 
 import gcxform as gx
@@ -164,3 +176,81 @@ def with_axis(path, letter):
         end=np.hstack([path.end, unknown]),
         entry=np.append(path.entry, np.nan),
     )
+
+
+# --- great circles ---
+
+
+@pytest.mark.parametrize(("limit", "blocks"), [(0.05, 36), (0.01, 81), (0.005, 124), (0.001, 256)])
+def test_blocks_of_a_great_circle(tmp_path, limit, blocks):
+    """K5: the example of tip and tool axis takes 1.1 times as many blocks at most."""
+    chain = gx.Chain(
+        (
+            gx.Rotary("A", (1.0, 0.0, 0.0), (0.0, -4.0, 45.0), -1),
+            gx.Rotary("C", (0.0, 0.0, 1.0), (8.0, 2.0, 0.0), -1),
+        ),
+        tip=(4.0, -3.0, 20.0 - LENGTH),
+    )
+    ends = np.hstack([-ZERO[None, :] - [4.0, -3.0, 20.0], [[20.0, 130.0]]]).repeat(2, axis=0)
+    ends[:, 0] += [-50.0, 50.0]
+    ends[1, 3:] = [50.0, 190.0]
+    text = (
+        posted(ends.round(3), "XYZAC")
+        .replace(b"G1 X", b"G0 X", 1)
+        .replace(b"F600.\nX", b"\nG1 F600. X")
+    )
+    options = {"tolerance": limit, "orientation_path": "great-circle", "rapids": "ends"}
+    steps = pipeline(tmp_path, machine_text("ac-trunnion", chain), before="", **options)
+    result = steps.run(text, "full")
+    count = result.source_map.count(4)
+    assert 0.9 * blocks <= count <= 1.1 * blocks
+    told = result.certificate.measured
+    assert told["tip off, mm"] <= limit
+    assert told["tool axis off, degrees"] <= {36: 0.014, 81: 0.005}.get(blocks, 0.003)
+    new = positions(result.text, "XYZAC")
+    owner = np.array(result.source_map)
+    rows = np.flatnonzero(owner == 4)
+    axes = gx.Chain.tool_axis(chain, ends[:, 3:])
+    for nth, row in enumerate(rows):
+        part = (nth + np.linspace(0.0, 1.0, 41)) / len(rows)
+        found = between(new[row - 1], new[row], 41)
+        wanted = ends[0, :3] + part[:, None] * (ends[1, :3] - ends[0, :3])
+        assert np.linalg.norm(tips(chain, found) - wanted, axis=1).max() <= limit + ROUNDED + 2e-6
+        off = tool(chain, found[:, :3], found[:, 3:])[1] - on_a_circle(*axes, part)
+        assert (
+            np.degrees(np.linalg.norm(off, axis=1)).max() <= told["tool axis off, degrees"] + 1e-4
+        )
+
+
+def on_a_circle(one, other, part):
+    """Return unit vectors between two, by a rotation of scipy."""
+    pole = np.cross(one, other)
+    whole = np.arcsin(np.linalg.norm(pole))
+    turns = part[:, None] * whole * pole / np.linalg.norm(pole)
+    return Rotation.from_rotvec(turns).apply(one)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_great_circles_of_any_machine(tmp_path, kind):
+    """Tip on its line and tool axis on its circle, along blocks as they are written."""
+    chain = chain_of_kind(kind, 4)
+    letters = ("X", "Y", "Z", *chain.letters)
+    poses = leaning_poses(chain, np.random.default_rng(5), 4, least=25.0, around=40.0)
+    poses[:, :3] = (0.1 * poses[:, :3]).round(3)
+    text = posted(poses, letters).replace(b"G1 X", b"G0 X", 1).replace(b"F600.\nX", b"\nG1 F600. X")
+    options = {"tolerance": 0.01, "orientation_path": "great-circle", "rapids": "ends"}
+    result = pipeline(tmp_path, machine_text(kind, chain), before="", **options).run(text, "full")
+    old, new = positions(text, letters), positions(result.text, letters)
+    owner = np.array(result.source_map)
+    for line in range(4, len(old) - 1):
+        rows = np.flatnonzero(owner == line)
+        axes = chain.tool_axis(old[line - 1 : line + 1, 3:])
+        for nth, row in enumerate(rows):
+            part = (nth + np.linspace(0.0, 1.0, 9)) / len(rows)
+            found = between(new[row - 1], new[row], 9)
+            wanted = old[line - 1, :3] + part[:, None] * (old[line, :3] - old[line - 1, :3])
+            off = np.linalg.norm(tips(chain, found) - wanted, axis=1).max()
+            assert off <= 0.01 + ROUNDED + 2e-6
+            off = tool(chain, found[:, :3], found[:, 3:])[1] - on_a_circle(*axes, part)
+            assert np.degrees(np.linalg.norm(off, axis=1)).max() <= 0.1
+        assert new[rows[-1], 3:] == pytest.approx(old[line, 3:])

@@ -421,7 +421,8 @@ def test_a_program_for_another_machine(tmp_path, source, target, seed):
     lean = check_tools(text, result, (one, letters[0]), (other, letters[1]), 0.01, first=4)
     assert 1e-7 < lean <= np.radians(0.1)
     told = result.certificate.measured["tool axis off, degrees"]
-    assert told == pytest.approx(np.degrees(lean), rel=0.2)
+    assert np.degrees(lean) <= told + 1e-9
+    assert told <= 1.2 * np.degrees(lean) + 0.02 * 0.1
 
 
 @given(st.integers(0, 100_000), st.sampled_from(KINDS), st.sampled_from([1.0, 10.0]))

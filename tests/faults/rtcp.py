@@ -155,8 +155,8 @@ MUTATIONS = (
     Mutation(
         "rtcp: the proof does not look at the tool axis",
         PROOF,
-        "self.lean = max(self.lean, float(np.degrees(lean)))",
-        "self.lean = max(self.lean, 0.0 * float(np.degrees(lean)))",
+        "self.lean = max(self.lean, float(np.degrees(lean.max())))",
+        "self.lean = max(self.lean, 0.0 * float(np.degrees(lean.max())))",
         f"{REPOST}::test_a_program_for_another_machine",
     ),
     Mutation(
@@ -165,5 +165,19 @@ MUTATIONS = (
         "second * far + 2.0 * first * fast + size * bent,",
         "0.0 * far,",
         f"{REPOST}::test_the_bound_holds_with_slips",
+    ),
+    Mutation(
+        "rtcp: the tool axis goes evenly between its ends, and not on the circle",
+        MOVING,
+        "left = np.where(short, 1.0 - part, np.sin((1.0 - part) * angle) / whole)",
+        "left = np.where(short, 1.0 - part, 1.0 - part)",
+        f"{CHOOSING}::test_blocks_of_a_great_circle",
+    ),
+    Mutation(
+        "rtcp: the proof lets the tool axis stand still",
+        PROOF,
+        "axis = np.cos(angle)[:, None] * one + np.sin(angle)[:, None] * np.cross(pole, one)",
+        "axis = np.cos(angle)[:, None] * one + 0.0 * np.cross(pole, one)",
+        f"{CHOOSING}::test_blocks_of_a_great_circle",
     ),
 )

@@ -14,7 +14,6 @@ are apart by a rotation and an arm that the angles alone fix. So one bound serve
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
@@ -22,9 +21,9 @@ import numpy as np
 
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_cutting import Cutting
-from gcxform_plugins.passes.rtcp_moving import Correcting, Moving
+from gcxform_plugins.passes.rtcp_moving import Circling, Correcting, Moving
 from gcxform_plugins.passes.rtcp_place import Place, turned_at
-from gcxform_plugins.passes.rtcp_proof import Proof
+from gcxform_plugins.passes.rtcp_proof import Driven, Led, Proof
 from gcxform_plugins.passes.rtcp_undoing import Undoing
 from gcxform_plugins.passes.rtcp_ways import Between, Corrected
 
@@ -73,6 +72,10 @@ class Rtcp(gx.Pass):
         gx.KinematicsFile | None,
         gx.Option("retarget: the machine to write for; [machine] is the one posted for"),
     ] = None
+    orientation_path: Annotated[
+        Literal["angles", "great-circle"],
+        gx.Option("to-machine: between blocks angles change in proportion, or the tool axis does"),
+    ] = "angles"
     axis_tolerance: Annotated[
         gx.Angle,
         gx.Option("how far the tool axis may lean from its way, where angles change", above=0.0),
@@ -100,13 +103,19 @@ class Rtcp(gx.Pass):
             raise ValueError("retarget takes target, the file of the machine to write for")
         if self.direction != "repost" and self.orientation != "keep":
             raise ValueError("orientation is an option of repost")
+        if self.direction != "to-machine" and self.orientation_path != "angles":
+            raise ValueError("orientation-path is an option of to-machine")
         if self.direction == "retarget" and self.rapids == "refuse":
             raise ValueError('retarget turns axes in rapids: say rapids = "ends" if all is clear')
 
     @property
     def turns_anew(self) -> bool:
-        """Whether other angles are written than those of the program."""
-        return self.direction == "retarget" or self.orientation != "keep"
+        """Whether other angles are written than the program has, in proportion."""
+        return (
+            self.direction == "retarget"
+            or self.orientation != "keep"
+            or self.orientation_path == "great-circle"
+        )
 
     @property
     def letters(self) -> str:
@@ -131,7 +140,7 @@ class Rtcp(gx.Pass):
             hint = "[machine] file = ..., with `kinematics`, or `table` and `head`"
             raise gx.UsageError.one("GX742", message, hint=hint)
         self._check_calibrated(gx.chain_of(machine))
-        self._check_target(machine.tools)
+        self._check_target(context)
 
     def _check_calibrated(self, posted: gx.Chain) -> None:
         """Refuse a calibrated machine that is another one."""
@@ -146,19 +155,19 @@ class Rtcp(gx.Pass):
             hint = "take the machine file that `gcxform calibrate` has made of the one of [machine]"
             raise gx.UsageError.one("GX743", message, hint=hint)
 
-    def _check_target(self, tools: Mapping[int, object]) -> None:
+    def _check_target(self, context: gx.PassContext) -> None:
         """Refuse a target whose angles are not found, and one with other tools."""
-        for file in (self.calibrated, self.target) if self.turns_anew else ():
-            if file is not None:
-                chain = gx.chain_of(file.machine)
-                gx.attitudes(chain, np.array([[0.0, 0.0, 1.0]]))
-                wrapped = [axis.letter for axis in chain.axes if axis.wrap is not None]
-                if len(chain.axes) != 2 or wrapped:
-                    self._refuse_target(wrapped)
-        if self.target is None:
-            return
-        for number, tool in self.target.machine.tools.items():
-            if tools.get(number, tool) != tool:
+        machine = context.machine
+        assert machine is not None
+        files = [file.machine for file in (self.calibrated, self.target) if file is not None]
+        for other in (files or [machine]) if self.turns_anew else ():
+            chain = gx.chain_of(other)
+            gx.attitudes(chain, np.array([[0.0, 0.0, 1.0]]))
+            wrapped = [axis.letter for axis in chain.axes if axis.wrap is not None and files]
+            if len(chain.axes) != 2 or wrapped:
+                self._refuse_target(wrapped)
+        for number, tool in self.target.machine.tools.items() if self.target else ():
+            if machine.tools.get(number, tool) != tool:
                 message = f"tool {number} is another one in the file of the target"
                 hint = "give both machine files the tools that the program is for"
                 raise gx.UsageError.one("GX744", message, hint=hint)
@@ -178,8 +187,7 @@ class Rtcp(gx.Pass):
             return path.replace(blocks=self.timed(path.blocks))
         if self.turns_anew:
             source, target = self._machines(path, context)
-            moving = Moving if self.target else Correcting
-            path = moving(self, path, context, source, target).run()
+            path = self._moving(self, path, context, source, target).run()
         else:
             place = Place(path, context)
             way = self._corrected(path, context) or Between(place, self.direction == "to-machine")
@@ -209,13 +217,20 @@ class Rtcp(gx.Pass):
         A calibrated machine has the work offset of the other: it is what the operator has set.
         """
         if self.target is None:
-            assert self.calibrated is not None
-            measured = gx.chain_of(self.calibrated.machine)
-            return Place(path, context), Place(path, context, measured)
+            place = Place(path, context)
+            if self.calibrated is None:
+                return place, place
+            return place, Place(path, context, gx.chain_of(self.calibrated.machine))
         assert context.machine is not None
         there = replace(context, machine=self.target.machine)
         source = Place(path, context, others=self.letters)
         return source, Place(path, there, others="".join(source.chain.letters))
+
+    @property
+    def _moving(self) -> type[Moving]:
+        if self.target is not None:
+            return Moving
+        return Circling if self.calibrated is None else Correcting
 
     def prove(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> None:
         """Check tips, tool axes and feeds of a program for another machine."""
@@ -226,11 +241,14 @@ class Rtcp(gx.Pass):
     def _proof(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> Proof:
         source, _ = self._machines(before, context)
         _, target = self._machines(after, context)
-        return Proof(self, before, after, source, target)
+        driven = Driven(self, after, target)
+        if self.direction == "to-machine":
+            return Proof(self, Led(before, source), driven)
+        return Proof(self, Driven(self, before, source), driven)
 
     def _leans(self) -> tuple[float, float]:
         """Return by how much (degrees) the tool axis may lean, and angles may differ."""
-        if self.target is not None:
+        if self.calibrated is None:
             return self.axis_tolerance, np.inf
         kept = self.orientation == "correct-if-tilt"
         return np.inf if kept else self.axis_tolerance, self.largest_turn
@@ -266,7 +284,11 @@ class Rtcp(gx.Pass):
         proof = self._proof(before, after, context)
         proof.run()
         found = {"tip off, mm": proof.tip, "tool axis off, degrees": proof.lean}
-        return found if self.target else found | {"angles corrected by, degrees": proof.turn}
+        return (
+            found
+            if self.calibrated is None
+            else found | {"angles corrected by, degrees": proof.turn}
+        )
 
     def timed(self, blocks: gx.Blocks) -> gx.Blocks:
         """Return blocks in inverse time, if positions of axes are written.

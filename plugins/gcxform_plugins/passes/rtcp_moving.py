@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_bound import leaving
-from gcxform_plugins.passes.rtcp_choice import Choice, NoWayError, Trouble, nearest
+from gcxform_plugins.passes.rtcp_choice import LEAP, Choice, NoWayError, Trouble, nearest
 from gcxform_plugins.passes.rtcp_cutting import Cutting
 from gcxform_plugins.passes.rtcp_place import Place
 from gcxform_plugins.passes.rtcp_small import bend_of_correction
@@ -28,6 +28,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+SOON = 1e-6  # part of a block in which an axis turns by a leap, if it ever does at its ends
+SOON_LESS = 0.02  # of a leap within the block
+TRIED = 64  # places of a block that are looked at for leaps
 SAMPLE = 5.0  # degrees; how far the axes of the source turn between two points of the search
 STILL = 1e-7  # mm, degrees; what moves by less stands still
 WHY = {
@@ -76,7 +79,7 @@ class Moving(Cutting):
         self._check_lines()
         self._choose()
         path = self.path
-        pieces = self._pieces()
+        pieces = np.where(self.nowhere, 0, self._pieces())
         row = np.repeat(np.arange(len(path)), pieces)
         result = self._moved(self._cut(pieces, row), row, self._parts(pieces, row))
         self._leave(result, row)
@@ -104,12 +107,17 @@ class Moving(Cutting):
         nth = np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
         return np.asarray(nth / np.maximum(pieces[row], 1))
 
-    def _axis(self, positions: Floats) -> Floats:
+    def _tips(self, positions: Floats, row: Ints) -> Floats:
+        """Return where tips (n, 3) are on the workpiece."""
+        return self.place.tips_of(positions[:, :3], self.place.angles(positions), row)
+
+    def _axis(self, positions: Floats, row: Ints, part: Floats) -> Floats:
+        """Return the tool axes (n, 3) at positions, which are parts of rows."""
         return self.place.chain.tool_axis(self.place.angles(positions))
 
     def _moved(self, positions: Floats, row: Ints, part: Floats) -> Floats:
         """Return the positions (n, axes) of the target for those of the source."""
-        tips = self.place.tips_of(positions[:, :3], self.place.angles(positions), row)
+        tips = self._tips(positions, row)
         angles = self._angles(positions, row, part)
         found = positions.copy()
         found[:, self.place.columns] = np.nan
@@ -122,7 +130,8 @@ class Moving(Cutting):
         angles = np.where(self.own[row][:, None], np.nan, np.zeros((len(row), 2)))
         here = np.flatnonzero(self.known[row])
         guess = self._guess(positions[here], row[here], part[here])
-        found = nearest(self.target.chain, self._axis(positions[here]), guess)
+        axis = self._axis(positions[here], row[here], part[here])
+        found = nearest(self.target.chain, axis, guess)
         angles[here] = self._written(self._mixed(found, positions[here], row[here]))
         return angles
 
@@ -131,14 +140,31 @@ class Moving(Cutting):
         return angles
 
     def _entry(self) -> Floats:
-        """Return where the target stands before the first row, if that is where axes are at 0."""
-        entry = self.path.entry.copy()
-        turned = bool((self.place.angles(entry[None, :]) != 0.0).any())
-        entry[self.place.columns] = np.nan
-        entry[self.target.columns] = np.nan if turned else 0.0
-        if turned:
-            entry[:3] = np.nan
-        return entry
+        """Return where the target stands before the first row, if that is known."""
+        entry = self.path.entry[None, :].copy()
+        said = self.place.angles(entry)
+        whole = bool(np.isfinite(entry[:, :3]).all() and np.isfinite(said).all())
+        turned = bool((said != 0.0).any())
+        angles = np.where(turned, np.nan, np.zeros((1, 2)))
+        if whole:
+            angles = self._entered(entry)
+        first = np.array([0])
+        tips = self.place.tips_of(entry[:, :3], said, first) if self._drives else entry[:, :3]
+        found = self.target.axes_of(tips, angles, first)
+        if np.isnan(angles).any() and turned:
+            found[:] = np.nan
+        entry[:, :3] = found
+        entry[:, self.place.columns] = np.nan
+        entry[:, self.target.columns] = angles
+        return np.asarray(entry[0])
+
+    _drives = True
+    """Whether the source is in axes, and not in tips."""
+
+    def _entered(self, entry: Floats) -> Floats:
+        """Return the angles (1, m) before the first row, which is a rapid from wherever it is."""
+        said = self.place.angles(entry)
+        return np.where(bool((said != 0.0).any()), np.nan, np.zeros((1, 2)))
 
     def _leave(self, result: Floats, row: Ints) -> None:
         """Let moves to the machine's own points go where they are said to; other axes stay."""
@@ -195,13 +221,13 @@ class Moving(Cutting):
         pieces = np.zeros(len(self.path), np.int64)
         pieces[rows] = count
         places = self._cut(pieces, row)
-        choice = self._choice(places, np.repeat(~rapid, count), row)
-        return choice, count
+        axis = self._axis(places, row, self._parts(pieces, row))
+        return self._choice(axis, np.repeat(~rapid, count), row), count
 
-    def _choice(self, places: Floats, cut: Flags, row: Ints) -> Floats:
-        """Return the angles of the target at places of the source. Raises InputError."""
+    def _choice(self, axis: Floats, cut: Flags, row: Ints) -> Floats:
+        """Return the angles of the target for tool axes along the source. Raises InputError."""
         try:
-            return Choice(self.target.chain, self._axis(places), cut).run(np.zeros(2))
+            return Choice(self.target.chain, axis, cut).run(np.zeros(2))
         except NoWayError as problem:
             code, message, hint = WHY[problem.trouble]
             at = row[problem.at : problem.at + 1]
@@ -275,6 +301,11 @@ class Correcting(Moving):
     def _choose(self) -> None:
         """Leave the attitudes and turns as they are."""
 
+    def _entered(self, entry: Floats) -> Floats:
+        said = self.place.angles(entry)
+        found = nearest(self.target.chain, self.place.chain.tool_axis(said), said)
+        return self._written(self._mixed(found, entry, np.array([0])))
+
     def _guess(self, positions: Floats, row: Ints, part: Floats) -> Floats:
         return self.place.angles(positions)
 
@@ -309,3 +340,86 @@ class Correcting(Moving):
                 (one, other), (first, last), (posted[0], posted[1]), (slips[0], slips[1])
             )
         return far
+
+
+class Circling(Moving):
+    """Of tips the axes of the same machine, the tool axis on great circles between blocks.
+
+    Angles at the ends of blocks are those of the program.
+    """
+
+    _drives = False
+
+    def _entered(self, entry: Floats) -> Floats:
+        return self._written(self.place.angles(entry))
+
+    def _choose(self) -> None:
+        """Refuse circles that do not lead from angle to angle."""
+        turned = np.abs(self.place.angles(self.end - self.start)).max(axis=1) > 0.0
+        rows = np.flatnonzero(self.cuts & self.known & turned)
+        part = np.append(np.arange(TRIED) / TRIED, [1.0 - SOON, 1.0])
+        part = np.insert(part, 1, SOON)
+        row, along = np.repeat(rows, len(part)), np.tile(part, len(rows))[:, None]
+        places = (1.0 - along) * self.start[row] + along * self.end[row]
+        angles = self._angles(places, row, along[:, 0]).reshape(len(rows), len(part), 2)
+        most = np.where(np.diff(part) <= SOON, LEAP * SOON_LESS, LEAP)[:, None]
+        leaps = (np.abs(np.diff(angles, axis=1)) > most).any(axis=(1, 2))
+        far = np.zeros(len(self.path), np.bool_)
+        far[rows[leaps]] = True
+        message = "on a great circle the tool axis would have to leap"
+        hint = "program points on the way, or turn the axes in proportion"
+        self._refuse("GX333", far, message, hint)
+
+    def _guess(self, positions: Floats, row: Ints, part: Floats) -> Floats:
+        return self.place.angles(positions)
+
+    def _tips(self, positions: Floats, row: Ints) -> Floats:
+        return positions[:, :3]
+
+    def _axis(self, positions: Floats, row: Ints, part: Floats) -> Floats:
+        chain = self.place.chain
+        one, other = (
+            chain.tool_axis(self.place.angles(side[row])) for side in (self.start, self.end)
+        )
+        lines = self.cuts[row] & np.isfinite(one).all(axis=1)
+        return np.where(lines[:, None], on_circle(one, other, part), other)
+
+    def _mixed(self, angles: Floats, positions: Floats, row: Ints) -> Floats:
+        """Return the angles; where the program says them, they are its own to the last bit."""
+        said = self.place.angles(positions)
+        return np.where(np.abs(angles - said) < STILL, said, angles)
+
+    def _far(self, source: tuple[Floats, ...], target: tuple[Floats, ...], row: Ints) -> Floats:
+        """Return how far (n,) mm the tip leaves its line, and in proportion the tool axis."""
+        far = np.zeros(len(row))
+        sides = [self.target.angles(side) for side in target]
+        for chain, here in self.target.chains(row):
+            one, other = (self.target.on_workpiece(side[here, :3], chain) for side in source)
+            far[here] = leaving(chain, (one, other), (sides[0][here], sides[1][here]))
+        share = np.degrees(self._aside(sides[1] - sides[0])) / self.step.axis_tolerance
+        return np.asarray(np.maximum(far, share * self.step.tolerance))
+
+    def _aside(self, step: Floats) -> Floats:
+        """Return how far (n,) rad the tool axis leaves its circle while axes turn by steps (n, m).
+
+        It is an eighth of the second derivative aside: of the product of both turns, and of the
+        turn about the tool itself; and a little more, as circles bend. The proof has the last word.
+        """
+        chain = self.target.chain
+        first = max(len(chain.table) - 1, 0)
+        other = chain.axes[1 - first]
+        one, two = (np.abs(np.radians(step[:, k])) for k in (first, 1 - first))
+        spin = one + two * abs(other.direction[2])
+        return np.asarray(1.05 * (one * two + spin * (one + two)) / 8.0)
+
+
+def on_circle(one: Floats, other: Floats, part: Floats) -> Floats:
+    """Return unit vectors (n, 3) at parts (n,) of the great circles between two."""
+    angle = np.arctan2(
+        np.linalg.norm(np.cross(one, other), axis=1), np.einsum("ij,ij->i", one, other)
+    )
+    short = np.sin(angle) < 1e-12
+    whole = np.where(short, 1.0, np.sin(angle))
+    left = np.where(short, 1.0 - part, np.sin((1.0 - part) * angle) / whole)
+    right = np.where(short, part, np.sin(part * angle) / whole)
+    return np.asarray(left[:, None] * one + right[:, None] * other)

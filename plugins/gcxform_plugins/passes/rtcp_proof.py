@@ -23,17 +23,71 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 AT_ONCE = 200_000  # places compared at once
+LEAN_SHARE = 0.02  # of the tolerance of the tool axis, that is left to the places looked at
 SAME_TIME = 1e-9  # relative
+STILL = 1e-7  # mm, degrees; what moves by less stands still
+
+
+class Driven:
+    """A path whose axes all move in proportion."""
+
+    def __init__(self, step: Rtcp, path: gx.Toolpath, place: Place) -> None:
+        self.path, self.place = path, place
+        self.start, self.end = path.start, path.end
+        self.bends = Undoing(step, path, place, to_tips=True).bends()
+        turn = np.abs(np.radians(place.angles(self.end - self.start))).sum(axis=1)
+        self.leans = np.nan_to_num(turn) ** 2 / 8.0
+
+    def at(self, rows: Ints, part: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return tips, tool axes and angles at parts (n,) of rows."""
+        here = _between(self.start, self.end, rows, part)
+        angles = self.place.angles(here)
+        tips = self.place.tips_of(here[:, :3], angles, rows)
+        return tips, self.place.chain.tool_axis(angles), angles
+
+
+class Led:
+    """A path of the tip, which goes straight, while the tool axis goes on great circles."""
+
+    def __init__(self, path: gx.Toolpath, place: Place) -> None:
+        self.path, self.place = path, place
+        self.start, self.end = path.start, path.end
+        self.bends = np.zeros(len(path))
+        one, other = (place.chain.tool_axis(place.angles(s)) for s in (self.start, self.end))
+        between = np.arctan2(
+            np.linalg.norm(np.cross(one, other), axis=1), np.einsum("ij,ij->i", one, other)
+        )
+        self.leans = np.nan_to_num(between) ** 2 / 8.0
+
+    def at(self, rows: Ints, part: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return tips, tool axes and angles at parts (n,) of rows."""
+        here = _between(self.start, self.end, rows, part)
+        chain = self.place.chain
+        one, other = (
+            chain.tool_axis(self.place.angles(side[rows])) for side in (self.start, self.end)
+        )
+        across = np.cross(one, other)
+        size = np.linalg.norm(across, axis=1)
+        angle = np.arctan2(size, np.einsum("ij,ij->i", one, other)) * part
+        pole = across / np.where(size > 0.0, size, 1.0)[:, None]
+        axis = np.cos(angle)[:, None] * one + np.sin(angle)[:, None] * np.cross(pole, one)
+        last = (part == 1.0)[:, None]
+        return here[:, :3], np.where(last, other, axis), self.place.angles(here)
+
+
+def _between(start: Floats, end: Floats, rows: Ints, part: Floats) -> Floats:
+    return np.where(
+        (part == 1.0)[:, None], end[rows], start[rows] + part[:, None] * (end[rows] - start[rows])
+    )
 
 
 class Proof:
-    """The tips and tool axes of one window, on the source machine and on the target."""
+    """The tips and tool axes of one window, as the source leads them and as the target does."""
 
-    def __init__(
-        self, step: Rtcp, before: gx.Toolpath, after: gx.Toolpath, source: Place, target: Place
-    ) -> None:
-        self.step, self.before, self.after = step, before, after
+    def __init__(self, step: Rtcp, source: Driven | Led, target: Driven) -> None:
+        self.step = step
         self.source, self.target = source, target
+        self.before, self.after = source.path, target.path
         self.owner = self._owners()
         self.tip, self.lean, self.turn = 0.0, 0.0, 0.0
         self.worst = 0
@@ -44,67 +98,59 @@ class Proof:
         line = np.searchsorted(lines, self.after.source)
         begins = np.append(True, np.diff(self.after.source) != 0)[: len(line)]
         nth = np.arange(len(line)) - np.flatnonzero(begins)[np.cumsum(begins) - 1]
-        line = np.minimum(line, max(len(lines) - 1, 0))
+        line = np.minimum(line, len(lines) - 1)
         return np.asarray(first[line] + np.minimum(nth, old[line] - 1))
 
     def run(self) -> None:
         """Measure `tip` (mm), `lean` and `turn` (degrees), with the row where the tip is worst."""
         before, after = self.before, self.after
         own = np.isin(after.form, (gx.Form.HOME, gx.Form.MACHINE))
-        known = np.isfinite(after.end[:, [0, 1, 2, *self.target.columns]]).all(axis=1) & ~own
+        columns = [0, 1, 2, *self.target.place.columns]
+        known = np.isfinite(after.end[:, columns]).all(axis=1) & ~own
         rapid = after.kind == gx.Kind.RAPID
-        self._ends(np.flatnonzero(known & rapid))
+        ends = np.flatnonzero(known & rapid)
+        whole, none = np.ones(len(ends)), np.zeros(len(ends))
+        self._compare((self.owner[ends], whole), (ends, whole), (none, none))
         lines = np.flatnonzero(known & ~rapid)
-        bends = [self._bends(p, path) for p, path in ((self.source, before), (self.target, after))]
         count = np.bincount(self.owner, minlength=len(before))
-        bend = bends[0][self.owner] / count[self.owner] ** 2 + bends[1]
-        many = np.ceil(np.sqrt(bend / (SHARE * self.step.tolerance)) - 1e-9)
-        many = np.maximum(many, 1.0).astype(np.int64)
+        shared = count[self.owner] ** 2
+        bend = self.source.bends[self.owner] / shared + self.target.bends
+        lean = self.source.leans[self.owner] / shared + self.target.leans
+        finest = LEAN_SHARE * np.radians(self.step.axis_tolerance)
+        many = np.sqrt(np.maximum(bend / (SHARE * self.step.tolerance), lean / finest))
+        many = np.maximum(np.ceil(many - 1e-9), 1.0).astype(np.int64)
         first = np.cumsum(count) - count
         nth = np.arange(len(after)) - first[self.owner]
         cuts = np.cumsum(many[lines] + 1) // AT_ONCE
         for rows in np.split(lines, np.flatnonzero(np.diff(cuts)) + 1):
-            self._along(rows, many[rows], nth[rows], count[self.owner[rows]], bend[rows])
+            slack = bend[rows] / many[rows] ** 2, lean[rows] / many[rows] ** 2
+            self._along(rows, many[rows], nth[rows], count[self.owner[rows]], slack)
 
-    def _bends(self, place: Place, path: gx.Toolpath) -> Floats:
-        return Undoing(self.step, path, place, to_tips=True).bends()
-
-    def _ends(self, rows: Ints) -> None:
-        """Compare where rapids end."""
-        owner = self.owner[rows]
-        self._compare(
-            self.before.end[owner], owner, self.after.end[rows], rows, np.zeros(len(rows))
-        )
-
-    def _along(self, rows: Ints, many: Ints, nth: Ints, count: Ints, bend: Floats) -> None:
+    def _along(
+        self, rows: Ints, many: Ints, nth: Ints, count: Ints, slack: tuple[Floats, Floats]
+    ) -> None:
         """Compare places along moves, both ends among them."""
         row = np.repeat(np.arange(len(rows)), many + 1)
         at = np.arange(len(row)) - np.repeat(np.cumsum(many + 1) - many - 1, many + 1)
         part = at / many[row]
         whole = (nth[row] + part) / count[row]
         new, old = rows[row], self.owner[rows][row]
-        sides = (
-            (self.before.start[old], self.before.end[old], whole),
-            (self.after.start[new], self.after.end[new], part),
-        )
-        source, target = (a + u[:, None] * (b - a) for a, b, u in sides)
-        self._compare(source, old, target, new, bend[row] / many[row] ** 2)
+        self._compare((old, whole), (new, part), (slack[0][row], slack[1][row]))
 
-    def _compare(self, source: Floats, old: Ints, target: Floats, new: Ints, slack: Floats) -> None:
-        if not len(old):
+    def _compare(
+        self, old: tuple[Ints, Floats], new: tuple[Ints, Floats], slack: tuple[Floats, Floats]
+    ) -> None:
+        """Compare places; `slack` (mm, rad) is how far both may be from what is between them."""
+        if not len(old[0]):
             return
-        found = []
-        for place, at, rows in ((self.source, source, old), (self.target, target, new)):
-            angles = place.angles(at)
-            tips = place.tips_of(at[:, :3], angles, rows)
-            found.append((tips, place.chain.tool_axis(angles), angles))
-        off = np.linalg.norm(found[0][0] - found[1][0], axis=1) + slack
+        found = self.source.at(*old), self.target.at(*new)
+        off = np.linalg.norm(found[0][0] - found[1][0], axis=1) + slack[0]
         off = np.where(np.isnan(off), np.inf, off)
         if off.max() > self.tip:
-            self.tip, self.worst = float(off.max()), int(old[np.argmax(off)])
-        lean = np.linalg.norm(found[0][1] - found[1][1], axis=1).max()
-        self.lean = max(self.lean, float(np.degrees(lean)))
-        if self.source.columns == self.target.columns:
+            self.tip, self.worst = float(off.max()), int(old[0][np.argmax(off)])
+        lean = np.linalg.norm(found[0][1] - found[1][1], axis=1) + slack[1]
+        self.lean = max(self.lean, float(np.degrees(lean.max())))
+        if self.source.place.columns == self.target.place.columns:
             self.turn = max(self.turn, float(np.abs(found[0][2] - found[1][2]).max()))
 
     # --- the verdict ---
@@ -123,18 +169,36 @@ class Proof:
     def _check_times(self) -> None:
         """Check that moves are as many and as fast: feeds the same, inverse times in sum."""
         before, after = self.before, self.after
-        same = (before.source[self.owner] == after.source) & (before.kind[self.owner] == after.kind)
-        same &= before.feed_mode[self.owner] == after.feed_mode
-        timed = (after.feed_mode == gx.FeedMode.INVERSE_TIME) & (after.kind != gx.Kind.RAPID)
-        fed = (after.kind != gx.Kind.RAPID) & ~timed
-        same &= ~fed | (after.feed == before.feed[self.owner])
-        if not same.all() or len(np.unique(self.owner)) != len(before):
-            self._fail("a move or its feed has changed", int(self.owner[np.argmin(same)]))
+        rapid = after.kind == gx.Kind.RAPID
+        timed = (after.feed_mode == gx.FeedMode.INVERSE_TIME) & ~rapid
+        same = (before.source[self.owner] == after.source) & (np.diff(self.owner, prepend=0) >= 0)
+        same &= before.kind[self.owner] == after.kind
+        same &= timed | rapid | (after.feed == before.feed[self.owner])
+        same &= timed | (before.feed_mode[self.owner] == after.feed_mode) | rapid
+        gone = np.bincount(self.owner, minlength=len(before)) == 0
+        gone &= self._ways() > STILL
+        if not same.all() or gone.any():
+            row = int(np.argmax(gone)) if gone.any() else int(self.owner[np.argmin(same)])
+            self._fail("a move or its feed has changed", row)
         time = np.bincount(self.owner[timed], 1.0 / after.feed[timed], len(before))
         rows = np.unique(self.owner[timed])
-        wrong = rows[np.abs(time[rows] * before.feed[rows] - 1.0) > SAME_TIME]
+        wanted = self._times()
+        wrong = rows[~(np.abs(time[rows] / wanted[rows] - 1.0) <= SAME_TIME)]
         if len(wrong):
             self._fail("the time of a move has changed", int(wrong[0]))
+
+    def _ways(self) -> Floats:
+        """Return how far the moves of the source go: mm of the tip, degrees where it rests."""
+        step = self.source.end - self.source.start
+        way = np.sqrt((step[:, :3] ** 2).sum(axis=1))
+        turned = np.sqrt((self.source.place.angles(step) ** 2).sum(axis=1))
+        return np.asarray(np.where(way < STILL, turned, way))
+
+    def _times(self) -> Floats:
+        """Return the times (min) of the moves of the source."""
+        before = self.before
+        minutes = before.feed_mode == gx.FeedMode.PER_MINUTE
+        return np.asarray(np.where(minutes, self._ways(), 1.0) / before.feed)
 
     def _fail(self, message: str, row: int) -> None:
         line = int(self.before.source[row]) + 1 if len(self.before) else 0
