@@ -91,6 +91,11 @@ class Pass:
         """The feed mode that the pass turns those of others into; None: it keeps them."""
         return None
 
+    @property
+    def slows(self) -> bool:
+        """Whether its moves may take longer than their feeds say, where axes are at full speed."""
+        return False
+
     def begin(self, context: PassContext) -> None:
         """Look at the context before any input is read; raise UsageError if it does not fit."""
 

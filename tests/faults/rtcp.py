@@ -168,7 +168,7 @@ MUTATIONS = (
     ),
     Mutation(
         "rtcp: the tool axis goes evenly between its ends, and not on the circle",
-        MOVING,
+        f"{PASSES}/rtcp_circling.py",
         "left = np.where(short, 1.0 - part, np.sin((1.0 - part) * angle) / whole)",
         "left = np.where(short, 1.0 - part, 1.0 - part)",
         f"{CHOOSING}::test_blocks_of_a_great_circle",
@@ -179,5 +179,19 @@ MUTATIONS = (
         "axis = np.cos(angle)[:, None] * one + np.sin(angle)[:, None] * np.cross(pole, one)",
         "axis = np.cos(angle)[:, None] * one + 0.0 * np.cross(pole, one)",
         f"{CHOOSING}::test_blocks_of_a_great_circle",
+    ),
+    Mutation(
+        "rtcp: the top speed of one axis counts for all",
+        CUTTING,
+        "least = np.maximum(least, way / axis.max_speed)",
+        "least = way / axis.max_speed",
+        f"{TESTS}::test_no_axis_is_faster_than_it_can_be",
+    ),
+    Mutation(
+        "feeds: a move may be late without an axis at full speed",
+        "gcxform/feedproof.py",
+        "return np.asarray(timed & (least * written.feed >= 1.0 - TIME_ERROR))",
+        "return np.asarray(timed & (least * written.feed >= 0.0))",
+        f"{TESTS}::test_a_late_move_has_to_have_a_reason",
     ),
 )

@@ -20,8 +20,9 @@ from typing import Annotated, Literal
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.passes.rtcp_cutting import Cutting
-from gcxform_plugins.passes.rtcp_moving import Circling, Correcting, Moving
+from gcxform_plugins.passes.rtcp_circling import Circling
+from gcxform_plugins.passes.rtcp_cutting import STILL, Cutting
+from gcxform_plugins.passes.rtcp_moving import Correcting, Moving
 from gcxform_plugins.passes.rtcp_place import Place, turned_at
 from gcxform_plugins.passes.rtcp_proof import Driven, Led, Proof
 from gcxform_plugins.passes.rtcp_undoing import Undoing
@@ -132,6 +133,11 @@ class Rtcp(gx.Pass):
         """Inverse time, in which the feed of the tip can be said whatever the axes do."""
         return gx.FeedMode.INVERSE_TIME if self.direction == "to-machine" else None
 
+    @property
+    def slows(self) -> bool:
+        """Whether moves may be slower, where axes would be too fast."""
+        return self.direction == "to-machine"
+
     def begin(self, context: gx.PassContext) -> None:
         """Refuse a run without a machine that turns."""
         machine = context.machine
@@ -226,6 +232,13 @@ class Rtcp(gx.Pass):
         source = Place(path, context, others=self.letters)
         return source, Place(path, there, others="".join(source.chain.letters))
 
+    def speeds(self, context: gx.PassContext) -> list[tuple[str, float]]:
+        """Return the axes whose top speed the machine file has, where it counts."""
+        if not self.slows or context.machine is None:
+            return []
+        axes = context.machine.axes.items()
+        return [(a, axis.max_speed) for a, axis in axes if axis.max_speed is not None]
+
     @property
     def _moving(self) -> type[Moving]:
         if self.target is not None:
@@ -243,8 +256,8 @@ class Rtcp(gx.Pass):
         _, target = self._machines(after, context)
         driven = Driven(self, after, target)
         if self.direction == "to-machine":
-            return Proof(self, Led(before, source), driven)
-        return Proof(self, Driven(self, before, source), driven)
+            return Proof(self, context, Led(before, source), driven)
+        return Proof(self, context, Driven(self, before, source), driven)
 
     def _leans(self) -> tuple[float, float]:
         """Return by how much (degrees) the tool axis may lean, and angles may differ."""
@@ -262,6 +275,29 @@ class Rtcp(gx.Pass):
         """
         if not len(after):
             return {}
+        if self.slows:
+            return self._slowed(before, after, context) | self._turned(before, after, context)
+        return self._turned(before, after, context)
+
+    def _slowed(
+        self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
+    ) -> dict[str, float]:
+        """Return how much longer a piece takes than its feed says, if any does."""
+        owner = np.searchsorted(before.source, after.source)
+        cut = (after.kind != gx.Kind.RAPID) & (after.feed_mode != before.feed_mode[owner])
+        rows = np.flatnonzero(cut)
+        place = Place(before, context)
+        step = before.end - before.start
+        way = np.sqrt((step[:, :3] ** 2).sum(axis=1))
+        turned = np.sqrt((place.angles(step) ** 2).sum(axis=1))
+        time = np.where(way < STILL, turned, way) / before.feed
+        time = time / np.maximum(np.bincount(owner, minlength=len(before)), 1)
+        slower = float(np.max(1.0 / after.feed[rows] / time[owner[rows]], initial=0.0))
+        return {"slower than its feed, times": slower} if slower > 1.001 else {}
+
+    def _turned(
+        self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
+    ) -> dict[str, float]:
         if self.turns_anew:
             return self._measured(before, after, context)
         way = self._corrected(after, context)

@@ -59,8 +59,9 @@ class Cutting:
         self._check_limits(end, row)
         result = end.copy(order="F")
         result[:, :3] = self.way.converted(end, row)
-        new = path.with_rows(pieces, end=result, **self._feeds(pieces, row))
-        return new.replace(entry=self._entry())
+        entry = self._entry()
+        feeds = self._feeds(pieces, row, np.concatenate([entry[None, :], result]))
+        return path.with_rows(pieces, end=result, **feeds).replace(entry=entry)
 
     # --- positions ---
 
@@ -121,8 +122,11 @@ class Cutting:
 
     # --- feeds ---
 
-    def _feeds(self, pieces: Ints, row: Ints) -> dict[str, NDArray[Any]]:
-        """Return feeds and their modes, in which each piece takes its share of the time."""
+    def _feeds(self, pieces: Ints, row: Ints, stops: Floats) -> dict[str, NDArray[Any]]:
+        """Return feeds and their modes, in which each piece takes its share of the time.
+
+        It takes longer where an axis would be too fast. `stops` (n + 1, axes) are where axes are.
+        """
         path = self.path
         feed, mode = path.feed.copy(), path.feed_mode.copy()
         if self.to_axes:
@@ -134,7 +138,21 @@ class Cutting:
             mode[told] = gx.FeedMode.INVERSE_TIME
         inverse = mode == gx.FeedMode.INVERSE_TIME
         feed = feed[row] * np.where(inverse[row], pieces[row], 1.0)
+        if self.to_axes:
+            most = 1.0 / np.maximum(self._least_times(stops), 1e-300)
+            feed = np.where(moving[row], np.fmin(feed, most), feed)
         return {"feed": feed, "feed_mode": mode[row]}
+
+    def _least_times(self, stops: Floats) -> Floats:
+        """Return the time (n,) min that the axes take at least from each place to the next."""
+        assert self.context.machine is not None
+        least = np.zeros(len(stops) - 1)
+        for column, letter in enumerate(self.path.axes):
+            axis = self.context.machine.axes.get(letter)
+            if axis is not None and axis.max_speed is not None:
+                way = np.nan_to_num(np.abs(np.diff(stops[:, column])))
+                least = np.maximum(least, way / axis.max_speed)
+        return least
 
     def _ways(self) -> Floats:
         """Return how far (n,) tips go, in mm; in degrees where only axes turn."""

@@ -84,8 +84,10 @@ def _between(start: Floats, end: Floats, rows: Ints, part: Floats) -> Floats:
 class Proof:
     """The tips and tool axes of one window, as the source leads them and as the target does."""
 
-    def __init__(self, step: Rtcp, source: Driven | Led, target: Driven) -> None:
-        self.step = step
+    def __init__(
+        self, step: Rtcp, context: gx.PassContext, source: Driven | Led, target: Driven
+    ) -> None:
+        self.step, self.context = step, context
         self.source, self.target = source, target
         self.before, self.after = source.path, target.path
         self.owner = self._owners()
@@ -180,12 +182,24 @@ class Proof:
         if not same.all() or gone.any():
             row = int(np.argmax(gone)) if gone.any() else int(self.owner[np.argmin(same)])
             self._fail("a move or its feed has changed", row)
-        time = np.bincount(self.owner[timed], 1.0 / after.feed[timed], len(before))
-        rows = np.unique(self.owner[timed])
-        wanted = self._times()
-        wrong = rows[~(np.abs(time[rows] / wanted[rows] - 1.0) <= SAME_TIME)]
+        rows = np.flatnonzero(timed)
+        owner = self.owner[rows]
+        count = np.bincount(self.owner, minlength=len(before))
+        time, wanted = 1.0 / after.feed[rows], self._times()[owner] / count[owner]
+        least = np.where(before.feed_mode[owner] == after.feed_mode[rows], 0.0, self._least()[rows])
+        wanted = np.maximum(wanted, least)
+        wrong = owner[~(np.abs(time / wanted - 1.0) <= SAME_TIME)]
         if len(wrong):
             self._fail("the time of a move has changed", int(wrong[0]))
+
+    def _least(self) -> Floats:
+        """Return the times (min) that axes take at least for moves of the target."""
+        step = np.abs(self.target.end - self.target.start)
+        found = np.zeros(len(step))
+        for letter, speed in self.step.speeds(self.context):
+            column = self.after.axes.index(letter)
+            found = np.fmax(found, step[:, column] / speed)
+        return found
 
     def _ways(self) -> Floats:
         """Return how far the moves of the source go: mm of the tip, degrees where it rests."""
