@@ -86,7 +86,9 @@ CODES: dict[str, tuple[str, str]] = {
         "tell: a canned cycle, a return to reference, tool length or radius compensation, an "
         "offset in the control, a subprogram. A pass that needs positions would work on wrong "
         "ones. Let the CAM system write plain moves, end the mode before the part that is "
-        "transformed, or leave such programs to pipelines that change text only.",
+        "transformed, or leave such programs to pipelines that change text only. Of a code with "
+        "which the control follows the tip (G43.4, G43.5, G234) `rtcp` does the work: have the "
+        "CAM write G43 for tips; for positions of axes there is nothing to follow.",
     ),
     "GX211": (
         "Block delete depends on a switch",
