@@ -314,7 +314,7 @@ class Correcting(Moving):
         Between half of the largest turn and all of it the correction fades out.
         """
         posted = self.place.angles(positions)
-        turn = np.abs(angles - posted).max(axis=1, initial=0.0)
+        turn = np.abs(self._written(angles) - posted).max(axis=1, initial=0.0)
         largest = self.step.largest_turn
         if self.step.orientation == "correct":
             far = np.zeros(len(self.path), np.bool_)
