@@ -298,7 +298,8 @@ class Correcting(Moving):
     """The same for a machine whose axes are a little elsewhere, with angles near those posted."""
 
     def _choose(self) -> None:
-        """Leave the attitudes and turns as they are."""
+        """Leave the attitudes and turns as they are; refuse ends of blocks near the pole."""
+        self._angles(self.end, np.arange(len(self.path)), np.ones(len(self.path)))
 
     def _entered(self, entry: Floats) -> Floats:
         said = self.place.angles(entry)
