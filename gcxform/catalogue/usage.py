@@ -10,17 +10,17 @@ CODES: dict[str, tuple[str, str]] = {
         "not at the tool's radius from it. Nothing was written. This is a bug of gcxform or of a "
         "plugin; please report it with the program.",
     ),
-    "GX606": (
-        "A program for another machine does not keep the tool where it was",
-        "The path that `rtcp` made was followed by the forward models of both machines, and tip, "
-        "tool axis or time are not those of the program. Nothing was written. This is a bug of "
-        "gcxform or of a plugin; please report it with the program.",
-    ),
     "GX605": (
         "A table does not read back as it was meant",
         "The table that was to be written was read again, and the errors differ. Nothing was "
         "written. This is a bug of the format: report it to the author of the plugin, see `gcxform "
         "list formats`.",
+    ),
+    "GX606": (
+        "A program for another machine does not keep the tool where it was",
+        "The path that `rtcp` made was followed by the forward models of both machines, and tip, "
+        "tool axis or time are not those of the program. Nothing was written. This is a bug of "
+        "gcxform or of a plugin; please report it with the program.",
     ),
     "GX701": (
         "Unknown key in a pipeline",

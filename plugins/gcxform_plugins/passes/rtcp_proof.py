@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-AT_ONCE = 200_000  # places compared at once
+AT_ONCE = 20_000  # places compared at once
 LEAN_SHARE = 0.02  # of the tolerance of the tool axis, that is left to the places looked at
 SAME_TIME = 1e-9  # relative
 STILL = 1e-7  # mm, degrees; what moves by less stands still
