@@ -28,6 +28,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+NEXT = 1e-9  # degrees; rows that do not turn still follow one another
 SAMPLE = 5.0  # degrees; how far the axes of the source turn between two points of the search
 STILL = 1e-7  # mm, degrees; what moves by less stands still
 WHY = {
@@ -184,14 +185,16 @@ class Moving(Cutting):
     def _choose(self) -> None:
         """Choose the angles at places along all cuts, each by itself from axes at 0.
 
-        The row i has `count[i]` of the `samples`; it starts at the one with the number `first[i]`.
+        The row i goes from place `first[i]` of the `samples` to place `first[i] + count[i]`, which
+        is between two of them where the row is short.
         """
         found, total = [], 0
-        self.first, self.count = np.zeros((2, len(self.path)), np.int64)
+        self.first, self.count = np.zeros((2, len(self.path)))
         for rows in self._groups():
-            angles, count = self._group(rows)
-            self.first[rows] = total + np.cumsum(count) - count - 1
-            self.count[rows] = count
+            angles, place = self._group(rows)
+            place += total
+            self.first[rows] = np.append(place[0] - 1.0, place[:-1])
+            self.count[rows] = place - self.first[rows]
             found.append(angles)
             total += len(angles)
         self.samples = np.concatenate([*found, np.zeros((1, len(self.target.chain.axes)))])
@@ -210,18 +213,27 @@ class Moving(Cutting):
         self._refuse("GX330", lost & self.known & ~rapid, message, hint)
         return groups
 
-    def _group(self, rows: Ints) -> tuple[Floats, Ints]:
-        """Return the angles at the places of a cut, and how many places each row has."""
+    def _group(self, rows: Ints) -> tuple[Floats, Floats]:
+        """Return the angles at places of a cut, and at which place each row ends.
+
+        Rows that turn far have several places, and of short ones that follow each other some have
+        none.
+        """
         turn = np.abs(self.place.angles(self.end[rows] - self.start[rows])).max(axis=1)
-        rapid = self.path.kind[rows] == gx.Kind.RAPID
-        many = np.where(rapid, 0.0, np.ceil(np.nan_to_num(turn) / SAMPLE))
-        count = np.maximum(many, 1.0).astype(np.int64)
-        row = np.repeat(rows, count)
-        pieces = np.zeros(len(self.path), np.int64)
+        turn, rapid = np.nan_to_num(turn), self.path.kind[rows] == gx.Kind.RAPID
+        turn[rapid] = 0.0
+        along = np.cumsum(turn)
+        cells = np.floor(2.0 * along / SAMPLE)
+        far, last = turn > SAMPLE, np.append(rapid[1:] | (turn[1:] > SAMPLE), True)
+        kept = rapid | far | last | (np.diff(cells, append=np.inf) > 0.0)
+        count = np.where(kept, np.maximum(np.ceil(turn / SAMPLE), 1.0), 0.0).astype(np.int64)
+        row, pieces = np.repeat(rows, count), np.zeros(len(self.path), np.int64)
         pieces[rows] = count
-        places = self._cut(pieces, row)
-        axis = self._axis(places, row, self._parts(pieces, row))
-        return self._choice(axis, np.repeat(~rapid, count), row), count
+        axis = self._axis(self._cut(pieces, row), row, self._parts(pieces, row))
+        angles = self._choice(axis, np.repeat(~rapid, count), row)
+        along += NEXT * np.arange(len(rows))
+        ends = np.cumsum(count)[kept] - 1.0
+        return angles, np.interp(along, along[kept], ends)
 
     def _choice(self, axis: Floats, cut: Flags, row: Ints) -> Floats:
         """Return the angles of the target for tool axes along the source. Raises InputError."""
