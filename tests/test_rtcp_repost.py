@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from gcxform_plugins.passes.rtcp_choice import nearest
 from gcxform_plugins.passes.rtcp_small import bend_of_correction
 from gcxform_plugins.passes.rtcp_undoing import SHARE
 from hypothesis import HealthCheck, given, settings
@@ -441,3 +442,47 @@ def test_the_bound_holds_with_slips(seed, kind, size):
     found = tool(other, between(*ends, 65), between(*(angles + slips), 65))[0]
     worst = np.linalg.norm(found - wanted, axis=1).max()
     assert worst <= bound + 1e-9
+
+
+def eight_errors():
+    """Return the trunnion of the reference, nominal and with its eight errors as lines."""
+    a, c = np.array([5.0, -32.0, -95.0]), np.array([5.0, -20.0, -60.0])
+    x, y, z = 0.021, -0.034, 0.046
+    al, be, ga = 80e-6, -110e-6, 130e-6
+    o, more, lean = c - a, -0.027, 60e-6
+    moved_a = np.add(a, [0.0, y, z])
+    moved_c = np.add(c, [x + be * o[2] - ga * o[1], y + more + ga * o[0] - al * o[2], 0.0])
+
+    def axis(letter, way, point):
+        unit = np.array(way) / np.linalg.norm(way)
+        return gx.Rotary(letter, tuple(unit.tolist()), tuple(point.tolist()), -1)
+
+    nominal = gx.Chain((axis("A", [1.0, 0.0, 0.0], a), axis("C", [0.0, 0.0, 1.0], c)))
+    real = (axis("A", [1.0, ga, -be], moved_a), axis("C", [be + lean, -al, 1.0], moved_c))
+    return nominal, gx.Chain(real)
+
+
+def test_figures_of_the_eight_errors():
+    """Up to 0.2 mm and 296 urad off; kept, the tip is right; corrected, the tool axis is too."""
+    nominal, real = eight_errors()
+    rng = np.random.default_rng(1)
+    points = rng.normal(size=(2000, 3))
+    points *= (150.0 * rng.uniform(size=2000) ** (1 / 3) / np.linalg.norm(points, axis=1))[:, None]
+    angles = np.column_stack([rng.uniform(3, 90, 2000), rng.uniform(-180, 180, 2000)])
+    angles[:, 0] *= rng.choice([-1, 1], 2000)
+    linear = nominal.linear(points, angles)
+    tip, axis = tool(nominal, linear, angles)
+    off, lean = (f - w for f, w in zip(tool(real, linear, angles), (tip, axis), strict=True))
+    far = np.linalg.norm(off, axis=1)
+    assert far.max() == pytest.approx(0.198, rel=0.06)
+    assert np.sqrt((far**2).mean()) == pytest.approx(0.0996, rel=0.05)
+    assert np.linalg.norm(lean, axis=1).max() == pytest.approx(296e-6, rel=0.005)
+    kept = tool(real, real.linear(tip, angles), angles)[0]
+    assert np.linalg.norm(kept - tip, axis=1).max() <= 1e-9
+    turned = nearest(real, axis, angles)
+    found = tool(real, real.linear(tip, turned), turned)
+    assert np.linalg.norm(found[0] - tip, axis=1).max() <= 1e-9
+    assert np.linalg.norm(found[1] - axis, axis=1).max() <= 1e-9
+    most = np.abs(turned - angles).max(axis=0)
+    assert most[0] <= 0.0101
+    assert 0.05 <= most[1] <= 0.17
