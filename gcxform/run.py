@@ -16,6 +16,7 @@ from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.emit.emitter import Emitted, Emitter
+from gcxform.flow.written_out import WrittenOut, located, written_out
 from gcxform.heap import give_back
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
@@ -67,6 +68,9 @@ class Run:
         self.verify = verify
         self.steps = pipeline.path_passes
         self.text = TextRun(pipeline.text_passes, pipeline.target, source.name)
+        if not pipeline.copies:
+            self.source = written_out(source, pipeline.source, pipeline.machine_reading)
+        self.given = source
         self.reader = WindowReader(pipeline.source)
         self.verifier: Verifier | None = None
         self.interpreter: Interpreter | None = None
@@ -99,7 +103,16 @@ class Run:
         resolving = [number for number, step in enumerate(self.steps, 1) if step.resolves]
         return self.steps[resolving[-1] :] if resolving else self.steps
 
-    def over(self, texts: Iterator[bytes], out: Output, progress: Progress) -> None:
+    def over(self, out: Output, progress: Progress) -> None:
+        """Run over the program. Raises GcxformError."""
+        try:
+            self._over(self.source.windows(), out, progress)
+        except GcxformError as error:
+            raise located(error, self.source) from None
+        if isinstance(self.source, WrittenOut) and out.source_map is not None:
+            out.source_map[:] = self.source.origin[out.source_map].tolist()
+
+    def _over(self, texts: Iterator[bytes], out: Output, progress: Progress) -> None:
         """Run over the windows of a program.
 
         The next window is read, and the one before proved, while one is transformed: each on a
@@ -116,13 +129,18 @@ class Run:
         with ThreadPoolExecutor(1) as ahead, ThreadPoolExecutor(1) as behind:
             self._transform_all(behind, self._read_ahead(ahead, texts, out), out, progress)
 
+    def _note_read(self, text: bytes, out: Output) -> None:
+        """Add what was read to the hash of the program, which is that of its file."""
+        if self.source is self.given:
+            out.read.update(text)
+
     def _read_ahead(
         self, pool: ThreadPoolExecutor, texts: Iterator[bytes], out: Output
     ) -> Iterator[tuple[Window, MeaningTable]]:
         """Yield windows, each with its table of meanings, while the next is being read."""
 
         def read(text: bytes) -> tuple[Window, MeaningTable]:
-            out.read.update(text)
+            self._note_read(text, out)
             window = self.reader.read(text)
             return window, self.reader.table
 
@@ -258,6 +276,9 @@ class Run:
         """Return the proof of the out."""
         pipeline = self.pipeline
         self.text.finish()
+        if self.source is not self.given:
+            for text in self.given.windows():
+                out.read.update(text)
         certificate = Certificate(
             VERSION,
             {"name": self.source.name, "dialect": pipeline.source.name, "lines": out.lines_in}
@@ -283,7 +304,7 @@ class Run:
         found = self.verifier.findings
         certificate.largest = {
             "deviation": found.deviation,
-            "source_line": found.source_line,
+            "source_line": self.source.line_of(found.source_line),
             "output_line": found.output_line,
             "angle": found.angle,
         }

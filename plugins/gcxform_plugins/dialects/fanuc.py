@@ -164,3 +164,4 @@ class Fanuc(gx.Dialect):
     arc_rule = gx.ArcRule(absolute=0.01)
     cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE
     arithmetic = v.MACRO_B
+    flow = "macro-b"

@@ -61,6 +61,7 @@ class Haas(Fanuc):
     """Haas mill, NGC."""
 
     name = "haas"
+    calls_own_lines = True
     axes = "XYZABC"
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{name: code for name, code in Fanuc.codes.items() if name not in NOT_HERE},

@@ -217,6 +217,7 @@ class LinuxCNC(gx.Dialect):
     feed_along_lines = True
     least_inverse_rate = 0.1
     arithmetic = v.RS274
+    flow = "o-words"
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     arc_rule = gx.ArcRule(
         absolute=0.0282843,
