@@ -23,7 +23,7 @@ from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import GROUPS, MeaningTable
 from gcxform.options import ModelFile, to_toml
-from gcxform.source import Source, lines_in
+from gcxform.source import WINDOW, Source, lines_in
 from gcxform.syntax.scan import Window
 from gcxform.textpasses import TextRun
 from gcxform.toolpath.path import Toolpath
@@ -103,10 +103,10 @@ class Run:
         resolving = [number for number, step in enumerate(self.steps, 1) if step.resolves]
         return self.steps[resolving[-1] :] if resolving else self.steps
 
-    def over(self, out: Output, progress: Progress) -> None:
-        """Run over the program. Raises GcxformError."""
+    def over(self, out: Output, progress: Progress, size: int = WINDOW) -> None:
+        """Run over the program, `size` bytes at a time. Raises GcxformError."""
         try:
-            self._over(self.source.windows(), out, progress)
+            self._over(self.source.windows(size), out, progress)
         except GcxformError as error:
             raise located(error, self.source) from None
         if isinstance(self.source, WrittenOut) and out.source_map is not None:

@@ -18,6 +18,7 @@ import pytest
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
 from gcxform.cli import VERBS
+from gcxform.flow.written_out import EXECUTED
 from gcxform.machine.chain import chain_of
 from gcxform.machine.machinefile import load_machine
 from gcxform.modal.codes import Effect
@@ -117,9 +118,23 @@ def codes_table():
         for word, which in effects.items():
             found = [g for g, code in codes if code.effect in which]
             if word != "read":
-                found += [f"M{m}" for m, code in m_codes if bool(code.barrier) == (word[0] == "r")]
+                refused = word == "refused"
+                rest = ((m, code) for m, code in m_codes if m not in executed(dialect))
+                found += [f"M{m}" for m, code in rest if bool(code.barrier) == refused]
             lines.append(f"| | {word} | {_runs(found)} |")
+        if numbers := executed(dialect):
+            lines.append(
+                f"| | executed | {' '.join(f'M{m}' for m in numbers)} {FLOW[dialect.flow]} |"
+            )
     return lines
+
+
+FLOW = {"o-words": "and O-words", "macro-b": "and IF, GOTO, WHILE"}
+
+
+def executed(dialect):
+    """Return the M codes that are executed while a program is read."""
+    return [m for m in EXECUTED.get(dialect.flow, ()) if m in dialect.m_codes]
 
 
 def _runs(codes):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 from abc import abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -16,14 +17,14 @@ import numpy as np
 
 from gcxform.diagnostics import InputError
 from gcxform.flow.listing import Listing, bare
-from gcxform.flow.text import EXACT_DECIMALS, decimal
+from gcxform.flow.text import DECIMALS, decimal
 from gcxform.modal.arithmetic import Arithmetic, Key, NoValueError, whole
 from gcxform.modal.expressions import Evaluator, LocatedError, parameter_key, settable
 from gcxform.modal.lines import DISTANCES
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statement, Word
 
-STEPS_AT_MOST = 5_000_000  # executed lines: a loop that long has no end
+STEPS_AT_MOST = 500_000  # lines that are executed one by one: a minute
 BYTES_AT_MOST = 1 << 28  # of executed blocks
 DEEPEST = 100  # calls inside calls
 UNKNOWN = math.nan
@@ -68,7 +69,8 @@ class Execution:
         self.ended = False
         self.text: list[bytes] = []
         self.origin: list[np.ndarray[Any, np.dtype[np.int64]]] = []
-        self.steps = self.size = 0
+        self.steps = self.size = self.changes = 0
+        self.rounds: dict[int, int] = {}
 
     # --- the walk ---
 
@@ -92,6 +94,7 @@ class Execution:
     def _step(self) -> None:
         """Execute one line that is more than a plain block."""
         self.line, self.at = self.at, self.at + 1
+        self._count()
         block = self.listing.block(self.line)
         if self._skips(block):
             self._copy_line()
@@ -117,19 +120,31 @@ class Execution:
             text += b"\n"
         self.text.append(text)
         self.origin.append(lines)
-        self.count(len(lines))
         self.size += len(text)
 
     def write_line(self, text: str) -> None:
         """Write a block that the line stands for."""
         self._put(text.encode("latin-1") + self.listing.line_end(self.line), np.array([self.line]))
 
-    def count(self, steps: int = 1) -> None:
+    def _count(self) -> None:
         """Count executed lines. Raises InputError for a program that does not end."""
-        self.steps += steps
+        self.steps += 1
         if self.steps > STEPS_AT_MOST or self.size > BYTES_AT_MOST:
-            message = f"the program is not over after {self.steps} blocks"
+            message = f"the program is not over after {self.steps} lines that decide something"
             raise self.refusal("GX224", message, "does this loop end?")
+
+    def back_to(self, line: int) -> None:
+        """Go back to a line. Raises InputError if nothing has changed since the last time."""
+        if self.rounds.get(self.line) == self.changes:
+            message = "nothing changes from one round of this loop to the next: it has no end"
+            raise self.refusal("GX224", message)
+        self.rounds[self.line] = self.changes
+        self.at = line
+
+    def set(self, values: Mapping[Key, float]) -> None:
+        """Give parameters their values."""
+        self.changes += any(self.parameters.get(k) != v for k, v in values.items())
+        self.parameters.update(values)
 
     def _closing(self) -> None:
         """Write the last percent sign, which the control reads behind the end of the program."""
@@ -169,7 +184,7 @@ class Execution:
             self._write_changed(block, edits)
         else:
             self._copy_line()
-        self.parameters.update(changes)
+        self.set(dict(changes))
         if meaning.runs_macro and not meaning.lost_by <= self.reading.inert_m:
             self.parameters = dict.fromkeys(self.parameters, UNKNOWN)
         self.ended |= self._ends(block)
@@ -198,7 +213,6 @@ class Execution:
         words = [item for item in bare(block) if isinstance(item, Word)]
         active = [i for i in block.items if isinstance(i, Comment) and self._executes(block, i)]
         if not words and not active:
-            self.count()
             return
         edits = [
             *edits,
@@ -272,7 +286,7 @@ class Execution:
             hint = 'say what 1 is worth: increment = "0.001 mm" in [input]'
             raise self.refusal("GX205", message, hint, (word.start, word.end))
         steps = math.floor(abs(value) / increment + 0.5)
-        return decimal(math.copysign(round(steps * increment, EXACT_DECIMALS), value))
+        return decimal(math.copysign(round(steps * increment, DECIMALS), value))
 
     def _assigned(self, statement: Statement) -> tuple[Key, float]:
         """Return a parameter and its new value."""

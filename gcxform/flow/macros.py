@@ -117,7 +117,6 @@ class MacroB(Execution):
             raise self.refusal("GX223", message)
         statement = _statement(block)
         if statement is not None:
-            self.count()
             getattr(self, f"_{statement.kind}")(statement)
             return True
         items = bare(block)
@@ -168,7 +167,6 @@ class MacroB(Execution):
 
     def _return(self, block: Block, items: list[Word | Statement]) -> None:
         self._only(items, "MP")
-        self.count()
         call = self.calls[-1]
         call.times -= 1
         if call.times:
@@ -212,7 +210,10 @@ class MacroB(Execution):
         into = [p for p in self._around(target) if p not in self._around(self.line)]
         if into:
             raise self.refusal("GX223", f"N{number:g} stands inside a loop that is not running")
-        self.at = target
+        if target > self.line:
+            self.at = target
+        else:
+            self.back_to(target)
 
     def _around(self, line: int) -> list[Loop]:
         return [loop for loop in set(self.loops.values()) if loop.first < line < loop.last]
@@ -234,7 +235,7 @@ class MacroB(Execution):
         if self._holds(statement):
             tree = statement.tree.children[-1]
             key, value = self.assignment(tree, (statement.start, statement.end))
-            self.parameters[key] = value
+            self.set({key: value})
 
     # --- loops ---
 
@@ -246,7 +247,7 @@ class MacroB(Execution):
         """Go on."""
 
     def _end(self, statement: Statement) -> None:
-        self.at = self.loops[self.line].first
+        self.back_to(self.loops[self.line].first)
 
 
 def _statement(block: Block) -> Statement | None:

@@ -61,10 +61,11 @@ class StoredModes:
             return False
         if sum(word.address != "N" for word in block.words) > 1:
             raise self.program.refusal("GX210", "a block that stores modes does something else")
-        stored = self.levels[-1].stored
+        level = self.levels[-1]
+        stored = level.stored
         if RESTORE not in asked:
-            now = None if FORGET in asked else self._in_force()
-            self.levels[-1] = Level(now, STORE_FOR_CALL in asked)
+            level.stored = None if FORGET in asked else self._in_force()
+            level.comes_back |= STORE_FOR_CALL in asked
         elif stored is None:
             raise self.program.refusal("GX223", "nothing is stored here that M72 could restore")
         else:

@@ -23,16 +23,20 @@ from gcxform.modal.state import Reading
 from gcxform.syntax.tree import BLANKS, Block, Statement, Word
 
 LOCALS = range(1, 31)
+LEAVES = frozenset({"break", "continue"})
 POSITIONS = range(FIRST, FIRST + 9)
 NAMES_POSITION = re.compile(r"#[ \t]*5[ \t]*4[ \t]*2")
 ORDERS = {
     "sub": ("sub", "return", "endsub"),
     "if": ("if", "elseif", "else", "endif"),
     "while": ("while", "break", "continue", "endwhile"),
-    "do": ("do", "break", "continue", "while"),
-    "repeat": ("repeat", "break", "continue", "endrepeat"),
+    "do": ("do", "break", "while"),
+    "repeat": ("repeat", "endrepeat"),
 }
-"""The keywords with the label of each construct: what opens it first, what closes it last."""
+"""The keywords with the label of each construct: what opens it first, what closes it last.
+
+After `continue` in a `do` loop the interpreter runs a later `repeat` too often, so it is refused.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +71,7 @@ class OWords(Execution):
         self.subs: dict[str, Construct] = {}
         self.labels: dict[int, list[int]] = {}
         self.ahead: set[str] = set()
+        self.jumped = False
         self.modes = StoredModes(self)
         self.places = Places(self)
         self.counters: dict[int, int] = {}
@@ -126,7 +131,8 @@ class OWords(Execution):
             if word.keyword == "sub":
                 self.subs[word.label] = construct
         elif not self._goes_on(construct, word.keyword):
-            raise self._misfit(f"this label is in use already, from line {construct.lines[0] + 1}")
+            place = f"{construct.kind} in line {construct.lines[0] + 1}"
+            raise self._misfit(f"{word.keyword} does not go with what has this label, {place}")
         construct.lines.append(line)
         self.construct[line] = construct
         return "" if word.keyword == "endsub" else scope
@@ -147,13 +153,12 @@ class OWords(Execution):
     def act(self, block: Block) -> bool:
         """Do what an O-word, a call or a stored mode does."""
         items = bare(block)
-        for key in [key for key in self.parameters if key in POSITIONS]:
-            del self.parameters[key]
         if NAMES_POSITION.search(block.text):
-            self.parameters |= self.places.parameters()
+            self.set(self.places.parameters())
+        elif FIRST in self.parameters:
+            self.parameters |= dict.fromkeys(POSITIONS, math.nan)
         word = self.words.get(self.line)
         if word is not None:
-            self.count()
             getattr(self, f"_{word.keyword}")(word)
             return True
         if len(items) == 1 and isinstance(items[0], Word) and items[0].address == "O":
@@ -204,7 +209,7 @@ class OWords(Execution):
         call = Call(f"O{word.label}", self.at, construct.lines[0] + 1, 1, own, self.counters)
         self.parameters = {k: v for k, v in self.parameters.items() if k not in own}
         given = [*values, *[0.0] * (len(LOCALS) - len(values))]
-        self.parameters.update(zip(LOCALS, given, strict=True))
+        self.set(dict(zip(LOCALS, given, strict=True)))
         self.counters = {}
         self.enter(call)
         self.modes.enter()
@@ -230,7 +235,7 @@ class OWords(Execution):
 
     def returned(self, value: float | None = None) -> None:
         """Set what the program can read about the last return."""
-        self.parameters |= {"_value": value or 0.0, "_value_returned": float(value is not None)}
+        self.set({"_value": value or 0.0, "_value_returned": float(value is not None)})
 
     def _call_by_number(self, block: Block, items: list[Word | Statement], calls: bool) -> None:
         """Do M98 or M99: without parameters of its own."""
@@ -253,14 +258,20 @@ class OWords(Execution):
         if not found:
             message = f"the subprogram O{number:g} is not behind this block in the file"
             raise self.refusal("GX210", message, HINT)
+        if not times and (self.calls or self._is_inside(self.line)):
+            message = "the control loses its place at a call that is made no time at all"
+            raise self.refusal("GX223", message, "leave the block out")
         if times:
             name = f"M98 P{number:g}"
             self.enter(Call(name, self.at, found[0] + 1, int(times), {}, self.counters))
             self.counters = {}
 
+    def _is_inside(self, line: int) -> bool:
+        """Whether a line stands inside a construct."""
+        return any(c.lines[0] < line < c.last for c in self.construct.values())
+
     def _repeat_or_return(self) -> None:
         call = self.calls[-1]
-        self.count()
         call.times -= 1
         if call.times:
             self.at = call.first
@@ -295,12 +306,25 @@ class OWords(Execution):
         construct = self.construct[self.line]
         again = self._truth(word)
         if construct.kind == "do":
-            self.at = construct.lines[0] + 1 if again else self.at
-        elif not again:
+            self._refuse_after_jump()
+            if again:
+                self.back_to(construct.lines[0] + 1)
+            return
+        self.jumped |= any(self._keyword(line) in LEAVES for line in construct.lines)
+        if not again:
             self.at = construct.last + 1
 
+    def _refuse_after_jump(self) -> None:
+        """Refuse a `do` loop behind a loop with `break` or `continue`, taken or not.
+
+        The interpreter may run it once, whatever its condition says.
+        """
+        if self.jumped:
+            message = "behind a loop with break or continue the control may run this loop once only"
+            raise self.refusal("GX223", message, "write it as a while loop")
+
     def _endwhile(self, word: OWord) -> None:
-        self.at = self.construct[self.line].lines[0]
+        self.back_to(self.construct[self.line].lines[0])
 
     def _do(self, word: OWord) -> None:
         """Go on."""
@@ -322,6 +346,7 @@ class OWords(Execution):
             self._leave(self.construct[self.line])
 
     def _break(self, word: OWord) -> None:
+        self.jumped = True
         self._leave(self.construct[self.line])
 
     def _continue(self, word: OWord) -> None:

@@ -19,6 +19,8 @@ from gcxform.source import COMMENT, Source
 
 RUNS: dict[str, type[Execution]] = {"o-words": OWords, "macro-b": MacroB}
 """How a dialect may write subprograms and loops: `Dialect.flow`."""
+EXECUTED = {"o-words": (70, 71, 72, 73, 98, 99), "macro-b": (97, 98, 99)}
+"""M codes that are executed, and do not stand in what is written; M97 where a dialect has it."""
 NUMBERED = rb"(?:N[ \t]*[0-9.]+[ \t]*)?"
 SIGNS = {
     "o-words": (

@@ -9,6 +9,7 @@ from faults import (
     computing,
     cutter,
     cycles,
+    flow,
     frames,
     kinematics,
     passes,
@@ -27,6 +28,7 @@ from faults.mutation import Mutation
 
 MUTATIONS: tuple[Mutation, ...] = (
     *cycles.MUTATIONS,
+    *flow.MUTATIONS,
     *commands.MUTATIONS,
     *computing.MUTATIONS,
     *frames.MUTATIONS,
