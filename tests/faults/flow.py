@@ -13,9 +13,9 @@ def _flow(name: str, file: str, old: str, new: str, tests: str = CASES) -> Mutat
 
 
 MUTATIONS = (
-    _flow("a call keeps the values of its caller", "owords", "if k not in own}", "}", AGREES),
+    _flow("a call keeps the values of its caller", "owords", "if k not in own}", "}"),
     _flow("what is not given is one", "owords", "*[0.0] *", "*[1.0] *", AGREES),
-    _flow("names are not local", "owords", 'not key.startswith("_")', "False", AGREES),
+    _flow("names are not local", "owords", 'not key.startswith("_")', "False"),
     _flow("a count is cut", "owords", "(word.values[0]) + 0.5)", "(word.values[0]))", AGREES),
     _flow(
         "a loop ends a round late",
