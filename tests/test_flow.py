@@ -38,6 +38,27 @@ def test_what_is_only_copied_is_not_executed() -> None:
     assert b"repeat[2]" in gx.Pipeline.parse("strip", "linuxcnc").run(LOOP).text
 
 
+@pytest.mark.parametrize(
+    "text",
+    [b"G0 X1 (o1 repeat [2])\nM2\nafter\n", b"G0 X1 ; M98 P1\nM2\n", b"G0 X1 ; o1 sub\nM2\n"],
+)
+def test_a_comment_about_calls_calls_nothing(text: bytes) -> None:
+    assert gx.read(text, "linuxcnc").executed == text
+    done = absolute("linuxcnc").run(text)
+    assert done.text == text
+    assert not any("calls" in what for what in done.certificate.not_checked)
+
+
+def test_the_certificate_says_that_blocks_were_executed() -> None:
+    done = absolute("linuxcnc").run(LOOP)
+    assert any("calls and loops" in what for what in done.certificate.not_checked)
+
+
+def test_nothing_is_executed_behind_the_second_percent_sign() -> None:
+    text = b"%\no1 repeat [2]\nG0 X1\no1 endrepeat\n%\no2 while [1]\no2 endwhile\n"
+    assert gx.read(text, "linuxcnc").executed == b"%\nG0 X1\nG0 X1\n%\n"
+
+
 def test_a_copy_of_executed_blocks_compares_equal() -> None:
     done = absolute("linuxcnc").run(LOOP)
     found = gx.compare(gx.read(LOOP, "linuxcnc"), gx.read(done.text, "linuxcnc"))

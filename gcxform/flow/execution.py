@@ -66,7 +66,8 @@ class Execution:
         self.calls: list[Call] = []
         self.at = 0
         self.line = 0
-        self.ended = False
+        self.ended = self.acted = False
+        self.percents = 0
         self.text: list[bytes] = []
         self.origin: list[np.ndarray[Any, np.dtype[np.int64]]] = []
         self.steps = self.size = self.changes = 0
@@ -98,7 +99,9 @@ class Execution:
         block = self.listing.block(self.line)
         if self._skips(block):
             self._copy_line()
-        elif block.error is not None or not self.act(block):
+        elif block.error is None and self.act(block):
+            self.acted = True
+        else:
             self.write(block)
 
     def _copy_line(self) -> None:
@@ -179,6 +182,7 @@ class Execution:
             place = (refusal.column, refusal.column + refusal.width)
             raise self.refusal(refusal.code, refusal.message, refusal.hint, place)
         edits = self.edits(block)
+        self.acted |= self.becomes_other(block)
         changes = [self._assigned(i) for i in block.items if isinstance(i, Statement)]
         if edits or changes:
             self._write_changed(block, edits)
@@ -187,7 +191,8 @@ class Execution:
         self.set(dict(changes))
         if meaning.runs_macro and not meaning.lost_by <= self.reading.inert_m:
             self.parameters = dict.fromkeys(self.parameters, UNKNOWN)
-        self.ended |= self._ends(block)
+        self.percents += meaning.percent
+        self.ended |= self.percents > 1 or self._ends(block)
 
     def edits(self, block: Block) -> list[Edit]:
         """Return the pieces of a block that are written otherwise: its values."""

@@ -154,6 +154,7 @@ class OWords(Execution):
         """Do what an O-word, a call or a stored mode does."""
         items = bare(block)
         if NAMES_POSITION.search(block.text):
+            self.acted = True
             self.set(self.places.parameters())
         elif FIRST in self.parameters:
             self.parameters |= dict.fromkeys(POSITIONS, math.nan)

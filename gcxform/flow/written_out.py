@@ -21,6 +21,7 @@ RUNS: dict[str, type[Execution]] = {"o-words": OWords, "macro-b": MacroB}
 """How a dialect may write subprograms and loops: `Dialect.flow`."""
 EXECUTED = {"o-words": (70, 71, 72, 73, 98, 99), "macro-b": (97, 98, 99)}
 """M codes that are executed, and do not stand in what is written; M97 where a dialect has it."""
+TO_THE_END = re.compile(rb";[^\r\n]*")
 NUMBERED = rb"(?:N[ \t]*[0-9.]+[ \t]*)?"
 SIGNS = {
     "o-words": (
@@ -58,9 +59,14 @@ def has_flow(source: Source, dialect: type[Dialect]) -> bool:
     signs, pattern = SIGNS[dialect.flow]
     for text in source.windows():
         some = any(s in text or (dialect.lower_case and s.lower() in text) for s in signs)
-        if some and pattern.search(COMMENT.sub(b"", text)):
+        if some and pattern.search(_without_comments(text, dialect)):
             return True
     return False
+
+
+def _without_comments(text: bytes, dialect: type[Dialect]) -> bytes:
+    bare = COMMENT.sub(b"", text)
+    return TO_THE_END.sub(b"", bare) if ";" in dialect.comments else bare
 
 
 def written_out(source: Source, dialect: type[Dialect], reading: Reading) -> Source:
@@ -74,6 +80,8 @@ def written_out(source: Source, dialect: type[Dialect], reading: Reading) -> Sou
     listing = Listing(b"".join(source.windows()), dialect, source.name)
     run = RUNS[dialect.flow](listing, reading)
     run.run()
+    if not run.acted:
+        return source
     lines = np.concatenate([np.empty(0, np.int64), *run.origin])
     return WrittenOut(source, b"".join(run.text), lines)
 
