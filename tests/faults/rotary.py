@@ -5,12 +5,15 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 FIGURES = "tests/test_rotary.py"
+CIRCLES = "tests/test_ball_circles.py"
+CHECK = "tests/test_rotary_check.py"
 FILES = "tests/test_rotary_files.py"
 BUNDLE = "tests/test_bundle.py"
 
 
-def _rotary(file: str, name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
-    return Mutation(f"rotary: {name}", f"gcxform/calibrate/{file}.py", old, new, tests)
+def _rotary(file: str, name: str, old: str, new: str, tests: str = "") -> Mutation:
+    by = tests or {"circle": CIRCLES, "rotarycheck": CHECK}.get(file, FIGURES)
+    return Mutation(f"rotary: {name}", f"gcxform/calibrate/{file}.py", old, new, by)
 
 
 MUTATIONS = (

@@ -1,0 +1,119 @@
+"""`gcxform calibrate rotary|bundle`: from balls to where the rotary axes of a machine are."""
+
+from __future__ import annotations
+
+import click
+
+from gcxform.cli.asked import Asked
+from gcxform.cli.measured import NOISE, Found, found_options, hand_out, length_of, path_of
+from gcxform.cli.outputs import check_places
+
+_BALLS = """
+DATA is a table with a row for each position of the axis, all other rotary axes at 0:
+
+\b
+    angle [deg], X [mm],   Y [mm],   Z [mm]
+    0,           363.5312, 51.2288,  128.9411
+    45,          287.0892, 235.7834, 128.9533
+
+X, Y, Z: the centre of the ball in machine coordinates, with the probe in the spindle and the ball
+on the table. Where the axis turns the head the ball is fixed, X, Y and Z are those of the machine
+with the tip at its centre, and --tool names the probe. Units: deg, rad; mm, um, nm, m, in.
+Three centres are the least and test nothing; five and more around the whole turn are good.
+
+An axis V and -V with the other sign are the same, and written the same way. The shift of the point
+along the axis is free: it is in the plane of the circle. A machine file keeps all but direction,
+point and sign of the axis.
+"""
+
+
+@click.command(
+    "rotary", epilog=_BALLS, short_help="Ball centres at angles: where a rotary axis is."
+)
+@click.option("--axis", metavar="A", type=click.Choice([*"ABC"]), required=True, help="A, B or C.")
+@click.option("-m", "--machine", metavar="FILE", help="The machine as it is believed to be.")
+@click.option("--tool", metavar="N", type=int, help="The probe, if the axis turns the head.")
+@found_options(NOISE, "2 um")
+def rotary(
+    data: str,
+    axis: str,
+    machine: str | None,
+    tool: int | None,
+    noise: str,
+    output: str | None,
+    report: str | None,
+) -> None:
+    """Turn centres of a ball, probed at angles of a rotary axis, into its direction and point.
+
+    Centres that do not belong to the rest are left out and named. Printed are uncertainties, what
+    the check with RTCP on will read, and what to measure next. Refused are centres that are on no
+    circle, arcs too short, residuals above 3 times the noise, and an axis or a sense that is not
+    that of the machine file.
+    """
+    from gcxform.calibrate import rotarywords
+    from gcxform.calibrate.ballfile import read_balls
+    from gcxform.calibrate.rotarymachine import located, with_found
+
+    check_places({"-o": output, "--report": report}, [data, *filter(None, [machine])])
+    measured = read_balls(path_of(data))
+    believed = Asked(machine=machine).loaded_machine
+    found, before = located(measured.centres, axis, length_of(noise, "--noise"), believed, tool)
+    text = with_found(found, axis, believed, rotarywords.comments(found, measured.file))
+    whole = rotarywords.report(found, axis, measured.file, measured.conditions, before)
+    hand_out(Found(text, whole, rotarywords.lines(found, axis, before)), output, report)
+
+
+_POSES = """
+DATA is a table with a row for each pose, and a column for each rotary axis of the machine:
+
+\b
+    ball, A [deg], C [deg], X [mm],  Y [mm],  Z [mm]
+    1,    -30,     45,      82.7912, 40.1623, -35.9984
+
+ball tells balls apart, and may be absent where there is one. 2 balls at 30 poses each, with all
+axes turned in combination, are a good measurement. The direction and point of every rotary axis are
+found together with the places of the balls and, unless --linear none, with what is seen of the
+linear axes: differences of scale and squareness. These are reported and belong into the error
+model. The absolute scale is never seen; --linear absolute asks for it and shows why not.
+"""
+
+
+@click.command("bundle", epilog=_POSES, short_help="Balls at any poses: all rotary axes at once.")
+@click.option("-m", "--machine", metavar="FILE", required=True, help="The machine as believed.")
+@click.option("--tool", metavar="N", type=int, help="The probe, if an axis turns the head.")
+@click.option(
+    "--linear",
+    type=click.Choice(["differences", "none", "absolute"]),
+    default="differences",
+    show_default=True,
+    help="Which errors of the linear axes are unknown.",
+)
+@found_options(NOISE, "2 um")
+def bundle(
+    data: str,
+    machine: str,
+    tool: int | None,
+    noise: str,
+    linear: str,
+    output: str | None,
+    report: str | None,
+) -> None:
+    """Turn centres of balls at any poses into all rotary axes, with squareness.
+
+    Centres that do not belong to the rest are left out and named. Refused are unknowns that the
+    poses do not determine, and residuals above 3 times the noise.
+    """
+    from gcxform.calibrate import bundlewords
+    from gcxform.calibrate.ballfile import read_poses
+    from gcxform.calibrate.bundle import bundle as fit
+    from gcxform.calibrate.rotarymachine import bundled_text, probing
+
+    check_places({"-o": output, "--report": report}, [data, machine])
+    believed = Asked(machine=machine).loaded_machine
+    assert believed is not None
+    chain = probing(believed, tool)
+    measured = read_poses(path_of(data), chain.letters)
+    found = fit(chain, measured.poses, length_of(noise, "--noise"), linear)
+    text = "" if output is None else bundled_text(found, believed, measured.file)
+    whole = bundlewords.report(found, measured.file, measured.conditions)
+    hand_out(Found(text, whole, bundlewords.lines(found)), output, report)
