@@ -13,6 +13,7 @@ from gcxform.calibrate.rotary import Centres, fitted, locate, without_each
 from gcxform.calibrate.rotarycheck import warnings
 from gcxform.diagnostics import InputError
 from gcxform.machine.chain import Rotary
+from gcxform.machine.errors import FloatArray
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -157,3 +158,35 @@ def test_residuals_above_the_noise_are_refused():
     noisy = clean(skew(), around(9), noise=0.02)
     assert refused(noisy).startswith("GX475")
     locate(noisy, 0.02)
+
+
+# --- axes of the head ---
+
+
+def head_data(axis: Rotary, tip: FloatArray, degrees: FloatArray) -> FloatArray:
+    """Return X, Y, Z that keep the tip on a ball: the tip less where the axis carries it."""
+    return np.array((300.0, 200.0, -100.0)) - axis.turn(np.tile(tip, (len(degrees), 1)), degrees)
+
+
+def test_a_probe_in_a_turning_head_finds_the_axis_of_the_head():
+    axis, tip = skew(1, "B"), np.array((7.0, -30.0, -250.0))
+    degrees = around(7, 180.0) - 90.0
+    points = head_data(axis, tip, degrees)
+    found = locate(Centres(degrees, points), 0.002, tip=(7.0, -30.0, -250.0))
+    assert found.sign == 1
+    assert found.direction == pytest.approx(np.array(axis.direction), abs=1e-12)
+    assert np.linalg.norm(np.cross(found.point - axis.point, axis.direction)) < 1e-9
+
+
+def test_the_covariance_of_the_point_of_a_head():
+    axis, tip = skew(1, "B"), (7.0, -30.0, -250.0)
+    degrees = around(7, 100.0) + 40.0
+    exact = head_data(axis, np.array(tip), degrees)
+    generator = np.random.default_rng(4)
+    away = []
+    for _ in range(300):
+        noisy = exact + 0.002 * generator.standard_normal(exact.shape)
+        found = locate(Centres(degrees, noisy), 0.002, tip, robust=False)
+        away.append(found.point)
+    sd = np.sqrt(np.diag(found.covariance)[:3])
+    assert np.std(away, axis=0) == pytest.approx(sd, rel=0.17)

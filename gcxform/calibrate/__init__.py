@@ -17,6 +17,10 @@
     gcxform/calibrate/rotarywords.py    its report and comments
     gcxform/calibrate/bundle.py         balls at any poses: all rotary axes, and squareness
     gcxform/calibrate/bundlewords.py    its report and comments
+    gcxform/calibrate/ballbar.py        circular tests with RTCP on: the axes of the table
+    gcxform/calibrate/ballbarfile.py    their readings from CSV files, and back
+    gcxform/calibrate/locations.py      the names of location errors, and of those of a trunnion
+    gcxform/calibrate/ballbarwords.py   the report and comments of circular tests
 
 Nothing here prints. What is wrong with a measurement is an InputError, with file, line and column
 where there is one.

@@ -53,7 +53,7 @@ def _measured(table: CsvTable) -> MeasuredBalls:
     table.need(*names)
     points = np.column_stack([table.lengths(name) for name in names[1:]])
     centres = Centres(table.angles("angle"), points, table.where)
-    return MeasuredBalls(table.file, centres, _conditions(table))
+    return MeasuredBalls(table.file, centres, conditions(table))
 
 
 class MeasuredPoses(NamedTuple):
@@ -73,7 +73,7 @@ def read_poses(path: Path, letters: Sequence[str]) -> MeasuredPoses:
     points = np.column_stack([table.lengths(name) for name in names])
     degrees = np.column_stack([table.angles(name) for name in turns])
     poses = Poses(degrees, tuple(table.texts("ball")), points, table.where)
-    return MeasuredPoses(table.file, poses, _conditions(table))
+    return MeasuredPoses(table.file, poses, conditions(table))
 
 
 def poses_csv(poses: Poses, letters: Sequence[str]) -> str:
@@ -84,7 +84,8 @@ def poses_csv(poses: Poses, letters: Sequence[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _conditions(table: CsvTable) -> dict[str, dict[str, Any]]:
+def conditions(table: CsvTable) -> dict[str, dict[str, Any]]:
+    """Return what was carried: of each column its unit, least, mean and most."""
     found: dict[str, dict[str, Any]] = {}
     for heading in table.headings.values():
         if heading.name.startswith(CONDITIONS):

@@ -64,6 +64,12 @@ CODES: dict[str, tuple[str, str]] = {
         "poses of both rotary axes, all around and in combination, and better two balls; without "
         "them leave it out (--linear none).",
     ),
+    "GX490": (
+        "Circular tests of an axis that turns no table",
+        "Circular tests with RTCP on tell of the axes that turn the table, because the ball stands "
+        "on it. The table of measurements names an axis that the machine file does not have, or "
+        "that turns the head; those of the head are found by `gcxform calibrate bundle`.",
+    ),
     "GX501": (
         "The target cannot say this",
         "The control that is written for has no such code, word, comment or plane of arcs, and "

@@ -1,11 +1,21 @@
-"""`gcxform calibrate rotary|bundle`: from balls to where the rotary axes of a machine are."""
+"""`gcxform calibrate rotary|bundle|ballbar`: from balls to where rotary axes are."""
 
 from __future__ import annotations
+
+from functools import partial
 
 import click
 
 from gcxform.cli.asked import Asked
-from gcxform.cli.measured import NOISE, Found, found_options, hand_out, length_of, path_of
+from gcxform.cli.measured import (
+    NOISE,
+    Found,
+    found_options,
+    hand_out,
+    length_of,
+    path_of,
+    two_lengths,
+)
 from gcxform.cli.outputs import check_places
 
 _BALLS = """
@@ -117,3 +127,67 @@ def bundle(
     text = "" if output is None else bundled_text(found, believed, measured.file)
     whole = bundlewords.report(found, measured.file, measured.conditions)
     hand_out(Found(text, whole, bundlewords.lines(found)), output, report)
+
+
+_CIRCLES = """
+DATA is a table with a row for each reading of a bar between a ball on the table and one in the
+spindle, while the control follows the tip (RTCP on) and one axis turns, the others at 0:
+
+\b
+    axis, bar, X [mm], Y [mm], Z [mm], angle [deg], reading [um]
+    A,    Z,   65,     -32,    25,     -90,         12.3
+    A,    X,   65,     -32,    25,     -90,         4.1
+
+bar: the direction from the table ball to the spindle ball, X, Y, Z, -X, -Y or -Z, and X, Y, Z the
+place of the table ball, both with all rotary axes at 0 and in machine coordinates. Each axis needs
+a bar square to it, which tells where it is, and one along it, which tells its direction. An arc of
+180 degrees will do. Where eccentricities are known already a row has cosine [um] and sine [um] in
+place of angle and reading, and --noise is that of an eccentricity.
+"""
+
+
+@click.command(
+    "ballbar", epilog=_CIRCLES, short_help="Circular tests with RTCP on: the axes of the table."
+)
+@click.option("-m", "--machine", metavar="FILE", required=True, help="The machine as it is set.")
+@click.option(
+    "--spindle-ball",
+    metavar="X,Y",
+    default="0,0",
+    help="How far the spindle ball is off the spindle.  [default: 0,0, with a warning]",
+)
+@click.option(
+    "--bar", metavar="LENGTH", default="100 mm", show_default=True, help="Length of the bar."
+)
+@found_options("Standard deviation of a reading.", "1 um")
+def ballbar(
+    data: str,
+    machine: str,
+    bar: str,
+    spindle_ball: str,
+    noise: str,
+    output: str | None,
+    report: str | None,
+) -> None:
+    """Turn circular tests with a ballbar into the rotary axes of a table, AC, BC or any other.
+
+    For a trunnion these are the eight errors from axis to axis. Printed are uncertainties, and what
+    the check with RTCP on will read. Refused are arcs too short, tests that leave an error open,
+    and residuals above 3 times the noise.
+    """
+    from gcxform.calibrate import ballbarwords
+    from gcxform.calibrate.ballbar import identify
+    from gcxform.calibrate.ballbarfile import read_circles
+    from gcxform.calibrate.rotarymachine import turning, with_axes
+
+    check_places({"-o": output, "--report": report}, [data, machine])
+    believed = Asked(machine=machine).loaded_machine
+    assert believed is not None
+    sigma = length_of(noise, "--noise")
+    measured = read_circles(path_of(data), sigma, length_of(bar, "--bar"))
+    spindle = two_lengths(spindle_ball, "--spindle-ball")
+    found = identify(turning(believed), measured.tests, spindle, sigma)
+    said = partial(ballbarwords.comments, found, file=measured.file)
+    text = "" if output is None else with_axes(found.chain.table, believed, said)
+    whole = ballbarwords.report(found, measured.file, measured.conditions)
+    hand_out(Found(text, whole, ballbarwords.lines(found)), output, report)

@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from gcxform.cli import VERBS
-from gcxform.cli.axes import bundle, rotary
+from gcxform.cli.axes import ballbar, bundle, rotary
 from gcxform.cli.measured import length_of, path_of, write
 from gcxform.cli.outputs import STDOUT, check_places
 from gcxform.diagnostics import UsageError
@@ -46,6 +46,7 @@ def command() -> None:
 
 command.add_command(rotary)
 command.add_command(bundle)
+command.add_command(ballbar)
 
 
 @command.command(

@@ -75,6 +75,15 @@ def any_length(text: str, option: str) -> float:
         raise UsageError.one("GX708", str(error), Location(option)) from None
 
 
+def two_lengths(text: str, option: str) -> tuple[float, float]:
+    """Return two lengths in mm. Raises UsageError."""
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise UsageError.one("GX708", f"{text!r} is not two lengths", Location(option))
+    x, y = (any_length(part.strip(), option) for part in parts)
+    return x, y
+
+
 def write(name: str, text: str) -> None:
     """Write a result."""
     with destination(name) as put:

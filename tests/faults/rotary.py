@@ -25,6 +25,7 @@ MUTATIONS = (
         "any axis is upright",
         "np.where(largest < 0.0, -vectors",
         "np.where(largest < -2.0, -vectors",
+        FIGURES,
     ),
     _rotary("circle", "the slopes forget the radius", "-inside / circle.radius", "-inside"),
     _rotary(
@@ -103,12 +104,13 @@ MUTATIONS = (
     _rotary("rotarymachine", "any axis will do", "if off > FAR:", "if off > 360.0:", FILES),
     _rotary("rotarymachine", "any sense will do", "* cosine < 0.0:", "* cosine < -2.0:", FILES),
     # what is said
-    _rotary("rotarycheck", "three points are sound", "if count == 3:", "if count == 2:"),
+    _rotary("rotarycheck", "three points are sound", "if count == 3:", "if count == 2:", FIGURES),
     _rotary(
         "rotarycheck",
         "a short arc is sound",
         "if found.condition > ILL:",
         "if found.condition > HOPELESS:",
+        FIGURES,
     ),
     _rotary(
         "rotarycheck",

@@ -1,0 +1,86 @@
+"""Faults of circular tests with RTCP on, of the names of errors, and of what is simulated."""
+
+from __future__ import annotations
+
+from faults.mutation import Mutation
+
+FIGURES = "tests/test_ballbar.py"
+FILES = "tests/test_ballbar_files.py"
+
+
+def _ballbar(file: str, name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
+    return Mutation(f"ballbar: {name}", f"gcxform/calibrate/{file}.py", old, new, tests)
+
+
+MUTATIONS = (
+    _ballbar(
+        "ballbar",
+        "the sense of an axis is lost",
+        "axis.sign * np.cross(along, lever)]",
+        "-np.cross(along, lever)]",
+    ),
+    _ballbar(
+        "ballbar",
+        "a tilt has no lever along the axis",
+        "part * arms - (lever @ along) * square",
+        "part * arms",
+    ),
+    _ballbar(
+        "ballbar",
+        "a shift moves the bar the other way",
+        "= -square @ basis.T",
+        "= square @ basis.T",
+    ),
+    _ballbar(
+        "ballbar",
+        "the spindle ball is on the spindle",
+        "np.array([*spindle, 0.0])\n    return",
+        "0.0\n    return",
+    ),
+    _ballbar("ballbar", "the second order stays", "ROUNDS: Final = 3", "ROUNDS: Final = 1"),
+    _ballbar(
+        "ballbar",
+        "cosine and sine do not depend on each other",
+        "np.linalg.inv(rows.T @ rows)[:2, :2]",
+        "np.diag(np.diag(np.linalg.inv(rows.T @ rows)[:2, :2]))",
+    ),
+    _ballbar("ballbar", "short arcs are as good", "if poor > HOPELESS:", "if poor > 1e9:"),
+    _ballbar("ballbar", "a trace may be anything", "if found.rms > REJECTED * noise:", "if False:"),
+    _ballbar(
+        "ballbar", "tests may contradict each other", "if solution.ratio > REJECTED:", "if False:"
+    ),
+    _ballbar(
+        "ballbar",
+        "tilts are not scaled back",
+        "np.tile([1.0, 1.0, 1.0 / LEVER, 1.0 / LEVER]",
+        "np.tile([1.0, 1.0, 1.0, 1.0]",
+    ),
+    _ballbar("locations", "a turn about Y lowers XOC", "[[0.0, oz, -oy]", "[[0.0, -oz, -oy]"),
+    _ballbar(
+        "locations",
+        "the tilting axis turns C with it",
+        "np.eye(8)[6 + other] - turns[other]",
+        "np.eye(8)[6 + other]",
+    ),
+    _ballbar("locations", "turns are directions", "np.cross(axis.direction, basis).T", "basis.T"),
+    _ballbar(
+        "ballbarwords",
+        "the dial does not turn with the lever",
+        "-crossing(rotation @ lever) + rotation @ crossing(lever)",
+        "-crossing(rotation @ lever) + crossing(lever)",
+    ),
+    _ballbar(
+        "ballbarfile",
+        "a test is told by its axis alone",
+        "if other == key]",
+        "if other[1].letter == key[1].letter]",
+        FILES,
+    ),
+    _ballbar(
+        "ballbarfile",
+        "a bar has one length",
+        "BARS[bar], (x, y, z), length)",
+        "BARS[bar], (x, y, z))",
+        FILES,
+    ),
+)
