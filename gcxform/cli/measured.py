@@ -77,11 +77,21 @@ def any_length(text: str, option: str) -> float:
 
 def two_lengths(text: str, option: str) -> tuple[float, float]:
     """Return two lengths in mm. Raises UsageError."""
-    parts = text.split(",")
-    if len(parts) != 2:
-        raise UsageError.one("GX708", f"{text!r} is not two lengths", Location(option))
-    x, y = (any_length(part.strip(), option) for part in parts)
+    x, y = _lengths(text, option, ("two", 2))
     return x, y
+
+
+def three_lengths(text: str, option: str) -> tuple[float, float, float]:
+    """Return three lengths in mm. Raises UsageError."""
+    x, y, z = _lengths(text, option, ("three", 3))
+    return x, y, z
+
+
+def _lengths(text: str, option: str, count: tuple[str, int]) -> list[float]:
+    parts = text.split(",")
+    if len(parts) != count[1]:
+        raise UsageError.one("GX708", f"{text!r} is not {count[0]} lengths", Location(option))
+    return [any_length(part.strip(), option) for part in parts]
 
 
 def write(name: str, text: str) -> None:

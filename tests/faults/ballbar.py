@@ -6,6 +6,7 @@ from faults.mutation import Mutation
 
 FIGURES = "tests/test_ballbar.py"
 FILES = "tests/test_ballbar_files.py"
+READINGS = "tests/test_readings.py"
 
 
 def _ballbar(file: str, name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
@@ -82,5 +83,33 @@ MUTATIONS = (
         "BARS[bar], (x, y, z), length)",
         "BARS[bar], (x, y, z))",
         FILES,
+    ),
+    Mutation(
+        "balls: a ball is where it was planned",
+        "gcxform/simulate/balls.py",
+        "tips[plan.ball.index(name)]",
+        "tips.mean(axis=0)",
+        READINGS,
+    ),
+    Mutation(
+        "balls: scales are not seen",
+        "gcxform/simulate/balls.py",
+        "stands = compensate(model, stands).position",
+        "pass",
+        READINGS,
+    ),
+    Mutation(
+        "balls: any model will do",
+        "gcxform/simulate/balls.py",
+        "if model.outside(stands).any():",
+        "if False:",
+        READINGS,
+    ),
+    Mutation(
+        "ballbar: the bar along an axis is square to it",
+        "gcxform/simulate/ballbar.py",
+        "for way in (square, along):",
+        "for way in (square, square):",
+        READINGS,
     ),
 )
