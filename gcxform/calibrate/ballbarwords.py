@@ -162,8 +162,8 @@ def warnings(found: Identified) -> Iterator[str]:
             yield f"test {k} is badly conditioned: {poor:.0f} (above {ILL:.0f} is poor)"
         if test.trace is not None and not math.isfinite(test.rms):
             yield f"test {k} has no redundancy: nothing tests its three readings"
-    if found.solution.redundancy == 0:
-        yield "no redundancy between the tests: nothing but their own residuals tests them"
+    if found.solution.redundancy == 0 and all(test.trace is None for test in found.tests):
+        yield "no redundancy: as many eccentricities as unknowns, and nothing tests them"
 
 
 def advice(found: Identified) -> Iterator[str]:
