@@ -292,7 +292,7 @@ def test_pipelines_of_the_examples_run(file):
     if "[[pass]]" not in file.read_text("utf-8"):
         return
     pipeline = gx.Pipeline.load(file)
-    programs = {"linear": "linear_in.nc", "arc": "arc_in.nc"}
+    programs = {"linear": "linear_in.nc", "arc": "arc_in.nc", "axes": "dome.nc", "tips": "dome.nc"}
     program = file.parent / programs.get(file.stem, f"{file.stem}.nc")
     result = pipeline.run(program.read_bytes(), verify="full")
     assert result.certificate.verified
