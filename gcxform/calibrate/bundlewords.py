@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from gcxform.calibrate.bundle import LINEAR, Bundled, across
+from gcxform.calibrate.rotary import ILL
 from gcxform.calibrate.rotarycheck import two_digits
 from gcxform.calibrate.rotarywords import WIDTH
 from gcxform.machine.errors import FloatArray
@@ -33,6 +34,30 @@ def lines(found: Bundled) -> list[str]:
     for letter in found.chain.letters:
         said += [f"axis {letter}: {line}" for line in _axis(found, letter)]
     return said + _linear(found) + [f"warning: {line}" for line in _outliers(found)]
+
+
+def expected(found: Bundled) -> list[str]:
+    """Return how well a plan will tell the axes, before anything is measured."""
+    poses = found.layout.poses
+    said = [
+        f"{len(poses.points)} poses, {len(poses.balls)} ball{'s' * (len(poses.balls) > 1)}, "
+        f"{len(found.unknowns)} unknowns, condition {found.condition:.1f}; with a noise of "
+        f"{1e3 * found.noise:.3g} um"
+    ]
+    for k, letter in enumerate(found.chain.letters):
+        shift, tilt = (max(part.tolist()) for part in _spread(found, k))
+        said.append(
+            f"axis {letter}: +- {two_digits(1e3 * shift)} um, {two_digits(1e6 * tilt)} urad"
+        )
+    for name in LINEAR[: found.layout.linear]:
+        unit = "ppm" if name.startswith("scale") else "urad"
+        said.append(f"{name}: +- {two_digits(1e6 * found.spread(name))} {unit}")
+    if found.condition > ILL:
+        said.append(
+            f"warning: badly conditioned (above {ILL:.0f} is poor): the limits leave the axes too "
+            "little of a turn where these balls stand"
+        )
+    return said
 
 
 def comments(found: Bundled, letter: str, file: str) -> list[str]:

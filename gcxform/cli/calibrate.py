@@ -13,6 +13,7 @@ from gcxform.cli import VERBS
 from gcxform.cli.axes import ballbar, bundle, rotary
 from gcxform.cli.measured import length_of, path_of, write
 from gcxform.cli.outputs import STDOUT, check_places
+from gcxform.cli.plan import centres, plan
 from gcxform.diagnostics import UsageError
 
 _FORMAT = """
@@ -47,6 +48,8 @@ def command() -> None:
 command.add_command(rotary)
 command.add_command(bundle)
 command.add_command(ballbar)
+command.add_command(plan)
+command.add_command(centres)
 
 
 @command.command(

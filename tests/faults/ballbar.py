@@ -7,6 +7,7 @@ from faults.mutation import Mutation
 FIGURES = "tests/test_ballbar.py"
 FILES = "tests/test_ballbar_files.py"
 READINGS = "tests/test_readings.py"
+PLAN = "tests/test_plan.py"
 
 
 def _ballbar(file: str, name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
@@ -111,5 +112,63 @@ MUTATIONS = (
         "for way in (square, along):",
         "for way in (square, square):",
         READINGS,
+    ),
+    _ballbar(
+        "plan",
+        "the worst poses are taken",
+        "np.argmax(np.round(gains, 9))",
+        "np.argmin(np.round(gains, 9))",
+        PLAN,
+    ),
+    _ballbar("plan", "a pose is taken twice", "gains[taken] = -np.inf", "pass", PLAN),
+    _ballbar(
+        "plan",
+        "limits have no room",
+        "(stands <= high - room)",
+        "(stands <= high + 3.0 * room)",
+        PLAN,
+    ),
+    _ballbar(
+        "plan",
+        "any tilt will do",
+        ">= math.cos(math.radians(wanted.tilt)) - 1e-12",
+        ">= -2.0",
+        PLAN,
+    ),
+    _ballbar(
+        "plan",
+        "positions are not as written",
+        "every).round(3)\n        good",
+        "every).round(1)\n        good",
+        PLAN,
+    ),
+    _ballbar(
+        "touching",
+        "the touch above is above the middle",
+        "np.sqrt(radius**2 - far**2)",
+        "radius",
+        PLAN,
+    ),
+    _ballbar(
+        "touching",
+        "the centre is where four touches are on average",
+        "found[:, 1:, :2].sum(axis=1) / 2.0",
+        "found[:, 1:, :2].mean(axis=1)",
+        PLAN,
+    ),
+    _ballbar(
+        "touching",
+        "the post is touched",
+        "[45.0, 225.0, 135.0, 315.0]",
+        "[0.0, 180.0, 90.0, 270.0]",
+        PLAN,
+    ),
+    _ballbar("touching", "any angles will do", "> ANGLE)", "> 400.0)", PLAN),
+    _ballbar(
+        "touching",
+        "a probe ends at the surface",
+        "probing.radius - probing.clearance",
+        "probing.radius",
+        PLAN,
     ),
 )
