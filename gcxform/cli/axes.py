@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from functools import partial
+from pathlib import Path
 
 import click
 
+from gcxform import plot
 from gcxform.cli.asked import Asked
 from gcxform.cli.measured import (
     NOISE,
+    Files,
     Found,
     found_options,
     hand_out,
@@ -16,7 +19,6 @@ from gcxform.cli.measured import (
     path_of,
     two_lengths,
 )
-from gcxform.cli.outputs import check_places
 
 _BALLS = """
 DATA is a table with a row for each position of the axis, all other rotary axes at 0:
@@ -50,8 +52,7 @@ def rotary(
     machine: str | None,
     tool: int | None,
     noise: str,
-    output: str | None,
-    report: str | None,
+    **files: str | None,
 ) -> None:
     """Turn centres of a ball, probed at angles of a rotary axis, into its direction and point.
 
@@ -64,13 +65,16 @@ def rotary(
     from gcxform.calibrate.ballfile import read_balls
     from gcxform.calibrate.rotarymachine import located, with_found
 
-    check_places({"-o": output, "--report": report}, [data, *filter(None, [machine])])
+    places = Files(**files)
+    places.check(data, machine)
     measured = read_balls(path_of(data))
     believed = Asked(machine=machine).loaded_machine
     found, before = located(measured.centres, axis, length_of(noise, "--noise"), believed, tool)
     text = with_found(found, axis, believed, rotarywords.comments(found, measured.file))
     whole = rotarywords.report(found, axis, measured.file, measured.conditions, before)
-    hand_out(Found(text, whole, rotarywords.lines(found, axis, before)), output, report)
+    title = f"axis {axis}, {Path(measured.file).name}"
+    said = rotarywords.lines(found, axis, before)
+    hand_out(Found(text, whole, said, lambda: plot.placed(found, axis, title)), places)
 
 
 _POSES = """
@@ -105,8 +109,7 @@ def bundle(
     tool: int | None,
     noise: str,
     linear: str,
-    output: str | None,
-    report: str | None,
+    **files: str | None,
 ) -> None:
     """Turn centres of balls at any poses into all rotary axes, with squareness.
 
@@ -118,15 +121,19 @@ def bundle(
     from gcxform.calibrate.bundle import bundle as fit
     from gcxform.calibrate.rotarymachine import bundled_text, probing
 
-    check_places({"-o": output, "--report": report}, [data, machine])
+    places = Files(**files)
+    places.check(data, machine)
     believed = Asked(machine=machine).loaded_machine
     assert believed is not None
     chain = probing(believed, tool)
     measured = read_poses(path_of(data), chain.letters)
     found = fit(chain, measured.poses, length_of(noise, "--noise"), linear)
-    text = "" if output is None else bundled_text(found, believed, measured.file)
+    text = bundled_text(found, believed, measured.file) if places.output else ""
     whole = bundlewords.report(found, measured.file, measured.conditions)
-    hand_out(Found(text, whole, bundlewords.lines(found)), output, report)
+    said = bundlewords.lines(found)
+    hand_out(
+        Found(text, whole, said, lambda: plot.bundled(found, Path(measured.file).name)), places
+    )
 
 
 _CIRCLES = """
@@ -166,8 +173,7 @@ def ballbar(
     bar: str,
     spindle_ball: str,
     noise: str,
-    output: str | None,
-    report: str | None,
+    **files: str | None,
 ) -> None:
     """Turn circular tests with a ballbar into the rotary axes of a table, AC, BC or any other.
 
@@ -180,14 +186,18 @@ def ballbar(
     from gcxform.calibrate.ballbarfile import read_circles
     from gcxform.calibrate.rotarymachine import turning, with_axes
 
-    check_places({"-o": output, "--report": report}, [data, machine])
+    places = Files(**files)
+    places.check(data, machine)
     believed = Asked(machine=machine).loaded_machine
     assert believed is not None
     sigma = length_of(noise, "--noise")
     measured = read_circles(path_of(data), sigma, length_of(bar, "--bar"))
     spindle = two_lengths(spindle_ball, "--spindle-ball")
     found = identify(turning(believed), measured.tests, spindle, sigma)
-    said = partial(ballbarwords.comments, found, file=measured.file)
-    text = "" if output is None else with_axes(found.chain.table, believed, said)
+    above = partial(ballbarwords.comments, found, file=measured.file)
+    text = with_axes(found.chain.table, believed, above) if places.output else ""
     whole = ballbarwords.report(found, measured.file, measured.conditions)
-    hand_out(Found(text, whole, ballbarwords.lines(found)), output, report)
+    said = ballbarwords.lines(found)
+    hand_out(
+        Found(text, whole, said, lambda: plot.circled(found, Path(measured.file).name)), places
+    )

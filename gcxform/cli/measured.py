@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 import click
 
-from gcxform.cli.outputs import STDOUT, destination
+from gcxform import plot
+from gcxform.cli.outputs import STDOUT, check_places, destination
 from gcxform.diagnostics import Location, UsageError
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -17,11 +19,28 @@ NOISE = "Standard deviation of a coordinate of a centre."
 
 
 class Found(NamedTuple):
-    """What a calibration found: a machine file, a report, and lines for a person."""
+    """What a calibration found: a machine file, a report, lines for a person, and a picture."""
 
     text: str
     report: Mapping[str, Any]
     lines: Sequence[str]
+    draw: Callable[[], Any]
+
+
+@dataclass(frozen=True)
+class Files:
+    """The names of the files that are asked for, by option."""
+
+    output: str | None
+    report: str | None
+    plot: str | None
+
+    def check(self, *read: str | None) -> None:
+        """Raise UsageError for places that cannot be written, and pictures that cannot be drawn."""
+        written = {"-o": self.output, "--report": self.report, "--plot": self.plot}
+        check_places(written, [name for name in read if name])
+        if self.plot:
+            plot.check(self.plot)
 
 
 def found_options(noise: str, default: str) -> Callable[[Command], Command]:
@@ -32,6 +51,7 @@ def found_options(noise: str, default: str) -> Callable[[Command], Command]:
         click.option(
             "--report", metavar="FILE", help="Write what was found, with covariance (JSON)."
         ),
+        click.option("--plot", metavar="FILE", help="Draw the residuals (SVG or PNG)."),
         click.argument("data", metavar="DATA"),
     )
 
@@ -43,13 +63,17 @@ def found_options(noise: str, default: str) -> Callable[[Command], Command]:
     return decorate
 
 
-def hand_out(found: Found, output: str | None, report: str | None) -> None:
+def hand_out(found: Found, files: Files) -> None:
     """Write the files that are asked for; the lines go to stderr where stdout has a file."""
-    if output is not None:
-        write(output, found.text)
-    if report is not None:
-        write(report, json.dumps(found.report, indent=1) + "\n")
-    click.echo("\n".join(found.lines), err=STDOUT in (output, report))
+    picture = plot.rendered(found.draw(), files.plot) if files.plot else b""
+    if files.output is not None:
+        write(files.output, found.text)
+    if files.report is not None:
+        write(files.report, json.dumps(found.report, indent=1) + "\n")
+    if files.plot is not None:
+        with destination(files.plot) as put:
+            put(picture)
+    click.echo("\n".join(found.lines), err=STDOUT in (files.output, files.report))
 
 
 def path_of(name: str) -> Path:

@@ -8,6 +8,7 @@ FIGURES = "tests/test_ballbar.py"
 FILES = "tests/test_ballbar_files.py"
 READINGS = "tests/test_readings.py"
 PLAN = "tests/test_plan.py"
+PICTURES = "tests/test_residual_pictures.py"
 
 
 def _ballbar(file: str, name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
@@ -170,5 +171,26 @@ MUTATIONS = (
         "probing.radius - probing.clearance",
         "probing.radius",
         PLAN,
+    ),
+    Mutation(
+        "residuals: readings left out are drawn as the others",
+        "gcxform/plot/residuals.py",
+        "axes.plot(turns[kept], values[kept], ",
+        "axes.plot(turns, values, ",
+        PICTURES,
+    ),
+    Mutation(
+        "residuals: the ring is for one more division",
+        "gcxform/plot/canvas.py",
+        "division = nice(max(most / 2.0, 1e-6))",
+        "division = nice(max(most, 1e-6))",
+        PICTURES,
+    ),
+    Mutation(
+        "residuals: a trace keeps its constant",
+        "gcxform/plot/residuals.py",
+        "(test.trace.readings - test.fitted[2])",
+        "(test.trace.readings - 0.01)",
+        PICTURES,
     ),
 )
