@@ -21,8 +21,9 @@ from ballbar_kit import (
     trace,
 )
 
+from gcxform.calibrate.axischeck import shown
 from gcxform.calibrate.ballbar import SetUp, eccentricity, identify
-from gcxform.calibrate.ballbarwords import check, shown, warnings
+from gcxform.calibrate.ballbarwords import check, warnings
 from gcxform.calibrate.bundle import moved
 from gcxform.calibrate.locations import locations, of_trunnion
 from gcxform.diagnostics import InputError

@@ -18,6 +18,7 @@ from gcxform.calibrate.bundle import Poses, bundle
 from gcxform.calibrate.rotary import Centres, locate
 from gcxform.calibrate.rotarycheck import components
 from gcxform.machine.chain import Chain
+from gcxform.plot import canvas
 
 pytest.importorskip("matplotlib")
 
@@ -51,16 +52,21 @@ def test_residuals_of_an_axis():
     assert titles[0].startswith("residuals over A, ")
 
 
-def test_the_ring_is_as_wide_as_the_residuals():
-    """A division is one of 1, 2, 5, and the largest residual fills more than one and no three."""
+@pytest.mark.parametrize(("most", "division"), [(0.3, 0.2), (7.0, 5.0), (10.1, 10.0), (40.0, 20.0)])
+def test_the_ring_is_as_wide_as_the_residuals(most, division):
+    """A division is one of 1, 2, 5 times a power of ten, and two of them hold the largest."""
+    axes = canvas.figure(3.0, 3.0, "").add_subplot(projection="polar")
+    assert canvas.magnified(axes, most) == pytest.approx(division)
+    low, high = axes.get_ylim()
+    assert (high - low) / 7.0 == pytest.approx(division)
+
+
+def test_the_title_says_what_a_division_is():
     found = spoilt()
-    figure = plot.placed(found, "A", "")
-    most = np.abs(1e3 * components(found)[found.kept]).max()
-    low, high = figure.axes[0].get_ylim()
-    division = (high - low) / 7.0
-    assert division * 1.0 <= most * 1.3
-    assert most <= 2.0 * division * (1 + 1e-9)
-    assert f"{division:g} um/div" in figure.axes[0].get_title()
+    axes = plot.placed(found, "A", "").axes[0]
+    low, high = axes.get_ylim()
+    assert f"{(high - low) / 7.0:g} um/div" in axes.get_title()
+    assert np.abs(1e3 * components(found)[found.kept]).max() <= high
 
 
 def poses():

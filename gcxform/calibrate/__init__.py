@@ -16,6 +16,7 @@
     gcxform/calibrate/rotarycheck.py    the check with RTCP on, warnings, advice
     gcxform/calibrate/rotarywords.py    its report and comments
     gcxform/calibrate/bundle.py         balls at any poses: all rotary axes, and squareness
+    gcxform/calibrate/axischeck.py      the check with RTCP on, from the covariance of such unknowns
     gcxform/calibrate/bundlewords.py    its report and comments
     gcxform/calibrate/plan.py           poses for a bundle, inside the limits and well conditioned
     gcxform/calibrate/touching.py       the program that probes them, and the centres it found

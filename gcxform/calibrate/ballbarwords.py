@@ -10,30 +10,23 @@ import math
 import textwrap
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 
+from gcxform.calibrate.axischeck import Check, effects, predicted, worded
 from gcxform.calibrate.ballbar import Eccentricity, Identified
 from gcxform.calibrate.ballbarfile import bar_name
-from gcxform.calibrate.locations import Named, effects, locations, of_trunnion
-from gcxform.calibrate.rotary import ILL, arc, condition, crossing
-from gcxform.calibrate.rotarycheck import dial, two_digits
+from gcxform.calibrate.locations import Named, locations, of_trunnion
+from gcxform.calibrate.rotary import ILL, arc, condition
+from gcxform.calibrate.rotarycheck import two_digits
 from gcxform.calibrate.rotarywords import WIDTH
-from gcxform.machine.chain import Rotary, turned
+from gcxform.machine.chain import Rotary
 from gcxform.machine.errors import FloatArray
 from gcxform.version import VERSION
 
 AROUND: Final = np.arange(0.0, 360.0, 10.0)
 """Where the check is predicted if only eccentricities are known, degrees."""
-
-
-class Check(NamedTuple):
-    """The dial with RTCP on and the ball at rest: angles (n,), its sd, and as it was before, mm."""
-
-    degrees: FloatArray
-    spread: FloatArray
-    before: FloatArray
 
 
 def lines(found: Identified) -> list[str]:
@@ -45,7 +38,7 @@ def lines(found: Identified) -> list[str]:
     return [
         *said,
         *(_error(named, k) for k in range(len(named.names))),
-        *(_checked(found, letter) for letter in found.letters),
+        *(worded(check(found, letter), letter) for letter in found.letters),
         *(f"warning: {line}" for line in warnings(found)),
         *(f"next: {line}" for line in advice(found)),
     ]
@@ -118,32 +111,8 @@ def check(found: Identified, letter: str) -> Check:
     believed, true = found.believed.table[k], found.chain.table[k]
     test = next(test for test in found.tests if test.setup.letter == letter)
     degrees = AROUND if test.trace is None else np.unique(test.trace.degrees)
-    ball = np.array(test.setup.ball)
-    before = np.linalg.norm(dial(true, believed, ball, degrees), axis=1)
     part = found.covariance[4 * k : 4 * k + 4, 4 * k : 4 * k + 4]
-    rows = (shown(true, ball, angle) for angle in degrees.tolist())
-    spread = [math.sqrt(max(0.0, float(np.trace(row @ part @ row.T)))) for row in rows]
-    return Check(degrees, np.array(spread), before)
-
-
-def shown(axis: Rotary, ball: FloatArray, degrees: float) -> FloatArray:
-    """Return what the unknowns of an axis do to the dial at an angle (3, 4)."""
-    whole = np.full(3, axis.sign * degrees)
-    rotation = turned(np.eye(3), axis.direction, whole).T
-    lever = ball - np.array(axis.point)
-    shift, turn = effects(axis)
-    tilt = -crossing(rotation @ lever) + rotation @ crossing(lever)
-    return np.hstack([(np.eye(3) - rotation) @ shift, tilt @ turn])
-
-
-def _checked(found: Identified, letter: str) -> str:
-    read = check(found, letter)
-    worst, was = int(read.spread.argmax()), int(read.before.argmax())
-    return (
-        f"check with RTCP on, the ball at rest, {letter} turned by {read.degrees[worst]:g} "
-        f"degrees: the dial is predicted to read 0 +- {1e3 * read.spread[worst]:.3g} um; with the "
-        f"axis as it was {1e3 * read.before[was]:.3g} um, at {read.degrees[was]:g} degrees"
-    )
+    return predicted(believed, true, part, np.array(test.setup.ball), degrees)
 
 
 # --- what is to be said ---

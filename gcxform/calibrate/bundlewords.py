@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from gcxform.calibrate.axischeck import Check, predicted, worded
 from gcxform.calibrate.bundle import LINEAR, Bundled, across
 from gcxform.calibrate.rotary import ILL
 from gcxform.calibrate.rotarycheck import two_digits
@@ -33,7 +34,19 @@ def lines(found: Bundled) -> list[str]:
     ]
     for letter in found.chain.letters:
         said += [f"axis {letter}: {line}" for line in _axis(found, letter)]
-    return said + _linear(found) + [f"warning: {line}" for line in _outliers(found)]
+    said += _linear(found)
+    said += [worded(check(found, letter), letter) for letter in found.chain.letters]
+    return said + [f"warning: {line}" for line in _outliers(found)]
+
+
+def check(found: Bundled, letter: str) -> Check:
+    """Return the check of an axis at the angles that were measured, with the first ball."""
+    k, before, chain = found.chain.letters.index(letter), found.layout.chain, found.chain
+    first = 4 * len(chain.axes)
+    ball = np.array(chain.tip) if k >= len(chain.table) else found.unknowns[first : first + 3]
+    part = found.covariance[4 * k : 4 * k + 4, 4 * k : 4 * k + 4]
+    degrees = np.unique(found.layout.poses.degrees[:, k])
+    return predicted(before.axes[k], chain.axes[k], part, ball, degrees)
 
 
 def expected(found: Bundled) -> list[str]:
@@ -143,6 +156,10 @@ def report(found: Bundled, file: str, conditions: Mapping[str, Any]) -> dict[str
         "linear": {name: {"value": value, "sd": sd} for name, (value, sd) in linear.items()},
         "unknowns": dict(zip(found.layout.names, found.unknowns.tolist(), strict=True)),
         "covariance": {"order": list(found.layout.names), "matrix": found.covariance.tolist()},
+        "check": {
+            letter: {name: part.tolist() for name, part in check(found, letter)._asdict().items()}
+            for letter in found.chain.letters
+        },
         "condition": found.condition,
         "redundancy": found.redundancy,
         "rms": found.rms if math.isfinite(found.rms) else None,

@@ -20,9 +20,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gcxform.calibrate.axischeck import effects
 from gcxform.calibrate.ballbar import Identified
-from gcxform.calibrate.bundle import across
-from gcxform.machine.chain import Chain, Rotary
+from gcxform.machine.chain import Chain
 from gcxform.machine.errors import FloatArray
 
 TURNS = "ABC"
@@ -57,12 +57,6 @@ def locations(found: Identified) -> Named:
         names += [f"{'XYZ'[j]}O{axis.letter}" for j in others]
         names += [f"{TURNS[j]}O{axis.letter}" for j in others]
     return Named(tuple(names), parts @ found.unknowns, parts @ found.covariance @ parts.T)
-
-
-def effects(axis: Rotary) -> tuple[FloatArray, FloatArray]:
-    """Return what the unknowns of an axis are in X, Y and Z: shifts (3, 2), and turns (3, 2)."""
-    basis = across(axis)
-    return basis.T, np.cross(axis.direction, basis).T
 
 
 def of_trunnion(found: Identified) -> Named | None:

@@ -65,9 +65,9 @@ MUTATIONS = (
         "np.eye(8)[6 + other] - turns[other]",
         "np.eye(8)[6 + other]",
     ),
-    _ballbar("locations", "turns are directions", "np.cross(axis.direction, basis).T", "basis.T"),
+    _ballbar("axischeck", "turns are directions", "np.cross(axis.direction, basis).T", "basis.T"),
     _ballbar(
-        "ballbarwords",
+        "axischeck",
         "the dial does not turn with the lever",
         "-crossing(rotation @ lever) + rotation @ crossing(lever)",
         "-crossing(rotation @ lever) + crossing(lever)",
@@ -192,5 +192,12 @@ MUTATIONS = (
         "(test.trace.readings - test.fitted[2])",
         "(test.trace.readings - 0.01)",
         PICTURES,
+    ),
+    Mutation(
+        "bundle: the check is that of another axis",
+        "gcxform/calibrate/bundlewords.py",
+        "found.unknowns[first : first + 3]",
+        "found.unknowns[first : first + 3] * 0.0",
+        "tests/test_bundle.py",
     ),
 )
