@@ -20,6 +20,7 @@ from ballbar_kit import (
     setups,
     trace,
 )
+from kinematics_kit import skewed
 
 from gcxform.calibrate.axischeck import shown
 from gcxform.calibrate.ballbar import SetUp, eccentricity, identify
@@ -214,6 +215,26 @@ def test_any_table_has_locations_and_only_trunnions_the_eight():
     assert found.chain.table[0].point == pytest.approx(true.point, abs=2e-6)
     assert found.chain.table[0].direction == pytest.approx(true.direction, abs=2e-8)
     assert locations(found).names == ("XOC", "YOC", "AOC", "BOC")
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_tables_of_any_kind_are_found(seed):
+    """Axes square to nothing, of either sense, any bars: the exact readings have one cause."""
+    rng = np.random.default_rng(seed)
+    control = skewed(rng, 2)
+    steps = rng.uniform(-1.0, 1.0, (2, 4)) * [0.05, 0.05, 2e-4, 2e-4]
+    axes = zip(control.table, steps, strict=True)
+    true = type(control)(tuple(moved(axis, step) for axis, step in axes))
+    tests = []
+    for axis in control.table:
+        for bar in rng.permutation([*np.eye(3), *-np.eye(3)])[:4]:
+            ball = np.array(axis.point) + rng.uniform(-150.0, 150.0, 3)
+            setup = SetUp(axis.letter, tuple(bar.tolist()), tuple(ball.tolist()))
+            degrees = np.linspace(-100.0, 100.0, 21)
+            tests.append(eccentricity(simulate_trace(control, true, setup, degrees), 0.001))
+    found = identify(control, tests, (0.0, 0.0), 0.001)
+    assert found.unknowns == pytest.approx(steps.ravel(), abs=1e-7)
+    assert found.solution.redundancy == 8
 
 
 def test_the_check_is_what_many_show():
