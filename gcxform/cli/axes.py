@@ -148,8 +148,10 @@ spindle, while the control follows the tip (RTCP on) and one axis turns, the oth
 bar: the direction from the table ball to the spindle ball, X, Y, Z, -X, -Y or -Z, and X, Y, Z the
 place of the table ball, both with all rotary axes at 0 and in machine coordinates. Each axis needs
 a bar square to it, which tells where it is, and one along it, which tells its direction. An arc of
-180 degrees will do. Where eccentricities are known already a row has cosine [um] and sine [um] in
-place of angle and reading, and --noise is that of an eccentricity.
+180 degrees will do. How far the spindle ball is off the spindle tells a dial in X and one in Y:
+half of what they read with the spindle at 0 less what they read at 180 degrees. Where the
+eccentricities are known already a row has cosine [um] and sine [um] in place of angle and reading,
+and --noise is that of an eccentricity.
 """
 
 
