@@ -11,9 +11,10 @@ from cli_kit import call
 from oracles import rs274
 
 import gcxform as gx
-from gcxform.calibrate.ballfile import read_poses
+from gcxform.calibrate.ballfile import read_balls, read_poses
 from gcxform.calibrate.bundle import Layout, bundle
 from gcxform.calibrate.plan import Wanted, planned
+from gcxform.calibrate.rotary import locate
 from gcxform.calibrate.touching import sides
 from gcxform.machine.chain import chain_of
 from gcxform.machine.machinefile import load_machine
@@ -232,6 +233,63 @@ def test_touches_of_another_plan_are_refused(here, change, said):
     assert (done.exit_code, "GX492" in done.stderr, said in done.stderr) == (3, True, True)
 
 
+@pytest.mark.parametrize(
+    ("letter", "ball", "arc", "closed"),
+    [
+        ("C", (60.0, 40.0, -20.0), 360.0, True),
+        ("C", (-70.0, -60.0, -20.0), 360.0, True),
+        ("A", (20.0, 60.0, -20.0), 90.0, False),
+        ("C", (100.0, 20.0, -20.0), None, False),
+    ],
+)
+def test_a_circle_of_one_axis(here, letter, ball, arc, closed):
+    """Equal steps along all the arc that limits and tilt leave; as good as promised."""
+    said = call(
+        *("calibrate", "plan", "-m", "m.toml", "--tool", "1", "--axis", letter, *SIZES),
+        *("--poses", "9", "--tilt", "60", "--ball", ",".join(map(str, ball)), "-o", "c.csv"),
+    ).stdout
+    centres = read_balls(Path("c.csv")).centres
+    steps = np.diff(centres.degrees)
+    assert steps == pytest.approx(np.full(8, steps[0]), abs=2e-3)
+    if arc is not None:
+        assert steps[0] * (9 if closed else 8) == pytest.approx(arc, abs=0.02)
+    room = RADIUS + CLEARANCE
+    assert (centres.points[:, :2] >= (LOW + room)[:2] - 1e-3).all()
+    assert (centres.points <= HIGH - room + 1e-3).all()
+    if arc is None:  # the largest arc: two more degrees on either side would not do
+        axis = chain().axes[1]
+        turned = np.zeros((2, 2))
+        turned[:, 1] = centres.degrees[[0, -1]] + (-1.1, 1.1)
+        beyond = chain().linear(np.tile(ball, (2, 1)), turned)
+        assert (beyond[:, 0] > 110.0 - room).all() or (beyond[:, 0] < -105.0 + room).any()
+        assert axis.letter == "C"
+    words = ("--true", "m.toml", "--tool", "1", "--axis", letter, "--noise", "2 um")
+    assert call("simulate", "balls", *words, "-o", "r.csv", "c.csv").exit_code == 0
+    found = locate(read_balls(Path("r.csv")).centres, 0.002)
+    um, urad = map(float, re.search(r"\+- (\S+) um, (\S+) urad", said).groups())
+    sd = np.sqrt(np.diag(found.covariance).clip(0.0))
+    assert um == pytest.approx(1e3 * sd[:3].max(), rel=0.06)
+    assert urad == pytest.approx(1e6 * sd[3:].max(), rel=0.06)
+    assert f"condition {found.condition:.1f};" in said
+
+
+def test_touches_of_a_circle_become_centres(here):
+    words = ("-m", "m.toml", "--axis", "C")
+    ball = ("--tool", "1", "--ball", "60,40,-20", *SIZES, "--poses", "8")
+    made = ("-o", "c.csv", "--program", "probe.ngc")
+    assert call("calibrate", "plan", *words, *ball, *made).exit_code == 0
+    plan_of = read_balls(Path("c.csv")).centres
+    true = plan_of.points + np.random.default_rng(2).uniform(-0.3, 0.3, (8, 3))
+    touches = touched(Path("probe.ngc").read_text(), "G38.2", true)
+    Path("t.txt").write_text("\n".join(" ".join(f"{v:.7f}" for v in row) for row in touches))
+    more = ("--plan", "c.csv", "--radius", str(RADIUS), "-o", "d.csv", "t.txt")
+    done = call("calibrate", "centres", *words, *more)
+    assert done.exit_code == 0, done.output
+    found = read_balls(Path("d.csv")).centres
+    assert np.abs(found.points - true).max() < 2e-6
+    assert np.array_equal(found.degrees, plan_of.degrees)
+
+
 def test_each_touch_is_stored_where_that_is_asked_for(here):
     plan("-o", "p.csv", "--program", "a.nc", "--to", "fanuc", "--poses", "8", "--linear", "none")
     assert Path("a.nc").read_text().count("\nM0 (NOTE THE SKIP POSITION") == 40
@@ -249,6 +307,8 @@ def test_each_touch_is_stored_where_that_is_asked_for(here):
         (("", ""), ["--ball", "1,2"], "GX708", 2),
         (("", ""), ["-o", "m.toml"], "GX727", 2),
         (("", ""), ["--tool", "7"], "GX707", 2),
+        (("", ""), ["--axis", "B"], "GX707", 2),
+        (("", ""), ["--axis", "C"], "GX728", 2),
         (('["A", "C"]', '["C"]\nhead = ["A"]'), ["--program", "x.ngc"], "GX707", 2),
         (('["A", "C"]', "[]"), [], "GX452", 2),
     ],

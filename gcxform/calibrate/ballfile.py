@@ -106,3 +106,23 @@ def balls_csv(centres: Centres) -> str:
     for angle, point in zip(centres.degrees.tolist(), centres.points.tolist(), strict=True):
         lines.append(",".join(map(repr, [angle, *point])))
     return "\n".join(lines) + "\n"
+
+
+def read_plan(path: Path, letters: Sequence[str], axis: str | None = None) -> Poses:
+    """Return the poses of either kind of file: of one axis, the others at 0, if it is named.
+
+    Raises FileError, and InputError with the place.
+    """
+    if axis is None:
+        return read_poses(path, letters).poses
+    centres = read_balls(path).centres
+    degrees = np.zeros((len(centres), len(letters)))
+    degrees[:, letters.index(axis)] = centres.degrees
+    return Poses(degrees, ("1",) * len(centres), centres.points, centres.where)
+
+
+def plan_csv(poses: Poses, letters: Sequence[str], axis: str | None = None) -> str:
+    """Return poses as either kind of file, which reads back as the same bits."""
+    if axis is None:
+        return poses_csv(poses, letters)
+    return balls_csv(Centres(poses.degrees[:, letters.index(axis)], poses.points))

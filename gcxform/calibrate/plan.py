@@ -18,6 +18,7 @@ from typing import Final
 import numpy as np
 
 from gcxform.calibrate.bundle import MODES, Bundled, Layout, Poses, check
+from gcxform.calibrate.rotary import Kept
 from gcxform.diagnostics import UsageError
 from gcxform.machine.chain import Chain, Rotary, Triple
 from gcxform.machine.errors import FloatArray
@@ -57,11 +58,55 @@ def planned(chain: Chain, balls: Sequence[Triple], wanted: Wanted, noise: float)
     return Bundled(layout, noise, start, np.ones(len(chosen.points), dtype=bool))
 
 
+def planned_circle(chain: Chain, letter: str, ball: Triple, wanted: Wanted) -> Poses:
+    """Return poses at equal steps of one axis, the others at 0, along the longest arc there is.
+
+    Equal steps all around matter more than anything else (reference: seed figures). Raises
+    UsageError where there is no room (GX491).
+    """
+    k = chain.letters.index(letter)
+    every, closed = _whole_degrees(chain.axes[k])
+    angles = np.zeros((len(every), len(chain.axes)))
+    angles[:, k] = every
+    stands = chain.linear(np.tile(np.array(ball), (len(every), 1)), angles)
+    good = _inside(chain, stands, wanted.room) & _upright(chain, angles, wanted.tilt)
+    if closed and good.all():
+        turns = every[0] + np.arange(wanted.poses) * 360.0 / wanted.poses
+    else:
+        low, high = _longest(every, good, closed)
+        turns = np.linspace(low, high, wanted.poses)
+    if len(turns) < 3 or np.ptp(turns) == 0.0:
+        message = f"no arc of {letter} is inside the limits"
+        raise UsageError.one("GX491", message, hint=HINT)
+    degrees = np.zeros((len(turns), len(chain.axes)))
+    degrees[:, k] = turns.round(3)
+    points = chain.linear(np.tile(np.array(ball), (len(turns), 1)), degrees).round(3)
+    return Poses(degrees, ("1",) * len(turns), points)
+
+
+def _whole_degrees(axis: Rotary) -> tuple[FloatArray, bool]:
+    """Return the angles of an axis in steps of a degree, and whether they close a turn."""
+    if axis.limits is None or axis.limits[1] - axis.limits[0] >= 360.0:
+        low = 0.0 if axis.limits is None else axis.limits[0]
+        return np.asarray(low + np.arange(360.0)), axis.limits is None
+    return np.arange(axis.limits[0], axis.limits[1] + 1e-9), False
+
+
+def _longest(every: FloatArray, good: Kept, closed: bool) -> tuple[float, float]:
+    """Return the ends of the longest run of good angles; over the end of a closed turn too."""
+    twice = np.concatenate([good, good & closed])
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], twice, [False]]).astype(int)))
+    runs = edges.reshape(-1, 2)
+    if not len(runs):
+        return 0.0, 0.0
+    first, last = runs[int(np.argmax(runs[:, 1] - runs[:, 0]))].tolist()
+    return float(every[0] + first), float(every[0] + last - 1)
+
+
 def _candidates(chain: Chain, balls: Sequence[Triple], wanted: Wanted) -> Poses:
     """Return all poses on the grid that are inside the limits."""
     every = np.array([*itertools.product(*map(_grid, chain.axes))])
-    upright = chain.tool_axis(every)[:, 2] >= math.cos(math.radians(wanted.tilt)) - 1e-12
-    every = every[upright]
+    every = every[_upright(chain, every, wanted.tilt)]
     parts = []
     for number, ball in enumerate(balls, 1):
         stands = chain.linear(np.tile(np.array(ball), (len(every), 1)), every).round(3)
@@ -86,7 +131,12 @@ def _grid(axis: Rotary) -> FloatArray:
     return np.linspace(low, high, max(2, math.ceil((high - low) / GRID) + 1)).round(3)
 
 
-def _inside(chain: Chain, stands: FloatArray, room: float) -> FloatArray:
+def _upright(chain: Chain, degrees: FloatArray, tilt: float) -> Kept:
+    """Return at which angles (n, m) the table is tilted no farther than it may be."""
+    return np.asarray(chain.tool_axis(degrees)[:, 2] >= math.cos(math.radians(tilt)) - 1e-12)
+
+
+def _inside(chain: Chain, stands: FloatArray, room: float) -> Kept:
     """Return which positions (n, 3) have room around them, and above, inside the limits."""
     low, high = np.array(chain.travel).T
     below = np.array([room, room, 0.0])

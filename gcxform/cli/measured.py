@@ -76,6 +76,12 @@ def hand_out(found: Found, files: Files) -> None:
     click.echo("\n".join(found.lines), err=STDOUT in (files.output, files.report))
 
 
+def check_axis(axis: str | None, letters: Sequence[str], machine: str) -> None:
+    """Raise UsageError for an axis that is named and that a machine does not have."""
+    if axis is not None and axis not in letters:
+        raise UsageError.one("GX707", f"{machine} has no axis {axis}", Location("--axis"))
+
+
 def path_of(name: str) -> Path:
     """Return the file of an argument; `-` is stdin."""
     return Path("/dev/stdin" if name == STDOUT else name)

@@ -10,7 +10,14 @@ import click
 import numpy as np
 
 from gcxform.cli.asked import Asked
-from gcxform.cli.measured import any_length, path_of, three_lengths, two_lengths, write
+from gcxform.cli.measured import (
+    any_length,
+    check_axis,
+    path_of,
+    three_lengths,
+    two_lengths,
+    write,
+)
 from gcxform.cli.outputs import STDOUT, check_places
 from gcxform.diagnostics import Location, UsageError
 from gcxform.machine.machine import Machine
@@ -56,9 +63,7 @@ def balls(
 
     The errors of the linear axes are those of the error model that the machine file names.
     """
-    from gcxform.calibrate.ballfile import balls_csv, poses_csv, read_balls, read_poses
-    from gcxform.calibrate.bundle import Poses
-    from gcxform.calibrate.rotary import Centres
+    from gcxform.calibrate.ballfile import plan_csv, read_plan
     from gcxform.calibrate.rotarymachine import probing
     from gcxform.simulate.balls import simulate_poses
 
@@ -66,19 +71,10 @@ def balls(
     machine = _machine(true)
     chain, model = probing(machine, tool), _errors(machine)
     sigma, generator = any_length(noise, "--noise"), np.random.default_rng(seed)
-    if axis is None:
-        poses = read_poses(path_of(plan), chain.letters).poses
-        read = simulate_poses(chain, poses, model, noise=sigma, generator=generator)
-        write(output, poses_csv(read, chain.letters))
-        return
-    if axis not in chain.letters:
-        raise UsageError.one("GX707", f"{machine.name} has no axis {axis}", Location("--axis"))
-    centres = read_balls(path_of(plan)).centres
-    degrees = np.zeros((len(centres), len(chain.letters)))
-    degrees[:, chain.letters.index(axis)] = centres.degrees
-    whole = Poses(degrees, ("",) * len(centres), centres.points)
-    read = simulate_poses(chain, whole, model, noise=sigma, generator=generator)
-    write(output, balls_csv(Centres(centres.degrees, read.points)))
+    check_axis(axis, chain.letters, machine.name)
+    poses = read_plan(path_of(plan), chain.letters, axis)
+    read = simulate_poses(chain, poses, model, noise=sigma, generator=generator)
+    write(output, plan_csv(read, chain.letters, axis))
 
 
 @click.command("ballbar-rtcp", short_help="Circles with RTCP on, for `calibrate ballbar`.")

@@ -132,7 +132,7 @@ MUTATIONS = (
     _ballbar(
         "plan",
         "any tilt will do",
-        ">= math.cos(math.radians(wanted.tilt)) - 1e-12",
+        ">= math.cos(math.radians(tilt)) - 1e-12",
         ">= -2.0",
         PLAN,
     ),
@@ -199,5 +199,26 @@ MUTATIONS = (
         "found.unknowns[first : first + 3]",
         "found.unknowns[first : first + 3] * 0.0",
         "tests/test_bundle.py",
+    ),
+    _ballbar(
+        "plan",
+        "the end of a turn is not its beginning",
+        "[good, good & closed]",
+        "[good, good & False]",
+        PLAN,
+    ),
+    _ballbar(
+        "plan",
+        "a circle ends where it begins",
+        "np.arange(wanted.poses) * 360.0 / wanted.poses",
+        "np.linspace(0.0, 360.0, wanted.poses)",
+        PLAN,
+    ),
+    _ballbar(
+        "plan",
+        "a circle may tilt the table",
+        "_inside(chain, stands, wanted.room) & upright",
+        "_inside(chain, stands, wanted.room)",
+        PLAN,
     ),
 )
