@@ -217,8 +217,8 @@ MUTATIONS = (
     _ballbar(
         "plan",
         "a circle may tilt the table",
-        "_inside(chain, stands, wanted.room) & upright",
-        "_inside(chain, stands, wanted.room)",
+        "wanted.room) & _upright(chain, angles, wanted.tilt)",
+        "wanted.room)",
         PLAN,
     ),
 )
