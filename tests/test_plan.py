@@ -262,7 +262,7 @@ def test_a_circle_of_one_axis(here, letter, ball, arc, closed):
         turned[:, 1] = centres.degrees[[0, -1]] + (-1.1, 1.1)
         beyond = chain().linear(np.tile(ball, (2, 1)), turned)
         assert (beyond[:, 0] > 110.0 - room).all() or (beyond[:, 0] < -105.0 + room).any()
-        assert steps[0] * 8 > 200.0
+        assert steps[0] * 8 > (100.0 if ball[0] > 0.0 else 300.0)
     words = ("--true", "m.toml", "--tool", "1", "--axis", letter, "--noise", "2 um")
     assert call("simulate", "balls", *words, "-o", "r.csv", "c.csv").exit_code == 0
     found = locate(read_balls(Path("r.csv")).centres, 0.002)
