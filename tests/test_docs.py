@@ -304,10 +304,11 @@ def test_toml_snippets_are_right(folder, tmp_path):
 
 @pytest.mark.parametrize("file", sorted((ROOT / "examples").glob("*/*.toml")), ids=lambda f: f.name)
 def test_pipelines_of_the_examples_run(file):
-    if "[[pass]]" not in file.read_text("utf-8"):
+    text = file.read_text("utf-8")
+    if "[[pass]]" not in text or "to-tip" in text:  # of axes, which test_rtcp_loop.py has
         return
     pipeline = gx.Pipeline.load(file)
-    programs = {"linear": "linear_in.nc", "arc": "arc_in.nc"}
+    programs = {"linear": "linear_in.nc", "arc": "arc_in.nc", "axes": "dome.nc"}
     program = file.parent / programs.get(file.stem, f"{file.stem}.nc")
     result = pipeline.run(program.read_bytes(), verify="full")
     assert result.certificate.verified

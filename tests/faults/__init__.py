@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from faults import (
     arcs,
+    ballbar,
     calibrating,
     commands,
     computing,
@@ -43,6 +44,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     *tables.MUTATIONS,
     *proof.MUTATIONS,
     *rtcp.MUTATIONS,
+    *ballbar.MUTATIONS,
     *calibrating.MUTATIONS,
     *simulating.MUTATIONS,
     *rotary.MUTATIONS,
