@@ -27,7 +27,7 @@ LEAVES = frozenset({"break", "continue"})
 POSITIONS = range(FIRST, FIRST + 9)
 NAMES_POSITION = re.compile(r"#[ \t]*5[ \t]*4[ \t]*2")
 ORDERS = {
-    "sub": ("sub", "return", "endsub"),
+    "sub": ("sub", "endsub"),
     "if": ("if", "elseif", "else", "endif"),
     "while": ("while", "break", "continue", "endwhile"),
     "do": ("do", "break", "while"),
@@ -94,7 +94,9 @@ class OWords(Execution):
             elif items and isinstance(items[0], Statement) and items[0].kind == "flow":
                 word = self._read(items[0])
                 self.words[line] = word
-                if word.keyword != "call":
+                if word.keyword == "return" and not scope.startswith("sub "):
+                    raise self._misfit("return outside a subprogram")
+                if word.keyword not in ("call", "return"):
                     scope = self._place(line, word, scope, open_)
         for (_, label), construct in open_.items():
             if construct.lines and ORDERS[construct.kind][-1] != self._keyword(construct.last):
@@ -122,7 +124,7 @@ class OWords(Execution):
             if scope.startswith("sub "):
                 raise self._misfit("a subprogram begins inside another")
             scope = f"sub {word.label}"
-        inside = "" if word.keyword in ("sub", "endsub", "return") else scope
+        inside = "" if word.keyword in ("sub", "endsub") else scope
         construct = open_.get((inside, word.label))
         if construct is None:
             if word.keyword not in ORDERS:
@@ -220,9 +222,15 @@ class OWords(Execution):
         if self.counters and any(call.name == f"O{label}" for call in self.calls):
             raise self.refusal("GX223", "a subprogram calls itself inside a repeat loop")
 
-    def _return(self, word: OWord) -> None:
+    def _endsub(self, word: OWord) -> None:
         if not self.calls or self.calls[-1].name != f"O{word.label}":
-            raise self._misfit(f"{word.keyword} returns from O{word.label}, which is not running")
+            raise self._misfit(f"this ends O{word.label}, which is not running")
+        self._return(word)
+
+    def _return(self, word: OWord) -> None:
+        """Return from the subprogram that runs, whatever the label says."""
+        if not self.calls or not self.calls[-1].name.startswith("O"):
+            raise self._misfit("no subprogram that was called by name is running here")
         value = self.value(word.values[0]) if word.values else None
         call = self.calls.pop()
         self.modes.leave()
@@ -231,8 +239,6 @@ class OWords(Execution):
         self.counters = call.counters
         self.returned(value)
         self.at = call.back
-
-    _endsub = _return
 
     def returned(self, value: float | None = None) -> None:
         """Set what the program can read about the last return."""

@@ -109,7 +109,8 @@ class Flow:
         lines = [f"o{number} sub", *head, *self.body(1)]
         if self.choose.random() < 0.3:
             name = self.label()
-            lines += [f"{name} if {self.condition()}", f"o{number} return [7]", f"{name} endif"]
+            label = self.choose.choice((name, f"o{number}"))
+            lines += [f"{name} if {self.condition()}", f"{label} return [7]", f"{name} endif"]
         value = self.choose.choice(("", " [3]", " [#1]"))
         self.subs.append(number)
         return [*lines, f"o{number} endsub{value}"]
