@@ -8,7 +8,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-
 LAST_EXIT_CODE = 5  # of those that are documented
 
 
