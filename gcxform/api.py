@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.contract import Pass, PassContext
+from gcxform.diagnostics import InputError
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.files import write_atomically
+from gcxform.flow.written_out import located, written_out
 from gcxform.machine.machine import Machine
 from gcxform.modal.codes import Effect
 from gcxform.modal.interpreter import Interpreter
@@ -69,8 +71,27 @@ class Program:
 
     @cached_property
     def path(self) -> Toolpath:
-        """The moves of the whole program: mm and degrees."""
-        source = Source.of_bytes(self.text, self.name)
+        """The moves of the whole program: mm and degrees; its lines are those of `executed`."""
+        source = self._executed
+        try:
+            return self._read(source)
+        except InputError as error:
+            raise located(error, source) from None
+
+    @cached_property
+    def _executed(self) -> Source:
+        return written_out(Source.of_bytes(self.text, self.name), self.dialect, self.reading)
+
+    @property
+    def executed(self) -> bytes:
+        """The blocks that the control executes: the text itself, but for calls and loops."""
+        return b"".join(self._executed.windows())
+
+    def line_of(self, line: int) -> int:
+        """Return the line of the text, from 1, of an executed line; 0 stands for none."""
+        return self._executed.line_of(line)
+
+    def _read(self, source: Source) -> Toolpath:
         axes = source.axes(self.dialect.axes)
         interpreter = Interpreter(self.dialect, self.reading, axes, self.name)
         reader = WindowReader(self.dialect)
@@ -178,7 +199,7 @@ def compare(
     matching = match(path_a, path_b, tolerance, max(REACH, tolerance))
     found = measure(path_a, path_b, matching)
     worst = int(np.argmax(found.distance)) if len(matching.a) else -1
-    return Comparison(
+    compared = Comparison(
         np.inf if matching.parted else float(found.distance.max(initial=0.0)),
         _line(path_a, matching.a, worst),
         _line(path_b, matching.b, worst),
@@ -189,6 +210,25 @@ def compare(
         _parted(path_a, path_b, matching),
         tuple(_feeds(path_a, path_b, matching, tolerance)),
         tuple(_events((path_a, a.dialect), (path_b, b.dialect), matching, tolerance)),
+    )
+    return _in_lines_of(a, b, compared)
+
+
+def _in_lines_of(a: Program, b: Program, found: Comparison) -> Comparison:
+    """Return a comparison of executed blocks with the lines of the programs."""
+
+    def moved(difference: Difference) -> Difference:
+        lines = a.line_of(difference.line_a), b.line_of(difference.line_b)
+        return replace(difference, line_a=lines[0], line_b=lines[1])
+
+    parted = found.parted and (a.line_of(found.parted[0]), b.line_of(found.parted[1]))
+    return replace(
+        found,
+        line_a=a.line_of(found.line_a),
+        line_b=b.line_of(found.line_b),
+        parted=parted,
+        feeds=tuple(map(moved, found.feeds)),
+        events=tuple(map(moved, found.events)),
     )
 
 

@@ -188,6 +188,10 @@ class Dialect:
     """Addresses the control knows, besides its axes and G, M, O."""
     arithmetic: ClassVar[Arithmetic | None] = None
     """How the control computes expressions; None: they are refused."""
+    flow: ClassVar[str] = ""
+    """How subprograms and loops are written: "o-words", "macro-b", or "": the control has none."""
+    calls_own_lines: ClassVar[bool] = False
+    """M97 calls lines of the same program, up to M99."""
     numbers: ClassVar[NumberFormat] = NumberFormat()
     arc_planes: ClassVar[frozenset[str]] = frozenset({"XY", "ZX", "YZ"})
     """Planes in which the control can cut arcs."""

@@ -247,7 +247,7 @@ class Pipeline:
         """
         out = Output(sink, source_map)
         run = Run(self, source, verify)
-        run.over(source.windows(), out, progress or (lambda size: None))
+        run.over(out, progress or (lambda size: None))
         run.check_growth(out)
         return run.certificate(out)
 

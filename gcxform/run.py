@@ -17,13 +17,14 @@ from gcxform.cuts import whole_cuts
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.emit.emitter import Emitted, Emitter
+from gcxform.flow.written_out import WrittenOut, located, written_out
 from gcxform.heap import give_back
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import GROUPS, MeaningTable
 from gcxform.options import KinematicsFile, ModelFile, to_toml
-from gcxform.source import Source, lines_in
+from gcxform.source import WINDOW, Source, lines_in
 from gcxform.syntax.scan import Window
 from gcxform.textpasses import TextRun
 from gcxform.toolpath.path import Toolpath
@@ -68,6 +69,9 @@ class Run:
         self.verify = verify
         self.steps = pipeline.path_passes
         self.text = TextRun(pipeline.text_passes, pipeline.target, source.name)
+        if not pipeline.copies:
+            self.source = written_out(source, pipeline.source, pipeline.machine_reading)
+        self.given = source
         self.reader = WindowReader(pipeline.source)
         self.measured: dict[str, float] = {}
         self.verifier: Verifier | None = None
@@ -103,7 +107,16 @@ class Run:
         resolving = [number for number, step in enumerate(self.steps, 1) if step.resolves]
         return self.steps[resolving[-1] :] if resolving else self.steps
 
-    def over(self, texts: Iterator[bytes], out: Output, progress: Progress) -> None:
+    def over(self, out: Output, progress: Progress, size: int = WINDOW) -> None:
+        """Run over the program, `size` bytes at a time. Raises GcxformError."""
+        try:
+            self._over(self.source.windows(size), out, progress)
+        except GcxformError as error:
+            raise located(error, self.source) from None
+        if isinstance(self.source, WrittenOut) and out.source_map is not None:
+            out.source_map[:] = self.source.origin[out.source_map].tolist()
+
+    def _over(self, texts: Iterator[bytes], out: Output, progress: Progress) -> None:
         """Run over the windows of a program.
 
         The next window is read, and the one before proved, while one is transformed: each on a
@@ -122,13 +135,18 @@ class Run:
         with ThreadPoolExecutor(1) as ahead, ThreadPoolExecutor(1) as behind:
             self._transform_all(behind, self._read_ahead(ahead, texts, out), out, progress)
 
+    def _note_read(self, text: bytes, out: Output) -> None:
+        """Add what was read to the hash of the program, which is that of its file."""
+        if self.source is self.given:
+            out.read.update(text)
+
     def _read_ahead(
         self, pool: ThreadPoolExecutor, texts: Iterator[bytes], out: Output
     ) -> Iterator[tuple[Window, MeaningTable]]:
         """Yield windows, each with its table of meanings, while the next is being read."""
 
         def read(text: bytes) -> tuple[Window, MeaningTable]:
-            out.read.update(text)
+            self._note_read(text, out)
             window = self.reader.read(text)
             return window, self.reader.table
 
@@ -266,6 +284,9 @@ class Run:
         """Return the proof of the out."""
         pipeline = self.pipeline
         self.text.finish()
+        executed = self.source is not self.given
+        for text in self.given.windows() if executed else ():
+            out.read.update(text)
         certificate = Certificate(
             VERSION,
             {"name": self.source.name, "dialect": pipeline.source.name, "lines": out.lines_in}
@@ -292,7 +313,7 @@ class Run:
         found = self.verifier.findings
         certificate.largest = {
             "deviation": found.deviation,
-            "source_line": found.source_line,
+            "source_line": self.source.line_of(found.source_line),
             "output_line": found.output_line,
             "angle": found.angle,
         }
@@ -300,6 +321,9 @@ class Run:
         self._not_checked(certificate)
 
     def _not_checked(self, certificate: Certificate) -> None:
+        if self.source is not self.given:
+            what = "the order in which calls and loops execute blocks: it was found once"
+            certificate.not_checked.append(what)
         assert self.verifier is not None
         assert self.interpreter is not None
         found = self.verifier.findings

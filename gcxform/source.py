@@ -37,6 +37,10 @@ class Source:
         except OSError as error:
             raise FileError.one("GX901", f"cannot read {path}: {error.strerror}") from None
 
+    def line_of(self, line: int) -> int:
+        """Return the line of the file, from 1, that a line of the text came from; 0 for 0."""
+        return line
+
     @property
     def size(self) -> int:
         """How many bytes there are."""

@@ -92,7 +92,7 @@ def test_lines_are_followed_in_distances(program: bytes, tolerance: float) -> No
 def test_windows_do_not_matter_to_the_law(program: bytes) -> None:
     source, texts = Source.of_bytes(program), list[bytes]()
     job = Run(gx.Pipeline.parse("arcs tolerance=0.1", "linuxcnc"), source, "full")
-    job.over(source.windows(200), Output(texts.append, None), lambda _: None)
+    job.over(Output(texts.append, None), lambda _: None, 200)
     check(program, gx.Result(b"".join(texts), job.certificate(Output(texts.append, None)), []), 0.1)
 
 

@@ -11,6 +11,7 @@ from cli_kit import call
 
 from gcxform.calibrate.ballfile import poses_csv, read_poses
 from gcxform.calibrate.bundle import Bundled, Layout, Poses, blind, bundle, rank
+from gcxform.calibrate.bundlewords import check
 from gcxform.diagnostics import InputError
 from gcxform.machine.chain import Chain, Rotary, chain_of
 from gcxform.machine.errors import FloatArray
@@ -146,6 +147,29 @@ def test_readings_that_contradict_each_other_are_refused():
         bundle(BELIEVED, poses(angles(20), 0.05), 0.002)
 
 
+def test_the_check_is_what_many_show():
+    """The dial with RTCP on and the ball at rest: predicted against 100 bundles."""
+    degrees = angles(12)
+    truth = bundle(BELIEVED, poses(degrees, balls=1), NOISE)
+    ways = {letter: [] for letter in "AC"}
+    for seed in range(100):
+        found = bundle(BELIEVED, poses(degrees, NOISE, seed, balls=1), NOISE)
+        if not found.kept.all():
+            continue
+        for k, letter in enumerate("AC"):
+            turns = check(truth, letter).degrees
+            ball = np.tile(BALLS[0], (len(turns), 1))
+            apart = found.chain.axes[k].turn(ball, turns) - TRUE.axes[k].turn(ball, turns)
+            ways[letter].append(apart)
+    for letter, every in ways.items():
+        assert len(every) > 60
+        seen = np.sqrt((np.array(every) ** 2).sum(axis=2).mean(axis=0))
+        assert seen == pytest.approx(check(truth, letter).spread, rel=0.25)
+    zero = [check(bundle(TRUE, poses(degrees, balls=1), NOISE), a).before.max() for a in "AC"]
+    assert max(zero) < 1e-6
+    assert check(truth, "C").before.max() > 0.02
+
+
 MACHINE = """format = 1
 table = ["A", "C"]
 [axis.A]
@@ -188,6 +212,8 @@ def test_the_command_writes_all_axes(files):
         assert one["value"] == pytest.approx(value, abs=4 * one["sd"])
         assert f"{name}: {1e6 * one['value']:.3g} +- " in done.stdout
     assert len(report["covariance"]["order"]) == 19
+    worst = max(report["check"]["A"]["spread"])
+    assert f"the dial is predicted to read 0 +- {1e3 * worst:.3g} um" in done.stdout
 
 
 def test_poses_read_back_as_the_same_bits(files):

@@ -32,6 +32,9 @@ ELSEWHERE = {
     "GX487": "test_rotary.py",
     "GX488": "test_rotary_files.py",
     "GX489": "test_bundle.py",
+    "GX490": "test_ballbar_files.py",
+    "GX491": "test_plan.py",
+    "GX492": "test_plan.py",
     "GX481": "format_kit.py",  # of writing tables, which no pipeline does
     "GX605": "test_table_verb.py",
     "GX602": "test_corpus.py",  # a pass that does not ensure what it says

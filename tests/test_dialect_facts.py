@@ -1,8 +1,7 @@
 """One program, one fact about a control: gcxform reads it so, or refuses what it should refuse.
 
-The facts of `tests/facts` are ours; those beside the checkout are run where they are. `KNOWN` names
-what is not read yet, with the reason: an entry too much fails as well. Facts about controls that
-there is no dialect for are skipped, by the name of the control.
+The facts of `tests/facts` are ours; those beside the checkout are run where they are. Facts about
+controls that there is no dialect for are skipped, by the name of the control.
 """
 
 from __future__ import annotations
@@ -12,7 +11,6 @@ from pathlib import Path
 
 import pytest
 from facts import grbl, record
-from facts.known import KNOWN, UNFINISHED
 from facts.matching import NotReadYet, problem
 from oracles import rs274
 
@@ -20,16 +18,6 @@ HERE = Path(__file__).parent
 BESIDE = HERE.parents[1] / "shared" / "dialect-facts"
 OURS = [*json.loads(record.RECORDED.read_text("utf-8")), *grbl.facts()]
 SHARED = sorted(BESIDE.glob("*.json"))
-
-
-def parameters(names, values):
-    """Return values as parameters of a test, marked where they are known to fail."""
-    found = []
-    for name, value in zip(names, values, strict=True):
-        reason = KNOWN.get(name)
-        marks = [pytest.mark.xfail(strict=True, reason=reason)] if reason else []
-        found.append(pytest.param(value, id=name, marks=marks))
-    return found
 
 
 def check(fact, program):
@@ -40,38 +28,21 @@ def check(fact, program):
     assert not wrong, f"{fact.get('fact', '')}\n{wrong}\n{program.decode('latin-1')}"
 
 
-@pytest.mark.parametrize("fact", parameters([f["name"] for f in OURS], OURS))
+@pytest.mark.parametrize("fact", OURS, ids=lambda fact: fact["name"])
 def test_our_facts(fact):
     check(fact, fact["program"].encode())
 
 
 @pytest.mark.skipif(not SHARED, reason="no collection of facts beside the checkout")
-@pytest.mark.parametrize("path", parameters([p.stem for p in SHARED], SHARED))
+@pytest.mark.parametrize("path", SHARED, ids=lambda path: path.stem)
 def test_facts_beside_the_checkout(path):
-    """Facts that are not here by name may be of a feature that is refused by name as a whole."""
     fact = json.loads(path.read_text("utf-8"))
-    program = (path.parent / fact["file"]).read_bytes()
-    if path.stem not in KNOWN:
-        for said, feature in UNFINISHED.items():
-            if fact["expect"] == "ok" and said in _refusal(fact, program):
-                pytest.xfail(feature)
-    check(fact, program)
-
-
-def _refusal(fact, program):
-    """Return why a program is refused that should be read; nothing for what has no dialect."""
-    try:
-        wrong = problem(fact, program)
-    except NotReadYet:
-        return ""
-    return wrong if wrong.startswith("refused") else ""
+    check(fact, (path.parent / fact["file"]).read_bytes())
 
 
 def test_names_are_of_one_fact():
     names = [fact["name"] for fact in OURS]
     assert len(set(names)) == len(names)
-    if SHARED:
-        assert set(KNOWN) <= {*names, *(path.stem for path in SHARED)}
 
 
 @pytest.mark.skipif(not rs274.available(), reason="rs274 is not installed")

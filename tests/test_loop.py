@@ -9,19 +9,15 @@ more, and over many seeds not less. (Issue 4, "the whole loop in one test".)
 from __future__ import annotations
 
 import math
-import os
-import re
 import shutil
-import subprocess
-import sys
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 import pytest
+from console_kit import check_console
 from htm import actual
-from test_docs import _timeless, commands
 from test_rigid import scalar
 from test_rigid_pass import away, point
 
@@ -238,23 +234,7 @@ def test_the_commands_of_the_example_print_what_its_readme_shows(tmp_path):
     folder = tmp_path / "step-diagonal"
     shutil.copytree(EXAMPLE, folder)
     (folder / "model.toml").unlink()
-    page = (EXAMPLE / "README.md").read_text("utf-8")
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    for block in re.findall(r"```console\n(.*?)```", page, re.DOTALL):
-        for command, shown in commands(block):
-            done = subprocess.run(
-                ["bash", "-c", command],
-                cwd=folder,
-                env={**os.environ, "PATH": path},
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                text=True,
-                timeout=60,
-                check=False,
-            )
-            lines = _timeless(shown).splitlines()
-            pattern = "".join(r"(?:.*\n)*?" if s == "..." else re.escape(s) + "\n" for s in lines)
-            assert re.fullmatch(pattern, _timeless(done.stdout)), f"{command}\n{done.stdout}"
+    assert check_console(EXAMPLE / "README.md", folder)
     shipped, made = load_model(EXAMPLE / "model.toml"), load_model(folder / "model.toml")
     somewhere = np.random.default_rng(1).uniform(0.0, 300.0, (50, 3))
     assert np.abs(shipped.error(somewhere) - made.error(somewhere)).max() < 1e-12

@@ -59,7 +59,7 @@ def run(
         return Emitted(text, source, np.zeros(len(source), np.int64))
 
     job.emitter.emit = lying  # type: ignore[method-assign]
-    job.over(source.windows(size), Output(texts.append, None), lambda _: None)
+    job.over(Output(texts.append, None), lambda _: None, size)
     return b"".join(texts)
 
 

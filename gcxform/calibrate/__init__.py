@@ -16,7 +16,14 @@
     gcxform/calibrate/rotarycheck.py    the check with RTCP on, warnings, advice
     gcxform/calibrate/rotarywords.py    its report and comments
     gcxform/calibrate/bundle.py         balls at any poses: all rotary axes, and squareness
+    gcxform/calibrate/axischeck.py      the check with RTCP on, from the covariance of such unknowns
     gcxform/calibrate/bundlewords.py    its report and comments
+    gcxform/calibrate/plan.py           poses for a bundle, inside the limits and well conditioned
+    gcxform/calibrate/touching.py       the program that probes them, and the centres it found
+    gcxform/calibrate/ballbar.py        circular tests with RTCP on: the axes of the table
+    gcxform/calibrate/ballbarfile.py    their readings from CSV files, and back
+    gcxform/calibrate/locations.py      the names of location errors, and of those of a trunnion
+    gcxform/calibrate/ballbarwords.py   the report and comments of circular tests
 
 Nothing here prints. What is wrong with a measurement is an InputError, with file, line and column
 where there is one.

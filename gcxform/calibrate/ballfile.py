@@ -53,7 +53,7 @@ def _measured(table: CsvTable) -> MeasuredBalls:
     table.need(*names)
     points = np.column_stack([table.lengths(name) for name in names[1:]])
     centres = Centres(table.angles("angle"), points, table.where)
-    return MeasuredBalls(table.file, centres, _conditions(table))
+    return MeasuredBalls(table.file, centres, conditions(table))
 
 
 class MeasuredPoses(NamedTuple):
@@ -73,7 +73,7 @@ def read_poses(path: Path, letters: Sequence[str]) -> MeasuredPoses:
     points = np.column_stack([table.lengths(name) for name in names])
     degrees = np.column_stack([table.angles(name) for name in turns])
     poses = Poses(degrees, tuple(table.texts("ball")), points, table.where)
-    return MeasuredPoses(table.file, poses, _conditions(table))
+    return MeasuredPoses(table.file, poses, conditions(table))
 
 
 def poses_csv(poses: Poses, letters: Sequence[str]) -> str:
@@ -84,7 +84,8 @@ def poses_csv(poses: Poses, letters: Sequence[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _conditions(table: CsvTable) -> dict[str, dict[str, Any]]:
+def conditions(table: CsvTable) -> dict[str, dict[str, Any]]:
+    """Return what was carried: of each column its unit, least, mean and most."""
     found: dict[str, dict[str, Any]] = {}
     for heading in table.headings.values():
         if heading.name.startswith(CONDITIONS):
@@ -105,3 +106,23 @@ def balls_csv(centres: Centres) -> str:
     for angle, point in zip(centres.degrees.tolist(), centres.points.tolist(), strict=True):
         lines.append(",".join(map(repr, [angle, *point])))
     return "\n".join(lines) + "\n"
+
+
+def read_plan(path: Path, letters: Sequence[str], axis: str | None = None) -> Poses:
+    """Return the poses of either kind of file: of one axis, the others at 0, if it is named.
+
+    Raises FileError, and InputError with the place.
+    """
+    if axis is None:
+        return read_poses(path, letters).poses
+    centres = read_balls(path).centres
+    degrees = np.zeros((len(centres), len(letters)))
+    degrees[:, letters.index(axis)] = centres.degrees
+    return Poses(degrees, ("1",) * len(centres), centres.points, centres.where)
+
+
+def plan_csv(poses: Poses, letters: Sequence[str], axis: str | None = None) -> str:
+    """Return poses as either kind of file, which reads back as the same bits."""
+    if axis is None:
+        return poses_csv(poses, letters)
+    return balls_csv(Centres(poses.degrees[:, letters.index(axis)], poses.points))

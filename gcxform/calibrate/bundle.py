@@ -91,11 +91,9 @@ class Layout:
 
     def machine(self, unknowns: FloatArray) -> Chain:
         """Return the chain with its axes shifted and tilted."""
-        moved = [
-            _moved(axis, unknowns[4 * k : 4 * k + 4]) for k, axis in enumerate(self.chain.axes)
-        ]
+        axes = [moved(axis, unknowns[4 * k : 4 * k + 4]) for k, axis in enumerate(self.chain.axes)]
         count = len(self.chain.table)
-        return replace(self.chain, table=tuple(moved[:count]), head=tuple(moved[count:]))
+        return replace(self.chain, table=tuple(axes[:count]), head=tuple(axes[count:]))
 
     def errors(self, unknowns: FloatArray) -> FloatArray:
         """Return M (3, 3): the errors of the linear axes, mm per mm."""
@@ -289,7 +287,7 @@ def _standardised(
     return np.asarray((np.abs(away.ravel()) / spread).reshape(-1, 3).max(axis=1))
 
 
-def _moved(axis: Rotary, step: FloatArray) -> Rotary:
+def moved(axis: Rotary, step: FloatArray) -> Rotary:
     """Return an axis shifted (2, mm) and tilted (2, rad) along two directions across it."""
     first, second = across(axis)
     point = np.array(axis.point) + step[0] * first + step[1] * second

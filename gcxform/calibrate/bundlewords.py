@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from gcxform.calibrate.axischeck import Check, predicted, worded
 from gcxform.calibrate.bundle import LINEAR, Bundled, across
+from gcxform.calibrate.rotary import ILL
 from gcxform.calibrate.rotarycheck import two_digits
 from gcxform.calibrate.rotarywords import WIDTH
 from gcxform.machine.errors import FloatArray
@@ -32,7 +34,43 @@ def lines(found: Bundled) -> list[str]:
     ]
     for letter in found.chain.letters:
         said += [f"axis {letter}: {line}" for line in _axis(found, letter)]
-    return said + _linear(found) + [f"warning: {line}" for line in _outliers(found)]
+    said += _linear(found)
+    said += [worded(check(found, letter), letter) for letter in found.chain.letters]
+    return said + [f"warning: {line}" for line in _outliers(found)]
+
+
+def check(found: Bundled, letter: str) -> Check:
+    """Return the check of an axis at the angles that were measured, with the first ball."""
+    k, before, chain = found.chain.letters.index(letter), found.layout.chain, found.chain
+    first = 4 * len(chain.axes)
+    ball = np.array(chain.tip) if k >= len(chain.table) else found.unknowns[first : first + 3]
+    part = found.covariance[4 * k : 4 * k + 4, 4 * k : 4 * k + 4]
+    degrees = np.unique(found.layout.poses.degrees[:, k])
+    return predicted(before.axes[k], chain.axes[k], part, ball, degrees)
+
+
+def expected(found: Bundled) -> list[str]:
+    """Return how well a plan will tell the axes, before anything is measured."""
+    poses = found.layout.poses
+    said = [
+        f"{len(poses.points)} poses, {len(poses.balls)} ball{'s' * (len(poses.balls) > 1)}, "
+        f"{len(found.unknowns)} unknowns, condition {found.condition:.1f}; with a noise of "
+        f"{1e3 * found.noise:.3g} um"
+    ]
+    for k, letter in enumerate(found.chain.letters):
+        shift, tilt = (max(part.tolist()) for part in _spread(found, k))
+        said.append(
+            f"axis {letter}: +- {two_digits(1e3 * shift)} um, {two_digits(1e6 * tilt)} urad"
+        )
+    for name in LINEAR[: found.layout.linear]:
+        unit = "ppm" if name.startswith("scale") else "urad"
+        said.append(f"{name}: +- {two_digits(1e6 * found.spread(name))} {unit}")
+    if found.condition > ILL:
+        said.append(
+            f"warning: badly conditioned (above {ILL:.0f} is poor): the limits leave the axes too "
+            "little of a turn where these balls stand"
+        )
+    return said
 
 
 def comments(found: Bundled, letter: str, file: str) -> list[str]:
@@ -118,6 +156,10 @@ def report(found: Bundled, file: str, conditions: Mapping[str, Any]) -> dict[str
         "linear": {name: {"value": value, "sd": sd} for name, (value, sd) in linear.items()},
         "unknowns": dict(zip(found.layout.names, found.unknowns.tolist(), strict=True)),
         "covariance": {"order": list(found.layout.names), "matrix": found.covariance.tolist()},
+        "check": {
+            letter: {name: part.tolist() for name, part in check(found, letter)._asdict().items()}
+            for letter in found.chain.letters
+        },
         "condition": found.condition,
         "redundancy": found.redundancy,
         "rms": found.rms if math.isfinite(found.rms) else None,

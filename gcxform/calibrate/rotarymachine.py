@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -13,7 +15,7 @@ from gcxform.calibrate.rotary import Centres, Placed, locate
 from gcxform.calibrate.rotarycheck import axis_of
 from gcxform.diagnostics import InputError, Location, UsageError
 from gcxform.machine.axistext import MARK, with_axis
-from gcxform.machine.chain import Chain, Triple, chain_of
+from gcxform.machine.chain import Chain, Rotary, Triple, chain_of
 from gcxform.machine.machine import Axis, Machine
 from gcxform.machine.machinetext import axis_lines
 from gcxform.machine.presets import FAR
@@ -82,18 +84,30 @@ def with_found(found: Placed, letter: str, machine: Machine | None, comments: li
 
 def probing(machine: Machine, tool: int | None) -> Chain:
     """Return the chain of a machine with its probe. Raises UsageError."""
+    chain = turning(machine)
+    return replace(chain, tip=_tip(machine, tool)) if chain.head or tool is not None else chain
+
+
+def turning(machine: Machine) -> Chain:
+    """Return the chain of a machine that has rotary axes. Raises UsageError."""
     chain = chain_of(machine)
     if not chain.axes:
         message = "this machine has no rotary axis"
         raise UsageError.one("GX452", message, Location(str(machine.file)))
-    return replace(chain, tip=_tip(machine, tool)) if chain.head or tool is not None else chain
+    return chain
 
 
 def bundled_text(found: Bundled, machine: Machine, data: str) -> str:
     """Return the machine file with all axes that were found."""
+    return with_axes(found.chain.axes, machine, partial(bundlewords.comments, found, file=data))
+
+
+def with_axes(
+    axes: Sequence[Rotary], machine: Machine, comments: Callable[[str], list[str]]
+) -> str:
+    """Return the machine file with some axes; `comments` of a letter stand above its values."""
     text = machine.file.read_bytes().decode("utf-8")
-    for axis in found.chain.axes:
+    for axis in axes:
         stated = Axis(direction=axis.direction, point=axis.point, sign=axis.sign)
-        comments = bundlewords.comments(found, axis.letter, data)
-        text = with_axis(text, axis.letter, stated, comments, str(machine.file))
+        text = with_axis(text, axis.letter, stated, comments(axis.letter), str(machine.file))
     return text

@@ -55,6 +55,18 @@ def lines(found: Placed, letter: str, before: Axis | None = None) -> list[str]:
     ]
 
 
+def expected(found: Placed, letter: str) -> list[str]:
+    """Return how well a plan will tell an axis, before anything is measured."""
+    sd = np.sqrt(np.diag(found.covariance).clip(0.0))
+    shift, tilt = 1e3 * float(sd[:3].max()), 1e6 * float(sd[3:].max())
+    return [
+        f"axis {letter}: {len(found.centres)} centres, arc {arc(found.centres.degrees):.4g} "
+        f"degrees, radius {found.figure.radius:.4g} mm, condition {found.condition:.1f}; with a "
+        f"noise of {1e3 * found.noise:.3g} um +- {two_digits(shift)} um, {two_digits(tilt)} urad",
+        *(f"warning: {warning}" for warning in warnings(found)),
+    ]
+
+
 def comments(found: Placed, file: str) -> list[str]:
     """Return what stands above the values in a machine file."""
     # A name of a file may hold anything; a control character would end the comment.

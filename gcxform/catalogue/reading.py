@@ -152,6 +152,19 @@ CODES: dict[str, tuple[str, str]] = {
         "signs, and a percent sign at the end alone. `gcxform check` says so; a piece of a program "
         "can be read and written all the same.",
     ),
+    "GX223": (
+        "Subprograms, loops and jumps that do not fit together",
+        "A program with calls, loops or jumps is executed as the control would execute it, to "
+        "find the blocks that act, in their order. Here that cannot go on: an end without its "
+        "beginning, a label twice, a jump to a number that is not there or into a loop. A control "
+        "would stop here, or go on in a way that is not documented.",
+    ),
+    "GX224": (
+        "A program that is not over",
+        "The loops or calls of the program go on for more blocks than any part needs, so it is "
+        "taken for one that never ends. A loop that waits for an input, or that is left by a "
+        "button, cannot be written out as plain blocks.",
+    ),
     "GX230": (
         "Cutter compensation that the control refuses",
         "G41, G42 or G40 stands where the control stops with an alarm, or a code stands between "

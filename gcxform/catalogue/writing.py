@@ -64,6 +64,25 @@ CODES: dict[str, tuple[str, str]] = {
         "poses of both rotary axes, all around and in combination, and better two balls; without "
         "them leave it out (--linear none).",
     ),
+    "GX490": (
+        "Circular tests of an axis that turns no table",
+        "Circular tests with RTCP on tell of the axes that turn the table, because the ball stands "
+        "on it. The table of measurements names an axis that the machine file does not have, or "
+        "that turns the head; those of the head are found by `gcxform calibrate bundle`.",
+    ),
+    "GX491": (
+        "No room for the poses of a calibration",
+        "Balls are probed at poses inside the limits of all axes, with room for the probe around "
+        "the ball and above it, and with a table that is not tilted too far. There are not enough "
+        "of them. Put the ball elsewhere, or allow more tilt; the limits are those of the machine "
+        "file.",
+    ),
+    "GX492": (
+        "Touches that are not those of the plan",
+        "A log of touches has a line for each, X, Y and Z and then perhaps A, B and C, five at "
+        "each pose in the order of the plan: from above, and from two opposite sides twice. A "
+        "touch is missing or stands twice, or the log belongs to another plan.",
+    ),
     "GX501": (
         "The target cannot say this",
         "The control that is written for has no such code, word, comment or plane of arcs, and "

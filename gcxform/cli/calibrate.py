@@ -10,8 +10,11 @@ from typing import Any
 import click
 
 from gcxform.cli import VERBS
-from gcxform.cli.outputs import STDOUT, check_places, destination
-from gcxform.diagnostics import Location, UsageError
+from gcxform.cli.axes import ballbar, bundle, rotary
+from gcxform.cli.measured import length_of, path_of, write
+from gcxform.cli.outputs import STDOUT, check_places
+from gcxform.cli.plan import centres, plan
+from gcxform.diagnostics import UsageError
 
 _FORMAT = """
 DATA is a table with the stops in the order of the measurement:
@@ -40,6 +43,13 @@ it is blind to scale errors with X^2 sX + Y^2 sY + Z^2 sZ = 0.
 @click.group("calibrate", help=VERBS["calibrate"], short_help=VERBS["calibrate"])
 def command() -> None:
     """Choose the measurement."""
+
+
+command.add_command(rotary)
+command.add_command(bundle)
+command.add_command(ballbar)
+command.add_command(plan)
+command.add_command(centres)
 
 
 @command.command(
@@ -91,8 +101,8 @@ def diagonal(
     over all, or beams off their diagonals where --misalignment none says that they are not.
     """
     check_places({"-o": output, "--report": report}, [data, *linear])
-    sigma = _length(noise, "--noise")
-    reading = None if linear_noise is None else _length(linear_noise, "--linear-noise")
+    sigma = length_of(noise, "--noise")
+    reading = None if linear_noise is None else length_of(linear_noise, "--linear-noise")
     if plain and linear:
         raise UsageError.one("GX728", "--plain and --linear exclude each other")
     if output is None and report is None:
@@ -103,9 +113,9 @@ def diagonal(
         free = misalignment == "free"
         model, found = _steps(data, linear, (sigma, reading, free), output is not None)
     if output is not None:
-        _write(output, model)
+        write(output, model)
     if report is not None:
-        _write(report, json.dumps(found, indent=1) + "\n")
+        write(report, json.dumps(found, indent=1) + "\n")
 
 
 def _plain(data: str, noise: float, wanted: bool) -> tuple[str, Mapping[str, Any]]:
@@ -115,7 +125,7 @@ def _plain(data: str, noise: float, wanted: bool) -> tuple[str, Mapping[str, Any
     from gcxform.calibrate.words import plain_comments, plain_report
     from gcxform.machine.modeltext import to_toml
 
-    measured = read_diagonals(_path(data), plain=True)
+    measured = read_diagonals(path_of(data), plain=True)
     found = squareness(measured.diagonals, noise)
     files = {"diagonals": measured.file}
     text = plain_comments(found, files) + to_toml(found.model()) if wanted else ""
@@ -131,7 +141,7 @@ def _steps(
     from gcxform.calibrate.words import step_comments, step_report
     from gcxform.machine.modeltext import to_toml
 
-    measured = read_diagonals(_path(data))
+    measured = read_diagonals(path_of(data))
     beside = [read_linear(Path(name), measured.diagonals.volume) for name in linear]
     tests = [test for file in beside for test in file.tests]
     found = identify(measured.diagonals, tests, Assumed(*said))
@@ -140,164 +150,3 @@ def _steps(
     conditions = {file.file: file.conditions for file in beside}
     conditions[measured.file] = measured.conditions
     return text, step_report(found, files, conditions)
-
-
-_BALLS = """
-DATA is a table with a row for each position of the axis, all other rotary axes at 0:
-
-\b
-    angle [deg], X [mm],   Y [mm],   Z [mm]
-    0,           363.5312, 51.2288,  128.9411
-    45,          287.0892, 235.7834, 128.9533
-
-X, Y, Z: the centre of the ball in machine coordinates, with the probe in the spindle and the ball
-on the table. Where the axis turns the head the ball is fixed, X, Y and Z are those of the machine
-with the tip at its centre, and --tool names the probe. Units: deg, rad; mm, um, nm, m, in.
-Three centres are the least and test nothing; five and more around the whole turn are good.
-
-An axis V and -V with the other sign are the same, and written the same way. The shift of the point
-along the axis is free: it is in the plane of the circle. A machine file keeps all but direction,
-point and sign of the axis.
-"""
-
-
-@command.command(
-    "rotary", epilog=_BALLS, short_help="Ball centres at angles: where a rotary axis is."
-)
-@click.option("--axis", metavar="A", type=click.Choice([*"ABC"]), required=True, help="A, B or C.")
-@click.option("-m", "--machine", metavar="FILE", help="The machine as it is believed to be.")
-@click.option("--tool", metavar="N", type=int, help="The probe, if the axis turns the head.")
-@click.option(
-    "--noise",
-    metavar="LENGTH",
-    default="2 um",
-    show_default=True,
-    help="Standard deviation of a coordinate of a centre.",
-)
-@click.option("-o", "--output", metavar="FILE", help="Write the machine file with the axis (TOML).")
-@click.option("--report", metavar="FILE", help="Write what was found, with covariance (JSON).")
-@click.argument("data", metavar="DATA")
-def rotary(
-    data: str,
-    axis: str,
-    machine: str | None,
-    tool: int | None,
-    noise: str,
-    output: str | None,
-    report: str | None,
-) -> None:
-    """Turn centres of a ball, probed at angles of a rotary axis, into its direction and point.
-
-    Centres that do not belong to the rest are left out and named. Printed are uncertainties, what
-    the check with RTCP on will read, and what to measure next. Refused are centres that are on no
-    circle, arcs too short, residuals above 3 times the noise, and an axis or a sense that is not
-    that of the machine file.
-    """
-    from gcxform.calibrate import rotarywords
-    from gcxform.calibrate.ballfile import read_balls
-    from gcxform.calibrate.rotarymachine import located, with_found
-    from gcxform.cli.asked import Asked
-
-    check_places({"-o": output, "--report": report}, [data, *filter(None, [machine])])
-    measured = read_balls(_path(data))
-    believed = Asked(machine=machine).loaded_machine
-    found, before = located(measured.centres, axis, _length(noise, "--noise"), believed, tool)
-    said = rotarywords.lines(found, axis, before)
-    text = with_found(found, axis, believed, rotarywords.comments(found, measured.file))
-    whole = rotarywords.report(found, axis, measured.file, measured.conditions, before)
-    if output is not None:
-        _write(output, text)
-    if report is not None:
-        _write(report, json.dumps(whole, indent=1) + "\n")
-    click.echo("\n".join(said), err=STDOUT in (output, report))
-
-
-_POSES = """
-DATA is a table with a row for each pose, and a column for each rotary axis of the machine:
-
-\b
-    ball, A [deg], C [deg], X [mm],  Y [mm],  Z [mm]
-    1,    -30,     45,      82.7912, 40.1623, -35.9984
-
-ball tells balls apart, and may be absent where there is one. 2 balls at 30 poses each, with all
-axes turned in combination, are a good measurement. The direction and point of every rotary axis are
-found together with the places of the balls and, unless --linear none, with what is seen of the
-linear axes: differences of scale and squareness. These are reported and belong into the error
-model. The absolute scale is never seen; --linear absolute asks for it and shows why not.
-"""
-
-
-@command.command("bundle", epilog=_POSES, short_help="Balls at any poses: all rotary axes at once.")
-@click.option("-m", "--machine", metavar="FILE", required=True, help="The machine as believed.")
-@click.option("--tool", metavar="N", type=int, help="The probe, if an axis turns the head.")
-@click.option(
-    "--noise",
-    metavar="LENGTH",
-    default="2 um",
-    show_default=True,
-    help="Standard deviation of a coordinate of a centre.",
-)
-@click.option(
-    "--linear",
-    type=click.Choice(["differences", "none", "absolute"]),
-    default="differences",
-    show_default=True,
-    help="Which errors of the linear axes are unknown.",
-)
-@click.option("-o", "--output", metavar="FILE", help="Write the machine file with the axes (TOML).")
-@click.option("--report", metavar="FILE", help="Write what was found, with covariance (JSON).")
-@click.argument("data", metavar="DATA")
-def bundle(
-    data: str,
-    machine: str,
-    tool: int | None,
-    noise: str,
-    linear: str,
-    output: str | None,
-    report: str | None,
-) -> None:
-    """Turn centres of balls at any poses into all rotary axes, with squareness.
-
-    Centres that do not belong to the rest are left out and named. Refused are unknowns that the
-    poses do not determine, and residuals above 3 times the noise.
-    """
-    from gcxform.calibrate import bundlewords
-    from gcxform.calibrate.ballfile import read_poses
-    from gcxform.calibrate.bundle import bundle as fit
-    from gcxform.calibrate.rotarymachine import bundled_text, probing
-    from gcxform.cli.asked import Asked
-
-    check_places({"-o": output, "--report": report}, [data, machine])
-    believed = Asked(machine=machine).loaded_machine
-    assert believed is not None
-    chain = probing(believed, tool)
-    measured = read_poses(_path(data), chain.letters)
-    found = fit(chain, measured.poses, _length(noise, "--noise"), linear)
-    if output is not None:
-        _write(output, bundled_text(found, believed, measured.file))
-    if report is not None:
-        whole = bundlewords.report(found, measured.file, measured.conditions)
-        _write(report, json.dumps(whole, indent=1) + "\n")
-    click.echo("\n".join(bundlewords.lines(found)), err=STDOUT in (output, report))
-
-
-def _path(name: str) -> Path:
-    return Path("/dev/stdin" if name == STDOUT else name)
-
-
-def _length(text: str, option: str) -> float:
-    """Return a length in mm that is above 0. Raises UsageError."""
-    from gcxform.machine.quantities import LENGTH
-
-    try:
-        length = LENGTH.parse(text, bare=True)
-    except ValueError as error:
-        raise UsageError.one("GX708", str(error), Location(option)) from None
-    if not length > 0:
-        raise UsageError.one("GX706", f"{text} is not above 0 mm", Location(option))
-    return length
-
-
-def _write(name: str, text: str) -> None:
-    with destination(name) as put:
-        put(text.encode())

@@ -15,6 +15,7 @@ from gcxform.cli.failures import warn
 from gcxform.cli.programs import opened
 from gcxform.contract import Pass
 from gcxform.diagnostics import PRINTED_AT_MOST, Diagnostic, InputError
+from gcxform.flow.written_out import located, written_out
 from gcxform.modal.ending import Ending
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import windows_of
@@ -96,12 +97,23 @@ def _budget(pipeline: Pipeline) -> list[str]:
 
 def _check(pipeline: Pipeline, source: Source) -> int:
     """Say what speaks against a program; return the exit code."""
-    found = list(_first(reading_findings(pipeline, source))) or _refusals(pipeline, source)
+    found = list(_first(_reading(pipeline, source))) or _refusals(pipeline, source)
     lines = sum(len(window) for window, _ in windows_of(source, pipeline.source))
     warn(found)
     count = f"{len(found)}{'+' if len(found) >= ENOUGH else ''}" if found else "no"
     click.echo(f"{source.name}: {lines} lines, {count} finding{'' if len(found) == 1 else 's'}")
     return 1 if found else 0
+
+
+def _reading(pipeline: Pipeline, source: Source) -> Iterator[Diagnostic]:
+    """Yield what speaks against reading a program, or the blocks that it executes."""
+    try:
+        executed = written_out(source, pipeline.source, pipeline.machine_reading)
+    except InputError as error:
+        yield from error.diagnostics
+        return
+    for diagnostic in reading_findings(pipeline, executed):
+        yield from located(InputError((diagnostic,)), executed).diagnostics
 
 
 def _first(found: Iterator[Diagnostic]) -> Iterator[Diagnostic]:

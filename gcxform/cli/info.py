@@ -17,10 +17,13 @@ from gcxform.cli.programs import opened
 from gcxform.cli.times import Times, lengths
 from gcxform.cli.tolerant import Tolerant
 from gcxform.cli.tools import Extents, Tools
+from gcxform.diagnostics import InputError
 from gcxform.dialect import Dialect
+from gcxform.flow.written_out import written_out
 from gcxform.guess import guess_dialect
 from gcxform.machine.machine import Machine
 from gcxform.modal.reader import WindowReader
+from gcxform.modal.state import Reading
 from gcxform.registry import default_registry
 from gcxform.source import Source
 from gcxform.syntax.scan import Window
@@ -52,8 +55,17 @@ def command(file: str, dialect: str | None, as_json: bool, **asked: Any) -> None
         if kind is None:
             found |= _guess(source)
         else:
-            found |= _meaning(Tolerant(kind, source, reading), found["codes"], speeds)
+            tolerant = Tolerant(kind, _executed(source, kind, reading), reading)
+            found |= _meaning(tolerant, found["codes"], speeds)
     click.echo(json.dumps(found, indent=2) if as_json else "\n".join(_text(found)))
+
+
+def _executed(source: Source, dialect: type[Dialect], reading: Reading) -> Source:
+    """Return the blocks that a program executes; the program itself where that is not known."""
+    try:
+        return written_out(source, dialect, reading)
+    except InputError:
+        return source
 
 
 def _speeds(machine: Machine | None) -> dict[str, float]:
@@ -221,7 +233,7 @@ def _meaning(tolerant: Tolerant, codes: dict[str, int], speeds: dict[str, float]
         "events": dict(events),
         "refused": len(refused) + tolerant.unread,
         "first_refused": {
-            str(line): f"{refused[line].code} {refused[line].message}"
+            str(tolerant.source.line_of(line)): f"{refused[line].code} {refused[line].message}"
             for line in sorted(refused)[:FIRST]
         },
     }

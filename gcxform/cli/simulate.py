@@ -15,6 +15,7 @@ from gcxform import plot
 from gcxform.cli import VERBS
 from gcxform.cli.described import built, options_of
 from gcxform.cli.outputs import STDOUT, check_places, destination
+from gcxform.cli.readings import ballbar_rtcp, balls
 from gcxform.diagnostics import Location, UsageError
 from gcxform.machine.errors import AXES, FloatArray, Outside
 from gcxform.options import Length, ModelFile, Option, Vector
@@ -180,6 +181,9 @@ def middle(box: FloatArray) -> tuple[float, float, float]:
 def command() -> None:
     """Choose a test."""
 
+
+command.add_command(balls)
+command.add_command(ballbar_rtcp)
 
 _FILES = ("json", "plot", "program", "compensated")
 

@@ -14,7 +14,8 @@ from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, as_written
 from gcxform.modal.meaning import FRAMING
 from gcxform.modal.tables import GROUPS
-from gcxform.toolpath.path import FREE, Form
+from gcxform.toolpath.frames import Frame, by_frame
+from gcxform.toolpath.path import Form
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -94,7 +95,7 @@ class Copying:
         """Refuse words that have to be written anew while it is not known what they would be."""
         unknown = self.positions.programmed & np.isnan(self.positions.held)
         unknown[:, [axis in self.path.left_out for axis in self.path.axes]] = False
-        anew = ~self.lines[self.path.block] & np.isin(self.path.form, FREE)
+        anew = ~self.lines[self.path.block] & self.path.is_free
         rows = np.flatnonzero(anew & unknown.any(axis=1))
         if len(rows):
             row = int(rows[0])
@@ -185,7 +186,7 @@ class Copying:
         """Return the lines whose rows are those of the source and need no other words."""
         stands = np.zeros(len(old_count), np.bool_)
         special = np.zeros(len(old_count), np.bool_)
-        special[self.original.block[~np.isin(self.original.form, FREE)]] = True
+        special[self.original.block[~self.original.is_free]] = True
         paired = (old_count == pieces.count) & ((old_count == 1) | special) & (old_count > 0)
         rows = np.flatnonzero(paired[self.path.block])
         others = np.flatnonzero(paired[self.original.block])
@@ -198,7 +199,7 @@ class Copying:
         good &= self.path.form[rows] == self.original.form[others]
         good &= self.path.kind[rows] == self.original.kind[others]
         good &= pieces.kind[rows] == as_written(self.original, self.original.kind)[others]
-        plain = np.isin(self.path.form[rows], FREE)
+        plain = self.path.is_free[rows]
         good &= ~plain | self._same_ends(rows, others)
         own = np.flatnonzero(~plain)
         if len(own):
@@ -304,18 +305,15 @@ class Copying:
     def _old_words(self, rows: Ints, others: Ints) -> Floats:
         """Return the ends of source rows as programmed; distances count in any frame."""
         words = _take(self.original.words, others)
-        if self.path.frames == self.original.frames:
-            return words
         distance = self.path.blocks.incremental[self.path.block[rows]]
+        if self.path.frames == self.original.frames or not distance.any():
+            return words
         return np.where(distance[:, None], self._in_frames(self.original.end, rows, others), words)
 
     def _in_frames(self, positions: Floats, rows: Ints, others: Ints) -> Floats:
         """Return positions of source rows in the frames of the rows that stand for them."""
-        if self.path.plainly_framed:
-            return _take(positions, others)
-        placed = np.full_like(self.path.end, np.nan)
-        placed[rows] = positions[others]
-        return self.path.in_frames(placed)[rows]
+        frame = _take(self.path.frame, rows)
+        return by_frame(Frame.words, self.path.frames, frame, _take(positions, others), -1.0)
 
     def _track_exactness(self, rows: Ints, others: Ints, good: Flags) -> Flags:
         """Follow how far everything is exactly as in the source; return where rows start so."""

@@ -9,12 +9,12 @@ words are taken from are made, and `gcxform/emit/writing.py` makes text of them.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import Dialect
 from gcxform.emit.centres import Centres
 from gcxform.emit.copying import Copying
 from gcxform.emit.fields import Role
@@ -26,9 +26,10 @@ from gcxform.emit.saying import left_out, nothing_left
 from gcxform.emit.tapping import Taps
 from gcxform.emit.writing import Style, Writing
 from gcxform.modal.interpreter import Interpreted
+from gcxform.modal.meaning import Meaning
 from gcxform.modal.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
-from gcxform.syntax.tree import Comment
+from gcxform.syntax.tree import Comment, Item
 from gcxform.toolpath.path import Kind, Toolpath
 
 Floats = NDArray[np.float64]
@@ -105,9 +106,8 @@ class _Job:
         gone: Flags = self.pieces.role == Role.GONE
         if not gone.any():
             return gone
-        items = [shape.block.items for shape in self.task.table.shapes.shapes]
-        silent = np.array([not any(isinstance(i, Comment) for i in some) for some in items])
-        return np.asarray(gone & silent[self.task.shape][self.pieces.line])
+        silent = self._of_shapes(lambda items, _: not any(isinstance(i, Comment) for i in items))
+        return np.asarray(gone & silent[self.pieces.line])
 
     def _foreign(self) -> Flags:
         """Return the pieces of lines of which nothing is left to write in the target dialect."""
@@ -115,33 +115,32 @@ class _Job:
         if not task.manner.crossing and not self.path.folded:
             return np.zeros(len(self.pieces.line), np.bool_)
         work = self.path.frames[0].work if self.path.folded else ""
-        gone = np.array(
-            [
-                nothing_left(shape.block.items, meaning, task.manner, work)
-                for shape, meaning in zip(
-                    task.table.shapes.shapes, task.table.meanings, strict=False
-                )
-            ],
-            np.bool_,
-        )
-        return np.asarray(gone[task.shape][self.pieces.line] & ~self.pieces.has_row)
+        gone = self._of_shapes(lambda items, m: nothing_left(items, m, task.manner, work))
+        return np.asarray(gone[self.pieces.line] & ~self.pieces.has_row)
 
     def _only_compensates(self) -> Flags:
         """Return the pieces of lines that hold nothing but what is left out of them."""
         if not self.path.blocks.uncompensated:
             return np.zeros(len(self.pieces.line), np.bool_)
-        table = self.task.table
-        shapes = zip(table.shapes.shapes, table.meanings, strict=False)  # others are read ahead
-        only = np.array(
-            [m.compensates and all(left_out(item, m) for item in s.block.items) for s, m in shapes],
-            np.bool_,
+        only = self._of_shapes(
+            lambda items, m: m.compensates and all(left_out(i, m) for i in items)
         )
-        return np.asarray(only[self.task.shape][self.pieces.line] & ~self.pieces.has_row)
+        return np.asarray(only[self.pieces.line] & ~self.pieces.has_row)
+
+    def _of_shapes(self, says: Callable[[tuple[Item, ...], Meaning], bool]) -> Flags:
+        """Return, per line, what is said of its items and its meaning: once for each shape."""
+        table, shape = self.task.table, self.task.shape
+        here = np.bincount(shape).astype(np.bool_)
+        for number in np.flatnonzero(here).tolist():
+            items = table.shapes.shapes[number].block.items
+            here[number] = says(items, table.meanings[number])
+        return here[shape]
 
     def _refuse_rounding(self) -> None:
         """Refuse moves of cycles where corners are rounded: the bottom would not be reached."""
         manner, path = self.task.manner, self.path
-        modes = [e for e in path.events if _is_path_mode(e.what, manner.source)]
+        coded = {code for code, what in manner.source.codes.items() if what.group == "path"}
+        modes = [event for event in path.events if event.what in coded]
         if manner.source.cycles_stop and self.pieces.expanded_line.any():
             rows = np.flatnonzero(self.pieces.expanded_line[path.block])
             last = np.searchsorted([event.row for event in modes], rows, "right")
@@ -185,7 +184,3 @@ class _Job:
                 if len(last):
                     setattr(believed, name, int(stated[last[-1]]))
             self._leave_end(believed)
-
-
-def _is_path_mode(what: str, source: type[Dialect]) -> bool:
-    return what in source.codes and source.codes[what].group == "path"

@@ -99,9 +99,8 @@ def number_field(
     field[:, 0] = np.where(present & (whole < 0), 45, 0)
     column = 1
     for word in words:
-        size = word.dtype.itemsize
-        field[:, column : column + size] = word.view(np.uint8).reshape(-1, size)
-        column += size
+        np.ndarray(len(whole), word.dtype, field, column, field.strides[:1])[:] = word
+        column += word.dtype.itemsize
     return field
 
 

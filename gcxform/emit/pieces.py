@@ -17,7 +17,7 @@ from gcxform.modal.lines import fill
 from gcxform.modal.moves import turns_only
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.modal.tables import GROUPS, NUMBER, TAP, THREAD
-from gcxform.toolpath.path import FREE, Event, FeedMode, Form, Kind
+from gcxform.toolpath.path import Event, FeedMode, Form, Kind
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -71,11 +71,12 @@ class Pieces:
         path, live = self.task.path, self.task.read.live
         self.count = np.bincount(path.block, minlength=live)
         special = np.zeros(live, np.bool_)
-        special[path.block[~np.isin(path.form, FREE)]] = True
+        special[path.block[~path.is_free]] = True
         special &= ~self.taps.lines
         drilling = self.task.read.modes.cycle != CYCLE_OFF
         self.expanded_line = drilling & ~special & ~self.taps.lines & self.task.manner.expands
-        inner = [e for e in path.events if e.within and self._is_expanded(e)]
+        first, expanded = path.blocks.first, self.expanded_line.tolist()
+        inner = [e for e in path.events if e.within and expanded[e.line - first]]
         self.events = list({(e.what, e.values): e for e in reversed(inner)}.values())
         pieces = np.where(special, 1, np.maximum(self.count, 1))
         pieces = np.where(self.taps.lines, self.taps.count, pieces)
@@ -87,6 +88,9 @@ class Pieces:
         if inner:
             self._put_events_between(inner)
         self.has_row = (self.count[self.line] > 0) & (self.event < 0)
+        self.shape = self.task.shape[self.line]
+        self._moving = np.flatnonzero(self.has_row)
+        self._rows = self.row[self._moving]
         self._give_roles(special)
 
     def _put_events_between(self, inner: list[Event]) -> None:
@@ -100,9 +104,6 @@ class Pieces:
         nothing = np.zeros(len(line), np.int64)
         self.line, self.row = all_lines[order], np.concatenate([self.row, nothing])[order]
         self.event = np.concatenate([self.event, which])[order]
-
-    def _is_expanded(self, event: Event) -> bool:
-        return bool(self.expanded_line[event.line - self.task.path.blocks.first])
 
     def _give_roles(self, special: Flags) -> None:
         self.leads = np.append(True, self.line[1:] != self.line[:-1])[: len(self.line)]
@@ -130,8 +131,10 @@ class Pieces:
 
     def of_rows(self, values: NDArray, absent: object) -> NDArray:  # type: ignore[type-arg]
         """Return a column over the rows as one over the pieces."""
+        if len(self._moving) == len(self.line):
+            return np.asarray(values[self._rows])
         column = np.full(len(self.line), absent, values.dtype)
-        column[self.has_row] = values[self.row[self.has_row]]
+        column[self._moving] = values[self._rows]
         return column
 
     def repaired_in(self, lines: Ints) -> Flags:
@@ -142,8 +145,8 @@ class Pieces:
 
     def _stated_in(self, group: str) -> Flags:
         """Return, per piece, whether its line has a code of a group and it is the piece for it."""
-        explicit = self.task.table.groups[self.task.shape, GROUPS.index(group)] >= 0
-        return np.asarray(explicit[self.line])
+        explicit = self.task.table.groups[:, GROUPS.index(group)] >= 0
+        return np.asarray(explicit[self.shape])
 
     def _mode(self, group: str, wanted: Flags | Small, before: int, needs: Flags) -> Small:
         """Return the values of a mode that have to be stated."""
@@ -192,7 +195,7 @@ class Pieces:
         said = self.leads & ~self.silent & (self.role != Role.GONE)
         sets = np.where(said, group[self.line], NOTHING)
         form = self.of_rows(self.task.path.form, Form.PLAIN)
-        moves = self.has_row & np.isin(form, (Form.PLAIN, Form.MACHINE))
+        moves = self.has_row & ((form == Form.PLAIN) | (form == Form.MACHINE))
         sets[moves] = self.of_rows(self.kind, NOTHING)[moves]
         self.motion_after = fill(sets, sets >= 0, self.believed.motion)
         before = self._held(sets, "motion", self.believed.motion)

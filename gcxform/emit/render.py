@@ -15,6 +15,7 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 PEELED_AT_MOST = 16
+EIGHT = 8  # rows are padded to words of so many bytes
 
 
 class Renderer:
@@ -105,6 +106,8 @@ class Renderer:
 
     def finish(self, places: Ints) -> None:
         """End the template; its rows stand at these places among all pieces written."""
+        width = sum(part.shape[1] for part in self._parts)
+        self._parts.append(np.zeros((self._rows, -width % EIGHT), np.uint8))
         self._done.append((places, np.concatenate(self._parts, axis=1)))
 
     def text(self, rows: int) -> tuple[bytes, Ints]:
@@ -116,8 +119,16 @@ class Renderer:
             matrix = np.zeros((rows, width), np.uint8)
             for places, part in self._done:
                 matrix[places, : part.shape[1]] = part
-        kept = matrix != 0
-        return matrix[kept].tobytes(), np.count_nonzero(kept, axis=1)
+        return matrix.tobytes().translate(None, b"\0"), _lengths(matrix)
+
+
+def _lengths(matrix: Bytes) -> Ints:
+    """Return how many bytes of each row are no padding; eight of them are counted at once."""
+    eights = (matrix != 0).view(np.uint64)
+    counts = np.zeros(len(matrix), np.int64)
+    for column in range(eights.shape[1]):
+        counts += np.bitwise_count(eights[:, column])
+    return counts
 
 
 def groups_of(ways: Ints) -> list[Ints]:

@@ -60,7 +60,8 @@ class Style:
         if not self.line_end and len(window):
             self.line_end = window.text[int(window.end[0]) : int(window.next[0])] or b"\n"
         if self.gap is None:
-            for shape in table.shapes.shapes:
+            met = int(window.shape.max(initial=0)) + 1  # shapes beyond are read ahead
+            for shape in table.shapes.shapes[:met]:
                 gaps = list(gaps_between(shape.block.text, list(shape.block.words)))
                 if gaps:
                     self.gap = b" " if any(gaps) else b""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from gcxform.dialect import ArcRule, Dialect
 from gcxform.modal.findings import Findings
+from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Plane, Toolpath
 
 Floats = NDArray[np.float64]
@@ -46,14 +47,18 @@ def resolve_arcs(
 ) -> Toolpath:
     """Return the path with centres and sweeps of its arcs."""
     rows = np.flatnonzero(path.is_arc)
-    start, end = path.local(path.start[:, :3])[rows], path.local(path.end[:, :3])[rows]
     centre = np.full((len(path), 3), np.nan)
     sweep = np.zeros(len(path))
-    known = path.starts_known
+    if not len(rows):
+        return path.replace(centre=centre, sweep=sweep)
+    ends = path.start[rows], path.end[rows]
+    lost = np.asarray((np.isnan(ends[0]) & ~np.isnan(ends[1])).any(axis=1))
+    frames = path.frames, path.frame[rows]
+    start, end = (by_frame(Frame.local, *frames, place[:, :3], -1.0) for place in ends)
     for plane in Plane:
         here = path.plane[rows] == plane
         if here.any():
-            unknown = ~known[rows[here]]
+            unknown = lost[here]
             chosen = _select(words, here)
             part = _Part(plane, chosen, start[here], end[here], unknown, dialect, findings)
             middle, angle = part.resolve(path.sense[rows[here]])
@@ -66,13 +71,16 @@ def _as_positions(path: Toolpath, findings: Findings) -> Toolpath:
     if path.plainly_framed:
         return path
     kind = np.where(path.is_arc & path.mirrored, 5 - path.kind, path.kind).astype(np.int8)
-    for row in np.flatnonzero(path.is_arc).tolist() if _turned(path) else ():
+    arcs = np.flatnonzero(path.is_arc)
+    for row in arcs.tolist() if _turned(path) else ():
         matrix = path.frames[int(path.frame[row])].matrix
         normal = Plane(int(path.plane[row])).axes[2]
         if matrix is not None and abs(abs(matrix[normal][normal]) - 1.0) > 1e-12:
             line = int(path.source[row]) - path.blocks.first
             findings.add(line, "GX213", "an arc in a plane that is turned out of the axes")
-    return path.replace(centre=path.placed(path.centre), kind=kind)
+    centre = path.centre.copy()
+    centre[arcs] = by_frame(Frame.placed, path.frames, path.frame[arcs], centre[arcs], 1.0)
+    return path.replace(centre=centre, kind=kind)
 
 
 def _turned(path: Toolpath) -> bool:

@@ -39,11 +39,8 @@ def fill(values: NDArray[Any], present: Flags, initial: float) -> NDArray[Any]:
         return np.full(len(values), initial, values.dtype)
     if present.all():
         return values
-    at = np.where(present, np.arange(len(values)), -1)
-    np.maximum.accumulate(at, out=at)
-    filled = values[at]
-    filled[at < 0] = initial
-    return filled
+    given = np.append(np.array(initial, values.dtype), values[present])
+    return given[np.cumsum(present)]
 
 
 class Lines:
@@ -169,12 +166,11 @@ class Lines:
         column = ord(address) - 65
         if not self._used[column]:
             return None
-        slot = self.table.slots[self.shape, column]
+        slot = self.table.slots[:, column][self.shape]
         present = slot >= 0 if among is None else (slot >= 0) & among
-        number = self.first + slot
-        if not present.all():
-            number = np.where(present, number, 0)
-        value = self.window.value[number] if len(self.window.value) else np.zeros(self.live)
+        number = np.where(present, self.first + slot, 0)
+        value = np.zeros(self.live)
+        value[present] = self.window.value[number[present]]
         if distance is None:
             distance = address in DISTANCES
         if self.dialect.point_required and distance:

@@ -194,4 +194,4 @@ class MeaningTable:
 
     def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Return a flag of each line, given the lines' shapes."""
-        return np.asarray(self.flags[shape, FLAGS.index(name)])
+        return np.asarray(self.flags[:, FLAGS.index(name)][shape])

@@ -1,4 +1,4 @@
-"""Pictures: what instruments print, error models, and errors along a path (extra `plot`).
+"""Pictures: what instruments print, error models, errors along a path, residuals (extra `plot`).
 
 matplotlib is imported where a picture is drawn, never before.
 """
@@ -11,3 +11,6 @@ from gcxform.plot.diagrams import diagonals as diagonals
 from gcxform.plot.diagrams import positioning as positioning
 from gcxform.plot.models import model as model
 from gcxform.plot.paths import heat as heat
+from gcxform.plot.residuals import bundled as bundled
+from gcxform.plot.residuals import circled as circled
+from gcxform.plot.residuals import placed as placed

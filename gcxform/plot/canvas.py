@@ -23,6 +23,7 @@ Draw = TypeVar("Draw", bound=Callable[..., Any])
 
 KINDS = (".svg", ".png")
 DOTS = 150  # per inch, of PNG
+DIVISIONS = 4  # between the centre of a polar diagram and the nominal circle
 BEFORE, AFTER, MEAN, GREY = "#b03a2e", "#1f618d", "#1e8449", "#909497"
 STYLE: Any = {
     "svg.hashsalt": "gcxform",  # names inside the file do not change from run to run
@@ -89,6 +90,20 @@ def nice(value: float) -> float:
     """Return the least of 1, 2, 5 times a power of ten that is not below a value above 0."""
     power = 10.0 ** math.floor(math.log10(value))
     return next((m * power for m in (1.0, 2.0, 5.0) if m * power >= value * (1 - 1e-9)), 10 * power)
+
+
+def magnified(axes: Any, most: float) -> float:
+    """Lay out a polar diagram for deviations of so many um about a nominal circle, in grey.
+
+    Return how many um a division is.
+    """
+    division = nice(max(most / 2.0, 1e-6))
+    axes.plot(np.linspace(0.0, 2.0 * np.pi, 181), np.zeros(181), color=GREY, linewidth=0.6)
+    ticks = division * np.arange(-DIVISIONS, 3.5)
+    axes.set_rlim(ticks[0], ticks[-1])
+    axes.set_rticks(ticks[1:-1])
+    axes.set_yticklabels([f"{tick:g}" if tick in (0.0, -division) else "" for tick in ticks[1:-1]])
+    return division
 
 
 def empty(axes: Axes, text: str) -> None:

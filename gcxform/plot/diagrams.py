@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gcxform.machine.errors import FloatArray
-from gcxform.plot.canvas import AFTER, BEFORE, GREY, empty, figure, nice, styled
+from gcxform.plot.canvas import AFTER, BEFORE, empty, figure, magnified, styled
 from gcxform.simulate.circles import Circles
 from gcxform.simulate.figures import Positioning
 from gcxform.simulate.virtual import BODY, FACES, Outcome
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 UM = 1000.0  # per mm
-DIVISIONS = 4  # between the centre of a polar diagram and the nominal circle
 POINTS = 720  # drawn of a circle
 
 
@@ -42,15 +41,10 @@ def _polar(axes: Any, found: Circles, name: str) -> None:
     """Draw the radial deviations of both senses, magnified, about the nominal circle."""
     paths = {"cw": (found.cw, BEFORE), "ccw": (found.ccw, AFTER)}
     most = max(float(np.abs(found.radial(path)).max()) for path, _ in paths.values())
-    division = nice(max(UM * most / 2.0, 1e-6))
     for sense, (path, colour) in paths.items():
         angle, value = _around(path, UM * found.radial(path))
         axes.plot(angle, value, color=colour, label=sense.upper(), gid=f"{name} {sense}")
-    axes.plot(np.linspace(0.0, 2.0 * np.pi, 181), np.zeros(181), color=GREY, linewidth=0.6)
-    ticks = division * np.arange(-DIVISIONS, 3.5)
-    axes.set_rlim(ticks[0], ticks[-1])
-    axes.set_rticks(ticks[1:-1])
-    axes.set_yticklabels([f"{tick:g}" if tick in (0.0, -division) else "" for tick in ticks[1:-1]])
+    division = magnified(axes, UM * most)
     figures = {symbol: UM * value for symbol, value in found.figures.items()}
     lines = [
         f"{name}, {division:g} um/div",

@@ -57,7 +57,7 @@ def before_and_after(program: Program, pipeline: Pipeline) -> tuple[Heat, Heat, 
     if any(step.joins for step in pipeline.path_passes):
         message = "moves that were joined cannot be compared one by one"
         raise UsageError.one("GX713", message, hint="leave out the pass that joins moves")
-    result = pipeline.run(program.text)
+    result = pipeline.run(program.executed)
     nominal, context = program.path, pipeline.context
     bare = nominal
     for step in pipeline.path_passes[:-1]:

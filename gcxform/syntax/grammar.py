@@ -7,13 +7,12 @@ iso (...)`.
 from __future__ import annotations
 
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
-from lark import Lark, Token, Tree
+from lark import Token, Tree
 from lark.exceptions import UnexpectedInput
-from lark.load_grammar import FromPackageLoader
 
+from gcxform.syntax import kept
 from gcxform.syntax.tree import (
     Block,
     Comment,
@@ -25,7 +24,6 @@ from gcxform.syntax.tree import (
     Word,
 )
 
-GRAMMARS = "gcxform_grammars"
 MARKS = frozenset({"block_delete", "percent", "program_id", "program_name", "filler", "label"})
 
 
@@ -33,16 +31,8 @@ class Grammar:
     """One dialect's grammar: `parse` turns the text of a block into its tree."""
 
     def __init__(self, package: str, name: str) -> None:
-        text = files(package).joinpath(f"{name}.lark").read_text("utf-8")
-        loaders = [FromPackageLoader(package, ("",)), FromPackageLoader(GRAMMARS, ("",))]
         self.name = name
-        self._lark = Lark(
-            text,
-            parser="lalr",
-            import_paths=loaders,
-            propagate_positions=True,
-            maybe_placeholders=False,
-        )
+        self._lark = kept.grammar(package, name)
 
     def parse(self, text: str) -> Block:
         """Return the tree of one block; what the grammar does not accept becomes `Block.error`."""

@@ -153,10 +153,13 @@ def _runs(text: bytes, raw: Bytes, kind: Bytes) -> _Runs:
 
 def _points(kind: Bytes, numeric: Flags, first: Ints, start: Ints, end: Ints) -> tuple[Ints, Flags]:
     """Return the offset of each run's point (-1: none), and whether points and signs are right."""
-    points = np.append(np.flatnonzero(kind == POINT), [len(kind), len(kind)])
-    index = np.searchsorted(points, first)
-    point = np.where(points[index] < end, points[index], -1)
-    good = (point < 0) | (points[np.minimum(index + 1, len(points) - 1)] >= end)
+    is_point = kind == POINT
+    before = np.zeros(len(kind) + 1, np.int32)
+    np.cumsum(is_point, dtype=np.int32, out=before[1:])
+    count = before[end] - before[first]
+    points = np.append(np.flatnonzero(is_point), len(kind))
+    point = np.where(count > 0, points[before[first]], -1)
+    good = count <= 1
     signs = np.flatnonzero(kind == SIGN)
     inner = signs[(signs > 0) & numeric[signs - 1]]
     good[np.searchsorted(start, inner, side="right") - 1] = False

@@ -8,6 +8,7 @@ itself is a shape of its own, whose numbers come from the tree.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import repeat
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,13 +55,13 @@ class ShapeTable:
     def look_up(self, keys: list[bytes], text: bytes, start: Ints, end: Ints) -> Ints:
         """Return the shape of each line; `keys` are the reduced lines, new ones are parsed."""
         known = self._index
-        try:
-            return np.fromiter(map(known.__getitem__, keys), np.int64, len(keys))
-        except KeyError:
-            for line, key in enumerate(keys):
-                if key not in known:
-                    self._add(key, text[int(start[line]) : int(end[line])])
-        return np.fromiter(map(known.__getitem__, keys), np.int64, len(keys))
+        shape = np.fromiter(map(known.get, keys, repeat(-1)), np.int64, len(keys))
+        for line in np.flatnonzero(shape < 0).tolist():
+            key = keys[line]
+            if key not in known:
+                self._add(key, text[int(start[line]) : int(end[line])])
+            shape[line] = known[key]
+        return shape
 
     def slot_counts(self) -> Ints:
         """Return how many numbers the lines of each shape have, also of those not understood."""

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from dataclasses import replace as dataclass_replace
 from enum import IntEnum
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -290,10 +291,17 @@ class Toolpath:
         """Whether there is any arc."""
         return bool((self.kind >= Kind.ARC_CW).any())
 
-    @property
+    @cached_property
     def block(self) -> Ints:
-        """(n,) index into `blocks` of each move."""
-        return self.source - self.blocks.first
+        """(n,) index into `blocks` of each move, read-only."""
+        block = self.source - self.blocks.first
+        block.flags.writeable = False
+        return block
+
+    @property
+    def is_free(self) -> Flags:
+        """(n,) whether the move may be written as other blocks than the one it came from."""
+        return np.asarray((self.form == Form.PLAIN) | (self.form == Form.THREAD))
 
     @property
     def is_spline(self) -> Flags:

@@ -66,7 +66,7 @@ def problem(fact: dict[str, Any], program: bytes) -> str:
         wanted = [*motions(fact)] if fact["expect"] == "ok" else []
         if any(m["type"] == "told" for m in wanted):
             program = DEBUG.sub(_as_rapid, program.decode("latin-1")).encode("latin-1")
-        path = gx.read(program, name, **reading(fact)).path
+        path = gx.read(program, name, **reading(fact), parameters=parameters(program, name)).path
         if name == "linuxcnc" and path.side.any():
             path = resolved(path)  # what the control does with a contour
         refuse_ending(program, name)
@@ -101,6 +101,12 @@ def reading(fact: dict[str, Any]) -> dict[str, Any]:
     if fact["dialect"] == "linuxcnc":
         told |= {"block_delete": by_switch, "homes": homes_of(fact), "tools": tools_of(fact)}
     return told
+
+
+def parameters(program: bytes, name: str) -> dict[str, float]:
+    """Return the numbered parameters a program names, all 0 as `rs274` starts with them."""
+    named = re.findall(rb"#(\d+)", program) if name == "linuxcnc" else []
+    return {number.decode(): 0.0 for number in named}
 
 
 def homes_of(fact: dict[str, Any]) -> dict[str, dict[str, float]]:

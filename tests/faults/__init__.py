@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from faults import (
     arcs,
+    ballbar,
     calibrating,
     commands,
     computing,
     cutter,
     cycles,
+    flow,
     frames,
     kinematics,
     passes,
@@ -27,6 +29,7 @@ from faults.mutation import Mutation
 
 MUTATIONS: tuple[Mutation, ...] = (
     *cycles.MUTATIONS,
+    *flow.MUTATIONS,
     *commands.MUTATIONS,
     *computing.MUTATIONS,
     *frames.MUTATIONS,
@@ -41,6 +44,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     *tables.MUTATIONS,
     *proof.MUTATIONS,
     *rtcp.MUTATIONS,
+    *ballbar.MUTATIONS,
     *calibrating.MUTATIONS,
     *simulating.MUTATIONS,
     *rotary.MUTATIONS,

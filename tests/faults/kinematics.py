@@ -13,6 +13,7 @@ JOG = "gcxform/machine/jog.py"
 TESTS = "tests/test_kinematics.py"
 MACHINES = "tests/test_machine_kinds.py"
 CONTROLS = "tests/test_controls.py"
+SINUMERIK = "tests/test_controls_siemens.py"
 WORDS = "tests/test_jog.py"
 
 MUTATIONS = (
@@ -243,14 +244,14 @@ MUTATIONS = (
         "gcxform/machine/siemensfile.py",
         """_sum(vectors["I2"], vectors["I3"]))""",
         """_sum(vectors["I3"]))""",
-        CONTROLS,
+        SINUMERIK,
     ),
     Mutation(
         "Siemens: vectors of axes are turned around",
         "gcxform/machine/siemensfile.py",
         "point=point, sign=1)",
         "point=point, sign=-1)",
-        CONTROLS,
+        SINUMERIK,
     ),
     Mutation(
         "jog: clockwise is said the other way",

@@ -5,12 +5,15 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 FIGURES = "tests/test_rotary.py"
+CIRCLES = "tests/test_ball_circles.py"
+CHECK = "tests/test_rotary_check.py"
 FILES = "tests/test_rotary_files.py"
 BUNDLE = "tests/test_bundle.py"
 
 
-def _rotary(file: str, name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
-    return Mutation(f"rotary: {name}", f"gcxform/calibrate/{file}.py", old, new, tests)
+def _rotary(file: str, name: str, old: str, new: str, tests: str = "") -> Mutation:
+    by = tests or {"circle": CIRCLES, "rotarycheck": CHECK}.get(file, FIGURES)
+    return Mutation(f"rotary: {name}", f"gcxform/calibrate/{file}.py", old, new, by)
 
 
 MUTATIONS = (
@@ -22,6 +25,7 @@ MUTATIONS = (
         "any axis is upright",
         "np.where(largest < 0.0, -vectors",
         "np.where(largest < -2.0, -vectors",
+        FIGURES,
     ),
     _rotary("circle", "the slopes forget the radius", "-inside / circle.radius", "-inside"),
     _rotary(
@@ -100,12 +104,13 @@ MUTATIONS = (
     _rotary("rotarymachine", "any axis will do", "if off > FAR:", "if off > 360.0:", FILES),
     _rotary("rotarymachine", "any sense will do", "* cosine < 0.0:", "* cosine < -2.0:", FILES),
     # what is said
-    _rotary("rotarycheck", "three points are sound", "if count == 3:", "if count == 2:"),
+    _rotary("rotarycheck", "three points are sound", "if count == 3:", "if count == 2:", FIGURES),
     _rotary(
         "rotarycheck",
         "a short arc is sound",
         "if found.condition > ILL:",
         "if found.condition > HOPELESS:",
+        FIGURES,
     ),
     _rotary(
         "rotarycheck",

@@ -165,7 +165,7 @@ def _events_differ(
     """Compare events, and between which pairs of moves they stand."""
     rows, others = [row for row, _ in pairs], [other for _, other in pairs]
     for mine, their in zip_longest(ours, theirs):
-        if mine is None or their is None or mine[1] != _text(their[1]):
+        if mine is None or their is None or _text(mine[1]) != _text(their[1]):
             return f"line {mine[2] if mine else 0}: event {mine} for {their}"
         if int(np.searchsorted(rows, mine[0])) != int(np.searchsorted(others, their[0])):
             return f"line {mine[2]}: {mine[1]} stands elsewhere"
@@ -173,4 +173,6 @@ def _events_differ(
 
 
 def _text(event: str) -> str:
-    return f"DWELL {float(event[6:]):.4f}" if event.startswith("DWELL") else event
+    """Return an event with as many decimals as are printed."""
+    name, digits = ("DWELL ", event[6:]) if event.startswith("DWELL") else ("S", event[1:])
+    return f"{name}{float(digits):.4f}" if event.startswith(name) else event

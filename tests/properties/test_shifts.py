@@ -148,7 +148,7 @@ def written(chain: str, source: bytes, window: int) -> tuple[bytes, list[int]]:
     parts: list[bytes] = []
     lines: list[int] = []
     run = Run(pipeline, Source.of_bytes(source), "full")
-    run.over(run.source.windows(window), Output(parts.append, lines), lambda size: None)
+    run.over(Output(parts.append, lines), lambda size: None, window)
     return b"".join(parts), lines
 
 

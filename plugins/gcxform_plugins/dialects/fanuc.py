@@ -28,7 +28,9 @@
 | G36, G37 | measure a tool and write its offset: refused |
 | G33, G34, G63 | threads and taps with a feed whose meaning changes: refused |
 | G27, G29, G60 | over, from or past points that the program does not tell: refused |
-| M98 M198 M99 G65 G66 | calls: modes, offsets and positions of the other program leak: refused |
+| M98 M99 | executed where the program is in the file; L counts, or the digits of P before four |
+| local variables across M98 | shared or not: known in two ways, so they have no value there |
+| M198 G65 G66 | calls of other programs, or with values: refused |
 | a variable that nothing has set | is null: refused, unless given |
 | a computed distance | in mm, rounded to `[input] increment`, which must be given |
 | an assignment beside words | when it acts is not certain: refused |
@@ -38,7 +40,7 @@
 | ROUND in a word | rounds to the increment of the word: refused |
 | computed S T F D H L P | must be whole numbers |
 | #1000 and above | belong to the control: refused |
-| IF WHILE GOTO | refused: code that would have to be run |
+| IF WHILE GOTO | executed; numbers that are almost equal are refused |
 """
 
 from __future__ import annotations
@@ -163,3 +165,4 @@ class Fanuc(gx.Dialect):
     arc_rule = gx.ArcRule(absolute=0.01)
     cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE
     arithmetic = v.MACRO_B
+    flow = "macro-b"

@@ -26,7 +26,8 @@ refused. What is not named here is as in `fanuc`.
 | G68, G101, G100 | as Fanuc's G68, G51.1, G50.1; G101 with zeros only; G51 is refused | manual |
 | G107 G112 G113 G234 G253 to G255 G268 G269 | another frame: refused | manual |
 | G103, G187 | look-ahead, smoothness: change no position | manual |
-| M96 M97 M98 M99 M198, G65 | calls and jumps: refused by name | manual |
+| M97 M98 M99 | executed where what they call is in the file | manual |
+| M96 M198, G65 | jumps at an input, other programs, calls with values: refused | manual |
 | M16 | is M6 | known |
 | M29, M48, M49 | are no tapping mode and no overrides: as any unknown M code | known |
 | G141, G143, G161 to G169, G174, G184 | five axes: refused by name | manual |
@@ -61,6 +62,7 @@ class Haas(Fanuc):
     """Haas mill, NGC."""
 
     name = "haas"
+    calls_own_lines = True
     axes = "XYZABC"
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{name: code for name, code in Fanuc.codes.items() if name not in NOT_HERE},

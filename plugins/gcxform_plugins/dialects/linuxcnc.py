@@ -37,19 +37,19 @@
 | G38.2 to G38.5 | end at the target at the latest; the axes named then stand nowhere known |
 | G96 | changes the speed of the spindle and no path |
 | M70, M71, M73 | change nothing that a main program notices |
-| M72 | restores modes, spindle, coolant and overrides: refused |
+| M70 to M73 | executed: modes, F, S, spindle and coolant come back as plain words |
 | M62 to M68, M66 | outputs and inputs: the axes stand still |
 | assignments | take effect after their block: `#1=#2 #2=#1` swaps |
 | expressions | a sign binds to its number, `**` goes from the left, numbers within 1e-4 are EQ |
 | a parameter that nothing has set | refused unless given: the control may have a value left |
-| #5001 and above, `#<_x>` and its like | belong to the control: refused |
+| #5001 and above, `#<_x>` and its like | belong to the control: refused, but for #5420 to #5428 |
 | M words in a block | four at most |
 | T, M61 | a tool that is not in the table, where one is given, is refused |
 | `$` | beside S or what turns a spindle; only the first spindle is known |
 | M100 to M199 | run a program of the machine: refused, but for `user-codes` and `inert-m` |
-| @ and ^ | polar words: refused |
+| @ and ^ | polar words: become X and Y; in G91 or G7 refused |
 | comments | `(MSG,` `(PRINT,` `(LOG,` `(PROBEOPEN` `(ABORT,` and their like are executed |
-| O-words | refused: code that would have to be run |
+| O-words, M98 M99 | executed, in the file; what the interpreter gets wrong is refused |
 """
 
 from __future__ import annotations
@@ -217,6 +217,7 @@ class LinuxCNC(gx.Dialect):
     feed_along_lines = True
     least_inverse_rate = 0.1
     arithmetic = v.RS274
+    flow = "o-words"
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     arc_rule = gx.ArcRule(
         absolute=0.0282843,

@@ -30,7 +30,7 @@ class _Part(NamedTuple):
 
 
 @dataclass(frozen=True)
-class SiemensCec(gx.ErrorFormat):
+class SiemensCec(siemens.Compensation):
     """Siemens CEC files ($AN_CEC): errors of an axis over itself or another, as of straightness.
 
     Nine functions have room, or positioning errors in both directions of travel; angular errors
@@ -47,19 +47,11 @@ class SiemensCec(gx.ErrorFormat):
     tables: Annotated[int, gx.Option("to write: room for tables", at_least=1)] = 8
 
     name: ClassVar[str] = "siemens-cec"
-    suffixes: ClassVar[tuple[str, ...]] = (".ini",)
+    value: ClassVar[str] = VALUE
     control: ClassVar[str] = (
         "Siemens 840D, 828D: MD18342 for the points, load the file with MD32710 = 0, then "
         "MD32710 = 1"
     )
-
-    def __post_init__(self) -> None:
-        siemens.names_of(self.axes, "axes")
-
-    @classmethod
-    def recognises(cls, path: Path) -> bool:
-        """Return whether the file begins with values of this compensation."""
-        return VALUE in gx.head_of(path).upper()
 
     @property
     def _sign(self) -> float:

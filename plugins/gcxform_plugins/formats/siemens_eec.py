@@ -19,7 +19,7 @@ WIDTHS = {VALUE: 5, **{VALUE + key: 4 for key in KEYS}}
 
 
 @dataclass(frozen=True)
-class SiemensEec(gx.ErrorFormat):
+class SiemensEec(siemens.Compensation):
     """Siemens EEC/LEC files ($AA_ENC_COMP): the positioning error of axes, in equal steps.
 
     A positive value moves the axis in the negative direction, so values are errors. They hold for
@@ -34,19 +34,11 @@ class SiemensEec(gx.ErrorFormat):
     points: Annotated[int, gx.Option("to write: room for points, MD38000", at_least=2)] = 200
 
     name: ClassVar[str] = "siemens-eec"
-    suffixes: ClassVar[tuple[str, ...]] = (".ini",)
+    value: ClassVar[str] = VALUE
     control: ClassVar[str] = (
         "Siemens 840D, 828D, 808D: MD38000 for the points, load the file with MD32700 = 0, then "
         "MD32700 = 1"
     )
-
-    def __post_init__(self) -> None:
-        siemens.names_of(self.axes, "axes")
-
-    @classmethod
-    def recognises(cls, path: Path) -> bool:
-        """Return whether the file begins with values of this compensation."""
-        return VALUE in gx.head_of(path).upper()
 
     def read(self, path: Path) -> gx.AxisFunctions:
         """Return the positioning errors of the axes."""

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,6 +55,22 @@ def finite(row: gx.TextRow) -> float:
     if not math.isfinite(value):
         raise row.refuse("GX412", f"{row.word(0)} is {row.word(column)}", column)
     return value
+
+
+class Compensation(gx.ErrorFormat):
+    """A file of compensation values: `axes` is an option, `value` the variable of the values."""
+
+    axes: str
+    value: ClassVar[str]
+    suffixes: ClassVar[tuple[str, ...]] = (".ini",)
+
+    def __post_init__(self) -> None:
+        names_of(self.axes, "axes")
+
+    @classmethod
+    def recognises(cls, path: Path) -> bool:
+        """Return whether the file begins with values of this compensation."""
+        return cls.value in gx.head_of(path).upper()
 
 
 class Table:

@@ -1,0 +1,341 @@
+"""Executing a listing: what every control does that has subprograms, whatever it writes them with.
+
+A run holds the line that comes next, the parameters, the calls that have not returned, and the
+blocks that were executed. What a flow word or a call does is that of a subclass.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from abc import abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from gcxform.diagnostics import InputError
+from gcxform.flow.listing import Listing, bare
+from gcxform.flow.text import DECIMALS, decimal
+from gcxform.modal.arithmetic import Arithmetic, Key, NoValueError, whole
+from gcxform.modal.expressions import Evaluator, LocatedError, parameter_key, settable
+from gcxform.modal.lines import DISTANCES
+from gcxform.modal.state import Reading
+from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statement, Word
+
+STEPS_AT_MOST = 500_000  # lines that are executed one by one: a minute
+BYTES_AT_MOST = 1 << 28  # of executed blocks
+DEEPEST = 100  # calls inside calls
+UNKNOWN = math.nan
+REFERENCE = re.compile(r"#(?:<[^<>]*>|[0-9]+)")
+HINT = "let the CAM write plain blocks, or use passes that keep positions"
+
+
+Edit = tuple[int, int, str]
+"""Columns of a block, from 0, and what stands there instead."""
+
+
+@dataclass(slots=True)
+class Call:
+    """A call that has not returned: the line it goes on at, and what is put back then.
+
+    `times` are the runs that are left, `first` the first line of the subprogram, `name` what
+    called it by.
+    """
+
+    name: str
+    back: int
+    first: int = 0
+    times: int = 1
+    locals: dict[Key, float] = field(default_factory=dict)
+    counters: dict[int, int] = field(default_factory=dict)
+
+
+class Execution:
+    """One run of a program; `text` and `origin` are the executed blocks and their lines."""
+
+    def __init__(self, listing: Listing, reading: Reading) -> None:
+        assert listing.dialect.arithmetic is not None
+        self.listing = listing
+        self.dialect = listing.dialect
+        self.arithmetic: Arithmetic = listing.dialect.arithmetic
+        self.reading = reading
+        given = {parameter_key(name): v for name, v in reading.parameters.items()}
+        self.parameters = {k: v for k, v in given.items() if self.arithmetic.owns(k)}
+        self.calls: list[Call] = []
+        self.at = 0
+        self.line = 0
+        self.ended = self.acted = False
+        self.percents = 0
+        self.text: list[bytes] = []
+        self.origin: list[np.ndarray[Any, np.dtype[np.int64]]] = []
+        self.steps = self.size = self.changes = 0
+        self.rounds: dict[int, int] = {}
+
+    # --- the walk ---
+
+    def run(self) -> None:
+        """Execute the program to its end. Raises InputError where that cannot be done."""
+        special = self.listing.special
+        while not self.ended and self.at < len(self.listing):
+            following = int(np.searchsorted(special, self.at))
+            stop = int(special[following]) if following < len(special) else len(self.listing)
+            if stop > self.at:
+                self._copy(stop)
+            else:
+                self._step()
+        self._closing()
+
+    def _copy(self, stop: int) -> None:
+        """Take plain lines over as they stand."""
+        self._put(self.listing.raw(self.at, stop), np.arange(self.at, stop))
+        self.at = stop
+
+    def _step(self) -> None:
+        """Execute one line that is more than a plain block."""
+        self.line, self.at = self.at, self.at + 1
+        self._count()
+        block = self.listing.block(self.line)
+        if self._skips(block):
+            self._copy_line()
+        elif block.error is None and self.act(block):
+            self.acted = True
+        else:
+            self.write(block)
+
+    def _copy_line(self) -> None:
+        self._put(self.listing.raw(self.line, self.line + 1), np.array([self.line]))
+
+    def _skips(self, block: Block) -> bool:
+        """Whether the control skips the line; a slash on one that decides something is refused."""
+        if not any(isinstance(item, Mark) and item.kind == "block_delete" for item in block.items):
+            return False
+        policy = self.reading.block_delete or self.dialect.block_delete
+        if not policy:
+            message = "a switch of the control decides whether this block is executed"
+            hint = 'say which: block-delete = "execute" or "skip" in [input]'
+            raise self.listing.refusal(self.line, "GX211", message, hint)
+        return policy == "skip"
+
+    def _put(self, text: bytes, lines: np.ndarray[Any, np.dtype[np.int64]]) -> None:
+        if text and not text.endswith((b"\n", b"\r")):
+            text += b"\n"
+        self.text.append(text)
+        self.origin.append(lines)
+        self.size += len(text)
+
+    def write_line(self, text: str) -> None:
+        """Write a block that the line stands for."""
+        self._put(text.encode("latin-1") + self.listing.line_end(self.line), np.array([self.line]))
+
+    def _count(self) -> None:
+        """Count executed lines. Raises InputError for a program that does not end."""
+        self.steps += 1
+        if self.steps > STEPS_AT_MOST or self.size > BYTES_AT_MOST:
+            message = f"the program is not over after {self.steps} lines that decide something"
+            raise self.refusal("GX224", message, "does this loop end?")
+
+    def back_to(self, line: int) -> None:
+        """Go back to a line. Raises InputError if nothing has changed since the last time."""
+        if self.rounds.get(self.line) == self.changes:
+            message = "nothing changes from one round of this loop to the next: it has no end"
+            raise self.refusal("GX224", message)
+        self.rounds[self.line] = self.changes
+        self.at = line
+
+    def set(self, values: Mapping[Key, float]) -> None:
+        """Give parameters their values."""
+        self.changes += any(self.parameters.get(k) != v for k, v in values.items())
+        self.parameters.update(values)
+
+    def _closing(self) -> None:
+        """Write the last percent sign, which the control reads behind the end of the program."""
+        last = len(self.listing) - 1
+        while last > 0 and not self.listing.window.line(last).strip():
+            last -= 1
+        if self.ended and last > self.line and self.listing.meaning(last).percent:
+            self._put(self.listing.raw(last, last + 1), np.array([last]))
+
+    # --- what differs between controls ---
+
+    @abstractmethod
+    def act(self, block: Block) -> bool:
+        """Do what a line decides about the order of execution; return whether that was all."""
+
+    # --- calls ---
+
+    def enter(self, call: Call) -> None:
+        """Begin a subprogram."""
+        if len(self.calls) >= DEEPEST:
+            raise self.refusal("GX224", f"{DEEPEST} calls are inside each other")
+        self.calls.append(call)
+        self.at = call.first
+
+    # --- blocks ---
+
+    def write(self, block: Block) -> None:
+        """Write a block out with the values of its expressions, and do its assignments."""
+        meaning = self.listing.meaning(self.line)
+        if meaning.refusal is not None and not self.becomes_other(block):
+            refusal = meaning.refusal
+            place = (refusal.column, refusal.column + refusal.width)
+            raise self.refusal(refusal.code, refusal.message, refusal.hint, place)
+        edits = self.edits(block)
+        self.acted |= self.becomes_other(block)
+        changes = [self._assigned(i) for i in block.items if isinstance(i, Statement)]
+        if edits or changes:
+            self._write_changed(block, edits)
+        else:
+            self._copy_line()
+        self.set(dict(changes))
+        if meaning.runs_macro and not meaning.lost_by <= self.reading.inert_m:
+            self.parameters = dict.fromkeys(self.parameters, UNKNOWN)
+        self.percents += meaning.percent
+        self.ended |= self.percents > 1 or self._ends(block)
+
+    def edits(self, block: Block) -> list[Edit]:
+        """Return the pieces of a block that are written otherwise: its values."""
+        return [
+            (word.value.start, word.value.end, self._written(word))
+            for word in block.words
+            if _computed(word)
+        ]
+
+    def becomes_other(self, block: Block) -> bool:
+        """Whether a block cannot be judged before it is written out: a computed G or M code."""
+        return any(_computed(word) and word.address in "GM" for word in block.words)
+
+    def _ends(self, block: Block) -> bool:
+        """Whether the program is over after a block."""
+        codes = [w.value.value for w in block.words if w.address == "M"]
+        known = [self.dialect.m_codes.get(int(c)) for c in codes if c == c]  # nan: computed
+        over = any(code is not None and code.ends for code in known)
+        return over and self.dialect.stops_at_end
+
+    def _write_changed(self, block: Block, edits: list[Edit]) -> None:
+        """Write a block whose expressions have become numbers and whose assignments are gone."""
+        words = [item for item in bare(block) if isinstance(item, Word)]
+        active = [i for i in block.items if isinstance(i, Comment) and self._executes(block, i)]
+        if not words and not active:
+            return
+        edits = [
+            *edits,
+            *((i.start, i.end, "") for i in block.items if isinstance(i, Statement)),
+            *((i.start, i.end, self._told(block.text[i.start : i.end])) for i in active),
+        ]
+        text = block.text
+        for start, end, new in sorted(edits, reverse=True):
+            text = text[:start] + new + text[end:]
+        self.write_line(text.rstrip())
+
+    def _executes(self, block: Block, comment: Comment) -> bool:
+        return self.dialect.executes(block.text[comment.start : comment.end])
+
+    def _told(self, comment: str) -> str:
+        """Return a message with the values of its parameters, where they are known."""
+
+        def value(reference: re.Match[str]) -> str:
+            known = self.parameters.get(parameter_key(reference[0]), UNKNOWN)
+            return reference[0] if math.isnan(known) else f"{known:.6f}"
+
+        return REFERENCE.sub(value, comment)
+
+    # --- values ---
+
+    def value(self, node: Any, conditions: bool = False) -> float:
+        """Return the value of an expression of the line. Raises InputError."""
+        arithmetic = self.conditions if conditions else self.arithmetic
+        try:
+            return Evaluator(arithmetic, self.parameters).value(node)
+        except LocatedError as why:
+            raise self.refusal(why.code, why.message, why.hint, (why.start, why.end)) from None
+
+    @property
+    def conditions(self) -> Arithmetic:
+        """The arithmetic of conditions."""
+        return self.arithmetic
+
+    def number(self, block: Block, address: str, default: float = UNKNOWN) -> float:
+        """Return the value of the word with an address, or the default."""
+        for word in block.words:
+            if word.address == address:
+                value = word.value
+                return self.value(value.tree) if isinstance(value, Expression) else value.value
+        return default
+
+    def _written(self, word: Word) -> str:
+        """Return the value of a word that is computed, as it is written."""
+        assert isinstance(word.value, Expression)
+        evaluator = Evaluator(self.arithmetic, self.parameters, in_word=True)
+        try:
+            value = evaluator.value(word.value.tree)
+            if word.address in self.arithmetic.whole:
+                value = float(whole(value, self.arithmetic.whole_slip))
+            if word.address in "GM":
+                value = whole(value * 10) / 10
+        except NoValueError as why:
+            start, end = (
+                (why.start, why.end) if isinstance(why, LocatedError) else (word.start, word.end)
+            )
+            raise self.refusal(why.code, why.message, why.hint, (start, end)) from None
+        if self.dialect.point_required and word.address in DISTANCES:
+            return self._on_increment(word, value)
+        return decimal(value).removesuffix(".")
+
+    def _on_increment(self, word: Word, value: float) -> str:
+        """Return a distance as the control rounds it."""
+        increment = self.reading.increment
+        if increment is None:
+            message = f"{word.address} is computed: to what it is rounded depends on the control"
+            hint = 'say what 1 is worth: increment = "0.001 mm" in [input]'
+            raise self.refusal("GX205", message, hint, (word.start, word.end))
+        steps = math.floor(abs(value) / increment + 0.5)
+        return decimal(math.copysign(round(steps * increment, DECIMALS), value))
+
+    def _assigned(self, statement: Statement) -> tuple[Key, float]:
+        """Return a parameter and its new value."""
+        return self.assignment(statement.tree, (statement.start, statement.end))
+
+    def assignment(self, tree: Any, place: tuple[int, int]) -> tuple[Key, float]:
+        """Return the parameter that a tree sets, and its value. Raises InputError."""
+        parameter, expression = tree.children
+        evaluator = Evaluator(self.arithmetic, self.parameters)
+        try:
+            return settable(self.arithmetic, evaluator.key(parameter)), evaluator.value(expression)
+        except LocatedError as why:
+            place, error = (why.start, why.end), why
+        except NoValueError as why:
+            error = why  # type: ignore[assignment]
+        raise self.refusal(error.code, error.message, error.hint, place)
+
+    def located(self, error: InputError) -> InputError:
+        """Return an error about executed blocks as one about the lines of the program."""
+        lines = np.concatenate(self.origin)
+        return InputError(
+            tuple(
+                d.at(replace(d.where, line=int(lines[d.where.line - 1]) + 1)) if d.where else d
+                for d in error.diagnostics
+            )
+        )
+
+    def refusal(
+        self, code: str, message: str, hint: str = "", place: tuple[int, int] | None = None
+    ) -> InputError:
+        """Return the error about the line that is executed."""
+        error = self.listing.refusal(self.line, code, message, hint, place)
+        if not self.calls:
+            return error
+        inside = " in ".join(call.name for call in reversed(self.calls))
+        found = tuple(replace(d, context=f"called by {inside}") for d in error.diagnostics)
+        return InputError(found)
+
+
+def _computed(word: Word) -> bool:
+    return isinstance(word.value, Expression)
+
+
+def whole_number(word: Word) -> int | None:
+    """Return the whole number that a word was written with; None for another."""
+    value = word.value.value if isinstance(word.value, Number) else UNKNOWN
+    return int(value) if value == value and value % 1 == 0 else None

@@ -1,0 +1,106 @@
+"""A whole program as lines that can be executed in any order: texts, trees and where they stand."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.dialect import Dialect
+from gcxform.modal.meaning import Meaning
+from gcxform.modal.reader import WindowReader
+from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statement, Word
+
+CODES_OF_CALLS = frozenset({97, 98, 99, 198})
+STORED_MODES = frozenset({70, 71, 72, 73})
+
+
+class Listing:
+    """The lines of a program; numbers of lines count from 0.
+
+    `special` (m,) are the lines, ascending, that may do more than be executed once as they stand:
+    those with expressions, statements, calls, labels, or an end.
+    """
+
+    def __init__(self, text: bytes, dialect: type[Dialect], file: str) -> None:
+        reader = WindowReader(dialect)
+        self.dialect = dialect
+        self.file = file
+        self.window = reader.read(text)
+        self.table = reader.table
+        self.table.update()
+        shapes = reader.shapes.shapes
+        odd = [self._is_special(n, shape.block) for n, shape in enumerate(shapes)]
+        self.special = np.flatnonzero(np.array(odd, np.bool_)[self.window.shape])
+        self._blocks: dict[int, Block] = {}
+
+    def __len__(self) -> int:
+        return len(self.window)
+
+    def _is_special(self, shape: int, block: Block) -> bool:
+        meaning = self.table.meanings[shape]
+        if meaning.ends or meaning.percent or meaning.runs_macro:
+            return True
+        for item in block.items:
+            if isinstance(item, Statement) or (
+                isinstance(item, Mark) and item.kind == "program_id"
+            ):
+                return True
+            if isinstance(item, Word) and (
+                isinstance(item.value, Expression) or item.address in "O@^" or _calls(item)
+            ):
+                return True
+        return False
+
+    def meaning(self, line: int) -> Meaning:
+        """Return what the block of a line does."""
+        return self.table.meanings[int(self.window.shape[line])]
+
+    def block(self, line: int) -> Block:
+        """Return the tree of a line."""
+        if line not in self._blocks:
+            text = self.window.line(line).decode("latin-1")
+            self._blocks[line] = self.dialect.load_grammar().parse(text)
+        return self._blocks[line]
+
+    def raw(self, first: int, last: int) -> bytes:
+        """Return the text of lines up to one, with their line ends."""
+        return (
+            self.window.text[int(self.window.start[first]) : int(self.window.start[last])]
+            if (last < len(self))
+            else self.window.text[int(self.window.start[first]) :]
+        )
+
+    def line_end(self, line: int) -> bytes:
+        """Return how a line ends; LF for the last one of a file that has no end."""
+        end, after = int(self.window.end[line]), int(self.window.next[line])
+        return self.window.text[end:after] or b"\n"
+
+    def refusal(
+        self,
+        line: int,
+        code: str,
+        message: str,
+        hint: str = "",
+        place: tuple[int, int] | None = None,
+    ) -> InputError:
+        """Return the error about a line, at columns from 0; about all of it without a place."""
+        text = self.window.line(line).decode("latin-1")
+        start, end = place or (len(text) - len(text.lstrip()), len(text.rstrip()))
+        where = Location(self.file, line + 1, start + 1, text, max(1, end - start))
+        return InputError((Diagnostic(code, message, where, hint),))
+
+
+def _calls(word: Word) -> bool:
+    """Whether a word is an M code that calls, returns, or stores modes."""
+    value = word.value.value if word.address == "M" and isinstance(word.value, Number) else -1.0
+    return value in CODES_OF_CALLS or value in STORED_MODES
+
+
+def bare(block: Block) -> list[Word | Statement]:
+    """Return what a block does: its items but for comments, marks and its sequence number."""
+    return [
+        item
+        for item in block.items
+        if not isinstance(item, Comment | Mark)
+        and not (isinstance(item, Word) and item.address == "N")
+    ]

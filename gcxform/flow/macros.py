@@ -1,0 +1,266 @@
+"""Fanuc and its relatives: M98, M97 and M99, GOTO, IF and WHILE of macro B.
+
+Programs of a file begin at their O numbers, and the first one is run. Whether the local variables
+of a caller are those of what M98 calls is known in two ways: those that are set on one side have no
+known value on the other. G65 gives variables by letters, which is not resolved.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from lark import Token
+
+from gcxform.flow.execution import HINT, UNKNOWN, Call, Execution, whole_number
+from gcxform.flow.listing import Listing, bare
+from gcxform.modal.arithmetic import Arithmetic, NoValueError
+from gcxform.modal.state import Reading
+from gcxform.syntax.tree import BLANKS, Block, Mark, Statement, Word
+
+LOCALS = range(1, 34)
+NEAR = 1e-6
+PACKED = 10_000  # P of old controls: a count, and four digits of a program number
+
+
+def _equal(a: float, b: float) -> bool:
+    """Whether numbers are equal. Raises NoValueError for those that almost are."""
+    if a != b and abs(a - b) < NEAR * max(1.0, abs(a), abs(b)):
+        raise NoValueError("the numbers are almost equal: how the control compares is not certain")
+    return a == b
+
+
+RELATIONS = {
+    "EQ": lambda a, b: float(_equal(a, b)),
+    "NE": lambda a, b: float(not _equal(a, b)),
+    "GT": lambda a, b: float(not _equal(a, b) and a > b),
+    "GE": lambda a, b: float(_equal(a, b) or a > b),
+    "LT": lambda a, b: float(not _equal(a, b) and a < b),
+    "LE": lambda a, b: float(_equal(a, b) or a < b),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """A loop: the lines of its DO and its END."""
+
+    first: int
+    last: int
+
+
+class MacroB(Execution):
+    """Runs programs of Fanuc, Haas and their relatives."""
+
+    def __init__(self, listing: Listing, reading: Reading) -> None:
+        super().__init__(listing, reading)
+        self.loops: dict[int, Loop] = {}
+        self.starts: dict[int, int] = {}
+        self.twice: set[int] = set()
+        self.bounds: list[int] = []
+        self._arrange()
+
+    # --- which lines belong together ---
+
+    def _arrange(self) -> None:
+        """Find programs and loops. Raises InputError for what does not fit together."""
+        open_: list[tuple[int, str]] = []
+        for line in self.listing.special.tolist():
+            self.line = line
+            block = self.listing.block(line)
+            number = _program_number(block)
+            if number is not None:
+                self.bounds.append(line)
+                if number in self.starts:
+                    self.twice.add(number)
+                self.starts[number] = line
+            statement = _statement(block)
+            if statement is None:
+                continue
+            name = str(statement.tree.children[-1])
+            if statement.kind in ("while", "do"):
+                open_.append((line, name))
+            elif statement.kind == "end":
+                if not open_ or open_[-1][1] != name:
+                    raise self.refusal("GX223", f"END {name} ends no loop that is open here")
+                first = open_.pop()[0]
+                self.loops[first] = self.loops[line] = Loop(first, line)
+        if open_:
+            self.line = open_[-1][0]
+            raise self.refusal("GX223", f"the loop DO {open_[-1][1]} has no END")
+
+    @property
+    def conditions(self) -> Arithmetic:
+        """The arithmetic of conditions: relations are known there alone."""
+        return self._conditions
+
+    @cached_property
+    def _conditions(self) -> Arithmetic:
+        return replace(self.arithmetic, operators={**self.arithmetic.operators, **RELATIONS})
+
+    def _program(self) -> tuple[int, int]:
+        """Return the first line of the program that runs, and the line behind its last."""
+        first = max((b for b in self.bounds if b <= self.line), default=0)
+        if self.bounds and first == self.bounds[0]:
+            first = 0
+        return first, min(
+            (b for b in self.bounds if b > max(self.line, first) and b != self.bounds[0]),
+            default=len(self.listing),
+        )
+
+    # --- what lines do ---
+
+    def act(self, block: Block) -> bool:
+        """Do what flow words and calls do."""
+        if _program_number(block) is not None and self.line != self.bounds[0]:
+            message = "the program before goes on into this one, without M30 or M99"
+            raise self.refusal("GX223", message)
+        statement = _statement(block)
+        if statement is not None:
+            getattr(self, f"_{statement.kind}")(statement)
+            return True
+        items = bare(block)
+        codes = {whole_number(i) for i in items if isinstance(i, Word) and i.address == "M"}
+        if 98 in codes or (97 in codes and self.dialect.calls_own_lines):
+            self._call(block, items, own=97 in codes)
+            return True
+        if 99 in codes and self.calls:
+            self._return(block, items)
+            return True
+        return False
+
+    # --- subprograms ---
+
+    def _only(self, items: list[Word | Statement], addresses: str) -> None:
+        if any(not isinstance(i, Word) or i.address not in addresses for i in items):
+            raise self.refusal("GX210", "something else stands in a block that calls or returns")
+
+    def _call(self, block: Block, items: list[Word | Statement], own: bool) -> None:
+        self._only(items, "MPL")
+        number, times = self.number(block, "P"), self.number(block, "L", 1.0)
+        if not (number % 1 == 0 and times % 1 == 0 and times >= 1):
+            raise self.refusal("GX221", "a call takes a number in P, and a count from 1 in L")
+        target, name = int(number), f"M98 P{number:g}"
+        if own:
+            first, name = self._labelled(target), f"M97 P{number:g}"
+        else:
+            target, times = self._unpacked(target, int(times), block)
+            first = self._start(target) + 1
+        before = {k: v for k, v in self.parameters.items() if k in LOCALS}
+        self.parameters |= dict.fromkeys(before, UNKNOWN)
+        self.enter(Call(name, self.at, first, int(times), before))
+
+    def _unpacked(self, number: int, times: int, block: Block) -> tuple[int, int]:
+        """Return program and count of a P that may hold both."""
+        packed = number >= PACKED and number % PACKED in self.starts
+        if packed and (number in self.starts or any(w.address == "L" for w in block.words)):
+            raise self.refusal("GX210", "P can be read as a program, or as a count and a program")
+        return (number % PACKED, number // PACKED) if packed else (number, times)
+
+    def _start(self, number: int) -> int:
+        if number in self.twice:
+            raise self.refusal("GX223", f"the file has two programs O{number}")
+        if number not in self.starts:
+            message = f"the subprogram O{number} is not in this file"
+            raise self.refusal("GX210", message, HINT)
+        return self.starts[number]
+
+    def _return(self, block: Block, items: list[Word | Statement]) -> None:
+        self._only(items, "MP")
+        call = self.calls[-1]
+        call.times -= 1
+        if call.times:
+            self.at = call.first
+            return
+        self.calls.pop()
+        kept = {k: v for k, v in self.parameters.items() if k in LOCALS}
+        set_inside = {k for k, v in kept.items() if v == v}
+        self.parameters |= {k: v for k, v in call.locals.items() if k not in set_inside}
+        self.parameters |= dict.fromkeys(set_inside, UNKNOWN)
+        self.at = call.back
+        if any(word.address == "P" for word in block.words):
+            target = self.number(block, "P")
+            self.line = call.back - 1
+            self._jump(target)
+
+    # --- jumps ---
+
+    def _labelled(self, number: float) -> int:
+        """Return the line of the running program that has a sequence number."""
+        first, last = self._program()
+        found = [line for line in range(first, last) if self._sequence(line) == number]
+        if len(found) != 1:
+            how = "no line" if not found else "more than one line"
+            raise self.refusal("GX223", f"{how} of this program has the number N{number:g}")
+        return found[0]
+
+    def _sequence(self, line: int) -> float | None:
+        """Return the sequence number of a line."""
+        text = self.listing.window.line(line).decode("latin-1").translate(BLANKS).lstrip("/")
+        digits = ""
+        if text[:1] in ("N", "n"):
+            for character in text[1:]:
+                if not character.isdecimal():
+                    break
+                digits += character
+        return float(digits) if digits else None
+
+    def _jump(self, number: float) -> None:
+        target = self._labelled(number)
+        into = [p for p in self._around(target) if p not in self._around(self.line)]
+        if into:
+            raise self.refusal("GX223", f"N{number:g} stands inside a loop that is not running")
+        if target > self.line:
+            self.at = target
+        else:
+            self.back_to(target)
+
+    def _around(self, line: int) -> list[Loop]:
+        return [loop for loop in set(self.loops.values()) if loop.first < line < loop.last]
+
+    def _goto(self, statement: Statement) -> None:
+        self._jump(self._target(statement.tree.children[-1]))
+
+    def _target(self, node: Any) -> float:
+        return float(str(node).translate(BLANKS)) if isinstance(node, Token) else self.value(node)
+
+    def _holds(self, statement: Statement) -> bool:
+        return self.value(statement.tree.children[1], conditions=True) != 0
+
+    def _if_goto(self, statement: Statement) -> None:
+        if self._holds(statement):
+            self._goto(statement)
+
+    def _if_then(self, statement: Statement) -> None:
+        if self._holds(statement):
+            tree = statement.tree.children[-1]
+            key, value = self.assignment(tree, (statement.start, statement.end))
+            self.set({key: value})
+
+    # --- loops ---
+
+    def _while(self, statement: Statement) -> None:
+        if not self._holds(statement):
+            self.at = self.loops[self.line].last + 1
+
+    def _do(self, statement: Statement) -> None:
+        """Go on."""
+
+    def _end(self, statement: Statement) -> None:
+        self.back_to(self.loops[self.line].first)
+
+
+def _statement(block: Block) -> Statement | None:
+    """Return the flow word of a block."""
+    found = (i for i in block.items if isinstance(i, Statement) and i.kind != "assignment")
+    return next(found, None)
+
+
+def _program_number(block: Block) -> int | None:
+    """Return the number of the program that begins at a block."""
+    for item in block.items:
+        if isinstance(item, Word):
+            return whole_number(item) if item.address == "O" else None
+        if isinstance(item, Mark) and item.kind == "program_id":
+            return int(block.text[item.start + 1 : item.end])
+    return None

@@ -1,0 +1,140 @@
+"""M70 to M73 of LinuxCNC: modes that are stored and come back, written out as plain blocks.
+
+The control restores F and S first and codes after them; motion codes stay as they are. What cannot
+be said again by its code alone (a tool length, cutter compensation, a path tolerance) is refused
+where it would have to be.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from gcxform.syntax.tree import Block, Number
+
+if TYPE_CHECKING:
+    from gcxform.flow.owords import OWords
+
+UNITS, FEED, SPEED, SPINDLE, MIST, FLOOD = "units", "F", "S", "spindle", "M7", "M8"
+RESTORED = ("plane", "distance", "arc-distance", "feed-mode", "frame", "retract")
+"""Groups whose codes are written again, with units; those of others must not differ."""
+LEFT = frozenset({"motion", "cycle", "non-modal", "stop", "tool", "modal-store", "output", "user"})
+STORE, FORGET, RESTORE, STORE_FOR_CALL = 70, 71, 72, 73
+Codes = dict[str, str]
+
+
+@dataclass(slots=True)
+class Level:
+    """What a call has stored; `comes_back`: at its return, by M73."""
+
+    stored: Codes | None = None
+    comes_back: bool = False
+
+
+class StoredModes:
+    """Follows the codes in force along the executed blocks, and writes those that come back."""
+
+    def __init__(self, program: OWords) -> None:
+        self.program = program
+        self.levels = [Level()]
+        initial = program.dialect.initial
+        self.now: Codes = {
+            group: initial[group] for group in (*RESTORED, UNITS) if group in initial
+        }
+        self.now |= {SPINDLE: "M5", MIST: "", FLOOD: "", "cutter-comp": "G40"}
+        self.seen = 0
+
+    def enter(self) -> None:
+        """Begin a call, which has nothing stored."""
+        self.levels.append(Level())
+
+    def leave(self) -> None:
+        """End a call; restore what M73 has stored in it."""
+        level = self.levels.pop()
+        if level.comes_back and level.stored is not None:
+            self._restore(level.stored)
+
+    def act(self, block: Block, codes: set[int | None]) -> bool:
+        """Do what M70 to M73 do; return whether the block was one of them."""
+        asked = codes & {STORE, FORGET, RESTORE, STORE_FOR_CALL}
+        if not asked:
+            return False
+        if sum(word.address != "N" for word in block.words) > 1:
+            raise self.program.refusal("GX210", "a block that stores modes does something else")
+        level = self.levels[-1]
+        stored = level.stored
+        if RESTORE not in asked:
+            level.stored = None if FORGET in asked else self._in_force()
+            level.comes_back |= STORE_FOR_CALL in asked
+        elif stored is None:
+            raise self.program.refusal("GX223", "nothing is stored here that M72 could restore")
+        else:
+            self._restore(stored)
+        return True
+
+    # --- what is in force ---
+
+    def _in_force(self) -> Codes:
+        """Return the codes in force after the blocks that have been executed."""
+        fresh = b"".join(self.program.text[self.seen :])
+        self.seen = len(self.program.text)
+        grammar = self.program.dialect.load_grammar()
+        for line in fresh.decode("latin-1").splitlines():
+            if line.strip():
+                self._look(grammar.parse(line))
+        return dict(self.now)
+
+    def _look(self, block: Block) -> None:
+        """Note the codes of a block, those that take words with these."""
+        number = {w.address: w.value.text for w in block.words if isinstance(w.value, Number)}
+        self.now.update((a, number[a]) for a in (FEED, SPEED) if a in number)
+        for word in block.words:
+            if word.address in "GM" and isinstance(word.value, Number):
+                self._note(f"{word.address}{word.value.value:g}", number)
+
+    def _note(self, name: str, number: dict[str, str]) -> None:
+        dialect = self.program.dialect
+        if name in ("M7", "M8", "M9"):
+            self.now |= {MIST: "", FLOOD: ""} if name == "M9" else {name: name}
+            return
+        code = dialect.codes.get(name) or dialect.m_codes.get(int(float(name[1:])))
+        if code is None or code.group in LEFT:
+            return
+        if code.group in (SPINDLE, *RESTORED, UNITS):
+            self.now[code.group] = name
+        else:
+            taken = (f" {a}{number[a]}" for a in code.takes if a in number)
+            self.now[code.group] = name + "".join(taken)
+
+    # --- what comes back ---
+
+    def _restore(self, stored: Codes) -> None:
+        """Write the blocks that restore modes, in the order of the control."""
+        now = self._in_force()
+        differ = {group for group in now if now[group] != stored.get(group)}
+        self._refuse_unknown(differ, now, stored)
+        feed = [f"{a}{stored[a]}" for a in (FEED, SPEED) if a in differ]
+        codes = [stored[group] for group in RESTORED if group in differ]
+        units = [stored[UNITS]] if UNITS in differ else []
+        for words in (units, feed, codes, self._machine_codes(differ, stored)):
+            if words:
+                self.program.write_line(" ".join(words))
+
+    def _refuse_unknown(self, differ: set[str], now: Codes, stored: Codes) -> None:
+        known = {*RESTORED, UNITS, SPINDLE, MIST, FLOOD, FEED, SPEED}
+        for group in sorted(differ):
+            before = stored.get(group, "")
+            if group not in known or (group not in stored):
+                message = f"{now[group]} would have to go back to {before or 'what was before'}"
+                raise self.program.refusal("GX210", f"the modes are restored here: {message}")
+
+    def _machine_codes(self, differ: set[str], stored: Codes) -> list[str]:
+        """Return the M codes that bring spindle and coolant back."""
+        found = [stored[SPINDLE]] if SPINDLE in differ else []
+        if differ & {MIST, FLOOD}:
+            on = [stored[code] for code in (MIST, FLOOD) if stored[code]]
+            off = any(code in differ and not stored[code] for code in (MIST, FLOOD))
+            found += (["M9"] if off and not on else []) + on
+            if off and on:
+                raise self.program.refusal("GX210", "one of two coolants would go off here")
+        return found

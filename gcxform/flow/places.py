@@ -1,0 +1,111 @@
+"""Where the axes stand while LinuxCNC executes: #5420 to #5428, and the polar words `@` and `^`.
+
+The blocks that have been executed so far are read as any program is; they end at a position.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gcxform.diagnostics import InputError
+from gcxform.dialect import INCH, LINEAR
+from gcxform.flow.text import decimal
+from gcxform.modal.interpreter import Interpreter
+from gcxform.modal.reader import WindowReader
+from gcxform.modal.state import State
+from gcxform.syntax.tree import Block, Word
+
+if TYPE_CHECKING:
+    from gcxform.flow.owords import OWords
+
+FIRST = 5420
+RADIUS, ANGLE = "@", "^"
+AXES_OF_PLANE = frozenset("XY")
+Edit = tuple[int, int, str]
+
+
+class Places:
+    """Reads the executed blocks as they come."""
+
+    def __init__(self, program: OWords) -> None:
+        self.program = program
+        self.reader = WindowReader(program.dialect)
+        self.interpreter = Interpreter(program.dialect, program.reading, file=program.listing.file)
+        self.seen = 0
+
+    def now(self) -> State:
+        """Return the state after the executed blocks. Raises InputError."""
+        text = b"".join(self.program.text[self.seen :])
+        self.seen = len(self.program.text)
+        if text:
+            try:
+                self.interpreter.interpret(self.reader.read(text), self.reader.table)
+            except InputError as error:
+                raise self.program.located(error) from None
+        return self.interpreter.state
+
+    def words(self) -> dict[str, float]:
+        """Return where the axes stand, as the words of a block would say it; nan: not known."""
+        state = self.now()
+        frame = state.frames.frame()
+        axes = self.interpreter.axes
+        if frame.diameter or state.side or set(frame.origin) != {state.frames.first}:
+            return dict.fromkeys(axes, math.nan)
+        words = frame.words(state.position[np.newaxis])[0]
+        inch = INCH if state.groups["units"] else 1.0
+        return {
+            axis: float(word) / (inch if axis in LINEAR else 1.0)
+            for axis, word in zip(axes, words, strict=True)
+        }
+
+    def parameters(self) -> dict[int | str, float]:
+        """Return the parameters that say where the axes stand; nan for what is not known."""
+        return {FIRST + k: word for k, word in enumerate(self.words().values())}
+
+    # --- polar words ---
+
+    def polar_edits(self, block: Block) -> list[Edit]:
+        """Return X and Y in place of `@` and `^`; nothing for a block without them."""
+        words = {w.address: w for w in block.words if w.address in (RADIUS, ANGLE)}
+        if not words:
+            return []
+        self._refuse(block, [*words.values()])
+        x, y = self._point(block, words)
+        first, *rest = sorted(words.values(), key=lambda word: word.start)
+        return [(first.start, first.end, f"X{decimal(x)} Y{decimal(y)}")] + [
+            (word.start, word.end, "") for word in rest
+        ]
+
+    def _refuse(self, block: Block, words: list[Word]) -> None:
+        """Refuse polar words that the control does not take, or that are not resolved."""
+        place = words[0].start, words[0].end
+        if any(word.address in AXES_OF_PLANE for word in block.words):
+            raise self.program.refusal("GX203", "X or Y beside polar words", place=place)
+        groups = self.program.listing.meaning(self.program.line).groups
+        if "non-modal" in groups:
+            message = f"{groups['non-modal']} takes no polar words"
+            raise self.program.refusal("GX203", message, place=place)
+        state = self.now()
+        named = groups.get("distance")
+        incremental = named == "G91" if named else bool(state.groups["distance"])
+        if incremental or state.frames.diameter or "units" in groups or "frame" in groups:
+            message = "polar words are resolved in G90 and G8, in the unit and frame before"
+            raise self.program.refusal("GX210", message, place=place)
+
+    def _point(self, block: Block, words: dict[str, Word]) -> tuple[float, float]:
+        radius = self.program.number(block, RADIUS)
+        angle = self.program.number(block, ANGLE)
+        if len(words) < 2:
+            here = self.words()
+            x, y = here["X"], here["Y"]
+            if math.isnan(x + y) or (ANGLE not in words and math.hypot(x, y) == 0.0):
+                word = next(iter(words.values()))
+                message = f"{word.address} alone needs a point away from the zero to start from"
+                raise self.program.refusal("GX220", message, place=(word.start, word.end))
+            radius = math.hypot(x, y) if RADIUS not in words else radius
+            angle = math.degrees(math.atan2(y, x)) if ANGLE not in words else angle
+        turned = math.radians(angle)
+        return radius * math.cos(turned), radius * math.sin(turned)

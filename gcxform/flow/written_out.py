@@ -1,0 +1,97 @@
+"""A source whose calls and loops are written out, or the source itself if it has none."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.diagnostics import GcxformError
+from gcxform.dialect import Dialect
+from gcxform.flow.execution import Execution
+from gcxform.flow.listing import Listing
+from gcxform.flow.macros import MacroB
+from gcxform.flow.owords import OWords
+from gcxform.modal.state import Reading
+from gcxform.source import COMMENT, Source
+
+RUNS: dict[str, type[Execution]] = {"o-words": OWords, "macro-b": MacroB}
+"""How a dialect may write subprograms and loops: `Dialect.flow`."""
+EXECUTED = {"o-words": (70, 71, 72, 73, 98, 99), "macro-b": (97, 98, 99)}
+"""M codes that are executed, and do not stand in what is written; M97 where a dialect has it."""
+TO_THE_END = re.compile(rb";[^\r\n]*")
+NUMBERED = rb"(?:N[ \t]*[0-9.]+[ \t]*)?"
+SIGNS = {
+    "o-words": (
+        (b"O", b"M98", b"M7", b"G#", b"G[", b"M#", b"M[", b"@", b"^", b"#54"),
+        re.compile(
+            rb"^[/ \t]*" + NUMBERED + rb"O[^\n\r;]*?[A-Z]{2}|M98|M7[0-3]|[GM][#\[]|[@^]|#542",
+            re.IGNORECASE | re.MULTILINE,
+        ),
+    ),
+    "macro-b": (
+        (b"M98", b"M97", b"GOTO", b"WHILE", b"IF[", b"IF "),
+        re.compile(rb"M9[78]|GOTO|WHILE|IF[ \t]*\[", re.IGNORECASE),
+    ),
+}
+"""What a program with them holds, and what that looks like outside of comments."""
+
+
+class WrittenOut(Source):
+    """The blocks a program executes, in their order; `origin` are their lines, from 0."""
+
+    def __init__(self, source: Source, text: bytes, origin: NDArray[np.int64]) -> None:
+        super().__init__(Source.of_bytes(text).stream, source.name)
+        self.origin = origin
+
+    def line_of(self, line: int) -> int:
+        """Return the line of the program that an executed line stands for."""
+        inside = 0 < line <= len(self.origin)
+        return int(self.origin[line - 1]) + 1 if inside else line
+
+
+def has_flow(source: Source, dialect: type[Dialect]) -> bool:
+    """Whether a program may have calls, loops or codes that are computed."""
+    if dialect.flow not in SIGNS:
+        return False
+    signs, pattern = SIGNS[dialect.flow]
+    for text in source.windows():
+        some = any(s in text or (dialect.lower_case and s.lower() in text) for s in signs)
+        if some and pattern.search(_without_comments(text, dialect)):
+            return True
+    return False
+
+
+def _without_comments(text: bytes, dialect: type[Dialect]) -> bytes:
+    bare = COMMENT.sub(b"", text)
+    return TO_THE_END.sub(b"", bare) if ";" in dialect.comments else bare
+
+
+def written_out(source: Source, dialect: type[Dialect], reading: Reading) -> Source:
+    """Return a source with the blocks that the control executes.
+
+    That is the source itself if it has neither calls nor loops. Raises InputError where what is
+    executed is not known before the control runs.
+    """
+    if not has_flow(source, dialect):
+        return source
+    listing = Listing(b"".join(source.windows()), dialect, source.name)
+    run = RUNS[dialect.flow](listing, reading)
+    run.run()
+    if not run.acted:
+        return source
+    lines = np.concatenate([np.empty(0, np.int64), *run.origin])
+    return WrittenOut(source, b"".join(run.text), lines)
+
+
+def located(error: GcxformError, source: Source) -> GcxformError:
+    """Return an error about executed blocks as one about the lines of the program."""
+    found = []
+    for diagnostic in error.diagnostics:
+        where = diagnostic.where
+        if where is not None and where.line and where.file == source.name:
+            diagnostic = diagnostic.at(replace(where, line=source.line_of(where.line)))
+        found.append(diagnostic)
+    return type(error)(tuple(found))

@@ -1,0 +1,78 @@
+"""Faults of subprograms, loops and jumps."""
+
+from __future__ import annotations
+
+from faults.mutation import FACTS, Mutation
+
+CASES = "tests/test_corpus.py::test_case"
+AGREES = "tests/properties/test_flow.py"
+
+
+def _flow(name: str, file: str, old: str, new: str, tests: str = CASES) -> Mutation:
+    return Mutation(f"flow: {name}", f"gcxform/flow/{file}.py", old, new, tests)
+
+
+MUTATIONS = (
+    _flow("a call keeps the values of its caller", "owords", "if k not in own}", "}"),
+    _flow("what is not given is one", "owords", "*[0.0] *", "*[1.0] *", AGREES),
+    _flow("names are not local", "owords", 'not key.startswith("_")', "False"),
+    _flow("a count is cut", "owords", "(word.values[0]) + 0.5)", "(word.values[0]))", AGREES),
+    _flow(
+        "a loop ends a round late",
+        "owords",
+        "self.counters[first] > 0",
+        "self.counters[first] >= 0",
+    ),
+    _flow("M98 runs once more", "owords", "int(times), {}", "int(times) + 1, {}"),
+    _flow("a value does not return", "owords", "self.returned(value)", "self.returned()", FACTS),
+    _flow("else is always taken", "owords", "self._truth(other)", "True", AGREES),
+    _flow("M73 is forgotten", "modes", "level.comes_back |= STORE_FOR_CALL in asked", "pass"),
+    _flow(
+        "F does not come back", "modes", "(FEED, SPEED) if a in differ", "(SPEED,) if a in differ"
+    ),
+    _flow("units come back last", "modes", "(units, feed, codes,", "(feed, codes, units,"),
+    _flow("a coolant stays on", "modes", "off = any(", "off = not any("),
+    _flow(
+        "polar words turn the wrong way",
+        "places",
+        "radius * math.sin(turned)",
+        "-radius * math.sin(turned)",
+    ),
+    _flow(
+        "positions are always mm", "places", 'INCH if state.groups["units"] else 1.0', "1.0", AGREES
+    ),
+    _flow("a jump goes behind its label", "macros", "self.at = target", "self.at = target + 1"),
+    _flow(
+        "END leaves the loop",
+        "macros",
+        "self.back_to(self.loops[self.line].first)",
+        "self.at = self.loops[self.line].last + 1",
+    ),
+    _flow("P is never packed", "macros", "packed = number >= PACKED", "packed = number < 0"),
+    _flow(
+        "LT is LE",
+        "macros",
+        '"LT": lambda a, b: float(not _equal(a, b) and a < b)',
+        '"LT": lambda a, b: float(a <= b)',
+    ),
+    _flow(
+        "local variables are shared",
+        "macros",
+        "self.parameters |= dict.fromkeys(before, UNKNOWN)",
+        "pass",
+    ),
+    _flow(
+        "a distance is not rounded",
+        "execution",
+        "math.floor(abs(value) / increment + 0.5)",
+        "abs(value) / increment",
+        "tests/test_flow.py",
+    ),
+    _flow(
+        "lines are those that were executed",
+        "written_out",
+        "int(self.origin[line - 1]) + 1 if inside else line",
+        "line",
+        "tests/test_flow.py",
+    ),
+)

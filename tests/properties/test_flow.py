@@ -1,0 +1,59 @@
+"""Subprograms, loops, calls and stored modes: what is executed is what LinuxCNC executes."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import settings
+from oracles import flows, rs274, toolpaths
+from oracles.canon import CanonProgram
+
+import gcxform as gx
+
+COUNT = 3 * settings.default.max_examples  # 300; the profile `long` asks for more
+NOT_RESOLVED = (
+    "polar words are resolved in G90",
+    "the control loses its place",
+    "the control may run this loop once only",
+)
+"""Why programs are refused that the interpreter runs, in the way that its own faults decide."""
+
+pytestmark = pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
+
+
+def test_programs_with_flow_are_executed_as_linuxcnc_does() -> None:
+    programs = [flows.program(seed) for seed in range(COUNT)]
+    agreed = 0
+    for program, canon in zip(programs, rs274.run_many(programs), strict=True):
+        text = program.decode()
+        try:
+            path = toolpaths.read(program)
+        except gx.InputError as error:
+            refused = str(error)
+            known = any(reason in refused for reason in NOT_RESOLVED)
+            assert known or not isinstance(canon, CanonProgram), f"{refused}\n{text}"
+            continue
+        assert isinstance(canon, CanonProgram), f"{canon}\n{text}"
+        problem = toolpaths.difference(path, canon)
+        assert not problem, f"{problem}\n{text}"
+        agreed += 1
+    assert agreed > 0.8 * COUNT
+
+
+def test_the_executed_blocks_mean_the_same_by_themselves() -> None:
+    """What is written out has no flow any more, and LinuxCNC does the same with it."""
+    programs = [flows.program(seed) for seed in range(COUNT // 3)]
+    written = [b for program in programs if (b := executed(program)) not in (None, program)]
+    assert len(written) > COUNT // 5
+    for program, canon in zip(written, rs274.run_many(written), strict=True):
+        assert isinstance(canon, CanonProgram), f"{canon}\n{program.decode()}"
+        assert not any(word in program for word in (b"sub", b"call", b"while", b"M98", b"#"))
+        problem = toolpaths.difference(toolpaths.read(program), canon)
+        assert not problem, f"{problem}\n{program.decode()}"
+
+
+def executed(program: bytes) -> bytes | None:
+    start, told = toolpaths.START, {"work_offsets": toolpaths.OFFSETS, "homes": toolpaths.HOMES}
+    try:
+        return gx.read(program, "linuxcnc", start=start, **told).executed
+    except gx.InputError:
+        return None

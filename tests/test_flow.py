@@ -1,0 +1,99 @@
+"""Programs that are executed: lines, hashes, values, and what is left as it is."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from cli_kit import call
+
+import gcxform as gx
+
+LOOP = b"G21 G90 G0 X0 Y0 Z0\no1 repeat [2]\nG91 X1\no1 endrepeat\nM2\n"
+FANUC = b"O1\nG21 G90 G94 G0 X0. Y0. Z0.\nM98 P2\nM30\nO2\n#100=1/3\nX[#100]\nM99\n"
+
+
+def absolute(dialect: str) -> gx.Pipeline:
+    return gx.Pipeline.parse("absolute", dialect)
+
+
+def test_the_certificate_and_the_map_name_lines_of_the_file() -> None:
+    done = absolute("linuxcnc").run(LOOP)
+    assert done.source_map == [0, 2, 2, 4]
+    assert done.certificate.source["sha256"] == hashlib.sha256(LOOP).hexdigest()
+    assert done.certificate.verified
+
+
+def test_a_finding_names_the_line_of_the_file() -> None:
+    program = LOOP.replace(b"G91 X1", b"G2 X1")
+    for run in (absolute("linuxcnc").run, lambda text: gx.read(text, "linuxcnc").path):
+        with pytest.raises(gx.InputError) as error:
+            run(program)
+        assert error.value.diagnostics[0].where.line == 3
+
+
+def test_what_is_only_copied_is_not_executed() -> None:
+    assert b"repeat[2]" in gx.Pipeline.parse("strip", "linuxcnc").run(LOOP).text
+
+
+@pytest.mark.parametrize(
+    "text",
+    [b"G0 X1 (o1 repeat [2])\nM2\nafter\n", b"G0 X1 ; M98 P1\nM2\n", b"G0 X1 ; o1 sub\nM2\n"],
+)
+def test_a_comment_about_calls_calls_nothing(text: bytes) -> None:
+    assert gx.read(text, "linuxcnc").executed == text
+    done = absolute("linuxcnc").run(text)
+    assert done.text == text
+    assert not any("calls" in what for what in done.certificate.not_checked)
+
+
+def test_the_certificate_says_that_blocks_were_executed() -> None:
+    done = absolute("linuxcnc").run(LOOP)
+    assert any("calls and loops" in what for what in done.certificate.not_checked)
+
+
+def test_nothing_is_executed_behind_the_second_percent_sign() -> None:
+    text = b"%\no1 repeat [2]\nG0 X1\no1 endrepeat\n%\no2 while [1]\no2 endwhile\n"
+    assert gx.read(text, "linuxcnc").executed == b"%\nG0 X1\nG0 X1\n%\n"
+
+
+def test_a_copy_of_executed_blocks_compares_equal() -> None:
+    done = absolute("linuxcnc").run(LOOP)
+    found = gx.compare(gx.read(LOOP, "linuxcnc"), gx.read(done.text, "linuxcnc"))
+    assert found.same
+    other = done.text.replace(b"X2.", b"X2.5")
+    found = gx.compare(gx.read(LOOP, "linuxcnc"), gx.read(other, "linuxcnc"))
+    assert (found.same, found.parted) == (False, (3, 3))
+
+
+@pytest.mark.parametrize(("increment", "x"), [(0.001, 0.333), (0.01, 0.33), (1 / 3, 0.33333333)])
+def test_a_computed_distance_is_on_the_increment(increment: float, x: float) -> None:
+    path = gx.read(FANUC, "fanuc", increment=increment).path
+    assert np.isclose(path.end[-1, 0], x, atol=1e-12)
+
+
+def test_a_computed_distance_needs_the_increment() -> None:
+    with pytest.raises(gx.InputError, match="GX205"):
+        _ = gx.read(FANUC, "fanuc").path
+
+
+def test_long_loops_are_executed() -> None:
+    text = b"#1=0\no1 while [#1 lt 5000]\nG1 X[#1/8] F100\n#1=[#1+1]\no1 endwhile\nM2\n"
+    path = gx.read(text, "linuxcnc", start={"X": 0.0, "Y": 0.0, "Z": 0.0}).path
+    assert len(path) == 5000
+    assert np.array_equal(path.end[:, 0], np.arange(5000) / 8)
+
+
+def test_a_loop_that_waits_for_its_parameter_is_stopped() -> None:
+    text = b"#1=0\no1 while [1]\n#1=[#1+1]\no1 endwhile\nM2\n"
+    with pytest.raises(gx.InputError, match="GX224"):
+        _ = gx.read(text, "linuxcnc").path
+
+
+def test_check_and_info_execute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("part.nc").write_bytes(LOOP)
+    assert call("check", "-f", "linuxcnc", "part.nc").exit_code == 0
+    assert "X 0 ... 2" in call("info", "-f", "linuxcnc", "part.nc").stdout
