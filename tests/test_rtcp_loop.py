@@ -34,12 +34,12 @@ def tips(poses, errors):
     return np.einsum("nij,nj->ni", back, points)[:, :3], back[:, :3, 2]
 
 
-def cutting(text):
-    """Return the poses (n, 5) from the first tip on the dome to the last."""
+def cutting(text, near=1e-9):
+    """Return the poses (n, 5) from the first tip on the dome to the last; A is as near as that."""
     poses = positions(text, LETTERS)
     tilts = poses[:, 3]
-    first = int(np.argmax(np.abs(tilts - 58.0) < 1e-9))
-    last = len(tilts) - 1 - int(np.argmax(np.abs(tilts[::-1] - 8.0) < 1e-9))
+    first = int(np.argmax(np.abs(tilts - 58.0) < near))
+    last = len(tilts) - 1 - int(np.argmax(np.abs(tilts[::-1] - 8.0) < near))
     return poses[first : last + 1]
 
 
@@ -53,9 +53,9 @@ def beside(points, corners):
     return np.linalg.norm(points[:, None] - near, axis=2).min(axis=1)
 
 
-def far(text, dome, errors):
+def far(text, dome, errors, near=1e-9):
     """Return the largest distance, mm, of the true tip from the dome: at five places of a block."""
-    poses = cutting(text)
+    poses = cutting(text, near)
     every = np.concatenate([between(a, b, 5) for a, b in pairwise(poses)])
     return float(beside(tips(every, errors)[0], cutting(dome)[:, :3]).max())
 
@@ -103,6 +103,27 @@ def test_the_angles_are_kept(here):
     assert off[0] == off[1]
     assert 1e-4 < off[0] < 3.1e-4
     assert np.abs(before[:, :3] - after[:, :3]).max() > 0.1
+
+
+SEGMENT = '[[pass]]\nuse = "segment"\nchord-error = "1 um"\n'
+
+
+@pytest.mark.parametrize("orientation", ["keep", "correct-if-tilt"])
+def test_the_loop_in_one_step(here, orientation):
+    """`repost` takes the place of the two runs, and corrects the tool axis too if asked."""
+    dome = Path("dome.nc").read_bytes()
+    posted = run("axes.toml", "set.toml", "dome.nc", "posted.nc")
+    asked = f'direction = "repost"\ncalibrated = "true.toml"\norientation = "{orientation}"\n'
+    text = Path("axes.toml").read_text().replace("[output]", f"{asked}[output]")
+    text = text if orientation == "keep" else text.replace(SEGMENT, "")
+    Path("repost.toml").write_text(text)
+    corrected = run("repost.toml", "set.toml", "posted.nc", "corrected.nc")
+    near = 1e-9 if orientation == "keep" else 0.011
+    assert far(corrected, dome, ERRORS["A"], near) < 0.003
+    ends = [cutting(posted)[-1:], cutting(corrected, near)[-1:]]
+    axes = [tips(p, e)[1] for p, e in zip(ends, ({}, ERRORS["A"]), strict=True)]
+    off = float(np.linalg.norm(axes[0] - axes[1]))
+    assert off > 5e-5 if orientation == "keep" else off < 3e-6
 
 
 def test_the_true_machine_of_the_example_is_that_of_the_matrices(here):
