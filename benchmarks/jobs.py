@@ -23,6 +23,7 @@ READ, PLAIN = "`rs274 -g`", "plain C"
 VERIFIED, UNVERIFIED = "gcxform, verified", "gcxform, `--verify off`"
 TURNING = "gcxform, verified, 21 parameters"
 TENFOLD = "gcxform, verified, ten times the lines"
+FIVE, FIVE_UNVERIFIED = "five axes: gcxform, verified", "five axes: gcxform, `--verify off`"
 SHOP_READ, SHOP_COPIED = "shop: `rs274 -g`", "shop: gcxform, verified"
 SHOP_REWRITTEN, SHOP_UNVERIFIED = "shop: gcxform, rewritten", "shop: gcxform, `--verify off`"
 SHOP_TENFOLD = "shop: gcxform, rewritten, ten times the lines"
@@ -138,6 +139,20 @@ def shop_jobs(scratch: Path, lines: int) -> list[Job]:
         shop_job(SHOP_COPIED, program, scratch, COPIED),
         shop_job(SHOP_REWRITTEN, program, scratch, REWRITTEN),
         shop_job(SHOP_UNVERIFIED, program, scratch, COPIED, "--verify", "off"),
+    ]
+
+
+def five_axis_jobs(scratch: Path, lines: int) -> list[Job]:
+    """Return the jobs from tips to axes, on a program of a fifth of the lines."""
+    source, lines = scratch / "five-axis.nc", max(lines // 5, 10)
+    command = [sys.executable, str(HERE / "five_axis.py"), "--lines", str(lines), str(source)]
+    subprocess.run(command, check=True)
+    chain, off = "five-axis.toml", ("--verify", "off")
+    return [
+        gcxform_job(FIVE, source, scratch / "five.nc", lines, pipeline=chain),
+        gcxform_job(
+            FIVE_UNVERIFIED, source, scratch / "five-unverified.nc", lines, *off, pipeline=chain
+        ),
     ]
 
 

@@ -25,6 +25,7 @@ from pathlib import Path
 from time import perf_counter
 
 from jobs import (
+    FIVE,
     GCXFORM,
     HELP,
     LDDM,
@@ -43,6 +44,7 @@ from jobs import (
     Job,
     Sample,
     find,
+    five_axis_jobs,
     gcxform_job,
     main_jobs,
     shop,
@@ -143,7 +145,9 @@ def measure(scratch: Path, lines: int, rounds: int, tenfold: bool) -> list[Job]:
     demand_same_output(jobs)
     parts = shop_jobs(scratch, lines)
     repeat(parts, rounds, scratch)
-    jobs += [*parts, *(job for job, _ in small)]
+    tips = five_axis_jobs(scratch, lines)
+    repeat(tips, rounds, scratch)
+    jobs += [*parts, *tips, *(job for job, _ in small)]
     if tenfold:
         source = surfacing(scratch, 10 * lines)
         big = gcxform_job(TENFOLD, source, scratch / "tenfold.nc", 10 * lines)
@@ -179,6 +183,12 @@ def ratio(above: float | None, below: float | None) -> float | None:
     return above / below if above is not None and below else None
 
 
+def a_block(job: Job) -> float | None:
+    """Return the wall time of a job for each line of its program."""
+    wall = job.middle("wall")
+    return wall / job.lines if wall is not None and job.lines else None
+
+
 def limits(jobs: list[Job]) -> list[Limit]:
     """Return the figures that have a limit."""
 
@@ -189,11 +199,13 @@ def limits(jobs: list[Job]) -> list[Limit]:
         find(jobs, name).middle("peak")
         for name in (VERIFIED, TENFOLD, SHOP_REWRITTEN, SHOP_TENFOLD)
     )
+    five = ratio(a_block(find(jobs, FIVE)), a_block(find(jobs, VERIFIED)))
     return [
         Limit(f"{VERIFIED} / {READ}", ratio(wall(VERIFIED), wall(READ)), 1.0),
         Limit(f"{UNVERIFIED} / {READ}", ratio(wall(UNVERIFIED), wall(READ)), 0.5),
         Limit(f"{UNVERIFIED} / {PLAIN}", ratio(wall(UNVERIFIED), wall(PLAIN)), 2.0),
         Limit(f"{TURNING} / nine functions", ratio(wall(TURNING), wall(VERIFIED)), 2.0),
+        Limit("five axes / three axes, a block", five, 4.0),
         Limit(f"{SHOP_COPIED} / {READ}", ratio(wall(SHOP_COPIED), wall(SHOP_READ)), 1.0),
         Limit(f"{SHOP_REWRITTEN} / {READ}", ratio(wall(SHOP_REWRITTEN), wall(SHOP_READ)), 1.0),
         Limit(f"peak memory, {SHOP_REWRITTEN}", shop_peak, 400.0, " MB"),
@@ -224,8 +236,8 @@ def time_table(jobs: list[Job]) -> Iterator[str]:
         if job.failure:
             yield f"| {job.name} | {lines} | {job.failure} | | | | | |"
             continue
-        shop = job.name.startswith("shop")
-        others = (readings[shop], Job(PLAIN, []) if shop else find(jobs, PLAIN))
+        shop, other = job.name.startswith("shop"), job.name.startswith("five")
+        others = (readings[shop], Job(PLAIN, []) if shop or other else find(jobs, PLAIN))
         against = [ratio_cell(job, other) if job.lines == other.lines else "" for other in others]
         times = [f"{job.middle(quantity):.3f}" for quantity in ("wall", "cpu")]
         cells = [job.name, lines, str(len(job.samples)), *times, peak_cell(job), *against]

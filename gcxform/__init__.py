@@ -76,6 +76,7 @@ if TYPE_CHECKING:
     from gcxform.modal.codes import CutterComp as CutterComp
     from gcxform.modal.codes import MCode as MCode
     from gcxform.options import Angle as Angle
+    from gcxform.options import KinematicsFile as KinematicsFile
     from gcxform.options import Length as Length
     from gcxform.options import ModelFile as ModelFile
     from gcxform.options import Option as Option
@@ -150,7 +151,7 @@ _HOMES = {
     "tomltext": "did_you_mean read_text",
     "machine.formats": "ErrorFormat cannot_hold head_of",
     "modal.codes": "Code CutterComp MCode",
-    "options": "Angle Length ModelFile Option Vector",
+    "options": "Angle KinematicsFile Length ModelFile Option Vector",
     "pipeline": "Pipeline Result",
     "registry": "Registry",
     "syntax.tree": "Block Comment Number Word",

@@ -14,7 +14,8 @@ class Certificate:
     """The proof of one run, as plain values: `to_json` writes it.
 
     Lengths are mm, hashes SHA-256. `largest` holds the deviation and its source and output line,
-    `growth` the blocks read and written, their ratio (None where nothing was read) and its limit.
+    `growth` the blocks read and written, their ratio (None where nothing was read) and its limit,
+    `measured` what passes tell of their own work, the largest over the program.
     """
 
     version: str
@@ -26,6 +27,7 @@ class Certificate:
     verified: bool
     largest: dict[str, Any] = field(default_factory=dict)
     checked: dict[str, int] = field(default_factory=dict)
+    measured: dict[str, float] = field(default_factory=dict)
     not_checked: list[str] = field(default_factory=list)
     assumed: list[str] = field(default_factory=list)
 

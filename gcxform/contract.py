@@ -68,6 +68,13 @@ class Pass:
     resolves: ClassVar[bool] = False
     """Whether its output is what the rest of the run is compared with; then it has to `prove` it.
     No window ends where cutter compensation is in force for such a pass."""
+    whole_cuts: ClassVar[bool] = False
+    """Whether it has to see every cut as a whole: a window then ends where a rapid follows one."""
+
+    @property
+    def letters(self) -> str:
+        """The letters of axes that its output may have, whether the program names them or not."""
+        return ""
 
     @property
     def promise(self) -> float:
@@ -84,6 +91,11 @@ class Pass:
         """The feed mode that the pass turns those of others into; None: it keeps them."""
         return None
 
+    @property
+    def slows(self) -> bool:
+        """Whether its moves may take longer than their feeds say, where axes are at full speed."""
+        return False
+
     def begin(self, context: PassContext) -> None:
         """Look at the context before any input is read; raise UsageError if it does not fit."""
 
@@ -94,6 +106,15 @@ class Pass:
     def undo(self, path: Toolpath, context: PassContext) -> Toolpath:
         """Return what the machine does with a path that came from this pass."""
         return path
+
+    def measure(
+        self, before: Toolpath, after: Toolpath, context: PassContext
+    ) -> Mapping[str, float]:
+        """Return what the certificate shall say of a window besides the deviation, by its name.
+
+        Of each name the largest value of the run is told.
+        """
+        return {}
 
     def prove(self, before: Toolpath, after: Toolpath, context: PassContext) -> None:
         """Check what a pass that resolves has made of the path as read; VerificationError if wrong.

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -35,12 +35,15 @@ class FeedProof:
 
     modes         the feed modes into which passes have converted feeds, in their order
     budget        mm by which the path may be off; `angle_budget`: degrees, of rotary axes
+    speeds        by axis: the top speed (mm/min, deg/min) and what rounding may add to a way (mm,
+                  deg); at full speed a move may take longer than its feed says
     """
 
     trace: Trace
     modes: Sequence[FeedMode]
     budget: float
     angle_budget: float
+    speeds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def wrong(self) -> Iterator[Wrong]:
         """Yield where feeds are not those of the source; in inverse time, the times must add up."""
@@ -116,9 +119,24 @@ class FeedProof:
         slack = 2 * np.where(way.turns, self.angle_budget, self.budget)
         with np.errstate(divide="ignore", invalid="ignore"):
             time = np.where(inverse, 1.0, along) / written.feed
-            slow = self._sums(mine, time)[owner] / whole
+            free = mine & ~self._at_full_speed()
+            slow = (self._sums(free, time) / self._sums(free, along))[owner]
             off = np.abs(time - slow * along) > slow * (UNEVEN * along + slack)
-        return np.asarray(off & mine & (whole > 0))
+        return np.asarray(off & free & (whole > 0))
+
+    def _at_full_speed(self) -> NDArray[np.bool_]:
+        """Return the written rows in inverse time in which an axis is as fast as it can be."""
+        written = self.trace.written
+        if not self.speeds:
+            return np.zeros(len(written), np.bool_)
+        least = np.zeros(len(written))
+        step = np.abs(written.end - written.start)
+        for letter, (speed, rounding) in self.speeds.items():
+            if letter in written.axes:
+                way = step[:, written.axes.index(letter)] + rounding
+                least = np.fmax(least, way / speed)
+        timed = written.feed_mode == FeedMode.INVERSE_TIME
+        return np.asarray(timed & (least * written.feed >= 1.0 - TIME_ERROR))
 
     def _may_be_converted(self, owner: Ints) -> NDArray[np.bool_]:
         """Return the rows whose feeds a pass may have converted, there and back if there are two.
@@ -146,6 +164,7 @@ class FeedProof:
         inverse = written.feed_mode == FeedMode.INVERSE_TIME
         ways = np.where(inverse, 1.0, (new.least + new.most) / 2)
         time = self._sums(mine, ways / written.feed)[rows]
+        full = mine & self._at_full_speed()
         timed = before.feed_mode[rows] == FeedMode.INVERSE_TIME
         way = (old.least + old.most)[rows] / 2
         implied = time * before.feed[rows] * np.where(timed, way, 1.0)
@@ -154,10 +173,35 @@ class FeedProof:
         least = np.minimum(old.least[rows], self._sums(mine, new.least)[rows])
         most = np.maximum(old.most[rows], self._sums(mine, new.most)[rows])
         low, high = least * (1 - TIME_ERROR) - slack, most * (1 + TIME_ERROR) + slack
-        off = rows[~((implied >= low) & (implied <= high))]
+        late = implied > high
+        if full.any():
+            late &= ~self._late_at_full_speed(mine, full, ways, new, old)[rows]
+        off = rows[~(implied >= low) | late]
         if len(off):
             line = int(before.source[off[0]])
             yield Wrong("the time of a move is another after its feed was converted", line)
+
+    def _late_at_full_speed(
+        self,
+        mine: NDArray[np.bool_],
+        full: NDArray[np.bool_],
+        ways: Floats,
+        new: Lengths,
+        old: Lengths,
+    ) -> NDArray[np.bool_]:
+        """Return the rows of the source that are late only by their pieces at full speed.
+
+        The other pieces have no more than their share of the time.
+        """
+        free, before = mine & ~full, self.trace.before
+        rest, whole = self._sums(free, new.most), self._sums(mine, new.most)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = (1 + UNEVEN) * old.most * np.nan_to_num(rest / whole)
+            time = self._sums(free, ways / self.trace.written.feed) * before.feed
+        slack = self._sums(free, np.ones(len(free)))
+        slack *= np.where(old.turns, self.angle_budget, self.budget)
+        most = np.maximum(share, rest) * (1 + TIME_ERROR) + slack
+        return np.asarray((self._sums(full, new.most) > 0.0) & ~(time > most))
 
     def _sums(self, mine: NDArray[np.bool_], values: Floats) -> Floats:
         """Return the sums of values over the written rows `mine` of each row of the source."""

@@ -21,7 +21,10 @@ from gcxform.diagnostics import UsageError
 from gcxform.machine import modelfile
 from gcxform.machine.errors import ErrorModel
 from gcxform.machine.formats import ErrorFormat
+from gcxform.machine.machine import Machine
+from gcxform.machine.machinefile import NONE, load_machine
 from gcxform.machine.modeltext import fingerprint, to_toml
+from gcxform.machine.presets import Known
 from gcxform.machine.quantities import ANGLE, AXIS_LETTERS, LENGTH, Quantity, quantity_of
 from gcxform.tomltext import did_you_mean
 
@@ -66,6 +69,21 @@ class ModelFile:
         return replace(self, model=model, sha256=hashlib.sha256(content).hexdigest())
 
 
+@dataclass(frozen=True)
+class KinematicsFile:
+    """A machine with the file it came from; equal when the content is. `sha256` is the file's."""
+
+    path: Path = field(compare=False)
+    machine: Machine = field(compare=False, repr=False)
+    sha256: str
+
+    @classmethod
+    def load(cls, path: Path, kinematics: Known = NONE) -> KinematicsFile:
+        """Return the machine of a file; raises UsageError as `load_machine` does."""
+        machine = load_machine(path, kinematics)
+        return cls(path, machine, hashlib.sha256(path.read_bytes()).hexdigest())
+
+
 class RefusedError(Exception):
     """A value which is not what its option takes: the code, a sentence and a hint."""
 
@@ -75,10 +93,14 @@ class RefusedError(Exception):
 
 
 class Around(NamedTuple):
-    """What surrounds the values: the directory for relative paths, the formats of models."""
+    """What surrounds the values: the directory for relative paths, and what plugins know.
+
+    That is the formats of error models, and the kinds of kinematics.
+    """
 
     base: Path
     formats: tuple[type[ErrorFormat], ...] = ()
+    kinematics: Known = NONE
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,11 +142,19 @@ def _read_path(raw: object, around: Around) -> Path:
     return around.base / raw
 
 
-def _read_model(raw: object, around: Around) -> ModelFile:
+def _read_existing(raw: object, around: Around) -> Path:
     path = _read_path(raw, around)
     if not os.path.exists(path):  # unlike Path.exists, false for a name that is too long
         raise RefusedError("GX709", f"the file {str(path)!r} does not exist")
-    return ModelFile.load(path, around.formats)
+    return path
+
+
+def _read_model(raw: object, around: Around) -> ModelFile:
+    return ModelFile.load(_read_existing(raw, around), around.formats)
+
+
+def _read_machine(raw: object, around: Around) -> KinematicsFile:
+    return KinematicsFile.load(_read_existing(raw, around), around.kinematics)
 
 
 def _read_quantity(quantity: Quantity, raw: object, around: Around) -> float:
@@ -197,6 +227,7 @@ PLAIN: dict[type, Kind] = {
     str: Kind("text", partial(_read_plain, str, "a text")),
     Path: Kind("file name", _read_path, lambda path: str(path.absolute())),
     ModelFile: Kind("error model", _read_model, lambda f: str(f.path.absolute())),
+    KinematicsFile: Kind("machine file", _read_machine, lambda f: str(f.path.absolute())),
 }
 """The types that are known by themselves; all others stand in an annotation."""
 

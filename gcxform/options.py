@@ -8,8 +8,8 @@ help and the way back to TOML are derived from them.
         limit: Annotated[Length, Option(help="the longest shift", above=0)] = 1.0
 
 A field is a `Length` (mm), `Angle` (degrees), `Vector` (mm), `Coordinates`, int, float, bool, str,
-`Path`, `ModelFile`, a `Literal` or a `StrEnum`; `T | None`; or `T | dict[str, T]`, one value for
-all or one for each address letter.
+`Path`, `ModelFile`, `KinematicsFile`, a `Literal` or a `StrEnum`; `T | None`; or
+`T | dict[str, T]`, one value for all or one for each address letter.
 """
 
 from __future__ import annotations
@@ -26,10 +26,13 @@ from typing import Annotated, Any, NamedTuple, TypeVar
 
 from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.machine.formats import ErrorFormat
+from gcxform.machine.machinefile import NONE
+from gcxform.machine.presets import Known
 from gcxform.optionkinds import PLAIN, Around, Kind, RefusedError, choice_kind, written
 from gcxform.optionkinds import Angle as Angle
 from gcxform.optionkinds import Argument as Argument
 from gcxform.optionkinds import Coordinates as Coordinates
+from gcxform.optionkinds import KinematicsFile as KinematicsFile
 from gcxform.optionkinds import Length as Length
 from gcxform.optionkinds import ModelFile as ModelFile
 from gcxform.optionkinds import ParameterValues as ParameterValues
@@ -115,6 +118,7 @@ def build(
     formats: Iterable[type[ErrorFormat]],
     where: Where,
     owner: str = "",
+    kinematics: Known = NONE,
 ) -> Built:
     """Return a pass, or any dataclass of options, from the keys of its table, without `use`.
 
@@ -122,7 +126,7 @@ def build(
     for "use"; `owner` is what messages call it. Raises UsageError with all that is wrong.
     """
     owner = owner or f"the pass {getattr(pass_class, 'name', '')!r}"
-    around = Around(base, tuple(formats))
+    around = Around(base, tuple(formats), kinematics)
     specs = _specs(pass_class)
     known = [spec.key for spec in specs]
     found = [

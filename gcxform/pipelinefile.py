@@ -233,7 +233,8 @@ class _Reader:
 def _built(
     chosen: type[Step], options: Mapping[str, object], base: Path, registry: Registry, where: Any
 ) -> Step:
-    return build(chosen, options, base, registry.formats.values(), where)
+    formats, kinds = registry.formats.values(), registry.kinematics
+    return build(chosen, options, base, formats, where, kinematics=kinds)
 
 
 # --- chains on the command line ---

@@ -13,6 +13,7 @@ import numpy as np
 from gcxform.certificate import Certificate
 from gcxform.compensated import check_compensated, whole_stretches
 from gcxform.contract import Pass, TextPass
+from gcxform.cuts import whole_cuts
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.emit.emitter import Emitted, Emitter
@@ -22,7 +23,7 @@ from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import GROUPS, MeaningTable
-from gcxform.options import ModelFile, to_toml
+from gcxform.options import KinematicsFile, ModelFile, to_toml
 from gcxform.source import WINDOW, Source, lines_in
 from gcxform.syntax.scan import Window
 from gcxform.textpasses import TextRun
@@ -72,6 +73,7 @@ class Run:
             self.source = written_out(source, pipeline.source, pipeline.machine_reading)
         self.given = source
         self.reader = WindowReader(pipeline.source)
+        self.measured: dict[str, float] = {}
         self.verifier: Verifier | None = None
         self.interpreter: Interpreter | None = None
         if not pipeline.copies:
@@ -80,6 +82,8 @@ class Run:
     def _prepare(self) -> None:
         pipeline = self.pipeline
         axes = self.source.axes(pipeline.source.axes)
+        written = set(axes).union(*(step.letters for step in self.steps))
+        axes = "".join(axis for axis in pipeline.source.axes if axis in written)
         reading = _with_assumed_start(pipeline, axes)
         self.axes = axes
         self.interpreter = Interpreter(pipeline.source, reading, axes, self.source.name)
@@ -126,6 +130,8 @@ class Run:
             return
         if any(step.resolves for step in self.steps):
             texts = whole_stretches(texts)
+        if any(step.whole_cuts for step in self.steps):
+            texts = whole_cuts(texts)
         with ThreadPoolExecutor(1) as ahead, ThreadPoolExecutor(1) as behind:
             self._transform_all(behind, self._read_ahead(ahead, texts, out), out, progress)
 
@@ -250,6 +256,8 @@ class Run:
                 check_compensated(step, path, after)
         except InputError as error:
             raise _located(error, window, self.source.name) from None
+        for what, size in step.measure(path, after, self.pipeline.context).items():
+            self.measured[what] = max(size, self.measured.get(what, size))
         if self.verify == "full":
             for fact in step.ensures:
                 if not fact.check(after):
@@ -291,6 +299,7 @@ class Run:
             | {"ratio": out.growth, "limit": pipeline.growth},
             self.verifier is not None or (pipeline.copies and self.verify != "off"),
         )
+        certificate.measured = self.measured
         self._fill(certificate)
         return certificate
 
@@ -371,9 +380,9 @@ def _described(step: Pass | TextPass) -> dict[str, Any]:
     """Return a step's name, options and promise for the certificate."""
     entry: dict[str, Any] = {"use": step.name, **to_toml(step)}
     for key, value in vars(step).items():
-        if isinstance(value, ModelFile):
+        if isinstance(value, ModelFile | KinematicsFile):
             entry[key] = {"file": value.path.name, "sha256": value.sha256}
-            if value.model.states:
+            if isinstance(value, ModelFile) and value.model.states:
                 entry[key] |= {"states": [asdict(state) for state in value.model.states]}
     if isinstance(step, Pass):
         entry["promise"] = step.promise if np.isfinite(step.promise) else None

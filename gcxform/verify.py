@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from gcxform.contract import Pass, PassContext
 from gcxform.diagnostics import Diagnostic, GcxformError, Location, VerificationError
-from gcxform.dialect import INCH
+from gcxform.dialect import INCH, LINEAR
 from gcxform.feedproof import FeedProof
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.meaning import FRAMING
@@ -82,6 +82,7 @@ class Verifier:
         self.interpreter = Interpreter(context.target, reading, axes, "output")
         self.budgets = budgets
         self.feed_modes = [step.feed_mode for step in passes if step.feed_mode is not None]
+        self.speeds = _speeds(context) if any(step.slows for step in passes) else {}
         self.inch = False
         self.angle_budget = angle_budget
         self.file = file
@@ -169,7 +170,8 @@ class Verifier:
         return np.where(free, 0.0, distance)
 
     def _proof(self, trace: Trace) -> FeedProof:
-        return FeedProof(trace, self.feed_modes, self.budget, self.angle_budget)
+        speeds = self.speeds
+        return FeedProof(trace, self.feed_modes, self.budget, self.angle_budget, speeds)
 
     def _note_worst(self, distance: float, trace: Trace, row: int) -> None:
         self.findings.deviation = distance
@@ -277,6 +279,16 @@ class Verifier:
             message += f" (output line {output_line + 1})"
         hint = "nothing was written; if the pipeline is right this is a bug of gcxform or a plugin"
         raise VerificationError((Diagnostic("GX601", message, where, hint),))
+
+
+def _speeds(context: PassContext) -> dict[str, tuple[float, float]]:
+    """Return the top speeds that the machine file has, by axis, and the last decimals written."""
+    numbers, found = context.numbers, {}
+    for letter, axis in context.machine.axes.items() if context.machine else ():
+        if axis.max_speed is not None:
+            known = context.decimals.get(letter, numbers.mm if letter in LINEAR else numbers.angle)
+            found[letter] = axis.max_speed, 10.0**-known
+    return found
 
 
 def _in_mm(event: Event, path: Toolpath) -> Event:

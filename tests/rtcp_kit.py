@@ -34,14 +34,17 @@ def machine_text(name, chain):
     return "\n".join(lines) + "\n"
 
 
-def pipeline(folder, machine, decimals=3, **options):
+SEGMENT = '[[pass]]\nuse = "segment"\nchord-error = 0.001\n'
+
+
+def pipeline(folder, machine, decimals=3, before=SEGMENT, after="", **options):
     """Return the pipeline of `rtcp` with options, for the text of a machine file."""
     (folder / "machine.toml").write_text(machine)
     said = "\n".join(f"{key.replace('_', '-')} = {value!r}" for key, value in options.items())
     (folder / "p.toml").write_text(
         'format = 1\n[input]\ndialect = "fanuc"\n[machine]\nfile = "machine.toml"\n'
-        '[[pass]]\nuse = "absolute"\n[[pass]]\nuse = "segment"\nchord-error = 0.001\n'
-        f'[[pass]]\nuse = "rtcp"\n{said}\n[output]\ndecimals = {decimals}\n'
+        f'[[pass]]\nuse = "absolute"\n{before}'
+        f'[[pass]]\nuse = "rtcp"\n{said}\n{after}[output]\ndecimals = {decimals}\n'
     )
     return gx.Pipeline.load(folder / "p.toml")
 

@@ -39,6 +39,7 @@ ELSEWHERE = {
     "GX605": "test_table_verb.py",
     "GX602": "test_corpus.py",  # a pass that does not ensure what it says
     "GX604": "test_cutter_comp.py",
+    "GX606": "test_rtcp_choice.py",
     "GX603": "test_corpus.py",  # a text pass that changes words
     "GX712": "test_pipelinefile.py",  # a chain on the command line
     "GX801": "test_plugin_dist.py",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -16,6 +17,7 @@ from rtcp_kit import (
     KINDS,
     LENGTH,
     ROUNDED,
+    SEGMENT,
     aside,
     axes,
     between,
@@ -155,6 +157,45 @@ def test_the_time_is_that_of_the_tip(tmp_path):
         assert sum(1.0 / feed for feed in feeds) == pytest.approx(way / 600.0, rel=1e-3)
 
 
+@pytest.mark.parametrize("path", ["angles", "great-circle"])
+@pytest.mark.parametrize("kind", ["cb-fork", "bc-trunnion"])
+def test_no_axis_is_faster_than_it_can_be(tmp_path, kind, path):
+    """Near the pole C would be: then the piece takes longer, and others take what they did."""
+    chain = chain_of_kind(kind, 11)
+    letters = ("X", "Y", "Z", *chain.letters)
+    tilt = chain.letters.index("B") + 3
+    poses = np.zeros((6, 5))
+    poses[:, 0] = [0, 9, 18, 24, 33, 60]
+    poses[:, tilt] = [9, 5, 2, 3, 12, 50]
+    poses[:, 7 - tilt] = [10, 14, 30, 85, 99, 101]
+    text = program(poses, letters).replace(b"G0 X0. Y0. ", b"G0 X0. Y0. Z0. ")
+    text = re.sub(rb"\nG1 (\S+) F600.\n(\S+)", rb"\nG0 \1\nG1 \2 F600.", text)
+    machine = machine_text(kind, chain)
+    speeds = {"X": 500.0, "Y": 5000.0, "C": 400.0}
+    for letter, speed in speeds.items():
+        head = f"[axis.{letter}]\n"
+        machine = machine.replace(head, f"{head}max-speed = {speed}\n")
+    options = {"tolerance": 0.005, "rapids": "ends", "orientation_path": path}
+    before = "" if path != "angles" else SEGMENT
+    result = pipeline(tmp_path, machine, before=before, **options).run(text, "full")
+    old, new = positions(text, letters), positions(result.text, letters)
+    lines, owner = result.text.decode().splitlines(), np.array(result.source_map)
+    columns, fast = [letters.index(a) for a in speeds], np.array([*speeds.values()])
+    slowest, free = 1.0, 0
+    for line in range(4, len(old) - 1):
+        rows = np.flatnonzero(owner == line)
+        share = np.linalg.norm((old[line] - old[line - 1])[:3]) / 600.0 / len(rows)
+        for row in rows:
+            time = 1.0 / float(re.search(r"F([\d.]+)", lines[row])[1])
+            least = (np.abs(new[row] - new[row - 1])[columns] / fast).max()
+            assert time == pytest.approx(max(share, least), rel=2e-2)
+            slowest, free = max(slowest, time / share), free + (least < share)
+    assert slowest > 1.5
+    assert free
+    told = result.certificate.measured["slower than its feed, times"]
+    assert told == pytest.approx(slowest, rel=2e-2)
+
+
 def test_no_rotation_no_change(tmp_path):
     """With all rotary axes at 0 tip and axes are one, to the last digit."""
     chain = chain_of_kind("bc-trunnion", 2)
@@ -267,3 +308,31 @@ def test_undone_pieces_stay_beside_the_curve(tmp_path, kind, direction):
         found = model(chain, between(*way, 401))
         far = [aside(found, a, b) for a, b in zip(start, ends, strict=True)]
         assert np.min(far, axis=0).max() <= undone.slack + 1e-6
+
+
+@pytest.mark.parametrize(
+    ("factor", "good"), [(1.0, True), (0.5, False), (0.6, False), (2.0, False)]
+)
+def test_a_late_move_has_to_have_a_reason(tmp_path, factor, good):
+    """The proof refuses other times of pieces in which no axis is at full speed."""
+    chain = chain_of_kind("bc-trunnion", 3)
+    machine = machine_text("bc-trunnion", chain)
+    machine = machine.replace("[axis.C]\n", "[axis.C]\nmax-speed = 400.0\n")
+    poses = np.array([[0.0, 0, 0, 10, 0], [9, 0, 0, 10, 2], [18, 0, 0, 10, 70]])
+    text = program(poses, "XYZBC").replace(b"Y0. ", b"Y0. Z0. ")
+    steps = pipeline(tmp_path, machine, tolerance=0.02)
+    step = next(step for step in steps.path_passes if step.name == "rtcp")
+
+    class Wrong(type(step)):
+        def apply(self, path, context):
+            after = super().apply(path, context)
+            feed = np.where(after.source == 4, factor * after.feed, after.feed)
+            return after.replace(feed=feed)
+
+    options = {"tolerance": 0.02}
+    wrong = replace(steps, passes=(*steps.passes[:-1], Wrong(**options)))
+    if good:
+        assert wrong.run(text).certificate.verified
+        return
+    with pytest.raises(gx.VerificationError):
+        wrong.run(text)

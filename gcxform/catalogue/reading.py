@@ -86,7 +86,9 @@ CODES: dict[str, tuple[str, str]] = {
         "tell: a canned cycle, a return to reference, tool length or radius compensation, an "
         "offset in the control, a subprogram. A pass that needs positions would work on wrong "
         "ones. Let the CAM system write plain moves, end the mode before the part that is "
-        "transformed, or leave such programs to pipelines that change text only.",
+        "transformed, or leave such programs to pipelines that change text only. Of a code with "
+        "which the control follows the tip (G43.4, G43.5, G234) `rtcp` does the work: have the "
+        "CAM write G43 for tips; for positions of axes there is nothing to follow.",
     ),
     "GX211": (
         "Block delete depends on a switch",
@@ -293,6 +295,28 @@ CODES: dict[str, tuple[str, str]] = {
         "An axis would go beyond its limits",
         "Where the tip shall be, the axes of the machine do not reach. Place the part elsewhere, "
         "take another tool, or let the CAM choose other angles.",
+    ),
+    "GX332": (
+        "A tool axis that the machine cannot reach",
+        "No angles of the machine's rotary axes give the tool this direction on the workpiece. "
+        "Place the part otherwise, or let the CAM lean the tool less.",
+    ),
+    "GX333": (
+        "The tool axis comes too near to the pole",
+        "Where the tool axis lies along the first rotary axis, that axis has no angle of its own; "
+        "beside it a small lean of the tool is a long turn. Inside a cut it would have to leap. "
+        "Lead the tool through the pole or farther beside it, or lift it off and turn the axis.",
+    ),
+    "GX334": (
+        "The tool axis comes to the border of reach",
+        "At the end of what the axes reach both attitudes are one, and behind it there is none; "
+        "near it a small lean of the tool is a long turn. Let the CAM stay inside.",
+    ),
+    "GX335": (
+        "The axes would have to flip over inside a cut",
+        "The limits of the rotary axes leave no way along this cut, whatever attitude and turn it "
+        "begins with. Lift the tool off where it is said, and begin another cut there; or "
+        "turn the part on the table.",
     ),
     "GX350": (
         "A contour that the tool cannot follow",

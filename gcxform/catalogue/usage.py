@@ -16,6 +16,12 @@ CODES: dict[str, tuple[str, str]] = {
         "written. This is a bug of the format: report it to the author of the plugin, see `gcxform "
         "list formats`.",
     ),
+    "GX606": (
+        "A program for another machine does not keep the tool where it was",
+        "The path that `rtcp` made was followed by the forward models of both machines, and tip, "
+        "tool axis or time are not those of the program. Nothing was written. This is a bug of "
+        "gcxform or of a plugin; please report it with the program.",
+    ),
     "GX701": (
         "Unknown key in a pipeline",
         "A pipeline file, or an option of a pass, has a key which means nothing there; a misspelt "
@@ -191,6 +197,17 @@ CODES: dict[str, tuple[str, str]] = {
         "Where the axes turn, and whether they turn the table or the head, is in the machine "
         "file: name its `kinematics`, or list its axes in `table` and `head`, and give each axis "
         "a direction and a point.",
+    ),
+    "GX743": (
+        "The calibrated machine is another one",
+        "`rtcp` corrects a program for the measured places of the same rotary axes: both files "
+        "name them in the same order on the same sides, with the same gauge point. Take the file "
+        "that `gcxform calibrate rotary` has written from the one of [machine].",
+    ),
+    "GX744": (
+        "A program cannot be written for the target machine",
+        "`rtcp` finds the angles of machines with two rotary axes that count on, and it writes "
+        "for the tools that the program was read with. Mend the file of the target machine.",
     ),
     "GX801": (
         "Two plugins offer the same name",

@@ -65,7 +65,8 @@ def chain(pipeline: Pipeline) -> list[str]:
             if facts := getattr(step, name):
                 lines.append(f"       {name:8} {_names(facts)}")
         lines.append(f"       then     {_names(facts_after(pipeline.path_passes, done))}")
-        lines.append(f"       promise  {_length(step.promise)}")
+        proved = "proved by itself, and then exact"
+        lines.append(f"       promise  {proved if step.resolves else _length(step.promise)}")
     return [*lines, f"write  {pipeline.target.name}", *_budget(pipeline)]
 
 

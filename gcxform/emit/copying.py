@@ -94,6 +94,7 @@ class Copying:
     def _refuse_unknown(self) -> None:
         """Refuse words that have to be written anew while it is not known what they would be."""
         unknown = self.positions.programmed & np.isnan(self.positions.held)
+        unknown[:, [axis in self.path.left_out for axis in self.path.axes]] = False
         anew = ~self.lines[self.path.block] & self.path.is_free
         rows = np.flatnonzero(anew & unknown.any(axis=1))
         if len(rows):
@@ -265,7 +266,7 @@ class Copying:
         still = np.abs(old_way) <= EXACT
         cycle = np.isin(self.path.form[rows], (Form.CYCLE, Form.SPLINE))[:, None]
         as_far = (np.abs(way - old_way) <= EXACT) & (incremental | (still & ~cycle))
-        good = (same | as_far).all(axis=1)
+        good = (same | as_far | self._other_axes(rows, others)).all(axis=1)
         if self.path.frames == self.original.frames:
             return np.asarray(good)
         good &= self._same_diameters(rows, others)
@@ -273,6 +274,16 @@ class Copying:
         alike = (np.abs(words - before) <= EXACT) | (np.isnan(words) & np.isnan(before))
         framed = (self.path.form[rows] == Form.HOME) & (self.path.nth[rows] == 0)
         return np.asarray(good & (alike.all(axis=1) | incremental[:, 0] | ~(framed | cycle[:, 0])))
+
+    def _other_axes(self, rows: Ints, others: Ints) -> Flags | bool:
+        """Return which axes of rows are those of another machine, and neither named nor moved."""
+        if not self.path.left_out:
+            return False
+        left = np.array([axis in self.path.left_out for axis in self.path.axes])
+        way = self.path.end[rows] - self.path.start[rows]
+        before = self.original.start[others], self.original.end[others]
+        new = np.isnan(before[0]) & np.isnan(before[1]) & (np.abs(way) <= EXACT)
+        return np.asarray((left & ~self.positions.programmed[rows]) | new)
 
     def _same_frames(self, rows: Ints, others: Ints) -> Flags | bool:
         """Return which rows are in frames that turn words as those of the source did."""

@@ -61,14 +61,24 @@ class Rotary:
 def turned(vectors: FloatArray, direction: Triple, degrees: FloatArray) -> FloatArray:
     """Return vectors (..., 3) turned right-handed about a unit vector by angles (...).
 
-    The formula of Rodrigues: v + sin K v + (1 - cos) K K v, with K v = direction x v.
+    The formula of Rodrigues: v + sin K v + (1 - cos) K K v, with K v = direction x v. Column by
+    column, because products with small matrices are slow.
     """
-    radians = np.radians(np.fmod(degrees, 360.0))[..., None]
+    radians = np.radians(np.fmod(degrees, 360.0))
+    sine, rest = np.sin(radians), 1.0 - np.cos(radians)
     x, y, z = direction
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sideways = vectors @ cross.T
-    inwards = vectors @ (cross @ cross).T
-    return np.asarray(vectors + np.sin(radians) * sideways + (1.0 - np.cos(radians)) * inwards)
+    a, b, c = vectors[..., 0], vectors[..., 1], vectors[..., 2]
+    sideways = y * c - z * b, z * a - x * c, x * b - y * a
+    inwards = (
+        y * sideways[2] - z * sideways[1],
+        z * sideways[0] - x * sideways[2],
+        x * sideways[1] - y * sideways[0],
+    )
+    shape = np.broadcast_shapes(vectors.shape[:-1], degrees.shape)
+    found = np.empty((*shape, 3))
+    for k, (own, across, back) in enumerate(zip((a, b, c), sideways, inwards, strict=True)):
+        found[..., k] = own + sine * across + rest * back
+    return found
 
 
 @dataclass(frozen=True)

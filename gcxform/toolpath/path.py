@@ -175,6 +175,7 @@ class Toolpath:
     first           the work offset from whose zero positions count
     folded          whether frames are folded into the words: codes that set them are not written
     joined          whether rows may stand for several: blocks left without one are not written
+    left_out        letters of axes that are not written, because the machine has none such
     after_rapid     whether the move before the first row was a rapid
     after_side      side of cutter compensation of the move before the first row
     refit_centres   whether centres may be moved so that both ends are on the circle as formatted
@@ -204,6 +205,7 @@ class Toolpath:
     first: str = "G54"
     folded: bool = False
     joined: bool = False
+    left_out: str = ""
     after_rapid: bool = False
     after_side: int = 0
     refit_centres: bool = True

@@ -20,8 +20,8 @@ MUTATIONS = (
     Mutation(
         "chain: everything turns the other way",
         CHAIN,
-        "[[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]",
-        "[[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]",
+        "found[..., k] = own + sine * across + rest * back",
+        "found[..., k] = own - sine * across + rest * back",
         TESTS,
     ),
     Mutation(

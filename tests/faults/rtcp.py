@@ -9,6 +9,13 @@ BOUND = f"{PASSES}/rtcp_bound.py"
 CUTTING = f"{PASSES}/rtcp_cutting.py"
 PLACE = f"{PASSES}/rtcp_place.py"
 UNDOING = f"{PASSES}/rtcp_undoing.py"
+SMALL = f"{PASSES}/rtcp_small.py"
+WAYS = f"{PASSES}/rtcp_ways.py"
+REPOST = "tests/test_rtcp_repost.py"
+CHOICE = f"{PASSES}/rtcp_choice.py"
+MOVING = f"{PASSES}/rtcp_moving.py"
+PROOF = f"{PASSES}/rtcp_proof.py"
+CHOOSING = "tests/test_rtcp_choice.py"
 HOLDS = f"{TESTS}::test_the_bound_holds_for_any_piece"
 
 MUTATIONS = (
@@ -74,5 +81,117 @@ MUTATIONS = (
         "return np.asarray(table**2 * far + 2.0 * table * way + head**2 * arm)",
         "return np.asarray(2.0 * table * way + head**2 * arm)",
         f"{TESTS}::test_undone_pieces_stay_beside_the_curve",
+    ),
+    Mutation(
+        "rtcp: a point beside the axis is corrected in proportion",
+        SMALL,
+        "second * far + 2.0 * first * fast + size * bent + step**2 * aside,",
+        "second * far + 2.0 * first * fast + size * bent,",
+        f"{REPOST}::test_the_bound_of_corrections_holds",
+    ),
+    Mutation(
+        "rtcp: an axis that leans is corrected in proportion",
+        SMALL,
+        "size, first, second = 2.0 * lean, step * lean, 2.0 * step**2 * lean",
+        "size, first, second = 2.0 * lean, step * lean, 0.0 * step**2 * lean",
+        f"{REPOST}::test_the_bound_of_an_axis_that_leans",
+    ),
+    Mutation(
+        "rtcp: a program is corrected for the machine that it was posted for",
+        WAYS,
+        "return self.axes.axes_of(tips, angles, rows)",
+        "return self.nominal.axes_of(tips, angles, rows)",
+        f"{REPOST}::test_reposted_before_rounding",
+    ),
+    Mutation(
+        "rtcp: the tool axis that stays off is that of one machine",
+        f"{PASSES}/rtcp.py",
+        "for p in (way.nominal, way.axes))",
+        "for p in (way.nominal, way.nominal))",
+        f"{REPOST}::test_reposted_before_rounding",
+    ),
+    Mutation(
+        "rtcp: what is undone bends as if the tip went straight",
+        UNDOING,
+        "return np.asarray(turns**2 * far + 2.0 * turns * way + 2.0 * head**2 * arm)",
+        "return np.asarray(0.0 * turns * way)",
+        f"{REPOST}::test_undone_pieces_stay_beside_the_curve",
+    ),
+    Mutation(
+        "rtcp: the way to a candidate is the one to the nearest before it",
+        CHOICE,
+        "cost = before.cost[:, None] + way.sum(axis=-1)",
+        "cost = 0.0 * before.cost[:, None] + way.sum(axis=-1)",
+        f"{CHOOSING}::test_no_way_is_cheaper",
+    ),
+    Mutation(
+        "rtcp: axes may leap inside a cut",
+        CHOICE,
+        "cost = np.where(way.max(axis=-1, initial=0.0) > LEAP, np.inf, cost)",
+        "cost = np.where(way.max(axis=-1, initial=0.0) > 8 * LEAP, np.inf, cost)",
+        f"{CHOOSING}::test_a_long_sweep_begins_at_the_right_turn",
+    ),
+    Mutation(
+        "rtcp: at the pole the free angle is any",
+        CHOICE,
+        "own[:, free] = np.tile(held, len(own) // len(held))",
+        "own[:, free] = 0.0",
+        f"{CHOOSING}::test_before_a_cut_the_free_axis_is_where_the_cut_needs_it",
+    ),
+    Mutation(
+        "rtcp: angles are corrected fully up to the largest turn, and above it",
+        MOVING,
+        "share = np.clip(2.0 - 2.0 * turn / largest, 0.0, 1.0)[:, None]",
+        "share = np.clip(2.0 - 0.0 * turn / largest, 0.0, 1.0)[:, None]",
+        f"{REPOST}::test_no_angle_is_corrected_by_more_than_asked",
+    ),
+    Mutation(
+        "rtcp: the proof takes the tip of the source for both",
+        PROOF,
+        "off = np.linalg.norm(found[0][0] - found[1][0], axis=1) + slack",
+        "off = np.linalg.norm(found[0][0] - found[0][0], axis=1) + slack",
+        f"{CHOOSING}::test_the_proof_sees_what_is_wrong",
+    ),
+    Mutation(
+        "rtcp: the proof does not look at the tool axis",
+        PROOF,
+        "self.lean = max(self.lean, float(np.degrees(lean.max())))",
+        "self.lean = max(self.lean, 0.0 * float(np.degrees(lean.max())))",
+        f"{REPOST}::test_a_program_for_another_machine",
+    ),
+    Mutation(
+        "rtcp: a slip between axes does not bend",
+        SMALL,
+        "second * far + 2.0 * first * fast + size * bent,",
+        "0.0 * far,",
+        f"{REPOST}::test_the_bound_holds_with_slips",
+    ),
+    Mutation(
+        "rtcp: the tool axis goes evenly between its ends, and not on the circle",
+        f"{PASSES}/rtcp_circling.py",
+        "left = np.where(short, 1.0 - part, np.sin((1.0 - part) * angle) / whole)",
+        "left = np.where(short, 1.0 - part, 1.0 - part)",
+        f"{CHOOSING}::test_blocks_of_a_great_circle",
+    ),
+    Mutation(
+        "rtcp: the proof lets the tool axis stand still",
+        PROOF,
+        "axis = np.cos(angle)[:, None] * one + np.sin(angle)[:, None] * np.cross(pole, one)",
+        "axis = np.cos(angle)[:, None] * one + 0.0 * np.cross(pole, one)",
+        f"{CHOOSING}::test_blocks_of_a_great_circle",
+    ),
+    Mutation(
+        "rtcp: the top speed of one axis counts for all",
+        CUTTING,
+        "least = np.maximum(least, way / axis.max_speed)",
+        "least = way / axis.max_speed",
+        f"{TESTS}::test_no_axis_is_faster_than_it_can_be",
+    ),
+    Mutation(
+        "feeds: a move may be late without an axis at full speed",
+        "gcxform/feedproof.py",
+        "return np.asarray(timed & (least * written.feed >= 1.0 - TIME_ERROR))",
+        "return np.asarray(timed & (least * written.feed >= 0.0))",
+        f"{TESTS}::test_a_late_move_has_to_have_a_reason",
     ),
 )

@@ -113,9 +113,8 @@ class Fanuc(gx.Dialect):
         **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
         "G43": v.frame("tool-length", "length", "H"),
         "G44": v.frame("tool-length", "length-negative", "H"),
-        **{
-            code: v.barrier("tool-length", v.LENGTH, "HIJK") for code in ("G43.1", "G43.4", "G43.5")
-        },
+        "G43.1": v.barrier("tool-length", v.LENGTH, "HIJK"),
+        **{code: v.barrier("tool-length", v.FOLLOWING, "HIJK") for code in ("G43.4", "G43.5")},
         "G15": v.frame("polar", "no-polar"),
         "G16": v.frame("polar", "polar"),
         "G50": v.frame("scaling", "no-scale"),

@@ -80,7 +80,7 @@ class Haas(Fanuc):
         **{code: v.barrier("cycle", v.SYNCHRONISED, "EIJKLPQR") for code in ("G174", "G184")},
         "G141": v.barrier("cutter-comp", v.COMP, "DIJK"),
         "G143": v.barrier("tool-length", v.LENGTH, "H"),
-        "G234": v.barrier("tool-length", v.LENGTH, "H"),
+        "G234": v.barrier("tool-length", v.FOLLOWING, "H"),
         **{code: v.barrier("transform", v.TRANSFORM, "IJKPQ") for code in ("G268", "G269")},
         **{code: v.barrier("transform", v.TRANSFORM) for code in ("G253", "G254", "G255")},
         **{code: v.barrier("non-modal", v.PROBE, "DHIJKPQR") for code in ("G35", "G136")},

@@ -5,6 +5,9 @@ other takes them for its axes, and between two blocks it moves all axes in propo
 leaves its line, by as much as the axes turn. Here lines are cut until the bound of that is within
 the tolerance, and of each piece the angles are rounded first and X, Y, Z computed from them.
 
+Where the axes are not quite where the kinematics of the post-processor have them, `repost` corrects
+a program in axes: the tip goes where it would have gone, at the angles of the program.
+
 At the same angles the tip is as far from its line as the axes are from theirs, because tip and axes
 are apart by a rotation and an arm that the angles alone fix. So one bound serves both directions.
 """
@@ -17,16 +20,20 @@ from typing import Annotated, Literal
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.passes.rtcp_cutting import Cutting
-from gcxform_plugins.passes.rtcp_place import Place
+from gcxform_plugins.passes.rtcp_circling import Circling
+from gcxform_plugins.passes.rtcp_cutting import STILL, Cutting
+from gcxform_plugins.passes.rtcp_moving import Correcting, Moving
+from gcxform_plugins.passes.rtcp_place import Place, turned_at
+from gcxform_plugins.passes.rtcp_proof import Driven, Led, Proof
 from gcxform_plugins.passes.rtcp_undoing import Undoing
+from gcxform_plugins.passes.rtcp_ways import Between, Corrected
 
 PLAIN = frozenset({gx.ABSOLUTE, gx.LINEAR_ONLY, gx.NOMINAL})
 
 
 @dataclass(frozen=True)
 class Rtcp(gx.Pass):
-    """Turn positions of the tool tip into those of the machine's axes, or the reverse.
+    """Turn positions of the tool's tip into those of the axes, or the reverse, or correct the axes.
 
     The machine file says where the rotary axes are, and the work offset and the tool lengths that
     hold. The work offset is taken on the table with all rotary axes at 0. Axes turn in proportion
@@ -41,30 +48,95 @@ class Rtcp(gx.Pass):
 
     tolerance: Annotated[gx.Length, gx.Option("how far the tip may leave its line", above=0.0)]
     direction: Annotated[
-        Literal["to-machine", "to-tip"],
-        gx.Option("to-machine: of tips, write axes; to-tip: of axes, write tips"),
+        Literal["to-machine", "to-tip", "repost", "retarget"],
+        gx.Option(
+            "to-machine: of tips, write axes; to-tip: of axes, write tips; repost: of axes, write "
+            "those that take the tip there on the calibrated machine; retarget: on another machine"
+        ),
     ] = "to-machine"
     rapids: Annotated[
         Literal["refuse", "ends"],
         gx.Option("rapids that turn axes: refuse them, or convert where they end"),
     ] = "refuse"
+    calibrated: Annotated[
+        gx.KinematicsFile | None,
+        gx.Option("repost: the machine as it was measured; [machine] is the one posted for"),
+    ] = None
+    orientation: Annotated[
+        Literal["keep", "correct", "correct-if-tilt"],
+        gx.Option("repost: keep the angles, or correct them too; if-tilt: not near the pole"),
+    ] = "keep"
+    largest_turn: Annotated[
+        gx.Angle, gx.Option("repost: by how much an angle may be corrected", above=0.0)
+    ] = 0.5
+    target: Annotated[
+        gx.KinematicsFile | None,
+        gx.Option("retarget: the machine to write for; [machine] is the one posted for"),
+    ] = None
+    orientation_path: Annotated[
+        Literal["angles", "great-circle"],
+        gx.Option("to-machine: between blocks angles change in proportion, or the tool axis does"),
+    ] = "angles"
+    axis_tolerance: Annotated[
+        gx.Angle,
+        gx.Option("how far the tool axis may lean from its way, where angles change", above=0.0),
+    ] = 0.1
 
     def __post_init__(self) -> None:
-        """Turn the facts round for the reverse."""
+        """Turn the facts round for the reverse. Raises ValueError for options that do not fit."""
+        self._check_options()
+        if self.direction in ("repost", "retarget"):
+            object.__setattr__(self, "requires", PLAIN | self.ensures)
+            object.__setattr__(self, "clears", frozenset())
+        if self.turns_anew:
+            object.__setattr__(self, "requires", self.requires - {gx.LINEAR_ONLY})
+            object.__setattr__(self, "resolves", True)
+            object.__setattr__(self, "whole_cuts", self.direction == "retarget")
         if self.direction == "to-tip":
             object.__setattr__(self, "requires", PLAIN | self.ensures)
             object.__setattr__(self, "ensures", self.clears)
             object.__setattr__(self, "clears", frozenset({gx.AXIS_POSITIONS}))
 
+    def _check_options(self) -> None:
+        if (self.direction == "repost") != (self.calibrated is not None):
+            raise ValueError("repost takes calibrated, the file of the measured machine")
+        if (self.direction == "retarget") != (self.target is not None):
+            raise ValueError("retarget takes target, the file of the machine to write for")
+        if self.direction != "repost" and self.orientation != "keep":
+            raise ValueError("orientation is an option of repost")
+        if self.direction != "to-machine" and self.orientation_path != "angles":
+            raise ValueError("orientation-path is an option of to-machine")
+        if self.direction == "retarget" and self.rapids == "refuse":
+            raise ValueError('retarget turns axes in rapids: say rapids = "ends" if all is clear')
+
+    @property
+    def turns_anew(self) -> bool:
+        """Whether other angles are written than the program has, in proportion."""
+        return (
+            self.direction == "retarget"
+            or self.orientation != "keep"
+            or self.orientation_path == "great-circle"
+        )
+
+    @property
+    def letters(self) -> str:
+        """The rotary axes of the target."""
+        return "" if self.target is None else "".join(gx.chain_of(self.target.machine).letters)
+
     @property
     def promise(self) -> float:
-        """The tolerance."""
-        return self.tolerance
+        """The tolerance; nothing where the path is proved before it is written."""
+        return 0.0 if self.turns_anew else self.tolerance
 
     @property
     def feed_mode(self) -> gx.FeedMode | None:
         """Inverse time, in which the feed of the tip can be said whatever the axes do."""
         return gx.FeedMode.INVERSE_TIME if self.direction == "to-machine" else None
+
+    @property
+    def slows(self) -> bool:
+        """Whether moves may be slower, where axes would be too fast."""
+        return self.direction == "to-machine"
 
     def begin(self, context: gx.PassContext) -> None:
         """Refuse a run without a machine that turns."""
@@ -73,13 +145,186 @@ class Rtcp(gx.Pass):
             message = "rtcp needs a machine with rotary axes"
             hint = "[machine] file = ..., with `kinematics`, or `table` and `head`"
             raise gx.UsageError.one("GX742", message, hint=hint)
-        gx.chain_of(machine)
+        self._check_calibrated(gx.chain_of(machine))
+        self._check_target(context)
+
+    def _check_calibrated(self, posted: gx.Chain) -> None:
+        """Refuse a calibrated machine that is another one."""
+        if self.calibrated is None:
+            return
+        measured = gx.chain_of(self.calibrated.machine)
+        alike = ("letters", "tip"), tuple(len(side) for side in (posted.table, posted.head))
+        names, sides = alike
+        same = all(getattr(posted, name) == getattr(measured, name) for name in names)
+        if not same or sides != (len(measured.table), len(measured.head)):
+            message = "the calibrated machine has other rotary axes, or another gauge point"
+            hint = "take the machine file that `gcxform calibrate` has made of the one of [machine]"
+            raise gx.UsageError.one("GX743", message, hint=hint)
+
+    def _check_target(self, context: gx.PassContext) -> None:
+        """Refuse a target whose angles are not found, and one with other tools."""
+        machine = context.machine
+        assert machine is not None
+        files = [file.machine for file in (self.calibrated, self.target) if file is not None]
+        for other in (files or [machine]) if self.turns_anew else ():
+            chain = gx.chain_of(other)
+            gx.attitudes(chain, np.array([[0.0, 0.0, 1.0]]))
+            wrapped = [axis.letter for axis in chain.axes if axis.wrap is not None and files]
+            if len(chain.axes) != 2 or wrapped:
+                self._refuse_target(wrapped)
+        for number, tool in self.target.machine.tools.items() if self.target else ():
+            if machine.tools.get(number, tool) != tool:
+                message = f"tool {number} is another one in the file of the target"
+                hint = "give both machine files the tools that the program is for"
+                raise gx.UsageError.one("GX744", message, hint=hint)
+
+    @staticmethod
+    def _refuse_target(wrapped: list[str]) -> None:
+        message = "angles are found for machines with two rotary axes"
+        hint = ""
+        if wrapped:
+            message = f"which way {wrapped[0]} turns is not known: the machine file gives it a wrap"
+            hint = "leave wrap out, and give limits, if the control counts full turns"
+        raise gx.UsageError.one("GX744", message, hint=hint)
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
-        """Return the path of the axes for one of tips; the reverse if asked."""
-        if len(path):
-            path = Cutting(self, path, context, Place(path, context)).run()
+        """Return the path of the axes for one of tips; if asked the reverse, or one corrected."""
+        if not len(path) or self._nothing_to_correct(context):
+            return path.replace(blocks=self.timed(path.blocks))
+        if self.turns_anew:
+            source, target = self._machines(path, context)
+            path = self._moving(self, path, context, source, target).run()
+        else:
+            place = Place(path, context)
+            way = self._corrected(path, context) or Between(place, self.direction == "to-machine")
+            path = Cutting(self, path, context, place, way).run()
         return path.replace(blocks=self.timed(path.blocks))
+
+    def _nothing_to_correct(self, context: gx.PassContext) -> bool:
+        """Whether the calibrated machine is where the one posted for is."""
+        if self.calibrated is None or context.machine is None:
+            return False
+        pairs = zip(
+            gx.chain_of(context.machine).axes,
+            gx.chain_of(self.calibrated.machine).axes,
+            strict=True,
+        )
+        return all(
+            (one.direction, one.point, one.sign) == (other.direction, other.point, other.sign)
+            for one, other in pairs
+        )
+
+    def _corrected(self, path: gx.Toolpath, context: gx.PassContext) -> Corrected | None:
+        return None if self.calibrated is None else Corrected(*self._machines(path, context))
+
+    def _machines(self, path: gx.Toolpath, context: gx.PassContext) -> tuple[Place, Place]:
+        """Return the places of the machine posted for, and of the one that is written for.
+
+        A calibrated machine has the work offset of the other: it is what the operator has set.
+        """
+        if self.target is None:
+            place = Place(path, context)
+            if self.calibrated is None:
+                return place, place
+            return place, Place(path, context, gx.chain_of(self.calibrated.machine))
+        assert context.machine is not None
+        there = replace(context, machine=self.target.machine)
+        source = Place(path, context, others=self.letters)
+        return source, Place(path, there, others="".join(source.chain.letters))
+
+    def speeds(self, context: gx.PassContext) -> list[tuple[str, float]]:
+        """Return the axes whose top speed the machine file has, where it counts."""
+        if not self.slows or context.machine is None:
+            return []
+        axes = context.machine.axes.items()
+        return [(a, axis.max_speed) for a, axis in axes if axis.max_speed is not None]
+
+    @property
+    def _moving(self) -> type[Moving]:
+        if self.target is not None:
+            return Moving
+        return Circling if self.calibrated is None else Correcting
+
+    def prove(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> None:
+        """Check tips, tool axes and feeds of a program for another machine."""
+        if len(before) and not self._nothing_to_correct(context):
+            lean, turn = self._leans()
+            self._proof(before, after, context).check(lean, turn)
+
+    def _proof(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> Proof:
+        source, _ = self._machines(before, context)
+        _, target = self._machines(after, context)
+        driven = Driven(self, after, target)
+        if self.direction == "to-machine":
+            return Proof(self, context, Led(before, source), driven)
+        return Proof(self, context, Driven(self, before, source), driven)
+
+    def _leans(self) -> tuple[float, float]:
+        """Return by how much (degrees) the tool axis may lean, and angles may differ."""
+        if self.calibrated is None:
+            return self.axis_tolerance, np.inf
+        kept = self.orientation == "correct-if-tilt"
+        return np.inf if kept else self.axis_tolerance, self.largest_turn
+
+    def measure(
+        self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
+    ) -> dict[str, float]:
+        """Return how far the tool axis stays off where angles are kept, and what that is at a tool.
+
+        It is nothing at the tip, and at the other end of the tool it is the length times as much.
+        """
+        if not len(after):
+            return {}
+        if self.slows:
+            return self._slowed(before, after, context) | self._turned(before, after, context)
+        return self._turned(before, after, context)
+
+    def _slowed(
+        self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
+    ) -> dict[str, float]:
+        """Return how much longer a piece takes than its feed says, if any does."""
+        owner = np.searchsorted(before.source, after.source)
+        cut = (after.kind != gx.Kind.RAPID) & (after.feed_mode != before.feed_mode[owner])
+        rows = np.flatnonzero(cut)
+        place = Place(before, context)
+        step = before.end - before.start
+        way = np.sqrt((step[:, :3] ** 2).sum(axis=1))
+        turned = np.sqrt((place.angles(step) ** 2).sum(axis=1))
+        time = np.where(way < STILL, turned, way) / before.feed
+        time = time / np.maximum(np.bincount(owner, minlength=len(before)), 1)
+        slower = float(np.max(1.0 / after.feed[rows] / time[owner[rows]], initial=0.0))
+        return {"slower than its feed, times": slower} if slower > 1.001 else {}
+
+    def _turned(
+        self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
+    ) -> dict[str, float]:
+        if self.turns_anew:
+            return self._measured(before, after, context)
+        way = self._corrected(after, context)
+        if way is None:
+            return {}
+        angles = way.axes.angles(after.end)
+        rows = np.flatnonzero(turned_at(angles))
+        one, other = (p.chain.tool_axis(angles[rows]) for p in (way.nominal, way.axes))
+        off = np.linalg.norm(one - other, axis=1)
+        length = np.linalg.norm(way.axes.tools[way.axes.which[rows]], axis=1)
+        return {
+            "tool axis off, degrees": float(np.degrees(off.max(initial=0.0))),
+            "tool axis off by tool length, mm": float((off * length).max(initial=0.0)),
+        }
+
+    def _measured(
+        self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
+    ) -> dict[str, float]:
+        """Return what the proof has found."""
+        proof = self._proof(before, after, context)
+        proof.run()
+        found = {"tip off, mm": proof.tip, "tool axis off, degrees": proof.lean}
+        return (
+            found
+            if self.calibrated is None
+            else found | {"angles corrected by, degrees": proof.turn}
+        )
 
     def timed(self, blocks: gx.Blocks) -> gx.Blocks:
         """Return blocks in inverse time, if positions of axes are written.
@@ -94,6 +339,13 @@ class Rtcp(gx.Pass):
     def undo(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path of the tip, in pieces, when the control moves all axes in proportion.
 
-        For the reverse it is the path of the axes when the control follows the tip.
+        For the reverse it is the path of the axes when the control follows the tip; for a corrected
+        program that of the axes which would have brought the tip there on the machine posted for.
         """
-        return Undoing(self, path, Place(path, context)).run() if len(path) else path
+        if not len(path) or self.turns_anew or self._nothing_to_correct(context):
+            return path
+        way = self._corrected(path, context)
+        if way is not None:
+            return Undoing(self, path, way.axes, True, way.nominal).run()
+        inwards = self.direction == "to-machine"
+        return Undoing(self, path, Place(path, context), inwards).run()

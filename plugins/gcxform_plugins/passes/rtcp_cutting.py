@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
-from gcxform_plugins.passes.rtcp_bound import leaving
 from gcxform_plugins.passes.rtcp_place import SAME, Place, turned_at
 from gcxform_plugins.passes.rtcp_undoing import SHARE
+from gcxform_plugins.passes.rtcp_ways import Way
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp import Rtcp
@@ -24,14 +24,15 @@ MOST = 100_000  # pieces of one block
 
 
 class Cutting:
-    """The work on one window: of positions of tips those of axes, or the reverse."""
+    """The work on one window: of positions of one kind those of another."""
 
     def __init__(
-        self, step: Rtcp, path: gx.Toolpath, context: gx.PassContext, place: Place
+        self, step: Rtcp, path: gx.Toolpath, context: gx.PassContext, place: Place, way: Way
     ) -> None:
         self.step = step
         self.context = context
         self.place = place
+        self.way = way
         self.path = path
         self.to_axes = step.direction == "to-machine"
         self.end = self._rounded(path.end)
@@ -57,9 +58,10 @@ class Cutting:
         end = self._cut(pieces, row)
         self._check_limits(end, row)
         result = end.copy(order="F")
-        result[:, :3] = self._converted(end, row)
-        new = path.with_rows(pieces, end=result, **self._feeds(pieces, row))
-        return new.replace(entry=self._entry())
+        result[:, :3] = self.way.converted(end, row)
+        entry = self._entry()
+        feeds = self._feeds(pieces, row, np.concatenate([entry[None, :], result]))
+        return path.with_rows(pieces, end=result, **feeds).replace(entry=entry)
 
     # --- positions ---
 
@@ -71,14 +73,10 @@ class Cutting:
             rounded[:, column] = np.round(positions[:, column], decimals)
         return rounded
 
-    def _converted(self, positions: Floats, rows: Ints) -> Floats:
-        change = self.place.axes_of if self.to_axes else self.place.tips_of
-        return change(positions[:, :3], self.place.angles(positions), rows)
-
     def _entry(self) -> Floats:
         """Return where the axes stand before the first row."""
         entry = self._rounded(self.path.entry[None, :])
-        entry[:, :3] = self._converted(entry, np.array([0]))
+        entry[:, :3] = self.way.converted(entry, np.array([0]))
         return np.asarray(entry[0])
 
     def _cut(self, pieces: Ints, row: Ints) -> Floats:
@@ -119,22 +117,16 @@ class Cutting:
         start = np.empty_like(end)
         start[1:] = end[:-1]
         start[first] = self.start[rows]
-        far = np.zeros(len(row))
-        for chain, here in self.place.chains(row):
-            sides = (start[here], end[here])
-            if not self.to_axes:
-                tips = (self._converted(side, row[here]) for side in sides)
-            else:
-                tips = (side[:, :3] for side in sides)
-            points = tuple(self.place.on_workpiece(tip, chain) for tip in tips)
-            angles = tuple(self.place.angles(side) for side in sides)
-            far[here] = leaving(chain, points, angles)  # type: ignore[arg-type]
+        far = self.way.leaving((start, end), row)
         return np.asarray(np.maximum.reduceat(far, first))
 
     # --- feeds ---
 
-    def _feeds(self, pieces: Ints, row: Ints) -> dict[str, NDArray[Any]]:
-        """Return feeds and their modes, in which each piece takes its share of the time."""
+    def _feeds(self, pieces: Ints, row: Ints, stops: Floats) -> dict[str, NDArray[Any]]:
+        """Return feeds and their modes, in which each piece takes its share of the time.
+
+        It takes longer where an axis would be too fast. `stops` (n + 1, axes) are where axes are.
+        """
         path = self.path
         feed, mode = path.feed.copy(), path.feed_mode.copy()
         if self.to_axes:
@@ -146,7 +138,21 @@ class Cutting:
             mode[told] = gx.FeedMode.INVERSE_TIME
         inverse = mode == gx.FeedMode.INVERSE_TIME
         feed = feed[row] * np.where(inverse[row], pieces[row], 1.0)
+        if self.to_axes:
+            most = 1.0 / np.maximum(self._least_times(stops), 1e-300)
+            feed = np.where(moving[row], np.fmin(feed, most), feed)
         return {"feed": feed, "feed_mode": mode[row]}
+
+    def _least_times(self, stops: Floats) -> Floats:
+        """Return the time (n,) min that the axes take at least from each place to the next."""
+        assert self.context.machine is not None
+        least = np.zeros(len(stops) - 1)
+        for column, letter in enumerate(self.path.axes):
+            axis = self.context.machine.axes.get(letter)
+            if axis is not None and axis.max_speed is not None:
+                way = np.nan_to_num(np.abs(np.diff(stops[:, column])))
+                least = np.maximum(least, way / axis.max_speed)
+        return least
 
     def _ways(self) -> Floats:
         """Return how far (n,) tips go, in mm; in degrees where only axes turn."""
@@ -164,11 +170,14 @@ class Cutting:
         turned = self.turned | self.turned_before
         self._check_known(turned, moved)
         self._check_forms(turned)
-        if self.step.rapids == "refuse":
-            self._check_rapids(moved)
+        if self.step.direction == "repost":
+            self._check_decimals()
+        else:
+            self._check_feeds(moved)
+            if self.step.rapids == "refuse":
+                self._check_rapids(moved)
         self._check_ways_round()
         self._check_tools(turned)
-        self._check_feeds(moved)
 
     def _check_known(self, turned: Flags, moved: Flags) -> None:
         unknown = np.isnan(self.place.angles(self.end)).any(axis=1)
@@ -198,6 +207,13 @@ class Cutting:
         message = "where the tip goes in a rapid that turns axes is not known"
         hint = 'move at a feed, or say rapids = "ends" if the tool is clear on any way'
         self._refuse("GX330", rapid & moved, message, hint)
+
+    def _check_decimals(self) -> None:
+        """Refuse angles that are rounded: where the tip was is not known at others."""
+        off = np.nan_to_num(np.abs(self.place.angles(self.end - self.path.end))).max(axis=1)
+        hint = "write as many as the program has: decimals = { A = 4, C = 4 } in [output]"
+        message = "an angle has more decimals than are written"
+        self._refuse("GX330", off > STILL, message, hint)
 
     def _check_ways_round(self) -> None:
         """Refuse moves that a control may make the other way round."""
@@ -240,14 +256,18 @@ class Cutting:
 
     def _check_limits(self, end: Floats, row: Ints) -> None:
         """Refuse positions that the machine does not reach."""
-        place = self.place
-        axes = self._converted(end, row) if self.to_axes else end[:, :3]
+        place = self.way.axes
+        inwards = self.step.direction == "to-tip"
+        axes = end[:, :3] if inwards else self.way.converted(end, row)
         axes = axes + place.zero
         angles = place.angles(end)
         named = [*zip("XYZ", place.chain.travel, axes.T, strict=True)]
         for axis, values in zip(place.chain.axes, angles.T, strict=True):
             if axis.limits is not None:
                 named.append((axis.letter, axis.limits, values))
+        self._check_named(named, row)
+
+    def _check_named(self, named: list[tuple[str, tuple[float, float], Floats]], row: Ints) -> None:
         for letter, (low, high), values in named:
             beyond = ((values < low - SAME) | (values > high + SAME)) & ~self.own[row]
             if beyond.any():

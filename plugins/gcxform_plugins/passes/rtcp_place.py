@@ -24,7 +24,9 @@ def turned_at(angles: Floats) -> Flags:
 
 
 class Place:
-    """The machine's chain, and what has to be added to positions of a path.
+    """The machine's chain, or another given, and what has to be added to positions of a path.
+
+    `others` are letters of axes of another machine, which the path may have.
 
     A position is that of the gauge point, as words would bring it there with all rotary axes at 0.
     A tip on the workpiece is then position - tool + zero + gauge point, and the axes stand at
@@ -33,10 +35,17 @@ class Place:
     first is the first of the frames.
     """
 
-    def __init__(self, path: gx.Toolpath, context: gx.PassContext) -> None:
+    def __init__(
+        self,
+        path: gx.Toolpath,
+        context: gx.PassContext,
+        chain: gx.Chain | None = None,
+        others: str = "",
+    ) -> None:
         assert context.machine is not None
         self.path = path
-        self.chain = gx.chain_of(context.machine)
+        self.others = others
+        self.chain = chain or gx.chain_of(context.machine)
         self.gauge = np.array(self.chain.tip)
         self.columns = self._columns()
         self.zero = self._zero(context)
@@ -59,7 +68,7 @@ class Place:
                 raise self.path.refuse("GX311", first, message, hint)
         for column, letter in enumerate(self.path.axes[3:], 3):
             moved = np.flatnonzero(np.isfinite(self.path.end[:, column]))
-            if letter not in own and len(moved):
+            if letter not in own and letter not in self.others and len(moved):
                 message = f"the machine file has no rotary axis {letter}"
                 raise self.path.refuse("GX330", moved[:1], message, "add it there")
         return [self.path.axes.index(letter) for letter in own]

@@ -30,17 +30,25 @@ SHARE = 0.1
 class Undoing:
     """The work on one window."""
 
-    def __init__(self, step: Rtcp, path: gx.Toolpath, place: Place) -> None:
+    def __init__(
+        self,
+        step: Rtcp,
+        path: gx.Toolpath,
+        place: Place,
+        to_tips: bool,
+        posted: Place | None = None,
+    ) -> None:
         self.step = step
         self.path = path
         self.place = place
-        self.to_tips = step.direction == "to-machine"
+        self.posted = posted
+        self.to_tips = to_tips
         self.start, self.end = path.start, path.end
 
     def run(self) -> gx.Toolpath:
-        """Return the path of tips; of axes for the reverse."""
+        """Return the path of tips; of axes for the reverse, and of those that were posted for."""
         path = self.path
-        bend = self._bends()
+        bend = self.bends()
         pieces = np.ceil(np.sqrt(bend / (SHARE * self.step.tolerance)) - 1e-9)
         pieces = np.maximum(pieces, 1.0).astype(np.int64)
         row = np.repeat(np.arange(len(path)), pieces)
@@ -59,14 +67,16 @@ class Undoing:
 
     def _turned(self, positions: Floats, rows: Ints) -> Floats:
         change = self.place.tips_of if self.to_tips else self.place.axes_of
-        return change(positions[:, :3], self.place.angles(positions), rows)
+        angles = self.place.angles(positions)
+        found = change(positions[:, :3], angles, rows)
+        return found if self.posted is None else self.posted.axes_of(found, angles, rows)
 
     def _entry(self) -> Floats:
         entry = self.path.entry.copy()
         entry[:3] = self._turned(entry[None, :], np.array([0]))[0]
         return entry
 
-    def _bends(self) -> Floats:
+    def bends(self) -> Floats:
         """Return an eighth of the bound of the second derivative of each row, mm."""
         path = self.path
         bend = np.zeros(len(path))
@@ -99,7 +109,24 @@ class Undoing:
             carried = (self.place.on_workpiece(p[:, :3], chain) - inner for p in (start, end))
         ends = np.max([np.linalg.norm(vectors, axis=1) for vectors in carried], axis=0)
         far = ends + way / 2.0 + between
-        return np.asarray(table**2 * far + 2.0 * table * way + head**2 * arm)
+        if self.posted is None:
+            return np.asarray(table**2 * far + 2.0 * table * way + head**2 * arm)
+        return self._there_and_back(table, head, far, way)
+
+    def _there_and_back(self, table: Floats, head: Floats, far: Floats, way: Floats) -> Floats:
+        """Return the same of axes to which another machine has brought a tip, and its own arm."""
+        assert self.posted is not None
+        arm = 0.0
+        for place in (self.place, self.posted):
+            inner, _, between = _centres(place.chain.head)
+            reach = np.linalg.norm(place.gauge - place.tools - inner, axis=1).max()
+            arm = max(arm, float(reach) + between)
+        inner, outer, one = _centres(self.place.chain.table)
+        own_inner, own_outer, other = _centres(self.posted.chain.table)
+        gaps = [np.linalg.norm(inner - own_inner), np.linalg.norm(outer - own_outer)]
+        far = far + one + other + float(np.sum(gaps))
+        turns = 2.0 * table
+        return np.asarray(turns**2 * far + 2.0 * turns * way + 2.0 * head**2 * arm)
 
 
 def _centres(axes: tuple[gx.Rotary, ...]) -> tuple[Floats, Floats, float]:

@@ -182,9 +182,19 @@ class Volumetric(gx.Pass):
         zero = [table[path.first].get(axis, 0.0) for axis in "XYZ"]
         tip = None
         if self.model.model.needs_tool:
+            self._check_head(path, context.machine.head)
             tip = -tools
             tip = tip[0] if len(tip) == 1 else tip[path.frame]
         return Place(np.array([zero]) - origin, tip)
+
+    def _check_head(self, path: gx.Toolpath, head: tuple[str, ...]) -> None:
+        """Refuse angular errors where the head is turned, and with it the way to the tip."""
+        columns = [path.axes.index(letter) for letter in head if letter in path.axes]
+        turned = (np.nan_to_num(path.end[:, columns]) != 0.0).any(axis=1)
+        if turned.any():
+            message = "the head is turned, and the model has errors that depend on where the tip is"
+            hint = "a model without roll, pitch and yaw is compensated for turned heads too"
+            raise path.refuse("GX314", np.flatnonzero(turned)[:1], message, hint)
 
     def _check_frames(self, path: gx.Toolpath, message: str, tools: bool) -> None:
         """Refuse rows whose X, Y, Z count from elsewhere; `tools`: tool lengths matter."""

@@ -1,0 +1,100 @@
+"""Tool axes on great circles between blocks, for `rtcp`."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform_plugins.passes.rtcp_bound import leaving
+from gcxform_plugins.passes.rtcp_choice import LEAP
+from gcxform_plugins.passes.rtcp_moving import STILL, Moving
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+SOON = 1e-6  # part of a block in which an axis turns by a leap, if it ever does at its ends
+SOON_LESS = 0.02  # of a leap within the block
+TRIED = 64  # places of a block that are looked at for leaps
+
+
+class Circling(Moving):
+    """Of tips the axes of the same machine, the tool axis on great circles between blocks.
+
+    Angles at the ends of blocks are those of the program.
+    """
+
+    _drives = False
+
+    def _entered(self, entry: Floats) -> Floats:
+        return self._written(self.place.angles(entry))
+
+    def _choose(self) -> None:
+        """Refuse circles that do not lead from angle to angle."""
+        turned = np.abs(self.place.angles(self.end - self.start)).max(axis=1) > 0.0
+        rows = np.flatnonzero(self.cuts & self.known & turned)
+        part = np.append(np.arange(TRIED) / TRIED, [1.0 - SOON, 1.0])
+        part = np.insert(part, 1, SOON)
+        row, along = np.repeat(rows, len(part)), np.tile(part, len(rows))[:, None]
+        places = (1.0 - along) * self.start[row] + along * self.end[row]
+        angles = self._angles(places, row, along[:, 0]).reshape(len(rows), len(part), 2)
+        most = np.where(np.diff(part) <= SOON, LEAP * SOON_LESS, LEAP)[:, None]
+        leaps = (np.abs(np.diff(angles, axis=1)) > most).any(axis=(1, 2))
+        far = np.zeros(len(self.path), np.bool_)
+        far[rows[leaps]] = True
+        message = "on a great circle the tool axis would have to leap"
+        hint = "program points on the way, or turn the axes in proportion"
+        self._refuse("GX333", far, message, hint)
+
+    def _guess(self, positions: Floats, row: Ints, part: Floats) -> Floats:
+        return self.place.angles(positions)
+
+    def _tips(self, positions: Floats, row: Ints) -> Floats:
+        return positions[:, :3]
+
+    def _axis(self, positions: Floats, row: Ints, part: Floats) -> Floats:
+        chain = self.place.chain
+        one, other = (
+            chain.tool_axis(self.place.angles(side[row])) for side in (self.start, self.end)
+        )
+        lines = self.cuts[row] & np.isfinite(one).all(axis=1)
+        return np.where(lines[:, None], on_circle(one, other, part), other)
+
+    def _mixed(self, angles: Floats, positions: Floats, row: Ints) -> Floats:
+        """Return the angles; where the program says them, they are its own to the last bit."""
+        said = self.place.angles(positions)
+        return np.where(np.abs(angles - said) < STILL, said, angles)
+
+    def _far(self, source: tuple[Floats, ...], target: tuple[Floats, ...], row: Ints) -> Floats:
+        """Return how far (n,) mm the tip leaves its line, and in proportion the tool axis."""
+        far = np.zeros(len(row))
+        sides = [self.target.angles(side) for side in target]
+        for chain, here in self.target.chains(row):
+            one, other = (self.target.on_workpiece(side[here, :3], chain) for side in source)
+            far[here] = leaving(chain, (one, other), (sides[0][here], sides[1][here]))
+        share = np.degrees(self._aside(sides[1] - sides[0])) / self.step.axis_tolerance
+        return np.asarray(np.maximum(far, share * self.step.tolerance))
+
+    def _aside(self, step: Floats) -> Floats:
+        """Return how far (n,) rad the tool axis leaves its circle while axes turn by steps (n, m).
+
+        It is an eighth of the second derivative aside: of the product of both turns, and of the
+        turn about the tool itself; and a little more, as circles bend. The proof has the last word.
+        """
+        chain = self.target.chain
+        first = max(len(chain.table) - 1, 0)
+        other = chain.axes[1 - first]
+        one, two = (np.abs(np.radians(step[:, k])) for k in (first, 1 - first))
+        spin = one + two * abs(other.direction[2])
+        return np.asarray(1.05 * (one * two + spin * (one + two)) / 8.0)
+
+
+def on_circle(one: Floats, other: Floats, part: Floats) -> Floats:
+    """Return unit vectors (n, 3) at parts (n,) of the great circles between two."""
+    angle = np.arctan2(
+        np.linalg.norm(np.cross(one, other), axis=1), np.einsum("ij,ij->i", one, other)
+    )
+    short = np.sin(angle) < 1e-12
+    whole = np.where(short, 1.0, np.sin(angle))
+    left = np.where(short, 1.0 - part, np.sin((1.0 - part) * angle) / whole)
+    right = np.where(short, part, np.sin(part * angle) / whole)
+    return np.asarray(left[:, None] * one + right[:, None] * other)
