@@ -10,12 +10,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from gcxform.api import Comparison as Comparison
-    from gcxform.api import Difference as Difference
     from gcxform.api import Program as Program
-    from gcxform.api import compare as compare
     from gcxform.api import read as read
     from gcxform.api import write as write
+    from gcxform.comparison import Comparison as Comparison
+    from gcxform.comparison import Difference as Difference
+    from gcxform.comparison import compare as compare
     from gcxform.contract import Pass as Pass
     from gcxform.contract import PassContext as PassContext
     from gcxform.contract import TextPass as TextPass
@@ -128,7 +128,8 @@ if TYPE_CHECKING:
     from gcxform.toolpath.splines import splines_as_lines as splines_as_lines
 
 _HOMES = {
-    "api": "Comparison Difference Program compare read write",
+    "api": "Program read write",
+    "comparison": "Comparison Difference compare",
     "contract": "Pass PassContext TextPass",
     "diagnostics": "Diagnostic FileError GcxformError InputError Location UsageError "
     "VerificationError",

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from gcxform.certificate import Certificate
+from gcxform.certifying import certificate
 from gcxform.chain import check_chain, facts_after
 from gcxform.contract import Pass, PassContext, TextPass
 from gcxform.diagnostics import UsageError
@@ -249,7 +250,7 @@ class Pipeline:
         run = Run(self, source, verify)
         run.over(out, progress or (lambda size: None))
         run.check_growth(out)
-        return run.certificate(out)
+        return certificate(run, out)
 
 
 def _numbers(target: type[Dialect], spec: PipelineSpec) -> tuple[NumberFormat, dict[str, int]]:

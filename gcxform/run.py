@@ -5,14 +5,13 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import asdict, dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gcxform.certificate import Certificate
 from gcxform.compensated import check_compensated, whole_stretches
-from gcxform.contract import Pass, TextPass
+from gcxform.contract import Pass
 from gcxform.cuts import whole_cuts
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
 from gcxform.dialect import LINEAR, Dialect
@@ -22,14 +21,12 @@ from gcxform.heap import give_back
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
-from gcxform.modal.tables import GROUPS, MeaningTable
-from gcxform.options import KinematicsFile, ModelFile, to_toml
+from gcxform.modal.tables import MeaningTable
 from gcxform.source import WINDOW, Source, lines_in
 from gcxform.syntax.scan import Window
 from gcxform.textpasses import TextRun
 from gcxform.toolpath.path import Toolpath
 from gcxform.verify import Verifier
-from gcxform.version import VERSION
 
 if TYPE_CHECKING:
     from gcxform.pipeline import Pipeline
@@ -278,79 +275,6 @@ class Run:
         hint = "give a step that cuts moves a larger tolerance, or raise growth in [budget]"
         raise InputError.one("GX507", message, Location(self.source.name, out.lines_in), hint)
 
-    # --- the certificate ---
-
-    def certificate(self, out: Output) -> Certificate:
-        """Return the proof of the out."""
-        pipeline = self.pipeline
-        self.text.finish()
-        executed = self.source is not self.given
-        for text in self.given.windows() if executed else ():
-            out.read.update(text)
-        certificate = Certificate(
-            VERSION,
-            {"name": self.source.name, "dialect": pipeline.source.name, "lines": out.lines_in}
-            | {"sha256": out.read.hexdigest()},
-            {"dialect": pipeline.target.name, "lines": out.lines_out}
-            | {"sha256": out.written.hexdigest()},
-            [_described(step) for step in pipeline.passes],
-            _budget(pipeline, self.verifier is not None and self.verifier.inch),
-            {"blocks_in": out.lines_in, "blocks_out": out.lines_out}
-            | {"ratio": out.growth, "limit": pipeline.growth},
-            self.verifier is not None or (pipeline.copies and self.verify != "off"),
-        )
-        certificate.measured = self.measured
-        self._fill(certificate)
-        return certificate
-
-    def _fill(self, certificate: Certificate) -> None:
-        if self.verifier is None:
-            if self.pipeline.copies and not self.text.passes:
-                certificate.not_checked.append("meaning: every byte was copied")
-            elif self.verify == "off":
-                certificate.not_checked.append("anything: verification was switched off")
-            return
-        found = self.verifier.findings
-        certificate.largest = {
-            "deviation": found.deviation,
-            "source_line": self.source.line_of(found.source_line),
-            "output_line": found.output_line,
-            "angle": found.angle,
-        }
-        certificate.checked = {"moves": found.moves, "events": found.events}
-        self._not_checked(certificate)
-
-    def _not_checked(self, certificate: Certificate) -> None:
-        if self.source is not self.given:
-            what = "the order in which calls and loops execute blocks: it was found once"
-            certificate.not_checked.append(what)
-        assert self.verifier is not None
-        assert self.interpreter is not None
-        found = self.verifier.findings
-        for count, what in (
-            (
-                found.rapids,
-                "rapids: only their ends, because controls do not move straight in them",
-            ),
-            (found.unknown_starts, "moves from an unknown position: only their ends"),
-            (
-                found.between_taps,
-                f"moves between taps: only that they are within {found.aside:.4f} mm",
-            ),
-            (found.lines_after_end, "lines after the end of the program: copied, not read"),
-        ):
-            if count:
-                certificate.not_checked.append(f"{what}: {count}")
-        stated = self.interpreter.state.stated
-        for group in GROUPS:
-            if group not in stated and group not in ("motion", "arc-distance"):
-                code = self.pipeline.source.initial[group]
-                certificate.assumed.append(f"{group} {code}, which the program does not state")
-        for axis, value in self.interpreter.reading.start.items():
-            certificate.assumed.append(f"{axis} stands at {value:g} before the first block")
-        for name, value in self.interpreter.reading.parameters.items():
-            certificate.assumed.append(f"#{name} is {value:g} before the first block")
-
 
 def _in_words_of(target: type[Dialect], path: Toolpath) -> Toolpath:
     """Return the path written without absolute arc centres if the target has none."""
@@ -374,29 +298,6 @@ def _first_units(pipeline: Pipeline) -> str:
     if pipeline.source is pipeline.target and pipeline.reading.units:
         return pipeline.reading.units
     return "in" if pipeline.target.initial["units"] == "G20" else "mm"
-
-
-def _described(step: Pass | TextPass) -> dict[str, Any]:
-    """Return a step's name, options and promise for the certificate."""
-    entry: dict[str, Any] = {"use": step.name, **to_toml(step)}
-    for key, value in vars(step).items():
-        if isinstance(value, ModelFile | KinematicsFile):
-            entry[key] = {"file": value.path.name, "sha256": value.sha256}
-            if isinstance(value, ModelFile) and value.model.states:
-                entry[key] |= {"states": [asdict(state) for state in value.model.states]}
-    if isinstance(step, Pass):
-        entry["promise"] = step.promise if np.isfinite(step.promise) else None
-    return entry
-
-
-def _budget(pipeline: Pipeline, inch: bool) -> dict[str, object]:
-    promised = pipeline.promised()
-    return {
-        "deviation": pipeline.limit(inch),
-        "explicit": pipeline.budget is not None,
-        "steps": promised if np.isfinite(promised) else None,
-        "rounding": pipeline.rounding(inch),
-    }
 
 
 def _located(error: GcxformError, window: Window, file: str) -> GcxformError:

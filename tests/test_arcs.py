@@ -25,6 +25,7 @@ from test_verify import Change, dropped, inserted, said, swapped
 from test_verify import run as lie
 
 import gcxform as gx
+from gcxform.certifying import certificate
 from gcxform.run import Output, Run
 from gcxform.source import Source
 from gcxform.toolpath.runs import Runs, deviation_of_runs, runs_of
@@ -93,7 +94,9 @@ def test_windows_do_not_matter_to_the_law(program: bytes) -> None:
     source, texts = Source.of_bytes(program), list[bytes]()
     job = Run(gx.Pipeline.parse("arcs tolerance=0.1", "linuxcnc"), source, "full")
     job.over(Output(texts.append, None), lambda _: None, 200)
-    check(program, gx.Result(b"".join(texts), job.certificate(Output(texts.append, None)), []), 0.1)
+    check(
+        program, gx.Result(b"".join(texts), certificate(job, Output(texts.append, None)), []), 0.1
+    )
 
 
 @pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")

@@ -19,11 +19,12 @@ from cli_kit import ABSOLUTE, PART, call, expanded, process, workplace
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcxform.api import compare, read
+from gcxform.api import read
 from gcxform.cli import VERBS
 from gcxform.cli.failures import paint
 from gcxform.cli.progress import Progress
 from gcxform.cli.sourcemap import SourceMap
+from gcxform.comparison import compare
 from gcxform.pipeline import Pipeline
 from gcxform.source import Source
 

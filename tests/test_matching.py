@@ -11,7 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gcxform.api import Comparison, Program, compare, read
+from gcxform.api import Program, read
+from gcxform.comparison import Comparison, compare
 from gcxform.pipeline import Pipeline
 from gcxform.source import WINDOW
 from gcxform.toolpath.matching import match, measure

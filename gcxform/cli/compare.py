@@ -7,11 +7,12 @@ from typing import Any
 
 import click
 
-from gcxform.api import TOLERANCE, Comparison, Program, compare
+from gcxform.api import Program
 from gcxform.cli import VERBS, options
 from gcxform.cli.asked import Asked, excluding, needed_dialect
 from gcxform.cli.outputs import STDOUT
 from gcxform.cli.programs import opened
+from gcxform.comparison import TOLERANCE, Comparison, compare
 from gcxform.contract import Pass
 from gcxform.diagnostics import Location, UsageError
 from gcxform.machine.quantities import LENGTH

@@ -1,0 +1,305 @@
+"""`compare`: how two programs differ, in path, feed and events, however they are written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import zip_longest
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.api import Program
+from gcxform.contract import Pass, PassContext
+from gcxform.dialect import LINEAR, Dialect
+from gcxform.machine.machine import Machine
+from gcxform.modal.codes import Effect
+from gcxform.modal.meaning import FRAMING
+from gcxform.toolpath.circles import radius_and_angle
+from gcxform.toolpath.matching import Matching, Pieces, match, measure
+from gcxform.toolpath.path import (
+    WHOLE,
+    Event,
+    FeedMode,
+    Form,
+    Kind,
+    Toolpath,
+)
+from gcxform.toolpath.splines import straightened
+
+STRAIGHT = 1e-5  # mm; lines that stand for splines are so near
+TOLERANCE = 0.001  # mm: twice what rounding an axis to three decimals can do
+REACH = 1.0  # mm; what is farther apart is not taken for the same place
+FEED_SLIP = 1e-3  # of a feed, or of the time of a move in G93
+TIME_SLIP = 1e-3  # s, of a dwell
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Something other than the path that differs; lines of A and B from 1, 0 for none."""
+
+    what: str
+    line_a: int
+    line_b: int
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How two programs differ.
+
+    deviation       largest distance of the two paths, mm; inf if they part
+    line_a, line_b  where that is, from 1; 0 if there are no moves
+    angle           largest difference of a rotary axis, degrees
+    tolerance       mm and degrees that are still the same
+    matched         pairs of moves, or of their parts, that were compared
+    ends_only       how many of them only at their ends: rapids, and from an unknown start
+    parted          lines of A and B from which nothing fits, None if everything does
+    """
+
+    deviation: float
+    line_a: int
+    line_b: int
+    angle: float
+    tolerance: float
+    matched: int
+    ends_only: int
+    parted: tuple[int, int] | None = None
+    feeds: tuple[Difference, ...] = ()
+    events: tuple[Difference, ...] = ()
+
+    @property
+    def same(self) -> bool:
+        """Whether path, feeds and events are the same within the tolerance."""
+        near = self.deviation <= self.tolerance and self.angle <= self.tolerance
+        return near and self.parted is None and not self.feeds and not self.events
+
+
+def compare(
+    a: Program,
+    b: Program,
+    tolerance: float = TOLERANCE,
+    through: Pass | None = None,
+    machine: Machine | None = None,
+) -> Comparison:
+    """Return how program B differs from program A, in whatever dialects, cut wherever they are.
+
+    With `through`, B holds commands that came from this pass, and what the machine does with them
+    is compared. Raises InputError where one of them is refused.
+    """
+    path_a, path_b = _same_axes(a.path, b.path)
+    if through is not None:
+        context = PassContext(a.dialect, b.dialect, b.dialect.numbers, machine)
+        through.begin(context)
+        path_b = through.undo(path_b, context)
+    path_a, path_b = (straightened(path, STRAIGHT) for path in (path_a, path_b))
+    matching = match(path_a, path_b, tolerance, max(REACH, tolerance))
+    found = measure(path_a, path_b, matching)
+    worst = int(np.argmax(found.distance)) if len(matching.a) else -1
+    compared = Comparison(
+        np.inf if matching.parted else float(found.distance.max(initial=0.0)),
+        _line(path_a, matching.a, worst),
+        _line(path_b, matching.b, worst),
+        float(found.angle.max(initial=0.0)),
+        tolerance,
+        len(matching.a),
+        int(found.ends_only.sum()),
+        _parted(path_a, path_b, matching),
+        tuple(_feeds(path_a, path_b, matching, tolerance)),
+        tuple(_events((path_a, a.dialect), (path_b, b.dialect), matching, tolerance)),
+    )
+    return _in_lines_of(a, b, compared)
+
+
+def _in_lines_of(a: Program, b: Program, found: Comparison) -> Comparison:
+    """Return a comparison of executed blocks with the lines of the programs."""
+
+    def moved(difference: Difference) -> Difference:
+        lines = a.line_of(difference.line_a), b.line_of(difference.line_b)
+        return replace(difference, line_a=lines[0], line_b=lines[1])
+
+    parted = found.parted and (a.line_of(found.parted[0]), b.line_of(found.parted[1]))
+    return replace(
+        found,
+        line_a=a.line_of(found.line_a),
+        line_b=b.line_of(found.line_b),
+        parted=parted,
+        feeds=tuple(map(moved, found.feeds)),
+        events=tuple(map(moved, found.events)),
+    )
+
+
+def _same_axes(a: Toolpath, b: Toolpath) -> tuple[Toolpath, Toolpath]:
+    """Return the paths over the axes that any of them has; the position of others is unknown."""
+    axes = a.axes + "".join(axis for axis in b.axes if axis not in a.axes)
+    return _over(a, axes), _over(b, axes)
+
+
+def _over(path: Toolpath, axes: str) -> Toolpath:
+    if path.axes == axes:
+        return path
+    end, entry = np.full((len(path), len(axes)), np.nan), np.full(len(axes), np.nan)
+    for k, axis in enumerate(axes):
+        if axis in path.axes:
+            end[:, k] = path.end[:, path.axes.index(axis)]
+            entry[k] = path.entry[path.axes.index(axis)]
+    return path.replace(axes=axes, end=end, entry=entry)
+
+
+def _line(path: Toolpath, pieces: Pieces, index: int) -> int:
+    """Return the line, from 1, that a piece came from; 0 if there is none."""
+    return int(path.source[pieces.row[index]]) + 1 if 0 <= index < len(pieces) else 0
+
+
+def _parted(a: Toolpath, b: Toolpath, matching: Matching) -> tuple[int, int] | None:
+    if matching.parted is None:
+        return None
+    one, other = (
+        int(path.source[row]) + 1 if row >= 0 else 0
+        for path, row in zip((a, b), matching.parted, strict=True)
+    )
+    return one, other
+
+
+@dataclass(frozen=True)
+class _Manner:
+    """How pieces are travelled: feed (in G93 that of the whole piece), feed mode, work offset.
+
+    `tied` is the form of what is tied to the spindle or to a probe, and that of plain moves else.
+    """
+
+    feed: NDArray[np.float64]
+    mode: NDArray[np.int8]
+    origin: NDArray[np.str_]
+    rapid: NDArray[np.bool_]
+    side: NDArray[np.int8]
+    radius: NDArray[np.float64]
+    tied: NDArray[np.int8]
+    line: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, path: Toolpath, pieces: Pieces) -> _Manner:
+        row = pieces.row
+        mode, rapid = path.feed_mode[row], path.kind[row] == Kind.RAPID
+        part = np.where(mode == FeedMode.INVERSE_TIME, pieces.high - pieces.low, 1.0)
+        feed = np.divide(path.feed[row], part, out=np.full(len(row), np.inf), where=part > 0)
+        origins = np.array([", ".join(dict.fromkeys(frame.origin)) for frame in path.frames])
+        side, radius = path.side[row], np.nan_to_num(path.radius[row])
+        origin, form = origins[path.frame[row]], path.form[row]
+        tied = np.where(np.isin(form, WHOLE), form, np.int8(Form.PLAIN))
+        return cls(feed, mode, origin, rapid, side, radius, tied, path.source[row] + 1)
+
+    def alike(self, other: _Manner, at: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Return whether pieces `at` are travelled as the pieces of the other path."""
+        feed, mode = self.feed[at], self.mode[at]
+        with np.errstate(invalid="ignore"):
+            near = (feed == other.feed) | (np.abs(feed - other.feed) <= FEED_SLIP * np.abs(feed))
+        same = self.rapid[at] | (near & (mode == other.mode))
+        same &= (self.side[at] == other.side) & (self.radius[at] == other.radius)
+        same &= self.tied[at] == other.tied
+        return np.asarray(same & (self.origin[at] == other.origin))
+
+
+def _feeds(a: Toolpath, b: Toolpath, matching: Matching, tolerance: float) -> list[Difference]:
+    """Return where feeds, feed modes or work offsets differ, once for each line of A.
+
+    A piece no longer than the tolerance may as well be travelled as its neighbours are.
+    """
+    one, other = _Manner.of(a, matching.a), _Manner.of(b, matching.b)
+    short = np.minimum(_lengths(a, matching.a), _lengths(b, matching.b)) <= tolerance
+    here = np.arange(len(short))
+    before, after = np.maximum(here - 1, 0), np.minimum(here + 1, len(here) - 1)
+    same = one.alike(other, here)
+    same |= short & (one.alike(other, before) | one.alike(other, after))
+    found: dict[int, Difference] = {}
+    for k in np.flatnonzero(~same).tolist():
+        lines = int(one.line[k]), int(other.line[k])
+        found.setdefault(lines[0], Difference(_changed(one, other, k), *lines))
+    return list(found.values())
+
+
+def _changed(one: _Manner, other: _Manner, k: int) -> str:
+    """Return in what a piece is travelled otherwise."""
+    if one.origin[k] != other.origin[k]:
+        return f"{one.origin[k]} became {other.origin[k]}"
+    if (one.side[k], one.radius[k]) != (other.side[k], other.radius[k]):
+        return "cutter compensation is another"
+    if one.tied[k] != other.tied[k]:
+        names = (Form(int(form)).name.lower() for form in (one.tied[k], other.tied[k]))
+        return " became ".join(f"a {name} move" for name in names)
+    if one.mode[k] != other.mode[k]:
+        return f"feed mode G{one.mode[k]} became G{other.mode[k]}"
+    return f"feed {one.feed[k]:g} became {other.feed[k]:g}"
+
+
+# --- events ---
+
+Side = tuple[Toolpath, type[Dialect]]
+
+
+def _events(a: Side, b: Side, matching: Matching, tolerance: float) -> list[Difference]:
+    """Return the first event that differs in name, numbers or place, and nothing after it."""
+    ours, theirs = _told(a, b[1]), _told(b, a[1])
+    lengths = _lengths(a[0], matching.a)
+    for one, other in zip_longest(ours, theirs):
+        text = _difference(one, other)
+        if not text and one and other and matching.parted is None:
+            places = _place(matching.a, one.row), _place(matching.b, other.row)
+            between = lengths[min(places) : max(places)]
+            text = f"{_shown(one)} stands elsewhere" if between.sum() > 2 * tolerance else ""
+        if text:
+            lines = (event.line + 1 if event else 0 for event in (one, other))
+            return [Difference(text, *lines)]
+    return []
+
+
+def _told(side: Side, other: type[Dialect]) -> list[Event]:
+    """Return the events, without those that the other dialect reads as modes.
+
+    What shifts coordinates by known amounts is seen in the positions, and needs no telling.
+    """
+    path, own = side
+    plainly = all(set(frame.origin) == {path.first} for frame in path.frames)
+    silent = {
+        code for code, what in other.codes.items() if what.effect is Effect.MODAL and not what.takes
+    }
+    if plainly:
+        silent |= {code for code, what in own.codes.items() if what.act in FRAMING}
+    return [event for event in path.events if event.what not in silent]
+
+
+def _difference(one: Event | None, other: Event | None) -> str:
+    """Return in what two events differ."""
+    if one is None or other is None:
+        lone = one or other
+        return f"{_shown(lone)} is only in {'A' if one else 'B'}" if lone else ""
+    slip = TIME_SLIP if one.what == "DWELL" else 1e-9
+    same = one.what == other.what and len(one.values) == len(other.values)
+    same = same and all(
+        p[0] == q[0] and abs(p[1] - q[1]) <= slip
+        for p, q in zip(one.values, other.values, strict=True)
+    )
+    return "" if same else f"{_shown(one)} became {_shown(other)}"
+
+
+def _shown(event: Event) -> str:
+    """Return an event as a person writes it."""
+    if event.what == "DWELL":
+        return "dwell " + " ".join(f"{value:g} {unit}" for unit, value in event.values)
+    words = [f"{name}{value:g}" for name, value in event.values]
+    return " ".join(words if len(event.what) == 1 and words else [event.what, *words])
+
+
+def _place(pieces: Pieces, row: int) -> int:
+    """Return before which piece an event stands that stands before a row."""
+    return int(np.searchsorted(pieces.row, row))
+
+
+def _lengths(path: Toolpath, pieces: Pieces) -> NDArray[np.float64]:
+    """Return how far the pieces go: mm, or degrees where only rotary axes turn."""
+    linear = [k for k, axis in enumerate(path.axes) if axis in LINEAR]
+    way = np.nan_to_num(path.end - path.start)
+    length = np.maximum(np.sqrt((way[:, linear] ** 2).sum(axis=1)), np.abs(way).max(axis=1))
+    if path.has_arcs:
+        arcs = np.flatnonzero(path.is_arc)
+        first, last, _ = radius_and_angle(path, arcs)
+        length[arcs] = np.maximum(length[arcs], (first + last) / 2 * path.sweep[arcs])
+    return np.asarray((pieces.high - pieces.low) * length[pieces.row])
