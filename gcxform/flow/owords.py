@@ -86,7 +86,8 @@ class OWords(Execution):
         open_: dict[tuple[str, str], Construct] = {}
         for line in self.listing.special.tolist():
             self.line = line
-            items = bare(self.listing.block(line))
+            block = self.listing.block(line)
+            items = bare(block) if self.stands(block) else []
             if len(items) == 1 and isinstance(items[0], Word) and items[0].address == "O":
                 number = whole_number(items[0])
                 self.labels.setdefault(-1 if number is None else number, []).append(line)
@@ -240,9 +241,7 @@ class OWords(Execution):
 
     def _call_by_number(self, block: Block, items: list[Word | Statement], calls: bool) -> None:
         """Do M98 or M99: without parameters of its own."""
-        known = {"M", "P", "L"} if calls else {"M"}
-        if any(not isinstance(i, Word) or i.address not in known for i in items):
-            raise self.refusal("GX210", "something else stands in a block that calls or returns")
+        self.refuse_more(items, "MPL" if calls else "M")
         if calls:
             self._call_number(block)
         elif not self.calls or not self.calls[-1].name.startswith("M98"):
@@ -265,6 +264,7 @@ class OWords(Execution):
         if times:
             name = f"M98 P{number:g}"
             self.enter(Call(name, self.at, found[0] + 1, int(times), {}, self.counters))
+            self.modes.enter()
             self.counters = {}
 
     def _is_inside(self, line: int) -> bool:
@@ -274,7 +274,9 @@ class OWords(Execution):
     def _repeat_or_return(self) -> None:
         call = self.calls[-1]
         call.times -= 1
+        self.modes.leave()
         if call.times:
+            self.modes.enter()
             self.at = call.first
             return
         self.calls.pop()
