@@ -11,7 +11,7 @@ import re
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -26,7 +26,6 @@ from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statem
 
 STEPS_AT_MOST = 500_000  # lines that are executed one by one: a minute
 BYTES_AT_MOST = 1 << 28  # of executed blocks
-DEEPEST = 100  # calls inside calls
 NAMED = 5  # of the calls that a refusal stands in
 UNKNOWN = math.nan
 REFERENCE = re.compile(r"#(?:<[^<>]*>|[0-9]+)")
@@ -54,7 +53,12 @@ class Call:
 
 
 class Execution:
-    """One run of a program; `text` and `origin` are the executed blocks and their lines."""
+    """One run of a program; `text` and `origin` are the executed blocks and their lines.
+
+    `deepest` are the calls that may be inside each other.
+    """
+
+    deepest: ClassVar[int] = 100
 
     def __init__(self, listing: Listing, reading: Reading) -> None:
         assert listing.dialect.arithmetic is not None
@@ -180,8 +184,8 @@ class Execution:
 
     def enter(self, call: Call) -> None:
         """Begin a subprogram."""
-        if len(self.calls) >= DEEPEST:
-            raise self.refusal("GX224", f"{DEEPEST} calls are inside each other")
+        if len(self.calls) >= self.deepest:
+            raise self.refusal("GX224", f"{self.deepest} calls are inside each other, and one more")
         self.calls.append(call)
         self.at = call.first
 
