@@ -11,12 +11,12 @@ import re
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from gcxform.diagnostics import InputError
-from gcxform.flow.listing import Listing, bare
+from gcxform.flow.listing import CODES_OF_CALLS, STORED_MODES, Listing, bare
 from gcxform.flow.text import DECIMALS, decimal
 from gcxform.modal.arithmetic import Arithmetic, Key, NoValueError, whole
 from gcxform.modal.expressions import Evaluator, LocatedError, parameter_key, settable
@@ -26,7 +26,7 @@ from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statem
 
 STEPS_AT_MOST = 500_000  # lines that are executed one by one: a minute
 BYTES_AT_MOST = 1 << 28  # of executed blocks
-DEEPEST = 100  # calls inside calls
+NAMED = 5  # of the calls that a refusal stands in
 UNKNOWN = math.nan
 REFERENCE = re.compile(r"#(?:<[^<>]*>|[0-9]+)")
 HINT = "let the CAM write plain blocks, or use passes that keep positions"
@@ -53,7 +53,12 @@ class Call:
 
 
 class Execution:
-    """One run of a program; `text` and `origin` are the executed blocks and their lines."""
+    """One run of a program; `text` and `origin` are the executed blocks and their lines.
+
+    `deepest` are the calls that may be inside each other.
+    """
+
+    deepest: ClassVar[int] = 100
 
     def __init__(self, listing: Listing, reading: Reading) -> None:
         assert listing.dialect.arithmetic is not None
@@ -109,7 +114,7 @@ class Execution:
 
     def _skips(self, block: Block) -> bool:
         """Whether the control skips the line; a slash on one that decides something is refused."""
-        if not any(isinstance(item, Mark) and item.kind == "block_delete" for item in block.items):
+        if not _has_slash(block):
             return False
         policy = self.reading.block_delete or self.dialect.block_delete
         if not policy:
@@ -117,6 +122,11 @@ class Execution:
             hint = 'say which: block-delete = "execute" or "skip" in [input]'
             raise self.listing.refusal(self.line, "GX211", message, hint)
         return policy == "skip"
+
+    def stands(self, block: Block) -> bool:
+        """Whether a line counts where lines are put together: not if it is skipped."""
+        policy = self.reading.block_delete or self.dialect.block_delete
+        return not (policy == "skip" and _has_slash(block))
 
     def _put(self, text: bytes, lines: np.ndarray[Any, np.dtype[np.int64]]) -> None:
         if text and not text.endswith((b"\n", b"\r")):
@@ -165,10 +175,17 @@ class Execution:
 
     # --- calls ---
 
+    def refuse_more(self, items: list[Word | Statement], addresses: str) -> None:
+        """Refuse a block that calls or returns and does anything else, or has a word twice."""
+        found = [item.address for item in items if isinstance(item, Word)]
+        alone = len(found) == len(items) == len(set(found)) and set(found) <= set(addresses)
+        if not alone:
+            raise self.refusal("GX210", "something else stands in a block that calls or returns")
+
     def enter(self, call: Call) -> None:
         """Begin a subprogram."""
-        if len(self.calls) >= DEEPEST:
-            raise self.refusal("GX224", f"{DEEPEST} calls are inside each other")
+        if len(self.calls) >= self.deepest:
+            raise self.refusal("GX224", f"{self.deepest} calls are inside each other, and one more")
         self.calls.append(call)
         self.at = call.first
 
@@ -190,9 +207,15 @@ class Execution:
             self._copy_line()
         self.set(dict(changes))
         if meaning.runs_macro and not meaning.lost_by <= self.reading.inert_m:
-            self.parameters = dict.fromkeys(self.parameters, UNKNOWN)
+            self._forget()
         self.percents += meaning.percent
         self.ended |= self.percents > 1 or self._ends(block)
+
+    def _forget(self) -> None:
+        """Forget all parameters, those too that callers get back: a macro may have set them."""
+        self.parameters = dict.fromkeys(self.parameters, UNKNOWN)
+        for call in self.calls:
+            call.locals = dict.fromkeys(call.locals, UNKNOWN)
 
     def edits(self, block: Block) -> list[Edit]:
         """Return the pieces of a block that are written otherwise: its values."""
@@ -274,6 +297,7 @@ class Execution:
                 value = float(whole(value, self.arithmetic.whole_slip))
             if word.address in "GM":
                 value = whole(value * 10) / 10
+                self._refuse_flow(word, value)
         except NoValueError as why:
             start, end = (
                 (why.start, why.end) if isinstance(why, LocatedError) else (word.start, word.end)
@@ -282,6 +306,13 @@ class Execution:
         if self.dialect.point_required and word.address in DISTANCES:
             return self._on_increment(word, value)
         return decimal(value).removesuffix(".")
+
+    def _refuse_flow(self, word: Word, value: float) -> None:
+        """Refuse a computed M code that decides what is executed next."""
+        code = self.dialect.m_codes.get(int(value)) if word.address == "M" else None
+        if code is not None and (code.ends or value in CODES_OF_CALLS or value in STORED_MODES):
+            message = f"M{value:g} decides what is executed, and is computed: it must be written"
+            raise self.refusal("GX206", message, place=(word.start, word.end))
 
     def _on_increment(self, word: Word, value: float) -> str:
         """Return a distance as the control rounds it."""
@@ -326,13 +357,18 @@ class Execution:
         error = self.listing.refusal(self.line, code, message, hint, place)
         if not self.calls:
             return error
-        inside = " in ".join(call.name for call in reversed(self.calls))
+        names = [call.name for call in reversed(self.calls)]
+        inside = " in ".join(names[:NAMED] + ["..."] * (len(names) > NAMED))
         found = tuple(replace(d, context=f"called by {inside}") for d in error.diagnostics)
         return InputError(found)
 
 
 def _computed(word: Word) -> bool:
     return isinstance(word.value, Expression)
+
+
+def _has_slash(block: Block) -> bool:
+    return any(isinstance(item, Mark) and item.kind == "block_delete" for item in block.items)
 
 
 def whole_number(word: Word) -> int | None:

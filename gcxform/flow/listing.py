@@ -42,7 +42,7 @@ class Listing:
             return True
         for item in block.items:
             if isinstance(item, Statement) or (
-                isinstance(item, Mark) and item.kind == "program_id"
+                isinstance(item, Mark) and item.kind in ("program_id", "program_name")
             ):
                 return True
             if isinstance(item, Word) and (

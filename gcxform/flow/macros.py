@@ -7,6 +7,7 @@ known value on the other. G65 gives variables by letters, which is not resolved.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -21,6 +22,7 @@ from gcxform.syntax.tree import BLANKS, Block, Mark, Statement, Word
 
 LOCALS = range(1, 34)
 NEAR = 1e-6
+SEQUENCE = re.compile(rb"(?:\([^()]*\))*(?:/[1-9]?)?(?:\([^()]*\))*[Nn]([0-9]+)")
 PACKED = 10_000  # P of old controls: a count, and four digits of a program number
 
 
@@ -68,23 +70,43 @@ class MacroB(Execution):
         for line in self.listing.special.tolist():
             self.line = line
             block = self.listing.block(line)
-            number = _program_number(block)
-            if number is not None:
-                self.bounds.append(line)
-                if number in self.starts:
-                    self.twice.add(number)
-                self.starts[number] = line
-            statement = _statement(block)
-            if statement is None:
+            if not self.stands(block):
                 continue
-            name = str(statement.tree.children[-1])
-            if statement.kind in ("while", "do"):
-                open_.append((line, name))
-            elif statement.kind == "end":
-                if not open_ or open_[-1][1] != name:
-                    raise self.refusal("GX223", f"END {name} ends no loop that is open here")
-                first = open_.pop()[0]
-                self.loops[first] = self.loops[line] = Loop(first, line)
+            if _begins_program(block):
+                self._refuse_open(open_)
+                self.line = line
+                self._begin(line, _program_number(block))
+            statement = _statement(block)
+            if statement is not None:
+                self._place(line, statement, open_)
+        self._refuse_open(open_)
+
+    def _begin(self, line: int, number: int | None) -> None:
+        """Note a program that begins; what stands before the first one is a program too."""
+        if not self.bounds and any(bare(self.listing.block(before)) for before in range(line)):
+            self.bounds.append(0)
+        self.bounds.append(line)
+        if number is None:
+            return
+        if number in self.starts:
+            self.twice.add(number)
+        self.starts[number] = line
+
+    def _place(self, line: int, statement: Statement, open_: list[tuple[int, str]]) -> None:
+        """Put the begin or the end of a loop to its other half."""
+        name = str(statement.tree.children[-1]).translate(BLANKS)
+        if statement.kind in ("while", "do"):
+            if name in (other for _, other in open_):
+                raise self.refusal("GX223", f"DO {name} stands inside a loop of the same number")
+            open_.append((line, name))
+        elif statement.kind == "end":
+            if not open_ or open_[-1][1] != name:
+                raise self.refusal("GX223", f"END {name} ends no loop that is open here")
+            first = open_.pop()[0]
+            self.loops[first] = self.loops[line] = Loop(first, line)
+
+    def _refuse_open(self, open_: list[tuple[int, str]]) -> None:
+        """Refuse a loop that is not closed in its program."""
         if open_:
             self.line = open_[-1][0]
             raise self.refusal("GX223", f"the loop DO {open_[-1][1]} has no END")
@@ -112,7 +134,7 @@ class MacroB(Execution):
 
     def act(self, block: Block) -> bool:
         """Do what flow words and calls do."""
-        if _program_number(block) is not None and self.line != self.bounds[0]:
+        if _begins_program(block) and self.line != self.bounds[0]:
             message = "the program before goes on into this one, without M30 or M99"
             raise self.refusal("GX223", message)
         statement = _statement(block)
@@ -131,12 +153,8 @@ class MacroB(Execution):
 
     # --- subprograms ---
 
-    def _only(self, items: list[Word | Statement], addresses: str) -> None:
-        if any(not isinstance(i, Word) or i.address not in addresses for i in items):
-            raise self.refusal("GX210", "something else stands in a block that calls or returns")
-
     def _call(self, block: Block, items: list[Word | Statement], own: bool) -> None:
-        self._only(items, "MPL")
+        self.refuse_more(items, "MPL")
         number, times = self.number(block, "P"), self.number(block, "L", 1.0)
         if not (number % 1 == 0 and times % 1 == 0 and times >= 1):
             raise self.refusal("GX221", "a call takes a number in P, and a count from 1 in L")
@@ -152,6 +170,8 @@ class MacroB(Execution):
 
     def _unpacked(self, number: int, times: int, block: Block) -> tuple[int, int]:
         """Return program and count of a P that may hold both."""
+        if self.dialect.program_number_digits > 4:
+            return number, times
         packed = number >= PACKED and number % PACKED in self.starts
         if packed and (number in self.starts or any(w.address == "L" for w in block.words)):
             raise self.refusal("GX210", "P can be read as a program, or as a count and a program")
@@ -163,14 +183,20 @@ class MacroB(Execution):
         if number not in self.starts:
             message = f"the subprogram O{number} is not in this file"
             raise self.refusal("GX210", message, HINT)
+        block = self.listing.block(self.starts[number])
+        if len(bare(block)) > (1 if any(block.words) else 0):
+            message = f"words stand beside O{number}: whether a call executes them is not certain"
+            raise self.refusal("GX210", message, "write them into a block of their own")
         return self.starts[number]
 
     def _return(self, block: Block, items: list[Word | Statement]) -> None:
-        self._only(items, "MP")
+        self.refuse_more(items, "MP")
         call = self.calls[-1]
         call.times -= 1
         if call.times:
-            self.at = call.first
+            if len(items) > 1:
+                raise self.refusal("GX210", "M99 goes to a line, and the call is not over")
+            self._begin_again(call)
             return
         self.calls.pop()
         kept = {k: v for k, v in self.parameters.items() if k in LOCALS}
@@ -183,27 +209,37 @@ class MacroB(Execution):
             self.line = call.back - 1
             self._jump(target)
 
+    def _begin_again(self, call: Call) -> None:
+        """Execute a subprogram once more; what it has set may or may not be there then."""
+        set_inside = [k for k, v in self.parameters.items() if k in LOCALS and v == v]
+        call.locals |= dict.fromkeys(set_inside, UNKNOWN)
+        self.parameters |= dict.fromkeys(set_inside, UNKNOWN)
+        self.changes += 1
+        self.at = call.first
+
     # --- jumps ---
 
     def _labelled(self, number: float) -> int:
         """Return the line of the running program that has a sequence number."""
         first, last = self._program()
-        found = [line for line in range(first, last) if self._sequence(line) == number]
+        found = [line for line in self._sequences.get(number, ()) if first <= line < last]
         if len(found) != 1:
             how = "no line" if not found else "more than one line"
             raise self.refusal("GX223", f"{how} of this program has the number N{number:g}")
+        if not self.stands(self.listing.block(found[0])):
+            message = f"N{number:g} is skipped: whether the control finds it is not certain"
+            raise self.refusal("GX223", message)
         return found[0]
 
-    def _sequence(self, line: int) -> float | None:
-        """Return the sequence number of a line."""
-        text = self.listing.window.line(line).decode("latin-1").translate(BLANKS).lstrip("/")
-        digits = ""
-        if text[:1] in ("N", "n"):
-            for character in text[1:]:
-                if not character.isdecimal():
-                    break
-                digits += character
-        return float(digits) if digits else None
+    @cached_property
+    def _sequences(self) -> dict[float, list[int]]:
+        """The lines of every sequence number."""
+        found: dict[float, list[int]] = {}
+        for line in range(len(self.listing)):
+            text = self.listing.window.line(line).translate(None, b" \t")
+            if number := SEQUENCE.match(text):
+                found.setdefault(float(number[1]), []).append(line)
+        return found
 
     def _jump(self, number: float) -> None:
         target = self._labelled(number)
@@ -216,7 +252,7 @@ class MacroB(Execution):
             self.back_to(target)
 
     def _around(self, line: int) -> list[Loop]:
-        return [loop for loop in set(self.loops.values()) if loop.first < line < loop.last]
+        return [loop for loop in set(self.loops.values()) if loop.first < line <= loop.last]
 
     def _goto(self, statement: Statement) -> None:
         self._jump(self._target(statement.tree.children[-1]))
@@ -256,11 +292,20 @@ def _statement(block: Block) -> Statement | None:
     return next(found, None)
 
 
+def _begins_program(block: Block) -> bool:
+    """Whether a program begins at a block, by a number or by a name."""
+    named = any(
+        isinstance(i, Mark) and i.kind in ("program_id", "program_name") for i in block.items
+    )
+    return named or any(word.address == "O" for word in block.words)
+
+
 def _program_number(block: Block) -> int | None:
     """Return the number of the program that begins at a block."""
     for item in block.items:
-        if isinstance(item, Word):
-            return whole_number(item) if item.address == "O" else None
+        if isinstance(item, Word) and item.address == "O":
+            return whole_number(item)
         if isinstance(item, Mark) and item.kind == "program_id":
-            return int(block.text[item.start + 1 : item.end])
+            text = block.text[item.start + 1 : item.end].translate(BLANKS)
+            return int(text) if text.isdecimal() else None
     return None

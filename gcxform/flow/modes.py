@@ -7,6 +7,7 @@ where it would have to be.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -79,9 +80,11 @@ class StoredModes:
         fresh = b"".join(self.program.text[self.seen :])
         self.seen = len(self.program.text)
         grammar = self.program.dialect.load_grammar()
-        for line in fresh.decode("latin-1").splitlines():
+        for line in re.split(r"[\r\n]+", fresh.decode("latin-1")):
             if line.strip():
-                self._look(grammar.parse(line))
+                block = grammar.parse(line)
+                if self.program.stands(block):
+                    self._look(block)
         return dict(self.now)
 
     def _look(self, block: Block) -> None:

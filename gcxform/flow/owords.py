@@ -2,7 +2,7 @@
 
 What is here was executed with LinuxCNC's stand-alone interpreter: labels are those of the
 subprogram they stand in; numbered parameters up to 30 and names without an underscore belong to
-their call, but not to M98; a count is rounded.
+their call, but not to M98; a count is rounded, halves to an even number.
 """
 
 from __future__ import annotations
@@ -62,7 +62,12 @@ class Construct:
 
 
 class OWords(Execution):
-    """Runs programs of LinuxCNC."""
+    """Runs programs of LinuxCNC.
+
+    `left` are the `repeat` loops that a jump has left: the control goes on counting there.
+    """
+
+    deepest = 9
 
     def __init__(self, listing: Listing, reading: Reading) -> None:
         super().__init__(listing, reading)
@@ -75,6 +80,7 @@ class OWords(Execution):
         self.modes = StoredModes(self)
         self.places = Places(self)
         self.counters: dict[int, int] = {}
+        self.left: set[int] = set()
         self.returned()
         self._arrange()
 
@@ -86,7 +92,8 @@ class OWords(Execution):
         open_: dict[tuple[str, str], Construct] = {}
         for line in self.listing.special.tolist():
             self.line = line
-            items = bare(self.listing.block(line))
+            block = self.listing.block(line)
+            items = bare(block) if self.stands(block) else []
             if len(items) == 1 and isinstance(items[0], Word) and items[0].address == "O":
                 number = whole_number(items[0])
                 self.labels.setdefault(-1 if number is None else number, []).append(line)
@@ -236,6 +243,7 @@ class OWords(Execution):
         self.modes.leave()
         self.parameters = {k: v for k, v in self.parameters.items() if not _is_local(k)}
         self.parameters.update(call.locals)
+        self.left |= set(self.counters)
         self.counters = call.counters
         self.returned(value)
         self.at = call.back
@@ -246,9 +254,7 @@ class OWords(Execution):
 
     def _call_by_number(self, block: Block, items: list[Word | Statement], calls: bool) -> None:
         """Do M98 or M99: without parameters of its own."""
-        known = {"M", "P", "L"} if calls else {"M"}
-        if any(not isinstance(i, Word) or i.address not in known for i in items):
-            raise self.refusal("GX210", "something else stands in a block that calls or returns")
+        self.refuse_more(items, "MPL" if calls else "M")
         if calls:
             self._call_number(block)
         elif not self.calls or not self.calls[-1].name.startswith("M98"):
@@ -271,6 +277,7 @@ class OWords(Execution):
         if times:
             name = f"M98 P{number:g}"
             self.enter(Call(name, self.at, found[0] + 1, int(times), {}, self.counters))
+            self.modes.enter()
             self.counters = {}
 
     def _is_inside(self, line: int) -> bool:
@@ -280,7 +287,11 @@ class OWords(Execution):
     def _repeat_or_return(self) -> None:
         call = self.calls[-1]
         call.times -= 1
+        self.modes.leave()
+        self.left |= set(self.counters)
         if call.times:
+            self.modes.enter()
+            self.counters = {}
             self.at = call.first
             return
         self.calls.pop()
@@ -339,7 +350,10 @@ class OWords(Execution):
     def _repeat(self, word: OWord) -> None:
         if len(word.values) != 1:
             raise self.refusal("GX221", "repeat takes a count in brackets")
-        times = math.floor(self.value(word.values[0]) + 0.5)
+        if self.line in self.left:
+            message = "this loop was left by a jump before: the control goes on counting from there"
+            raise self.refusal("GX223", message, "leave it at its end")
+        times = round(self.value(word.values[0]))
         self.counters[self.line] = times
         if times <= 0:
             self._leave(self.construct[self.line])
@@ -354,9 +368,18 @@ class OWords(Execution):
 
     def _break(self, word: OWord) -> None:
         self.jumped = True
+        self._note_left(self.construct[self.line])
         self._leave(self.construct[self.line])
 
+    def _note_left(self, construct: Construct) -> None:
+        """Note the `repeat` loops inside a construct that a jump leaves."""
+        inside = {line for line in self.counters if construct.lines[0] < line < construct.last}
+        self.left |= inside
+        for line in inside:
+            del self.counters[line]
+
     def _continue(self, word: OWord) -> None:
+        self._note_left(self.construct[self.line])
         self.at = self.construct[self.line].last
 
     def _leave(self, construct: Construct) -> None:

@@ -16,6 +16,7 @@ from gcxform.flow.text import decimal
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import State
+from gcxform.modal.tables import NUMBER
 from gcxform.syntax.tree import Block, Word
 
 if TYPE_CHECKING:
@@ -89,6 +90,8 @@ class Places:
             message = f"{groups['non-modal']} takes no polar words"
             raise self.program.refusal("GX203", message, place=place)
         state = self.now()
+        if groups.get("plane", "G17") != "G17" or state.groups["plane"] != NUMBER["G17"]:
+            raise self.program.refusal("GX203", "polar words are of G17 alone", place=place)
         named = groups.get("distance")
         incremental = named == "G91" if named else bool(state.groups["distance"])
         if incremental or state.frames.diameter or "units" in groups or "frame" in groups:

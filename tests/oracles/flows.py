@@ -50,7 +50,7 @@ class Flow:
         return [*lines, f"{name} endif"]
 
     def repeat(self, depth: int) -> list[str]:
-        name, count = self.label(), self.choose.choice((0, 1, 2, 2.4, 2.6, -1))
+        name, count = self.label(), self.choose.choice((0, 0.5, 1, 2, 2.4, 2.5, 2.6, -1))
         return [f"{name} repeat [{count}]", *self.body(depth), f"{name} endrepeat"]
 
     def loop(self, depth: int) -> list[str]:
@@ -110,7 +110,10 @@ class Flow:
         if self.choose.random() < 0.3:
             name = self.label()
             label = self.choose.choice((name, f"o{number}"))
-            lines += [f"{name} if {self.condition()}", f"{label} return [7]", f"{name} endif"]
+            back = [f"{name} if {self.condition()}", f"{label} return [7]", f"{name} endif"]
+            loop = self.label()
+            inside = [f"{loop} repeat [2]", *self.plain(0), *back, f"{loop} endrepeat"]
+            lines += self.choose.choice((back, inside))
         value = self.choose.choice(("", " [3]", " [#1]"))
         self.subs.append(number)
         return [*lines, f"o{number} endsub{value}"]
@@ -123,7 +126,8 @@ class Flow:
             lines += self.body(2)
         lines.append("M2")
         for number in (900, 901):
-            lines += [f"O{number}", *self.plain(0), *self.mode(0), *self.plain(0), "M99"]
+            head = ["M73"] if self.choose.random() < 0.3 else []
+            lines += [f"O{number}", *head, *self.plain(0), *self.mode(0), *self.plain(0), "M99"]
         return "\n".join(lines).encode() + b"\n"
 
 
