@@ -12,6 +12,7 @@ UNDOING = f"{PASSES}/rtcp_undoing.py"
 SMALL = f"{PASSES}/rtcp_small.py"
 WAYS = f"{PASSES}/rtcp_ways.py"
 REPOST = "tests/test_rtcp_repost.py"
+RETARGET = "tests/test_rtcp_retarget.py"
 CHOICE = f"{PASSES}/rtcp_choice.py"
 MOVING = f"{PASSES}/rtcp_moving.py"
 PROOF = f"{PASSES}/rtcp_proof.py"
@@ -157,14 +158,14 @@ MUTATIONS = (
         PROOF,
         "self.lean = max(self.lean, float(np.degrees(lean.max())))",
         "self.lean = max(self.lean, 0.0 * float(np.degrees(lean.max())))",
-        f"{REPOST}::test_a_program_for_another_machine",
+        f"{RETARGET}::test_a_program_for_another_machine",
     ),
     Mutation(
         "rtcp: a slip between axes does not bend",
         SMALL,
         "second * far + 2.0 * first * fast + size * bent,",
         "0.0 * far,",
-        f"{REPOST}::test_the_bound_holds_with_slips",
+        f"{RETARGET}::test_the_bound_holds_with_slips",
     ),
     Mutation(
         "rtcp: the tool axis goes evenly between its ends, and not on the circle",
