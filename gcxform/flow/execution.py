@@ -303,6 +303,9 @@ class Execution:
                 (why.start, why.end) if isinstance(why, LocatedError) else (word.start, word.end)
             )
             raise self.refusal(why.code, why.message, why.hint, (start, end)) from None
+        if self.dialect.feed_point_required and word.address == "F":
+            message = "F is computed: its unit depends on the control"
+            raise self.refusal("GX205", message, place=(word.start, word.end))
         if self.dialect.point_required and word.address in DISTANCES:
             return self._on_increment(word, value)
         return decimal(value).removesuffix(".")
