@@ -14,6 +14,7 @@ from typing import Any
 
 from lark import Token
 
+from gcxform.diagnostics import InputError
 from gcxform.flow.execution import HINT, Call, Edit, Execution, whole_number
 from gcxform.flow.listing import Listing, bare
 from gcxform.flow.modes import StoredModes
@@ -200,7 +201,16 @@ class OWords(Execution):
         if word.label in self.ahead:
             message = "the control has called this subprogram before it came here, and stops"
             raise self.refusal("GX223", message, "write it before the call, or behind the end")
-        self.at = self.construct[self.line].last + 1
+        self.line = self.construct[self.line].last
+        self._pass_end(self.words[self.line])
+        self.at = self.line + 1
+
+    def _pass_end(self, word: OWord) -> None:
+        """Set what stands at the end of a subprogram that is passed over, as if it had returned."""
+        try:
+            self.returned(self.value(word.values[0]) if word.values else None)
+        except InputError:
+            self.returned(math.nan)  # only who reads it must know it
 
     def _call(self, word: OWord) -> None:
         construct = self.subs.get(word.label)
