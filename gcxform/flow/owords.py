@@ -292,6 +292,7 @@ class OWords(Execution):
         call = self.calls[-1]
         call.times -= 1
         self.modes.leave()
+        self.returned()
         self.left |= set(self.counters)
         if call.times:
             self.modes.enter()
