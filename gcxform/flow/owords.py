@@ -283,6 +283,8 @@ class OWords(Execution):
             self.enter(Call(name, self.at, found[0] + 1, int(times), {}, self.counters))
             self.modes.enter()
             self.counters = {}
+            # On its way to the number the control may pass an M99 or endsub, which sets them.
+            self.set({"_value": math.nan, "_value_returned": math.nan})
 
     def _is_inside(self, line: int) -> bool:
         """Whether a line stands inside a construct."""
