@@ -63,10 +63,7 @@ class Construct:
 
 
 class OWords(Execution):
-    """Runs programs of LinuxCNC.
-
-    `left` are the `repeat` loops that a jump has left: the control goes on counting there.
-    """
+    """Runs programs of LinuxCNC; `left` are the `repeat` loops that a jump has left."""
 
     deepest = 9
 
@@ -380,9 +377,8 @@ class OWords(Execution):
 
     def _note_left(self, construct: Construct) -> None:
         """Note the `repeat` loops inside a construct that a jump leaves."""
-        inside = {line for line in self.counters if construct.lines[0] < line < construct.last}
-        self.left |= inside
-        for line in inside:
+        for line in [n for n in self.counters if construct.lines[0] < n < construct.last]:
+            self.left.add(line)
             del self.counters[line]
 
     def _continue(self, word: OWord) -> None:
