@@ -97,3 +97,21 @@ def test_check_and_info_execute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     Path("part.nc").write_bytes(LOOP)
     assert call("check", "-f", "linuxcnc", "part.nc").exit_code == 0
     assert "X 0 ... 2" in call("info", "-f", "linuxcnc", "part.nc").stdout
+
+
+def test_a_line_that_the_control_takes_together_with_the_next_is_refused() -> None:
+    with pytest.raises(gx.InputError, match="GX102"):
+        _ = gx.read(LOOP.replace(b"[2]\n", b"[2]\r"), "linuxcnc").executed
+
+
+def test_only_line_ends_part_lines_where_modes_are_stored() -> None:
+    """A byte that is a line end to Python alone, as in a comment in UTF-8."""
+    text = b"M70\n(\xc3\x85) G91\nM72\nM2\n"
+    assert gx.read(text, "linuxcnc").executed == b"(\xc3\x85) G91\nG90\nM2\n"
+
+
+def test_an_error_names_few_of_many_calls() -> None:
+    text = b"O1\nG21 G90\nM97 P100\nM30\nN100 M97 P100\nM99\n"
+    with pytest.raises(gx.InputError, match="GX224") as error:
+        _ = gx.read(text, "haas").executed
+    assert len(error.value.diagnostics[0].context) < 100

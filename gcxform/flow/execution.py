@@ -101,6 +101,7 @@ class Execution:
         """Execute one line that is more than a plain block."""
         self.line, self.at = self.at, self.at + 1
         self._count()
+        self._refuse_lone_cr()
         block = self.listing.block(self.line)
         if self._skips(block):
             self._copy_line()
@@ -108,6 +109,13 @@ class Execution:
             self.acted = True
         else:
             self.write(block)
+
+    def _refuse_lone_cr(self) -> None:
+        """Refuse a line that the control would take together with the next one."""
+        if self.dialect.lone_cr_is_blank and self.listing.line_end(self.line) == b"\r":
+            message = f"the line ends with CR alone, which {self.dialect.name} reads as a blank"
+            hint = "convert the line ends of the file to LF or CRLF"
+            raise self.listing.refusal(self.line, "GX102", message, hint)
 
     def _copy_line(self) -> None:
         self._put(self.listing.raw(self.line, self.line + 1), np.array([self.line]))
@@ -303,6 +311,9 @@ class Execution:
                 (why.start, why.end) if isinstance(why, LocatedError) else (word.start, word.end)
             )
             raise self.refusal(why.code, why.message, why.hint, (start, end)) from None
+        if self.dialect.feed_point_required and word.address == "F":
+            message = "F is computed: its unit depends on the control"
+            raise self.refusal("GX205", message, place=(word.start, word.end))
         if self.dialect.point_required and word.address in DISTANCES:
             return self._on_increment(word, value)
         return decimal(value).removesuffix(".")

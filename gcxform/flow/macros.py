@@ -21,6 +21,7 @@ from gcxform.modal.state import Reading
 from gcxform.syntax.tree import BLANKS, Block, Mark, Statement, Word
 
 LOCALS = range(1, 34)
+LOOPS = ("1", "2", "3")
 NEAR = 1e-6
 SEQUENCE = re.compile(rb"(?:\([^()]*\))*(?:/[1-9]?)?(?:\([^()]*\))*[Nn]([0-9]+)")
 PACKED = 10_000  # P of old controls: a count, and four digits of a program number
@@ -96,6 +97,8 @@ class MacroB(Execution):
         """Put the begin or the end of a loop to its other half."""
         name = str(statement.tree.children[-1]).translate(BLANKS)
         if statement.kind in ("while", "do"):
+            if name not in LOOPS:
+                raise self.refusal("GX223", f"DO {name}: loops have the numbers 1 to 3")
             if name in (other for _, other in open_):
                 raise self.refusal("GX223", f"DO {name} stands inside a loop of the same number")
             open_.append((line, name))
@@ -161,6 +164,8 @@ class MacroB(Execution):
         target, name = int(number), f"M98 P{number:g}"
         if own:
             first, name = self._labelled(target), f"M97 P{number:g}"
+            if self._around(first):
+                raise self.refusal("GX223", f"N{target} stands inside a loop that is not running")
         else:
             target, times = self._unpacked(target, int(times), block)
             first = self._start(target) + 1

@@ -14,6 +14,7 @@ from typing import Any
 
 from lark import Token
 
+from gcxform.diagnostics import InputError
 from gcxform.flow.execution import HINT, Call, Edit, Execution, whole_number
 from gcxform.flow.listing import Listing, bare
 from gcxform.flow.modes import StoredModes
@@ -62,10 +63,7 @@ class Construct:
 
 
 class OWords(Execution):
-    """Runs programs of LinuxCNC.
-
-    `left` are the `repeat` loops that a jump has left: the control goes on counting there.
-    """
+    """Runs programs of LinuxCNC; `left` are the `repeat` loops that a jump has left."""
 
     deepest = 9
 
@@ -202,7 +200,16 @@ class OWords(Execution):
         if word.label in self.ahead:
             message = "the control has called this subprogram before it came here, and stops"
             raise self.refusal("GX223", message, "write it before the call, or behind the end")
-        self.at = self.construct[self.line].last + 1
+        self.line = self.construct[self.line].last
+        self._pass_end(self.words[self.line])
+        self.at = self.line + 1
+
+    def _pass_end(self, word: OWord) -> None:
+        """Set what stands at the end of a subprogram that is passed over, as if it had returned."""
+        try:
+            self.returned(self.value(word.values[0]) if word.values else None)
+        except InputError:
+            self.returned(math.nan)  # only who reads it must know it
 
     def _call(self, word: OWord) -> None:
         construct = self.subs.get(word.label)
@@ -279,6 +286,8 @@ class OWords(Execution):
             self.enter(Call(name, self.at, found[0] + 1, int(times), {}, self.counters))
             self.modes.enter()
             self.counters = {}
+            # On its way to the number the control may pass an M99 or endsub, which sets them.
+            self.set({"_value": math.nan, "_value_returned": math.nan})
 
     def _is_inside(self, line: int) -> bool:
         """Whether a line stands inside a construct."""
@@ -288,6 +297,7 @@ class OWords(Execution):
         call = self.calls[-1]
         call.times -= 1
         self.modes.leave()
+        self.returned()
         self.left |= set(self.counters)
         if call.times:
             self.modes.enter()
@@ -373,9 +383,8 @@ class OWords(Execution):
 
     def _note_left(self, construct: Construct) -> None:
         """Note the `repeat` loops inside a construct that a jump leaves."""
-        inside = {line for line in self.counters if construct.lines[0] < line < construct.last}
-        self.left |= inside
-        for line in inside:
+        for line in [n for n in self.counters if construct.lines[0] < n < construct.last]:
+            self.left.add(line)
             del self.counters[line]
 
     def _continue(self, word: OWord) -> None:

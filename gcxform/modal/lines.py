@@ -362,8 +362,9 @@ class Lines:
         if not self.dialect.feed_point_required:
             odd &= inch | (feed_mode == NUMBER["G95"])
         elif increment is not None:
-            value = np.where(odd & per_minute, value * increment, value)
-            odd &= ~per_minute
+            counted = odd & per_minute & (self.window.decimals[number] != COMPUTED)
+            value = np.where(counted, value * increment, value)
+            odd &= ~counted
         hint = "write the feed with a point"
         if self.dialect.feed_point_required:
             hint += ", or say what 1 is worth in G94: feed-increment = 1.0 in [input]"

@@ -16,7 +16,7 @@ MUTATIONS = (
     _flow("a call keeps the values of its caller", "owords", "if k not in own}", "}"),
     _flow("what is not given is one", "owords", "*[0.0] *", "*[1.0] *", AGREES),
     _flow("names are not local", "owords", 'not key.startswith("_")', "False"),
-    _flow("a count is cut", "owords", "round(self.value", "int(self.value", AGREES),
+    _flow("a count is cut", "owords", "times = round(", "times = int(", AGREES),
     _flow(
         "a loop ends a round late",
         "owords",
