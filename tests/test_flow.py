@@ -49,6 +49,25 @@ def test_a_comment_about_calls_calls_nothing(text: bytes) -> None:
     assert not any("calls" in what for what in done.certificate.not_checked)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        b"m 098 p1\nM2\nO1\nG0 X1\nM99\n",
+        b"G21 G90\nM70\nG91\nM72\nG0X1\nX1\nM2\n",
+        b"n5 o1 REPEAT [1]\nG0 X1\no1 endrepeat\nM2\n",
+        b"#1=0\ng #1 X1\nM2\n",
+        b"g [0] X1\nM2\n",
+        b"G0 X1\nY# 5420\nM2\n",
+        b"G0 @ 1 ^0\nM2\n",
+    ],
+)
+def test_flow_is_seen_however_it_is_written(text: bytes) -> None:
+    start = dict.fromkeys("XYZ", 0.0)
+    program = gx.read(text, "linuxcnc", start=start)
+    assert program.executed != text
+    assert program.path.end[-1, 0] == 1.0
+
+
 def test_the_certificate_says_that_blocks_were_executed() -> None:
     done = absolute("linuxcnc").run(LOOP)
     assert any("calls and loops" in what for what in done.certificate.not_checked)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -14,29 +13,14 @@ from gcxform.flow.execution import Execution
 from gcxform.flow.listing import Listing
 from gcxform.flow.macros import MacroB
 from gcxform.flow.owords import OWords
+from gcxform.flow.signs import has_flow
 from gcxform.modal.state import Reading
-from gcxform.source import COMMENT, Source
+from gcxform.source import Source
 
 RUNS: dict[str, type[Execution]] = {"o-words": OWords, "macro-b": MacroB}
 """How a dialect may write subprograms and loops: `Dialect.flow`."""
 EXECUTED = {"o-words": (70, 71, 72, 73, 98, 99), "macro-b": (97, 98, 99)}
 """M codes that are executed, and do not stand in what is written; M97 where a dialect has it."""
-TO_THE_END = re.compile(rb";[^\r\n]*")
-NUMBERED = rb"(?:N[ \t]*[0-9.]+[ \t]*)?"
-SIGNS = {
-    "o-words": (
-        (b"O", b"M98", b"M7", b"G#", b"G[", b"M#", b"M[", b"@", b"^", b"#54"),
-        re.compile(
-            rb"^[/ \t]*" + NUMBERED + rb"O[^\n\r;]*?[A-Z]{2}|M98|M7[0-3]|[GM][#\[]|[@^]|#542",
-            re.IGNORECASE | re.MULTILINE,
-        ),
-    ),
-    "macro-b": (
-        (b"M98", b"M97", b"GOTO", b"WHILE", b"IF[", b"IF "),
-        re.compile(rb"M9[78]|GOTO|WHILE|IF[ \t]*\[", re.IGNORECASE),
-    ),
-}
-"""What a program with them holds, and what that looks like outside of comments."""
 
 
 class WrittenOut(Source):
@@ -50,23 +34,6 @@ class WrittenOut(Source):
         """Return the line of the program that an executed line stands for."""
         inside = 0 < line <= len(self.origin)
         return int(self.origin[line - 1]) + 1 if inside else line
-
-
-def has_flow(source: Source, dialect: type[Dialect]) -> bool:
-    """Whether a program may have calls, loops or codes that are computed."""
-    if dialect.flow not in SIGNS:
-        return False
-    signs, pattern = SIGNS[dialect.flow]
-    for text in source.windows():
-        some = any(s in text or (dialect.lower_case and s.lower() in text) for s in signs)
-        if some and pattern.search(_without_comments(text, dialect)):
-            return True
-    return False
-
-
-def _without_comments(text: bytes, dialect: type[Dialect]) -> bytes:
-    bare = COMMENT.sub(b"", text)
-    return TO_THE_END.sub(b"", bare) if ";" in dialect.comments else bare
 
 
 def written_out(source: Source, dialect: type[Dialect], reading: Reading) -> Source:
