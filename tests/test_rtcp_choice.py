@@ -24,7 +24,8 @@ from rtcp_kit import (
     tips,
 )
 from scipy.spatial.transform import Rotation
-from test_rtcp_repost import leaning_poses, posted, retargeted, step_of, timed
+from test_rtcp_repost import leaning_poses, posted, step_of
+from test_rtcp_retarget import retargeted, timed
 
 import gcxform as gx
 from gcxform.cuts import whole_cuts
