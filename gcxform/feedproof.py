@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.distinct import distinct
 from gcxform.modal.interpreter import Interpreted
 from gcxform.toolpath.path import FeedMode, Kind
 from gcxform.toolpath.runs import SAME_FEED
@@ -77,7 +78,7 @@ class FeedProof:
         time = np.bincount(owner[mine], 1 / written.feed[mine], len(self.trace.before))
         wanted = 1 / self.trace.before.feed
         slack = TIME_ERROR * wanted
-        used = np.unique(owner[mine])
+        used = distinct(owner[mine])
         wrong = used[np.abs(time[used] - wanted[used]) > slack[used]]
         if len(wrong):
             line = int(self.trace.before.source[wrong[0]])
@@ -160,7 +161,7 @@ class FeedProof:
         mine = (written.kind != Kind.RAPID) & self._may_be_converted(owner)
         if not mine.any():
             return
-        rows, old, new = np.unique(owner[mine]), lengths(before), lengths(written)
+        rows, old, new = distinct(owner[mine]), lengths(before), lengths(written)
         inverse = written.feed_mode == FeedMode.INVERSE_TIME
         ways = np.where(inverse, 1.0, (new.least + new.most) / 2)
         time = self._sums(mine, ways / written.feed)[rows]

@@ -51,12 +51,14 @@ class Verbs(click.Group):
         """Import a verb."""
         if cmd_name not in VERBS:
             return None
-        gc.set_threshold(OBJECTS_BETWEEN)
+        gc.disable()  # what is imported stays
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads spin, and win nothing
         command: click.Command = import_module(
             f"gcxform.cli.{FILES.get(cmd_name, cmd_name)}"
         ).command
-        gc.freeze()  # modules stay; looking at them again and again costs a twentieth of a run
+        gc.freeze()  # looking at modules again and again costs a twentieth of a run
+        gc.set_threshold(OBJECTS_BETWEEN)
+        gc.enable()
         if not command.params or command.params[-1].name != DEBUG:
             command.params.append(_debug_option())
         return command

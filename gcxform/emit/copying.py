@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
 from gcxform.dialect import LINEAR
+from gcxform.distinct import distinct
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, as_written
@@ -79,8 +80,8 @@ class Copying:
 
         A thread may end elsewhere, but it stays one block in its unit.
         """
-        wrong = np.unique(pieces.line[pieces.special & ~stands[pieces.line]])
-        threads = np.unique(self.path.block[self.path.form == Form.THREAD])
+        wrong = distinct(pieces.line[pieces.special & ~stands[pieces.line]])
+        threads = distinct(self.path.block[self.path.form == Form.THREAD])
         if len(threads):
             other = (pieces.count[threads] != 1) | ~self._same_units()[threads]
             wrong = np.union1d(wrong, threads[other])

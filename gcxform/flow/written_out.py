@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import GcxformError
 from gcxform.dialect import Dialect
-from gcxform.flow.execution import Execution
-from gcxform.flow.listing import Listing
-from gcxform.flow.macros import MacroB
-from gcxform.flow.owords import OWords
 from gcxform.flow.signs import has_flow
 from gcxform.modal.state import Reading
 from gcxform.source import Source
 
-RUNS: dict[str, type[Execution]] = {"o-words": OWords, "macro-b": MacroB}
-"""How a dialect may write subprograms and loops: `Dialect.flow`."""
+if TYPE_CHECKING:
+    from gcxform.flow.execution import Execution
+
 EXECUTED = {"o-words": (70, 71, 72, 73, 98, 99), "macro-b": (97, 98, 99)}
 """M codes that are executed, and do not stand in what is written; M97 where a dialect has it."""
 
@@ -44,13 +42,23 @@ def written_out(source: Source, dialect: type[Dialect], reading: Reading) -> Sou
     """
     if not has_flow(source, dialect):
         return source
-    listing = Listing(b"".join(source.windows()), dialect, source.name)
-    run = RUNS[dialect.flow](listing, reading)
-    run.run()
+    run = _executed(b"".join(source.windows()), source.name, dialect, reading)
     if not run.acted:
         return source
     lines = np.concatenate([np.empty(0, np.int64), *run.origin])
     return WrittenOut(source, b"".join(run.text), lines)
+
+
+def _executed(text: bytes, file: str, dialect: type[Dialect], reading: Reading) -> Execution:
+    """Execute a program; what does that is loaded for programs that need it."""
+    from gcxform.flow.listing import Listing
+    from gcxform.flow.macros import MacroB
+    from gcxform.flow.owords import OWords
+
+    kind: type[Execution] = OWords if dialect.flow == "o-words" else MacroB
+    run = kind(Listing(text, dialect, file), reading)
+    run.run()
+    return run
 
 
 def located(error: GcxformError, source: Source) -> GcxformError:

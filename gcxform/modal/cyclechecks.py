@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gcxform.distinct import distinct
 from gcxform.modal.cyclerule import RESUME, CycleRule
 from gcxform.modal.cyclestretch import Stretch
 from gcxform.toolpath.path import Flags, Floats, Ints, Plane
@@ -32,7 +33,7 @@ class Checks:
     def __init__(self, stretch: Stretch, rule: CycleRule, pecks: Ints) -> None:
         self.stretch, self.rule, self.pecks = stretch, rule, pecks
         self.calls, self.drilled, self.words = stretch.calls, stretch.drilled, stretch.words
-        self.codes = set(np.unique(self.calls.code).tolist())
+        self.codes = set(distinct(self.calls.code).tolist())
 
     def refusals(self) -> tuple[tuple[Refusal, ...], Flags]:
         """Return what speaks against calls, one thing a call, and which calls (n,) are wrong."""

@@ -8,6 +8,7 @@ from operator import attrgetter
 
 import numpy as np
 
+from gcxform.distinct import distinct
 from gcxform.modal.cyclerule import DWELL, RESUME, TAPPING, CycleRule, Level
 from gcxform.toolpath.path import Event, Flags, Floats, Ints, Kind, Small, column_major
 
@@ -163,7 +164,7 @@ def _pecks(
 
 def _events(holes: Holes, rule: CycleRule, first: Ints) -> Iterator[Event]:
     """Yield what is done after steps; `first` are the rows of the first steps of holes."""
-    for code in np.unique(holes.code).tolist():
+    for code in distinct(holes.code).tolist():
         chosen = np.flatnonzero(holes.code == code)
         values = (first, holes.dwell, holes.spindle, holes.line)
         columns = [column[chosen].tolist() for column in values]

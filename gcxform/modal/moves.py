@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, LINEAR
+from gcxform.distinct import distinct
 from gcxform.modal.arcs import ArcWords, resolve_arcs
 from gcxform.modal.cutter import compensation, refuse_ends
 from gcxform.modal.drilling import Drilling
@@ -207,7 +208,7 @@ class Moves:
         self._singles = set(alone.tolist())
         alone = np.concatenate([acting[own], alone])
         ends = np.array([0, self.lines.live, *self._leaving], np.int64)
-        borders = np.unique(np.concatenate([acting, alone, alone + 1, drills, ends])).tolist()
+        borders = distinct(np.concatenate([acting, alone, alone + 1, drills, ends])).tolist()
         self._acts = set(acting.tolist())
         self._resets = set(np.flatnonzero(self._reset).tolist())
         return list(pairwise(borders)) or [(0, 0)]

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, LINEAR
+from gcxform.distinct import distinct
 from gcxform.modal.acts import ACTS
 from gcxform.modal.asking import ActError, Asked
 from gcxform.modal.findings import Findings
@@ -258,7 +259,7 @@ class Track:
 
     def polar(self, here: slice) -> dict[str, tuple[Floats, Flags]]:
         """Return the words of the plane's axes where radius and angle are programmed."""
-        planes = np.unique(self.modes.plane[here])
+        planes = distinct(self.modes.plane[here])
         if not np.isnan(self.state.polar).all():
             planes = np.union1d(planes, self.state.polar_plane)
         first, second, _ = Plane(int(self.modes.plane[here][0])).axes

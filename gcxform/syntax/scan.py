@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.distinct import distinct
 from gcxform.syntax.shapes import OWN, NumberColumns, ShapeTable
 
 Bytes = NDArray[np.uint8]
@@ -205,7 +206,7 @@ def _lines_by_themselves(kind: Bytes, runs: _Runs, following: Ints) -> Ints:
     odd = np.concatenate([np.flatnonzero(kind == OTHER), runs.start[~runs.is_plain]])
     if not len(odd):
         return odd
-    return np.unique(np.searchsorted(following, odd, side="right"))
+    return distinct(np.searchsorted(following, odd, side="right"))
 
 
 def _shapes(

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gcxform.distinct import distinct
 from gcxform.toolpath.path import OWN_DISTANCES, Flags, Form, Plane, Toolpath
 
 
@@ -52,7 +53,7 @@ def inseparable_cycles(path: Toolpath) -> Flags:
     oriented = [event.row - 1 for event in path.events if event.within and event.what == "M19"]
     tied[oriented] = True
     run = np.cumsum(~cycle)
-    return np.asarray(cycle & np.isin(run, np.unique(run[cycle & tied])))
+    return np.asarray(cycle & np.isin(run, distinct(run[cycle & tied])))
 
 
 IN_AIR = 0.1

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.distinct import distinct
 from gcxform.toolpath.frames import Frame, by_frame
 
 Floats = NDArray[np.float64]
@@ -315,7 +316,7 @@ class Toolpath:
 
     def refuse(self, code: str, rows: Ints, message: str, hint: str = "") -> InputError:
         """Return the error that refuses rows; the pipeline adds the text of their lines."""
-        lines = np.unique(self.source[rows])[:20] + 1
+        lines = distinct(self.source[rows])[:20] + 1
         return InputError(
             tuple(Diagnostic(code, message, Location("", int(line)), hint) for line in lines)
         )
