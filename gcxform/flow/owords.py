@@ -9,57 +9,21 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field
-from typing import Any
-
-from lark import Token
 
 from gcxform.diagnostics import InputError
+from gcxform.flow.constructs import Construct, Constructs, OWord
 from gcxform.flow.execution import HINT, Call, Edit, Execution, whole_number
 from gcxform.flow.listing import Listing, bare
 from gcxform.flow.modes import StoredModes
 from gcxform.flow.places import FIRST, Places
 from gcxform.modal.arithmetic import Key
 from gcxform.modal.state import Reading
-from gcxform.syntax.tree import BLANKS, Block, Statement, Word
+from gcxform.syntax.tree import Block, Statement, Word
 
 LOCALS = range(1, 31)
 LEAVES = frozenset({"break", "continue"})
 POSITIONS = range(FIRST, FIRST + 9)
 NAMES_POSITION = re.compile(r"#[ \t]*5[ \t]*4[ \t]*2")
-ORDERS = {
-    "sub": ("sub", "endsub"),
-    "if": ("if", "elseif", "else", "endif"),
-    "while": ("while", "break", "continue", "endwhile"),
-    "do": ("do", "break", "while"),
-    "repeat": ("repeat", "endrepeat"),
-}
-"""The keywords with the label of each construct: what opens it first, what closes it last.
-
-After `continue` in a `do` loop the interpreter runs a later `repeat` too often, so it is refused.
-"""
-
-
-@dataclass(frozen=True, slots=True)
-class OWord:
-    """A line with an O-word: its label, its keyword, the values behind it, and its construct."""
-
-    label: str
-    keyword: str
-    values: tuple[Any, ...]
-
-
-@dataclass(slots=True)
-class Construct:
-    """The lines with one label that belong together, in order; `kind` is the first keyword."""
-
-    kind: str
-    lines: list[int] = field(default_factory=list)
-
-    @property
-    def last(self) -> int:
-        """The line that closes it."""
-        return self.lines[-1]
 
 
 class OWords(Execution):
@@ -69,10 +33,6 @@ class OWords(Execution):
 
     def __init__(self, listing: Listing, reading: Reading) -> None:
         super().__init__(listing, reading)
-        self.words: dict[int, OWord] = {}
-        self.construct: dict[int, Construct] = {}
-        self.subs: dict[str, Construct] = {}
-        self.labels: dict[int, list[int]] = {}
         self.ahead: set[str] = set()
         self.jumped = False
         self.modes = StoredModes(self)
@@ -80,80 +40,9 @@ class OWords(Execution):
         self.counters: dict[int, int] = {}
         self.left: set[int] = set()
         self.returned()
-        self._arrange()
-
-    # --- which lines belong together ---
-
-    def _arrange(self) -> None:
-        """Find the constructs of the listing. Raises InputError for what does not fit together."""
-        scope = ""
-        open_: dict[tuple[str, str], Construct] = {}
-        for line in self.listing.special.tolist():
-            self.line = line
-            block = self.listing.block(line)
-            items = bare(block) if self.stands(block) else []
-            if len(items) == 1 and isinstance(items[0], Word) and items[0].address == "O":
-                number = whole_number(items[0])
-                self.labels.setdefault(-1 if number is None else number, []).append(line)
-                scope = f"O{number}"
-            elif items and isinstance(items[0], Statement) and items[0].kind == "flow":
-                word = self._read(items[0])
-                self.words[line] = word
-                if word.keyword == "return" and not scope.startswith("sub "):
-                    raise self._misfit("return outside a subprogram")
-                if word.keyword not in ("call", "return"):
-                    scope = self._place(line, word, scope, open_)
-        for (_, label), construct in open_.items():
-            if construct.lines and ORDERS[construct.kind][-1] != self._keyword(construct.last):
-                self.line = construct.lines[0]
-                raise self._misfit(f"O{label} {construct.kind} is not closed")
-
-    def _keyword(self, line: int) -> str:
-        return self.words[line].keyword
-
-    def _read(self, statement: Statement) -> OWord:
-        _, label, keyword, *values = statement.tree.children
-        if not isinstance(label, Token):
-            place = (statement.start, statement.end)
-            message = "which label this is must be written: a parameter says it"
-            raise self.refusal("GX206", message, HINT, place)
-        text = str(label).translate(BLANKS).lower()
-        name = text[1:-1] if text.startswith("<") else str(int(text))
-        return OWord(name, str(keyword).lower(), tuple(values))
-
-    def _place(
-        self, line: int, word: OWord, scope: str, open_: dict[tuple[str, str], Construct]
-    ) -> str:
-        """Put a line into its construct; return the scope of the next line."""
-        if word.keyword == "sub":
-            if scope.startswith("sub "):
-                raise self._misfit("a subprogram begins inside another")
-            scope = f"sub {word.label}"
-        inside = "" if word.keyword in ("sub", "endsub") else scope
-        construct = open_.get((inside, word.label))
-        if construct is None:
-            if word.keyword not in ORDERS:
-                raise self._misfit(f"{word.keyword} closes or leaves nothing with this label")
-            construct = open_[inside, word.label] = Construct(word.keyword)
-            if word.keyword == "sub":
-                self.subs[word.label] = construct
-        elif not self._goes_on(construct, word.keyword):
-            place = f"{construct.kind} in line {construct.lines[0] + 1}"
-            raise self._misfit(f"{word.keyword} does not go with what has this label, {place}")
-        construct.lines.append(line)
-        self.construct[line] = construct
-        return "" if word.keyword == "endsub" else scope
-
-    def _goes_on(self, construct: Construct, keyword: str) -> bool:
-        """Whether a keyword may be the next one of a construct."""
-        order = ORDERS[construct.kind]
-        last = self._keyword(construct.last)
-        closed = last == order[-1]
-        after_else = last == "else" and keyword != "endif"
-        return keyword in order[1:] and not closed and not after_else
-
-    def _misfit(self, message: str) -> Exception:
-        return self.refusal("GX223", message)
+        arranged = Constructs(self)
+        self.words, self.construct = arranged.words, arranged.construct
+        self.subs, self.labels = arranged.subs, arranged.labels
 
     # --- what lines do ---
 
@@ -238,13 +127,14 @@ class OWords(Execution):
 
     def _endsub(self, word: OWord) -> None:
         if not self.calls or self.calls[-1].name != f"O{word.label}":
-            raise self._misfit(f"this ends O{word.label}, which is not running")
+            raise self.refusal("GX223", f"this ends O{word.label}, which is not running")
         self._return(word)
 
     def _return(self, word: OWord) -> None:
         """Return from the subprogram that runs, whatever the label says."""
         if not self.calls or not self.calls[-1].name.startswith("O"):
-            raise self._misfit("no subprogram that was called by name is running here")
+            message = "no subprogram that was called by name is running here"
+            raise self.refusal("GX223", message)
         value = self.value(word.values[0]) if word.values else None
         call = self.calls.pop()
         self.modes.leave()
@@ -338,7 +228,7 @@ class OWords(Execution):
             if again:
                 self.back_to(construct.lines[0] + 1)
             return
-        self.jumped |= any(self._keyword(line) in LEAVES for line in construct.lines)
+        self.jumped |= any(self.words[line].keyword in LEAVES for line in construct.lines)
         if not again:
             self.at = construct.last + 1
 
