@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, ClassVar, TypeVar
 
 import click
 import numpy as np
@@ -40,7 +41,7 @@ SHARE = 0.4  # of the shortest travel: the radius if none is given
 
 
 @dataclass(frozen=True)
-class Common:
+class Common(ABC):
     """What all tests are told."""
 
     model: Annotated[ModelFile, Option("error model of the machine")]
@@ -57,6 +58,11 @@ class Common:
         """Return how the standard program is compensated."""
         kind = default_registry().dialect(dialect)
         return Chain(self.model, kind, self.tolerance, self.decimals, self.outside)
+
+    @property
+    @abstractmethod
+    def headline(self) -> str:
+        """What the test is, in a few words."""
 
     @property
     def box(self) -> FloatArray:
@@ -81,6 +87,12 @@ class BallbarOptions(Common):
         radius = self.radius or self._radius(planes)
         return Ballbar(centre, radius, planes, self.feed, self.noise, self.seed)
 
+    @property
+    def headline(self) -> str:
+        """What the test is, in a few words."""
+        test = self.test()
+        return f"ballbar, radius {test.radius:g} mm about {_words_of(test.centre)}"
+
     def _radius(self, planes: tuple[str, ...]) -> float:
         """Return the largest whole number of millimetres within a share of the travels."""
         travels = np.ptp(self.box, axis=1)[[axis for p in planes for axis in PLANES[p].axes[:2]]]
@@ -97,6 +109,13 @@ class LinearOptions(Common):
     runs: Annotated[int, Option("runs up and down each line", at_least=1)] = 5
     targets: Annotated[int, Option("targets on each line", at_least=2)] = 11
 
+    name: ClassVar[str]
+
+    @property
+    def headline(self) -> str:
+        """What the test is, in a few words."""
+        return f"{self.name}, {self.runs} runs to {self.targets} targets"
+
     def linear(self, lines: tuple[Any, ...]) -> LinearTest:
         """Return the test of some lines."""
         return LinearTest(lines, self.runs, self.feed, self.noise, self.seed)
@@ -106,6 +125,7 @@ class LinearOptions(Common):
 class PositioningOptions(LinearOptions):
     """What a positioning test is told."""
 
+    name = "positioning"
     axes: Annotated[str, Option("axes that are tested")] = ",".join(AXES)
     at: Annotated[Vector | None, Option("where the other axes stand; absent: middle")] = None
     overtravel: Annotated[Length, Option("way beyond the outer targets", at_least=0.0)] = 1.0
@@ -134,6 +154,7 @@ class PositioningOptions(LinearOptions):
 class DiagonalOptions(LinearOptions):
     """What a diagonal test is told."""
 
+    name = "diagonals"
     diagonals: Annotated[
         str, Option("diagonals: body, face, or names such as PPP and N0P; absent: all there are")
     ] = ""
@@ -174,6 +195,10 @@ def middle(box: FloatArray) -> tuple[float, float, float]:
     return x, y, z
 
 
+def _words_of(point: tuple[float, float, float]) -> str:
+    return " ".join(f"{axis}{value:g}" for axis, value in zip(AXES, point, strict=True))
+
+
 # --- the verb ---
 
 
@@ -212,59 +237,45 @@ def _files(command: Command) -> Command:
 @command.command("ballbar")
 @options_of(BallbarOptions)
 @_files
-def ballbar(dialect: str, **given: Any) -> None:
+def ballbar(**given: Any) -> None:
     """Circles in both senses: circular and radial deviations of ISO 230-4."""
-    files = _checked(given)
-    asked = built(BallbarOptions, given, "simulate ballbar")
-    test = asked.test()
-    outcome = test.run(asked.chain(dialect))
-    title = f"ballbar, radius {test.radius:g} mm about {_place(test.centre)}"
-    _hand_out(
-        files,
-        _title(title, asked, outcome),
-        outcome,
-        lambda: report.circle_pairs(outcome),
-        report.circle_readings,
-        lambda title: plot.circles(outcome, title),
-    )
+    telling = Telling(report.circle_pairs, report.circle_readings, plot.circles)
+    _simulate("ballbar", BallbarOptions, telling, **given)
 
 
 @command.command("positioning")
 @options_of(PositioningOptions)
 @_files
-def positioning(dialect: str, **given: Any) -> None:
+def positioning(**given: Any) -> None:
     """Targets along the axes: accuracy and repeatability of ISO 230-2."""
-    files = _checked(given)
-    asked = built(PositioningOptions, given, "simulate positioning")
-    outcome = asked.test().run(asked.chain(dialect))
-    title = f"positioning, {asked.runs} runs to {asked.targets} targets"
-    _hand_out(
-        files,
-        _title(title, asked, outcome),
-        outcome,
-        lambda: report.axis_pairs(outcome),
-        report.line_readings,
-        lambda title: plot.positioning(outcome, title),
-    )
+    telling = Telling(report.axis_pairs, report.line_readings, plot.positioning)
+    _simulate("positioning", PositioningOptions, telling, **given)
 
 
 @command.command("diagonal")
 @options_of(DiagonalOptions)
 @_files
-def diagonal(dialect: str, **given: Any) -> None:
+def diagonal(**given: Any) -> None:
     """Targets along the body and face diagonals: E, M and B of ISO 230-6."""
+    telling = Telling(report.diagonal_pairs, report.line_readings, plot.diagonals)
+    _simulate("diagonal", DiagonalOptions, telling, **given)
+
+
+@dataclass(frozen=True)
+class Telling:
+    """How the outcome of a kind of test is told: its figures, its readings, its picture."""
+
+    pairs: Callable[[Any], Iterator[tuple[str, report.Pairs]]]
+    readings: Callable[[Any], dict[str, Any]]
+    draw: Callable[[Any, str], Any]
+
+
+def _simulate(name: str, kind: type[Any], telling: Telling, dialect: str, **given: Any) -> None:
+    """Run a test before and after compensation, and hand out what it gives."""
     files = _checked(given)
-    asked = built(DiagonalOptions, given, "simulate diagonal")
+    asked = built(kind, given, f"simulate {name}")
     outcome = asked.test().run(asked.chain(dialect))
-    title = f"diagonals, {asked.runs} runs to {asked.targets} targets"
-    _hand_out(
-        files,
-        _title(title, asked, outcome),
-        outcome,
-        lambda: report.diagonal_pairs(outcome),
-        report.line_readings,
-        lambda title: plot.diagonals(outcome, title),
-    )
+    _hand_out(files, _title(asked, outcome), outcome, telling)
 
 
 def _checked(given: dict[str, Any]) -> dict[str, str | None]:
@@ -276,17 +287,13 @@ def _checked(given: dict[str, Any]) -> dict[str, str | None]:
     return files
 
 
-def _place(point: tuple[float, float, float]) -> str:
-    return " ".join(f"{axis}{value:g}" for axis, value in zip(AXES, point, strict=True))
-
-
-def _title(test: str, asked: Common, outcome: Outcome[Any]) -> str:
+def _title(asked: Common, outcome: Outcome[Any]) -> str:
     """Return in a line what was done."""
     noise = f"; noise {1000 * asked.noise:g} um, seed {asked.seed}" if asked.noise else ""
     proved = 1000 * outcome.compensated.certificate.largest["deviation"]
     return (
-        f"{test}: {asked.model.path.name}; compensated within {1000 * asked.tolerance:g} um, "
-        f"proved {proved:.2f} um{noise}"
+        f"{asked.headline}: {asked.model.path.name}; "
+        f"compensated within {1000 * asked.tolerance:g} um, proved {proved:.2f} um{noise}"
     )
 
 
@@ -294,26 +301,24 @@ def _hand_out(
     files: Mapping[str, str | None],
     title: str,
     outcome: Outcome[Any],
-    pairs: Callable[[], Iterator[tuple[str, report.Pairs]]],
-    readings: Callable[[Any], dict[str, Any]],
-    draw: Callable[[str], Any],
+    telling: Telling,
 ) -> None:
     """Print the table and write the files, all of them or none."""
     parts: dict[str, bytes] = {}
     if files["json"]:
-        found = {"format": 1, "title": title, "figures": report.data(pairs())}
+        found = {"format": 1, "title": title, "figures": report.data(telling.pairs(outcome))}
         sides = {"before": outcome.before, "after": outcome.after}
         found["readings"] = {
-            side: {name: readings(reading) for name, reading in read.items()}
+            side: {name: telling.readings(reading) for name, reading in read.items()}
             for side, read in sides.items()
         }
         parts["json"] = (json.dumps(found, indent=1) + "\n").encode()
     if files["plot"]:
-        parts["plot"] = plot.rendered(draw(title), files["plot"])
+        parts["plot"] = plot.rendered(telling.draw(outcome, title), files["plot"])
     parts |= {"program": outcome.program.text, "compensated": outcome.compensated.text}
     with ExitStack() as stack:
         for name, content in parts.items():
             if file := files[name]:
                 stack.enter_context(destination(file))(content)
     if STDOUT not in files.values():
-        click.echo("\n".join([title, *report.table(pairs())]))
+        click.echo("\n".join([title, *report.table(telling.pairs(outcome))]))
