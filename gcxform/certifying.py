@@ -61,7 +61,7 @@ def _fill(run: Run, certificate: Certificate) -> None:
 
 
 def _not_checked(run: Run, certificate: Certificate) -> None:
-    if run.source is not run.given:
+    if run.executes:
         what = "the order in which calls and loops execute blocks: it was found once"
         certificate.not_checked.append(what)
     assert run.verifier is not None

@@ -68,6 +68,8 @@ class Pass:
     resolves: ClassVar[bool] = False
     """Whether its output is what the rest of the run is compared with; then it has to `prove` it.
     No window ends where cutter compensation is in force for such a pass."""
+    reads_tip_codes: ClassVar[bool] = False
+    """It does what codes for following the tip ask for, so they are read as plain tool lengths."""
     whole_cuts: ClassVar[bool] = False
     """Whether it has to see every cut as a whole: a window then ends where a rapid follows one."""
 

@@ -190,6 +190,9 @@ class Dialect:
     """How the control computes expressions; None: they are refused."""
     flow: ClassVar[str] = ""
     """How subprograms and loops are written: "o-words", "macro-b", or "": the control has none."""
+    tip_codes: ClassVar[Mapping[str, str]] = {}
+    """Codes from which on the control follows the tip, each with the one that only takes the tool
+    length into account."""
     calls_own_lines: ClassVar[bool] = False
     """M97 calls lines of the same program, up to M99."""
     numbers: ClassVar[NumberFormat] = NumberFormat()

@@ -16,7 +16,7 @@ from gcxform.cuts import whole_cuts
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.emit.emitter import Emitted, Emitter
-from gcxform.flow.written_out import WrittenOut, located, written_out
+from gcxform.flow.written_out import located, written_out
 from gcxform.heap import give_back
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
@@ -25,6 +25,7 @@ from gcxform.modal.tables import MeaningTable
 from gcxform.source import WINDOW, Source, lines_in
 from gcxform.syntax.scan import Window
 from gcxform.textpasses import TextRun
+from gcxform.tipcodes import without_tip_codes
 from gcxform.toolpath.path import Toolpath
 from gcxform.verify import Verifier
 
@@ -68,6 +69,9 @@ class Run:
         self.text = TextRun(pipeline.text_passes, pipeline.target, source.name)
         if not pipeline.copies:
             self.source = written_out(source, pipeline.source, pipeline.machine_reading)
+        self.executes = self.source is not source
+        if any(step.reads_tip_codes for step in self.steps):
+            self.source = without_tip_codes(self.source, pipeline.source)
         self.given = source
         self.reader = WindowReader(pipeline.source)
         self.measured: dict[str, float] = {}
@@ -110,8 +114,9 @@ class Run:
             self._over(self.source.windows(size), out, progress)
         except GcxformError as error:
             raise located(error, self.source) from None
-        if isinstance(self.source, WrittenOut) and out.source_map is not None:
-            out.source_map[:] = self.source.origin[out.source_map].tolist()
+        if self.source is not self.given and out.source_map is not None:
+            line_of = self.source.line_of
+            out.source_map[:] = [line_of(line + 1) - 1 for line in out.source_map]
 
     def _over(self, texts: Iterator[bytes], out: Output, progress: Progress) -> None:
         """Run over the windows of a program.

@@ -195,4 +195,25 @@ MUTATIONS = (
         "return np.asarray(timed & (least * written.feed >= 0.0))",
         f"{TESTS}::test_a_late_move_has_to_have_a_reason",
     ),
+    Mutation(
+        "rtcp: comments lose their codes",
+        "gcxform/tipcodes.py",
+        'if found[0].startswith(b"("):',
+        "if False:",
+        "tests/test_tipcodes.py",
+    ),
+    Mutation(
+        "rtcp: the control may begin with axes turned",
+        f"{PASSES}/rtcp_place.py",
+        "(self.which != self.which_before) & turned_at(self.angles(self.path.start))",
+        "np.zeros(len(self.which), np.bool_)",
+        "tests/test_corpus.py::test_case",
+    ),
+    Mutation(
+        "rtcp: axes may be turned before the control follows",
+        f"{PASSES}/rtcp_place.py",
+        "bare[self.which] & turned_at(self.angles(self.path.end))",
+        "np.zeros(len(self.which), np.bool_)",
+        "tests/test_corpus.py::test_case",
+    ),
 )

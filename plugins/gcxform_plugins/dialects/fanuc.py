@@ -166,3 +166,4 @@ class Fanuc(gx.Dialect):
     cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE
     arithmetic = v.MACRO_B
     flow = "macro-b"
+    tip_codes: ClassVar[Mapping[str, str]] = {"G43.4": "G43"}

@@ -54,6 +54,13 @@ class Rtcp(gx.Pass):
             "those that take the tip there on the calibrated machine; retarget: on another machine"
         ),
     ] = "to-machine"
+    tip_codes: Annotated[
+        Literal["refuse", "read"],
+        gx.Option(
+            "to-machine: programs that let the control follow the tip (G43.4, G234): read them as "
+            "tool lengths, for a control that does not"
+        ),
+    ] = "refuse"
     rapids: Annotated[
         Literal["refuse", "ends"],
         gx.Option("rapids that turn axes: refuse them, or convert where they end"),
@@ -104,6 +111,8 @@ class Rtcp(gx.Pass):
             raise ValueError("retarget takes target, the file of the machine to write for")
         if self.direction != "repost" and self.orientation != "keep":
             raise ValueError("orientation is an option of repost")
+        if self.direction != "to-machine" and self.tip_codes == "read":
+            raise ValueError("tip-codes is an option of to-machine: the others would do it twice")
         if self.direction != "to-machine" and self.orientation_path != "angles":
             raise ValueError("orientation-path is an option of to-machine")
         if self.direction == "retarget" and self.rapids == "refuse":
@@ -117,6 +126,11 @@ class Rtcp(gx.Pass):
             or self.orientation != "keep"
             or self.orientation_path == "great-circle"
         )
+
+    @property
+    def reads_tip_codes(self) -> bool:  # type: ignore[override]
+        """Whether it does what the control was asked for."""
+        return self.tip_codes == "read"
 
     @property
     def letters(self) -> str:
@@ -191,6 +205,8 @@ class Rtcp(gx.Pass):
         """Return the path of the axes for one of tips; if asked the reverse, or one corrected."""
         if not len(path) or self._nothing_to_correct(context):
             return path.replace(blocks=self.timed(path.blocks))
+        if self.reads_tip_codes:
+            Place(path, context).refuse_followed_late()
         if self.turns_anew:
             source, target = self._machines(path, context)
             path = self._moving(self, path, context, source, target).run()

@@ -104,6 +104,23 @@ class Place:
                     message += f": {', '.join(sorted(names))}"
                 raise path.refuse("GX330", rows, message, ENOUGH)
 
+    def refuse_followed_late(self) -> None:
+        """Refuse turned axes where the control would not follow the tip, or begin to follow it.
+
+        Positions are those of the axes without a tool length; and where the control begins with
+        axes turned, a parameter says whether X, Y and Z turn with the table.
+        """
+        bare = np.asarray(~self.tools.any(axis=1))
+        without = bare[self.which] & turned_at(self.angles(self.path.end))
+        begins = (self.which != self.which_before) & turned_at(self.angles(self.path.start))
+        for rows, what in (
+            (without, "axes are turned while the control does not follow the tip"),
+            (begins, "the control begins or ends to follow the tip while axes are turned"),
+        ):
+            if rows.any():
+                hint = "turn them back to 0 first"
+                raise self.path.refuse("GX330", np.flatnonzero(rows)[:1], what, hint)
+
     # --- from one to the other ---
 
     def angles(self, positions: Floats) -> Floats:

@@ -1,0 +1,82 @@
+"""Programs that let the control follow the tip of the tool, read for a pass that does it instead.
+
+`G43.4 H1` says that X, Y and Z are those of the tip from here on, whatever the rotary axes do. A
+pass that turns tips into axes reads it as `G43 H1`, and that is what is left in the output. G43
+itself has positions of axes, so a program with both is refused.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+
+from gcxform.diagnostics import InputError, Location
+from gcxform.dialect import Dialect
+from gcxform.source import WINDOW, Source, lines_in
+
+COMMENT = rb"\([^()\r\n]*\)"
+
+
+class WithoutTipCodes(Source):
+    """A source in whose text each code that follows the tip is another one."""
+
+    def __init__(self, source: Source, codes: Mapping[str, str]) -> None:
+        super().__init__(source.stream, source.name)
+        self.source = source
+        self.codes = {code.encode(): other.encode() for code, other in codes.items()}
+        self.others = {other.encode() for other in codes.values()}
+        both = {**self.codes, **dict.fromkeys(self.others)}
+        self.pattern = re.compile(
+            b"|".join([COMMENT, *(_spelled(code) for code in both)]), re.IGNORECASE
+        )
+
+    def line_of(self, line: int) -> int:
+        """Return the line of the file: see `Source.line_of`."""
+        return self.source.line_of(line)
+
+    def windows(self, size: int = WINDOW) -> Iterator[bytes]:
+        """Yield the text with the other codes. Raises InputError for a program with both."""
+        lines = 0
+        for text in self.source.windows(size):
+            yield self.pattern.sub(lambda found: self._other(found, lines), text)  # noqa: B023
+            lines += lines_in(text)
+
+    def _other(self, found: re.Match[bytes], lines: int) -> bytes:
+        """Return what stands in the place of a code, or of a comment."""
+        if found[0].startswith(b"("):
+            return found[0]
+        code = _plain(found[0])
+        if code in self.codes:
+            return self.codes[code]
+        before = found.string[: found.start()]
+        line = self.line_of(lines + lines_in(before + b" "))
+        names = ", ".join(code.decode() for code in self.codes)
+        message = f"{code.decode()} has positions of axes, and {names} those of the tip"
+        raise InputError.one("GX330", message, Location(self.name, line))
+
+
+def without_tip_codes(source: Source, dialect: type[Dialect]) -> Source:
+    """Return a source without codes that follow the tip; itself if it has none of them."""
+    if not dialect.tip_codes:
+        return source
+    pattern = re.compile(
+        b"|".join([COMMENT, *(_spelled(code.encode()) for code in dialect.tip_codes)]),
+        re.IGNORECASE,
+    )
+    for text in source.windows():
+        if any(not found[0].startswith(b"(") for found in pattern.finditer(text)):
+            return WithoutTipCodes(source, dialect.tip_codes)
+    return source
+
+
+def _spelled(code: bytes) -> bytes:
+    """Return a pattern of a code as programs may write it: `G043.40`."""
+    whole, _, part = code[1:].partition(b".")
+    decimals = rb"[ \t]*\.[ \t]*" + part + b"0*" if part else rb"(?:\.0*)?"
+    return rb"G[ \t]*0*" + whole + decimals + rb"(?![0-9.])"
+
+
+def _plain(found: bytes) -> bytes:
+    """Return a code as the dialect writes it."""
+    digits = found[1:].translate(None, b" \t")
+    return b"G%g" % float(digits)
