@@ -128,7 +128,7 @@ def test_words_of_other_kinds() -> None:
     [
         ("G0 X#1", "GX220", 1, 5),
         ("#1=2\nG0 X[#1+##1]", "GX220", 2, 9),
-        ("G0 X#5421", "GX220", 1, 5),
+        ("G0 X#5061", "GX220", 1, 5),
         ("#<a>=1\nG0 X#<b>", "GX220", 2, 5),
         ("#1=#2 #2=1", "GX220", 1, 4),
         ("#0=1", "GX206", 1, 1),
@@ -143,8 +143,8 @@ def test_words_of_other_kinds() -> None:
         ("T[2.5]", "GX221", 1, 1),
         ("#1=2\n#[#1+0.5]=1", "GX221", 2, 1),
         ("#1=1\nN#1 G0 X1", "GX206", 2, 1),
-        ("#1=1\nG#1 X1", "GX206", 2, 1),
-        ("o1 sub", "GX206", 1, 1),
+        ("#1=98\nM#1 P1", "GX206", 2, 1),
+        ("o1 sub", "GX223", 1, 1),
     ],
 )
 def test_refusals(text: str, code: str, line: int, column: int) -> None:
@@ -155,7 +155,7 @@ def test_refusals(text: str, code: str, line: int, column: int) -> None:
 
 def test_parameters_that_are_given() -> None:
     assert last("G0 X#31 Y#<depth>", parameters={"#31": 2.0, "< Depth >": 3.0})[:2] == [2, 3]
-    assert refusal("G0 X#5421", parameters={"5421": 2.0}).code == "GX220"
+    assert refusal("G0 X#5061", parameters={"5061": 2.0}).code == "GX220"
     assert [parameter_key(t) for t in ("#100", "7", "#<A b>", "<c>")] == [100, 7, "ab", "c"]
     with pytest.raises(ValueError, match="neither a number nor a name"):
         parameter_key("depth")
@@ -213,7 +213,7 @@ def test_fanuc_values(expression: str, value: float) -> None:
         ("#34=1", "GX206"),
         ("#1=#2", "GX220"),
         ("#1=#0", "GX220"),
-        ("IF [1 EQ 1] GOTO 5", "GX206"),
+        ("IF [1 EQ 1] GOTO 5", "GX223"),
     ],
 )
 def test_fanuc_refusals(text: str, code: str) -> None:
