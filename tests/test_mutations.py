@@ -1,4 +1,7 @@
-"""The mutations still fit the source; with GCXFORM_MUTATIONS=1 they are run as well."""
+"""The mutations still fit the source; with GCXFORM_MUTATIONS=1 every second one is run as well.
+
+All of them take twice as long: `python tests/mutations.py`.
+"""
 
 from __future__ import annotations
 
@@ -18,5 +21,5 @@ def test_every_mutation_fits_the_source() -> None:
 @pytest.mark.skipif(
     os.environ.get("GCXFORM_MUTATIONS") != "1", reason="minutes long: set GCXFORM_MUTATIONS=1"
 )
-def test_every_mutation_is_caught() -> None:
-    assert mutations.main([]) == 0
+def test_every_second_mutation_is_caught() -> None:
+    assert mutations.main(["--every", "2"]) == 0
