@@ -22,7 +22,7 @@ from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import MeaningTable
-from gcxform.source import WINDOW, Source, lines_in
+from gcxform.source import Source, lines_in
 from gcxform.syntax.scan import Window
 from gcxform.textpasses import TextRun
 from gcxform.tipcodes import without_tip_codes
@@ -108,7 +108,7 @@ class Run:
         resolving = [number for number, step in enumerate(self.steps, 1) if step.resolves]
         return self.steps[resolving[-1] :] if resolving else self.steps
 
-    def over(self, out: Output, progress: Progress, size: int = WINDOW) -> None:
+    def over(self, out: Output, progress: Progress, size: int = 0) -> None:
         """Run over the program, `size` bytes at a time. Raises GcxformError."""
         try:
             self._over(self.source.windows(size), out, progress)

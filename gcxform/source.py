@@ -62,11 +62,11 @@ class Source:
                     found |= {axis} if either[0] in text or either[1] in text else set()
         return "".join(axis for axis in among if axis in found)
 
-    def windows(self, size: int = WINDOW) -> Iterator[bytes]:
-        """Yield the text, a number of whole lines at a time."""
+    def windows(self, size: int = 0) -> Iterator[bytes]:
+        """Yield the text, a number of whole lines at a time: `size` bytes, or 0 for WINDOW."""
         self.stream.seek(0)
         rest = b""
-        while chunk := self.stream.read(size):
+        while chunk := self.stream.read(size or WINDOW):
             text = rest + chunk
             cut = _last_line_end(text)
             if cut:

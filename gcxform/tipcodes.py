@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect import Dialect
-from gcxform.source import WINDOW, Source, lines_in
+from gcxform.source import Source, lines_in
 
 COMMENT = rb"\([^()\r\n]*\)"
 
@@ -34,7 +34,7 @@ class WithoutTipCodes(Source):
         """Return the line of the file: see `Source.line_of`."""
         return self.source.line_of(line)
 
-    def windows(self, size: int = WINDOW) -> Iterator[bytes]:
+    def windows(self, size: int = 0) -> Iterator[bytes]:
         """Yield the text with the other codes. Raises InputError for a program with both."""
         lines = 0
         for text in self.source.windows(size):

@@ -14,7 +14,6 @@ from oracles import rs274
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
 from gcxform.emit.numbers import MOST_DECIMALS
-from gcxform.source import Source
 from gcxform.testing.cases import Case, Outcome, outcome, read_case, run_case
 
 ROOT = Path(__file__).parents[1]
@@ -84,7 +83,7 @@ def joins(case):
 @pytest.mark.parametrize("case", [parameter(case) for case in CASES if not case.xfail])
 def test_windows_make_no_difference(case, tmp_path, monkeypatch):
     """Run every case line by line: what one window knows, the next one must know as well."""
-    monkeypatch.setattr(Source.windows, "__defaults__", (1,))
+    monkeypatch.setattr("gcxform.source.WINDOW", 1)
     (tmp_path / "lines").mkdir()
     found = outcome(case, tmp_path / "lines", PLACES)
     if case.diagnostics:

@@ -15,7 +15,6 @@ from gcxform.compensated import whole_stretches
 from gcxform.contract import PassContext
 from gcxform.machine.machine import Machine, Tool
 from gcxform.registry import default_registry
-from gcxform.source import Source
 from gcxform.toolpath.path import Toolpath
 
 START = {"X": 0.0, "Y": 0.0, "Z": 0.0}
@@ -90,7 +89,7 @@ def test_an_offset_stays_in_force() -> None:
 def test_compensation_does_not_begin_again_without_a_move(
     size: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(Source.windows, "__defaults__", (size,))
+    monkeypatch.setattr("gcxform.source.WINDOW", size)
     again = HEAD + "G41 D1 G1 Y0\nY20\nG40\nG4 P1\nG41 D1\nX30\nG40 X40\nM2\n"
     assert refused(again) == "GX230"
     assert done(again.replace("G4 P1", "X-5"))
@@ -99,7 +98,7 @@ def test_compensation_does_not_begin_again_without_a_move(
 @pytest.mark.parametrize("size", [1, 20, 60, 200])
 def test_windows_make_no_difference(size: int, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = done(CONTOUR + "")
-    monkeypatch.setattr(Source.windows, "__defaults__", (size,))
+    monkeypatch.setattr("gcxform.source.WINDOW", size)
     assert done(CONTOUR) == whole
 
 
