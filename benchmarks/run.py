@@ -16,6 +16,7 @@ import filecmp
 import os
 import platform
 import resource
+import select
 import subprocess
 import sys
 import tempfile
@@ -116,10 +117,36 @@ def timed(command: list[str], cwd: Path, stdout: Path, stderr: Path) -> tuple[in
         child = subprocess.Popen(
             command, cwd=cwd, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=ENVIRONMENT
         )
+        together = watched(child.pid)
         _, status, used = os.wait4(child.pid, 0)
         wall = perf_counter() - start
     child.returncode = os.waitstatus_to_exitcode(status)
-    return child.returncode, Sample(wall, used.ru_utime + used.ru_stime, megabytes(used.ru_maxrss))
+    peak = max(together, megabytes(used.ru_maxrss))
+    return child.returncode, Sample(wall, used.ru_utime + used.ru_stime, peak)
+
+
+def watched(pid: int) -> float:
+    """Wait for a process; return the most that it and its own ones took together, in MB.
+
+    It is looked at every 20 ms. Memory that several processes share counts for each of them.
+    """
+    if not hasattr(os, "pidfd_open"):
+        return 0.0
+    most, ended = 0, os.pidfd_open(pid)
+    while not select.select([ended], [], [], 0.02)[0]:
+        most = max(most, pages(pid))
+    os.close(ended)
+    return most * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+
+def pages(pid: int) -> int:
+    """Return how many pages of memory a process and its own ones have; 0 once they have ended."""
+    try:
+        own = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+        others = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+    except OSError:
+        return 0
+    return own + sum(pages(int(other)) for other in others)
 
 
 def megabytes(maxrss: int) -> float:

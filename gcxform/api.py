@@ -96,7 +96,7 @@ def joined(parts: Sequence[Toolpath]) -> Toolpath:
     counts = np.cumsum([0, *(len(part) for part in parts)])
     columns = {name: np.concatenate([getattr(p, name) for p in parts]) for name in COLUMNS}
     events = tuple(
-        replace(event, row=event.row + int(first))
+        event.at(event.row + int(first))
         for part, first in zip(parts, counts[:-1], strict=True)
         for event in part.events
     )

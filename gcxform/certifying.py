@@ -32,7 +32,7 @@ def certificate(run: Run, out: Output) -> Certificate:
         {"dialect": pipeline.target.name, "lines": out.lines_out}
         | {"sha256": out.written.hexdigest()},
         [_described(step) for step in pipeline.passes],
-        _budget(pipeline, run.verifier is not None and run.verifier.inch),
+        _budget(pipeline, run.findings.inch),
         {"blocks_in": out.lines_in, "blocks_out": out.lines_out}
         | {"ratio": out.growth, "limit": pipeline.growth},
         run.verifier is not None or (pipeline.copies and run.verify != "off"),
@@ -49,7 +49,7 @@ def _fill(run: Run, certificate: Certificate) -> None:
         elif run.verify == "off":
             certificate.not_checked.append("anything: verification was switched off")
         return
-    found = run.verifier.findings
+    found = run.findings
     certificate.largest = {
         "deviation": found.deviation,
         "source_line": run.source.line_of(found.source_line),
@@ -64,9 +64,8 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
     if run.executes:
         what = "the order in which calls and loops execute blocks: it was found once"
         certificate.not_checked.append(what)
-    assert run.verifier is not None
     assert run.interpreter is not None
-    found = run.verifier.findings
+    found = run.findings
     for count, what in (
         (
             found.rapids,

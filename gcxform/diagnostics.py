@@ -105,6 +105,9 @@ class GcxformError(Exception):
     def __str__(self) -> str:
         return self.render()
 
+    def __reduce__(self) -> tuple[type[Self], tuple[tuple[Diagnostic, ...]]]:
+        return type(self), (self.diagnostics,)
+
 
 def render_all(diagnostics: Iterable[Diagnostic]) -> str:
     """Return several diagnostics as one text, the rest counted."""

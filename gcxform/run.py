@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,9 +16,9 @@ from gcxform.diagnostics import GcxformError, InputError, Location, Verification
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.emit.emitter import Emitted, Emitter
 from gcxform.flow.written_out import located, written_out
-from gcxform.heap import give_back
+from gcxform.heap import Heap
 from gcxform.modal.interpreter import Interpreted, Interpreter
-from gcxform.modal.reader import WindowReader
+from gcxform.modal.reader import Apart, WindowReader
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import MeaningTable
 from gcxform.source import Source, lines_in
@@ -27,7 +26,8 @@ from gcxform.syntax.scan import Window
 from gcxform.textpasses import TextRun
 from gcxform.tipcodes import without_tip_codes
 from gcxform.toolpath.path import Toolpath
-from gcxform.verify import Verifier
+from gcxform.verify import Findings, Verifier
+from gcxform.worker import Worker, ahead, worker
 
 if TYPE_CHECKING:
     from gcxform.pipeline import Pipeline
@@ -58,6 +58,17 @@ class Output:
         self.sink(text)
 
 
+@dataclass(frozen=True, slots=True)
+class Transformed:
+    """A window as it was read, the path that is meant, and the one to be written."""
+
+    window: Window
+    table: MeaningTable
+    read: Interpreted
+    meant: Toolpath
+    path: Toolpath
+
+
 class Run:
     """One run: its readers, writer and verifier."""
 
@@ -76,6 +87,7 @@ class Run:
         self.reader = WindowReader(pipeline.source)
         self.measured: dict[str, float] = {}
         self.verifier: Verifier | None = None
+        self.findings = Findings()
         self.interpreter: Interpreter | None = None
         if not pipeline.copies:
             self._prepare()
@@ -111,19 +123,20 @@ class Run:
     def over(self, out: Output, progress: Progress, size: int = 0) -> None:
         """Run over the program, `size` bytes at a time. Raises GcxformError."""
         try:
-            self._over(self.source.windows(size), out, progress)
+            self._over(size, out, progress)
         except GcxformError as error:
             raise located(error, self.source) from None
         if self.source is not self.given and out.source_map is not None:
             line_of = self.source.line_of
             out.source_map[:] = [line_of(line + 1) - 1 for line in out.source_map]
 
-    def _over(self, texts: Iterator[bytes], out: Output, progress: Progress) -> None:
+    def _over(self, size: int, out: Output, progress: Progress) -> None:
         """Run over the windows of a program.
 
-        The next window is read, and the one before proved, while one is transformed: each on a
-        thread of its own, which pays because numpy works outside of Python's lock.
+        While one is transformed and written the next is read, and the one before proved, by
+        processes of their own if the program is long.
         """
+        texts = self.source.windows(size)
         if self.pipeline.copies:
             for text in texts:
                 out.read.update(text)
@@ -134,65 +147,51 @@ class Run:
             texts = whole_stretches(texts)
         if any(step.whole_cuts for step in self.steps):
             texts = whole_cuts(texts)
-        with ThreadPoolExecutor(1) as ahead, ThreadPoolExecutor(1) as behind:
-            self._transform_all(behind, self._read_ahead(ahead, texts, out), out, progress)
+        read = WindowReader(self.pipeline.source).read_apart
+        long = self.source.is_long(size)
+        proved = long and self.verifier is not None
+        with worker(read, long) as reader, worker(self._check, proved) as proof:
+            windows = ahead(reader, self._counted(texts, out))
+            self._write_all(map(self._transform, windows), proof, out, progress)
 
-    def _note_read(self, text: bytes, out: Output) -> None:
-        """Add what was read to the hash of the program, which is that of its file."""
-        if self.source is self.given:
-            out.read.update(text)
+    def _check(self, *given: Any) -> Findings:
+        """Check a window that is to be proved: see `Verifier.check`."""
+        assert self.verifier is not None
+        return self.verifier.check(*given)
 
-    def _read_ahead(
-        self, pool: ThreadPoolExecutor, texts: Iterator[bytes], out: Output
-    ) -> Iterator[tuple[Window, MeaningTable]]:
-        """Yield windows, each with its table of meanings, while the next is being read."""
-
-        def read(text: bytes) -> tuple[Window, MeaningTable]:
-            self._note_read(text, out)
-            window = self.reader.read(text)
-            return window, self.reader.table
-
-        waiting: Future[tuple[Window, MeaningTable]] | None = None
+    def _counted(self, texts: Iterator[bytes], out: Output) -> Iterator[bytes]:
+        """Yield texts; their hash is that of the program if that is what is executed."""
         for text in texts:
-            coming = pool.submit(read, text)
-            if waiting is not None:
-                yield waiting.result()
-            waiting = coming
-        if waiting is not None:
-            yield waiting.result()
+            if self.source is self.given:
+                out.read.update(text)
+            yield text
 
-    def _transform_all(
+    def _write_all(
         self,
-        pool: ThreadPoolExecutor,
-        windows: Iterator[tuple[Window, MeaningTable]],
+        windows: Iterator[Transformed],
+        proof: Worker[Findings],
         out: Output,
         progress: Progress,
     ) -> None:
-        """Transform the windows; of several errors the first in the program is raised."""
-        feed_modes = any(step.feed_mode is not None for step in self.steps)
-        proof: Future[None] | None = None
+        """Write the windows; of several errors the first in the program is raised."""
+        heap = Heap()
         try:
-            for number, (window, table) in enumerate(windows):
-                read, emitted = self._transform(window, table)
-                if proof is not None:
-                    proof.result()
+            for one in windows:
+                emitted = self.emitter.emit(one.window, one.table, one.read, one.path)
+                if proof.busy:
+                    self.findings = proof.end()
                 if self.verifier is not None:
-                    proof = pool.submit(
-                        self.verifier.check,
-                        read,
-                        window,
-                        emitted.text,
-                        emitted.source,
-                        emitted.nth,
-                    )
-                self._hand_on(window, emitted, out)
-                give_back(number)
-                progress(len(window.text))
-            if feed_modes:
+                    given = one.window.lines, emitted.text, emitted.source, emitted.nth
+                    proof.begin(replace(one.read, path=one.meant), *given)
+                self._hand_on(one.window, emitted, out)
+                progress(len(one.window.text))
+                del one, emitted  # or they would last until the next one is there
+                heap.give_back()
+            if any(step.feed_mode is not None for step in self.steps):
                 self._check_end()
         finally:
-            if proof is not None:
-                proof.result()
+            if proof.busy:
+                self.findings = proof.end()
 
     def _check_end(self) -> None:
         """Refuse to leave the control in another feed mode than the source program does."""
@@ -229,9 +228,11 @@ class Run:
             out.source_map += lines
         out.put(text)
 
-    def _transform(self, window: Window, table: MeaningTable) -> tuple[Interpreted, Emitted]:
-        """Interpret one window, run the passes, and write it."""
+    def _transform(self, apart: Apart) -> Transformed:
+        """Interpret one window and run the passes."""
         assert self.interpreter is not None
+        window = self.reader.take_over(apart)
+        table = self.reader.table
         read = self.interpreter.interpret(window, table)
         path = meant = read.path
         for step in self.steps:
@@ -240,7 +241,7 @@ class Run:
                 self._prove(step, meant, path, window)
                 meant = path
         path = _in_words_of(self.pipeline.target, path)
-        return replace(read, path=meant), self.emitter.emit(window, table, read, path)
+        return Transformed(window, table, read, meant, path)
 
     def _prove(self, step: Pass, before: Toolpath, after: Toolpath, window: Window) -> None:
         """Let a pass that resolves prove its path, against the one that the program means."""

@@ -46,6 +46,10 @@ class Source:
         """How many bytes there are."""
         return self.stream.seek(0, io.SEEK_END)
 
+    def is_long(self, size: int = 0) -> bool:
+        """Whether there is more text than one window of that size."""
+        return self.size > (size or WINDOW)
+
     def axes(self, among: str) -> str:
         """Return those of the axes that the program may name, X, Y and Z whether it does or not.
 

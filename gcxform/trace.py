@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Toolpath
 from gcxform.toolpath.runs import Runs, runs_of
 from gcxform.toolpath.travel import ways
@@ -16,13 +15,14 @@ Ints = NDArray[np.int64]
 class Trace:
     """Which move of the output belongs to which move of the input.
 
-    `written` are the moves as read from the output, `after` what the machine does with them.
+    `lines` are those of the window, from 0; `written` are the moves as read from the output,
+    `after` what the machine does with them.
     """
 
     def __init__(
         self,
         before: Toolpath,
-        window: Window,
+        lines: range,
         written: Toolpath,
         after: Toolpath,
         source: Ints,
@@ -35,10 +35,10 @@ class Trace:
         self.source = source
         self.first = first
         self._nth = nth
-        line = before.source - window.first_line
-        self._count = np.bincount(line, minlength=len(window))
+        line = before.source - lines.start
+        self._count = np.bincount(line, minlength=len(lines))
         self._row_of_line = np.where(self._count > 0, np.cumsum(self._count) - self._count, -1)
-        self._window_first = window.first_line
+        self._first_line = lines.start
         self.owner = self._owners(after)
         self.written_owner = self.owner if after is written else self._owners(written)
         self.through = self.written_owner
@@ -52,7 +52,7 @@ class Trace:
 
     def _owners(self, path: Toolpath) -> Ints:
         written = path.source - self.first
-        lines = self.source[written] - self._window_first
+        lines = self.source[written] - self._first_line
         first = self._row_of_line[lines]
         nth = path.nth + self._nth[written]
         return np.where((first >= 0) & (nth < self._count[lines]), first + nth, -1)

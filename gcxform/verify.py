@@ -9,7 +9,7 @@ budget, with the same kinds of moves, feeds and events.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,6 @@ from gcxform.modal.reader import WindowReader
 from gcxform.modal.sorting import only_for_cycles
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import PROBES
-from gcxform.syntax.scan import Window
 from gcxform.toolpath.facts import IN_AIR, between_taps
 from gcxform.toolpath.path import WHOLE, Event, Kind, Toolpath
 from gcxform.toolpath.runs import Runs, deviation_of_runs
@@ -44,6 +43,7 @@ class Findings:
 
     deviation   mm; `source_line` and `output_line` count from 1
     angle       degrees, of rotary axes
+    inch        whether a block in inches has been written
     between_taps, aside   moves between taps that are off by more than the budget, and how far (mm)
     """
 
@@ -58,7 +58,7 @@ class Findings:
     between_taps: int = 0
     aside: float = 0.0
     lines_after_end: int = 0
-    problems: list[str] = field(default_factory=list)
+    inch: bool = False
 
 
 class Verifier:
@@ -83,7 +83,6 @@ class Verifier:
         self.budgets = budgets
         self.feed_modes = [step.feed_mode for step in passes if step.feed_mode is not None]
         self.speeds = _speeds(context) if any(step.slows for step in passes) else {}
-        self.inch = False
         self.angle_budget = angle_budget
         self.file = file
         self.findings = Findings()
@@ -91,14 +90,15 @@ class Verifier:
     @property
     def budget(self) -> float:
         """What the path may deviate (mm): more once a block in inches has been written."""
-        return self.budgets[self.inch]
+        return self.budgets[self.findings.inch]
 
     def check(
-        self, read: Interpreted, window: Window, text: bytes, source: Ints, nth: Ints
-    ) -> None:
-        """Check the text written for a window; `source` is the input line of each output line.
+        self, read: Interpreted, lines: range, text: bytes, source: Ints, nth: Ints
+    ) -> Findings:
+        """Check the text written for a window; return what has been found in the program so far.
 
-        `nth` says which of the moves of its input line the first move of an output line is.
+        `lines` are those of the window, `source` is the input line of each output line. `nth` says
+        which of the moves of its input line the first move of an output line is.
         Raises VerificationError.
         """
         first = self.reader.lines
@@ -108,23 +108,24 @@ class Verifier:
         except GcxformError as error:
             raise VerificationError(error.diagnostics) from None
         path = back.path
-        self.inch |= bool(path.blocks.inch[path.block].any())
+        self.findings.inch |= bool(path.blocks.inch[path.block].any())
         for step in reversed(self.passes):
             path = step.undo(path, self.context)
-        trace = Trace(read.path, window, back.path, path, source, nth, first)
-        self._count(read, window, trace)
+        trace = Trace(read.path, lines, back.path, path, source, nth, first)
+        self._count(read, lines, trace)
         self._compare(trace)
         self._forms(trace, read, back)
         if self.feed_modes:
             for wrong in self._proof(trace).left_behind(read, back):
                 self._raise(*wrong)
         self._events(self._told(read.path), self._told(back.path), trace)
+        return self.findings
 
-    def _count(self, read: Interpreted, window: Window, trace: Trace) -> None:
+    def _count(self, read: Interpreted, lines: range, trace: Trace) -> None:
         found = self.findings
         found.moves += len(read.path)
         found.rapids += int((read.path.kind == Kind.RAPID).sum())
-        found.lines_after_end += len(window) - read.live
+        found.lines_after_end += len(lines) - read.live
 
     def _compare(self, trace: Trace) -> None:
         """Compare moves; each of the output must belong to one of the input, or a run of them."""

@@ -234,7 +234,8 @@ CODES: dict[str, tuple[str, str]] = {
     ),
     "GX903": (
         "Input or output failed",
-        "The operating system refused to read or to write; the message is its own. Results are "
-        "renamed into place only when they are complete.",
+        "The operating system refused to read or to write, and the message is its own; or it ended "
+        "a process that took part in a run, as it does when memory runs out. Results are renamed "
+        "into place only when they are complete.",
     ),
 }

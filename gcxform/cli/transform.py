@@ -10,6 +10,7 @@ from gcxform.cli.outputs import destination
 from gcxform.cli.programs import opened
 from gcxform.cli.progress import Progress
 from gcxform.cli.sourcemap import SourceMap
+from gcxform.heap import keep
 from gcxform.pipeline import Pipeline
 
 
@@ -39,6 +40,7 @@ def transform(pipeline: Pipeline, job: Job) -> Done:
     Raises GcxformError, and then the output's place is as it was.
     """
     began = time.perf_counter()
+    keep()
     lines = SourceMap() if job.source_map else None
     with opened(job.file) as source, destination(job.out) as put:
         progress = Progress(source.size, job.quiet)

@@ -35,12 +35,11 @@ NOTHING = 0  # the shape of an empty line
 
 def fill(values: NDArray[Any], present: Flags, initial: float) -> NDArray[Any]:
     """Return a column in which every line has the value last set before or on it."""
-    if not present.any():
-        return np.full(len(values), initial, values.dtype)
-    if present.all():
+    rows = np.flatnonzero(present)
+    if len(rows) == len(values):
         return values
-    given = np.append(np.array(initial, values.dtype), values[present])
-    return given[np.cumsum(present)]
+    given = np.append(np.array(initial, values.dtype), values[rows])
+    return np.repeat(given, np.diff(rows, prepend=0, append=len(values)))
 
 
 class Lines:
@@ -169,8 +168,8 @@ class Lines:
         slot = self.table.slots[:, column][self.shape]
         present = slot >= 0 if among is None else (slot >= 0) & among
         number = np.where(present, self.first + slot, 0)
-        value = np.zeros(self.live)
-        value[present] = self.window.value[number[present]]
+        value, rows = np.zeros(self.live), np.flatnonzero(present)  # faster than the flags
+        value[rows] = self.window.value[number[rows]]
         if distance is None:
             distance = address in DISTANCES
         if self.dialect.point_required and distance:

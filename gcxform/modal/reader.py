@@ -8,8 +8,9 @@ from gcxform.dialect import Dialect
 from gcxform.modal.tables import MeaningTable
 from gcxform.source import Source
 from gcxform.syntax.scan import Window, scan
-from gcxform.syntax.shapes import ShapeTable
+from gcxform.syntax.shapes import Shape, ShapeTable
 
+Apart = tuple[Window, int, list[Shape]]  # a window, how many shapes were known, those that are new
 SHAPES_AT_MOST = 20_000  # a table of shapes that grows beyond is begun anew
 
 
@@ -30,6 +31,22 @@ class WindowReader:
         if len(self.shapes) > SHAPES_AT_MOST:
             self._begin()
         window = scan(text, self.lines, self.shapes)
+        self.lines += len(window)
+        return window
+
+    def read_apart(self, text: bytes) -> Apart:
+        """Return the next window for a reader in another process, and what its table needs."""
+        before, known = self.shapes, len(self.shapes)
+        window = self.read(text)
+        known = known if self.shapes is before else 0
+        return window, known, self.shapes.shapes[known:]
+
+    def take_over(self, apart: Apart) -> Window:
+        """Return a window that another reader has read, with the shapes it needs in this table."""
+        window, known, shapes = apart
+        if not known:
+            self._begin()
+        self.shapes.take_over(shapes if known else shapes[1:])  # every table begins with the first
         self.lines += len(window)
         return window
 

@@ -77,6 +77,11 @@ class Window:
     def __len__(self) -> int:
         return len(self.start)
 
+    @property
+    def lines(self) -> range:
+        """Its lines in the program, from 0."""
+        return range(self.first_line, self.first_line + len(self))
+
     def line(self, index: int) -> bytes:
         """Return the text of a line of this window without its line end."""
         return self.text[int(self.start[index]) : int(self.end[index])]

@@ -63,6 +63,10 @@ class ShapeTable:
             shape[line] = known[key]
         return shape
 
+    def take_over(self, shapes: list[Shape]) -> None:
+        """Add the shapes that another table has met next; lines cannot be looked up here then."""
+        self.shapes += shapes
+
     def slot_counts(self) -> Ints:
         """Return how many numbers the lines of each shape have, also of those not understood."""
         if len(self._slot_counts) < len(self.shapes):

@@ -121,7 +121,7 @@ def halves(path: Toolpath, line: int) -> tuple[Toolpath, Toolpath]:
     cut = int(np.searchsorted(path.source, line))
     rows = np.arange(len(path))
     early = tuple(e for e in path.events if e.line < line)
-    late = tuple(replace(e, row=e.row - cut) for e in path.events if e.line >= line)
+    late = tuple(e.at(e.row - cut) for e in path.events if e.line >= line)
     first, second = path.take(rows[:cut]), path.take(rows[cut:])
     entry = np.array(path.end[cut - 1] if cut else path.entry)
     rapid = bool(cut) and bool(path.kind[cut - 1] == Kind.RAPID)

@@ -126,6 +126,10 @@ class Event:
     line: int = 0
     within: bool = False
 
+    def at(self, row: int) -> Event:
+        """Return the same event before another row: `replace` takes five times as long."""
+        return Event(row, self.what, self.values, self.line, self.within)
+
 
 COLUMNS = (
     "kind",
@@ -336,7 +340,8 @@ class Toolpath:
         first can start where the position was lost.
         """
         first = np.append(0, np.cumsum(counts))
-        events = tuple(dataclass_replace(e, row=int(first[e.row])) for e in self.events)
+        begin = first.tolist() if self.events else []
+        events = tuple(event.at(begin[event.row]) for event in self.events)
         row = np.repeat(np.arange(len(self)), counts)
         kept = {n: _picked(getattr(self, n), row) for n in COLUMNS if n not in columns}
         if kept["lost"].any():

@@ -11,7 +11,7 @@ in another one would need codes that the program does not have.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
@@ -132,8 +132,6 @@ def _joined(
     np.add.at(inside, first + 1, 1)
     np.add.at(inside, last + 1, -1)
     kept = np.flatnonzero(np.cumsum(inside)[:-1] == 0)
-    events = tuple(
-        replace(event, row=int(np.searchsorted(kept, event.row))) for event in path.events
-    )
+    events = tuple(event.at(int(np.searchsorted(kept, event.row))) for event in path.events)
     new = path.replace(kind=kind, end=end, centre=centre, sweep=sweep, events=events, joined=True)
     return new.take(kept), follows[kept]

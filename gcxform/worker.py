@@ -1,0 +1,201 @@
+"""Work done beside a run: by processes of its own for a long program, here for a short one.
+
+Two threads of one process take turns at Python's lock, and lose a third of their time to it; two
+processes do not. A process begins as a copy of this one, so nothing has to be said twice, and what
+it is given later goes through memory that both can see. Where a process cannot be copied safely
+(another system than Linux, other threads) the work is done here, when its result is needed.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import pickle
+import signal
+import sys
+import threading
+import traceback
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
+
+import numpy as np
+
+from gcxform.diagnostics import FileError, GcxformError
+from gcxform.heap import Heap
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
+Result = TypeVar("Result")
+Work = Callable[..., Result]
+LATER = 5  # niceness: the process that waits for all others goes first
+MAY_COPY = sys.platform == "linux"
+PIECE = 1 << 30  # bytes; the system writes less than two of these at once
+STOP: list[int] = []  # no sizes: nothing more is to be done
+DIED = "a process that took part in this run has been ended"
+HINT = "was there enough memory? A long program is read and proved by processes of their own"
+
+
+class Worker(ABC, Generic[Result]):
+    """Does one piece of work after another; busy from the beginning of one to its end."""
+
+    def __init__(self) -> None:
+        self.busy = False
+
+    def begin(self, *given: object) -> None:
+        """Begin a piece of work."""
+        assert not self.busy
+        self.busy = True
+        self._begin(given)
+
+    def end(self) -> Result:
+        """Wait for what was begun; return what it gave, or raise what it raised."""
+        assert self.busy
+        self.busy = False
+        return self._end()
+
+    @abstractmethod
+    def _begin(self, given: tuple[object, ...]) -> None: ...
+
+    @abstractmethod
+    def _end(self) -> Result: ...
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Do no more work."""
+
+
+def worker(work: Work[Result], long: bool) -> Worker[Result]:
+    """Return who is to do some work: it takes a process of its own if it is long."""
+    alone = MAY_COPY and threading.active_count() == 1
+    return Process(work) if long and alone else Here(work)
+
+
+def ahead(reader: Worker[Result], items: Iterable[object]) -> Iterator[Result]:
+    """Yield what a worker makes of the items, in order; it is at work on the next one meanwhile."""
+    for item in items:
+        done = [reader.end()] if reader.busy else []
+        reader.begin(item)
+        while done:
+            yield done.pop()
+    if reader.busy:
+        yield reader.end()
+
+
+class Here(Worker[Result]):
+    """Does its work when the result is asked for."""
+
+    def __init__(self, work: Work[Result]) -> None:
+        super().__init__()
+        self.work = work
+        self.given: tuple[object, ...] = ()
+
+    def _begin(self, given: tuple[object, ...]) -> None:
+        self.given = given
+
+    def _end(self) -> Result:
+        given, self.given = self.given, ()
+        return self.work(*given)
+
+
+class Process(Worker[Result]):
+    """Has its work done by a copy of this process, which keeps what the work remembers.
+
+    Arrays arrive there, and come back, as copies that cannot be changed.
+    """
+
+    def __init__(self, work: Work[Result]) -> None:
+        from multiprocessing import get_context
+
+        super().__init__()
+        context = get_context("fork")
+        self.shared = os.memfd_create("gcxform")
+        self.here, there = context.Pipe()
+        given = work, there, self.here, self.shared
+        self.process = context.Process(target=_serve, args=given, daemon=True)
+        self.process.start()
+        there.close()
+
+    def _begin(self, given: tuple[object, ...]) -> None:
+        with suppress(BrokenPipeError):  # that it has died is said when it is waited for
+            self.here.send(_lay_down(self.shared, given))
+
+    def _end(self) -> Result:
+        try:
+            error, result = _pick_up(self.shared, self.here.recv())
+        except (EOFError, ConnectionResetError):
+            raise FileError.one("GX903", DIED, hint=HINT) from None
+        if error is not None:
+            raise error
+        found: Result = result
+        return found
+
+    def __exit__(self, *_: object) -> None:
+        """End the process."""
+        with suppress(BrokenPipeError):
+            self.here.send(STOP)
+        self.here.close()
+        self.process.join()
+        os.close(self.shared)
+
+
+def _serve(work: Work[Any], there: Connection, here: Connection, shared: int) -> None:
+    """Do what is asked for, until nobody is left who could ask."""
+    here.close()
+    os.nice(LATER)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the one who waits is asked to stop as well
+    heap = Heap()
+    with suppress(EOFError, BrokenPipeError):
+        while (sizes := there.recv()) != STOP:
+            there.send(_lay_down(shared, _done(work, _pick_up(shared, sizes))))
+            heap.give_back()
+
+
+def _done(work: Work[Any], given: tuple[object, ...]) -> tuple[BaseException | None, Any]:
+    """Return what was raised, or what the work gave."""
+    try:
+        return None, work(*given)
+    except GcxformError as error:
+        return error, None
+    except Exception:
+        return RuntimeError(traceback.format_exc()), None
+
+
+# --- what goes from one to the other ---
+
+
+class _Pickler(pickle.Pickler):
+    """Hands over a column that has one value throughout as that value."""
+
+    def reducer_override(self, value: object) -> Any:
+        if type(value) is not np.ndarray or all(value.strides) or not value.size:
+            return NotImplemented
+        one = tuple(slice(None) if stride else slice(1) for stride in value.strides)
+        return np.broadcast_to, (value[one].copy(), value.shape)
+
+
+def _lay_down(shared: int, given: object) -> list[int]:
+    """Write something into shared memory; return the sizes of its parts."""
+    arrays: list[pickle.PickleBuffer] = []
+    first = io.BytesIO()
+    _Pickler(first, protocol=5, buffer_callback=arrays.append).dump(given)
+    sizes: list[int] = []
+    for part in (first.getbuffer(), *(array.raw() for array in arrays)):
+        place = sum(sizes)
+        for done in range(0, part.nbytes, PIECE):
+            os.pwrite(shared, part[done : done + PIECE], place + done)
+        sizes.append(part.nbytes)
+    return sizes
+
+
+def _pick_up(shared: int, sizes: list[int]) -> Any:
+    """Return what is in shared memory, as a copy that only this process has."""
+    parts, place = [], 0
+    for size in sizes:
+        parts.append(os.pread(shared, size, place))
+        place += size
+    return pickle.loads(parts[0], buffers=parts[1:])

@@ -1,0 +1,36 @@
+"""Memory is given back when a run takes more than it did at first, and not otherwise."""
+
+import ctypes
+
+import pytest
+
+from gcxform import heap
+
+
+def test_more_than_at_first_is_given_back(monkeypatch):
+    sizes = iter([90, *[100] * (heap.FIRST - 1), 100, 102, 110, 99, 120])
+    monkeypatch.setattr(heap, "_resident", lambda: next(sizes))
+    given = []
+    watched = heap.Heap()
+    watched._trim = lambda room: given.append((watched.windows, room))
+    for _ in range(heap.FIRST + 5):
+        watched.give_back()
+    assert given == [(heap.FIRST + 3, 0), (heap.FIRST + 5, 0)]
+
+
+def test_what_a_process_has_is_known():
+    before = heap._resident()
+    held = bytes(1) * (40 << 20)
+    after = heap._resident()
+    assert (before == after == 0) or after - before > 5000, len(held)
+
+
+@pytest.mark.parametrize("error", [AttributeError, OSError, TypeError])
+def test_another_c_library_is_left_alone(monkeypatch, error):
+    def refuse(_):
+        raise error
+
+    monkeypatch.setattr(ctypes, "CDLL", refuse)
+    heap.keep()
+    for _ in range(heap.FIRST + 2):
+        heap.Heap().give_back()

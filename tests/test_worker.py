@@ -1,0 +1,219 @@
+"""Long programs are read and proved by processes of their own, which changes only the time."""
+
+import os
+import signal
+import threading
+from dataclasses import replace
+from itertools import count
+
+import numpy as np
+import pytest
+from test_corpus import CASES, PLACES, joins, name
+
+import gcxform as gx
+from gcxform.cli import main
+from gcxform.cli.failures import FAILED
+from gcxform.diagnostics import FileError, InputError, Location
+from gcxform.emit.emitter import Emitter
+from gcxform.testing.cases import outcome, run_case
+from gcxform.verify import Verifier
+from gcxform.worker import DIED, Here, Process, ahead, worker
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="no processes here")
+
+
+class Adding:
+    """Remembers what it was given."""
+
+    def __init__(self):
+        self.total = 0
+
+    def add(self, number):
+        self.total += number
+        return self.total, os.getpid()
+
+
+@pytest.mark.parametrize("kind", [Here, Process])
+def test_work_remembers(kind):
+    adding = Adding()
+    with kind(adding.add) as one:
+        found = list(ahead(one, [1, 2, 3]))
+    assert [total for total, _ in found] == [1, 3, 6]
+    assert {pid == os.getpid() for _, pid in found} == {kind is Here}
+    assert adding.total == (6 if kind is Here else 0)
+
+
+@pytest.mark.parametrize("kind", [Here, Process])
+def test_the_first_error_is_raised(kind):
+    """What is wrong with an item is said after the item before it was handed on."""
+
+    def refuse(number):
+        if number == 2:
+            raise InputError.one("GX213", "two", Location("a.nc", 2, 1, "G1", 2), "hint", "context")
+        return number
+
+    with kind(refuse) as one:
+        found = ahead(one, [1, 2, 3])
+        assert next(found) == 1
+        with pytest.raises(InputError) as caught:
+            next(found)
+    assert caught.value.diagnostics[0].where == Location("a.nc", 2, 1, "G1", 2)
+    assert caught.value.render().count("two") == 1
+
+
+def test_what_nobody_foresaw_keeps_its_trace():
+    with Process(lambda: {}["missing"]) as one:
+        one.begin()
+        with pytest.raises(RuntimeError, match=r"KeyError: 'missing'"):
+            one.end()
+        one.begin()  # it goes on
+        with pytest.raises(RuntimeError):
+            one.end()
+
+
+def columns():
+    """Return arrays of all layouts that toolpaths have."""
+    return {
+        "rows": np.arange(12.0).reshape(4, 3),
+        "columns": np.arange(12.0).reshape(3, 4).T,
+        "part": np.arange(24.0)[::2],
+        "constant": np.broadcast_to(np.float64(np.nan), (5, 2, 3)),
+        "one row": np.broadcast_to(np.arange(3.0), (4, 3)),
+        "one value": np.broadcast_to(np.int8(7), 3),
+        "none": np.empty((0, 3)),
+        "flags": np.array([True, False]),
+        "number": np.array(4.0),
+    }
+
+
+def test_columns_arrive_as_they_are():
+    given = columns()
+    with Process(lambda columns: columns) as one:
+        for _ in range(2):
+            one.begin(given)
+            there = one.end()
+            assert there.keys() == given.keys()
+            for key, column in given.items():
+                np.testing.assert_array_equal(there[key], column)
+                assert there[key].dtype == column.dtype
+                still = [stride == 0 for stride in column.strides]
+                assert not column.size or [s == 0 for s in there[key].strides] == still
+
+
+def test_what_arrived_is_not_changed_by_what_comes_next():
+    kept = []
+
+    def keep(column):
+        kept.append(column)
+        return [float(one.sum()) for one in kept]
+
+    with Process(keep) as one:
+        found = list(ahead(one, [np.full(1000, number) for number in (1.0, 2.0, 3.0)]))
+    assert found[-1] == [1000.0, 2000.0, 3000.0]
+    assert kept == []
+
+
+def test_a_process_that_dies_is_told():
+    with Process(lambda: os.kill(os.getpid(), signal.SIGKILL)) as one:
+        one.begin()
+        with pytest.raises(FileError, match=DIED):
+            one.end()
+        one.begin()
+        with pytest.raises(FileError, match=DIED):
+            one.end()
+
+
+def test_no_process_is_copied_beside_threads():
+    ready = threading.Event()
+    thread = threading.Thread(target=ready.wait)
+    with worker(count, True) as one:
+        assert isinstance(one, Process)
+    thread.start()
+    try:
+        with worker(count, True) as one:
+            assert isinstance(one, Here)
+    finally:
+        ready.set()
+        thread.join()
+    with worker(count, False) as one:
+        assert isinstance(one, Here)
+
+
+SOME = [case for case in CASES[::15] if not case.xfail]
+
+
+@pytest.mark.parametrize("case", SOME, ids=lambda case: name(case.path))
+def test_processes_make_no_difference(case, tmp_path, monkeypatch):
+    monkeypatch.setattr("gcxform.source.WINDOW", 1)
+    (tmp_path / "lines").mkdir()
+    found = outcome(case, tmp_path / "lines", PLACES)
+    if case.diagnostics:
+        assert found.places[0] == case.diagnostics[0]
+    elif joins(case):
+        assert not found.diagnostics
+    else:
+        run_case(case, tmp_path, PLACES)
+
+
+@pytest.mark.parametrize("verify", ["on", "full", "off"])
+def test_a_certificate_is_the_same(verify, monkeypatch):
+    text = b"G21 G90 G94 G17\nG0 X0 Y0 Z5\n" + b"".join(
+        b"G1 X%d. Y%d. F%d (%d)\n" % (n, -n, 100 + n % 7, n) for n in range(300)
+    )
+    pipeline = gx.Pipeline.parse("metric | absolute", "linuxcnc")
+    here = pipeline.run(text, verify)
+    monkeypatch.setattr("gcxform.source.WINDOW", 700)
+    there = pipeline.run(text, verify)
+    assert there.text == here.text
+    assert there.certificate.to_json() == here.certificate.to_json()
+
+
+def test_shapes_begin_anew_in_both(monkeypatch):
+    """Every comment is a shape of its own; a table that is full is begun anew."""
+    monkeypatch.setattr("gcxform.modal.reader.SHAPES_AT_MOST", 50)
+    monkeypatch.setattr("gcxform.source.WINDOW", 300)
+    text = b"G21 G91 G94 G17\n" + b"".join(
+        b"G1 X%d. Y1. F%d (%d)\nG4 P%d (TWO%d)\n" % (n, 100 + n, n, n, n) for n in range(1, 200)
+    )
+    pipeline = gx.Pipeline.parse("absolute", "linuxcnc")
+    there = pipeline.run(b"G0 X0 Y0 Z0\n" + text)
+    monkeypatch.setattr("gcxform.worker.MAY_COPY", False)
+    assert pipeline.run(b"G0 X0 Y0 Z0\n" + text).text == there.text
+
+
+def test_a_wrong_output_is_found_there(monkeypatch):
+    """The proof sees what it would see here, and names the same line."""
+    emit = Emitter.emit
+
+    def wrong(self, window, *given):
+        made = emit(self, window, *given)
+        return replace(made, text=made.text.replace(b"X7.", b"X7.5"))
+
+    monkeypatch.setattr(Emitter, "emit", wrong)
+    text = b"G21 G90 G94\nG0 X0. Y0. Z0.\n" + b"".join(b"G1 X%d. F100.\n" % n for n in range(20))
+    pipeline = gx.Pipeline.parse("absolute", "linuxcnc")
+    said = []
+    monkeypatch.setattr("gcxform.source.WINDOW", 20)
+    for copies in (True, False):
+        monkeypatch.setattr("gcxform.worker.MAY_COPY", copies)
+        with pytest.raises(gx.VerificationError) as caught:
+            pipeline.run(text)
+        said.append(caught.value.diagnostics[0].render().splitlines()[0])
+    assert said[0] == said[1]
+
+
+def test_the_command_line_says_that_one_has_died(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("gcxform.source.WINDOW", 20)
+    monkeypatch.setattr(Verifier, "check", lambda *_: os.kill(os.getpid(), signal.SIGKILL))
+    program = tmp_path / "a.nc"
+    program.write_bytes(b"G21 G90 G94\nG0 X0. Y0. Z0.\nG1 X5. F100.\nM2\n")
+    out = tmp_path / "b.nc"
+    monkeypatch.setattr(
+        "sys.argv",
+        ["gcxform", "run", "-f", "linuxcnc", "-x", "absolute", str(program), "-o", str(out)],
+    )
+    with pytest.raises(SystemExit) as left:
+        main()
+    assert left.value.code == FAILED
+    assert "GX903" in capsys.readouterr().err
+    assert not out.exists()
