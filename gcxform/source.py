@@ -67,10 +67,15 @@ class Source:
         return "".join(axis for axis in among if axis in found)
 
     def windows(self, size: int = 0) -> Iterator[bytes]:
-        """Yield the text, a number of whole lines at a time: `size` bytes, or 0 for WINDOW."""
+        """Yield the text, a number of whole lines at a time: `size` bytes, or 0 for WINDOW.
+
+        The first is shorter, so that who works on what was read begins sooner.
+        """
         self.stream.seek(0)
-        rest = b""
-        while chunk := self.stream.read(size or WINDOW):
+        size = size or WINDOW
+        rest, coming = b"", max(size // 8, 1)
+        while chunk := self.stream.read(coming):
+            coming = size
             text = rest + chunk
             cut = _last_line_end(text)
             if cut:
