@@ -245,7 +245,7 @@ def started(program, out):
     """Return a run of its own process group, and the processes that it has copied itself to."""
     words = ["run", "-q", "-f", "linuxcnc", "-x", "metric", str(program), "-o", str(out)]
     command = [sys.executable, "-c", "from gcxform.cli import main; main()", *words]
-    run = subprocess.Popen(command, stderr=subprocess.PIPE, start_new_session=True)
+    run = subprocess.Popen(command, stderr=subprocess.PIPE, process_group=0)
     children = Path(f"/proc/{run.pid}/task/{run.pid}/children")
     deadline = time.monotonic() + 30
     while len(children.read_text().split()) < 2:
