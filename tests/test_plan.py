@@ -309,7 +309,7 @@ def test_each_touch_is_stored_where_that_is_asked_for(here):
         (("", ""), ["--tool", "7"], "GX707", 2),
         (("", ""), ["--axis", "B"], "GX707", 2),
         (("", ""), ["--axis", "C"], "GX728", 2),
-        (('["A", "C"]', '["C"]\nhead = ["A"]'), ["--program", "x.ngc"], "GX707", 2),
+        (('["A", "C"]', '["C"]\nhead = ["A"]'), ["--program", "x.ngc"], "GX491", 2),
         (('["A", "C"]', "[]"), [], "GX452", 2),
     ],
 )
