@@ -18,7 +18,7 @@ from oracles import rs274
 import gcxform as gx
 from gcxform.calibrate.ballfile import read_balls, read_poses
 from gcxform.calibrate.bundle import bundle, moved
-from gcxform.calibrate.clearance import clear, hangs, least_height
+from gcxform.calibrate.clearance import clear, hangs, inside, least_height, upright
 from gcxform.calibrate.plan import Wanted, planned
 from gcxform.calibrate.rotary import locate
 from gcxform.calibrate.touching import sides
@@ -317,6 +317,8 @@ def test_all_poses_are_inside_the_limits_and_lean_little(kind):
     assert np.abs(tips - np.array([BALLS[int(b) - 1] for b in poses.ball])).max() < 9e-4
     leaning = np.degrees(np.arccos(axis[:, 2]))
     assert 45.0 < leaning.max() <= 60.0 + 1e-9
+    for ways in (believed.spindle(poses.degrees), believed.upwards(poses.degrees)):
+        assert np.degrees(np.arccos(ways[:, 2].clip(-1.0, 1.0))).max() <= 60.0 + 1e-9
 
 
 @pytest.mark.skipif(not rs274.available(), reason="rs274 is not installed")
@@ -370,7 +372,38 @@ def test_the_way_to_a_ball_is_clear_of_others(kind):
         good = clear(believed, balls, 0, degrees[None], nearest - 9.0)[0]
         assert good or nearest < 9.0
         seen.add(bool(clear(believed, balls, 0, degrees[None], 36.5)[0]))
+        for gap in (20.0, 36.5, 60.0):
+            one, same = (balls, 0), (balls[::-1], 1)
+            assert clear(believed, *one, degrees[None], gap) == clear(
+                believed, *same, degrees[None], gap
+            )
     assert seen == {True, False}
+
+
+def test_limits_have_room_for_all_ways_about_a_ball(kind):
+    """As little as all directions across the probe need, and what is before the ball."""
+    believed, turns = chain(), np.radians(np.arange(0.0, 360.0, 0.5))[:, None]
+    for degrees in np.random.default_rng(6).uniform(-70.0, 70.0, (20, 1, 2)):
+        along, stand = believed.spindle(degrees)[0], np.array([[20.0, -30.0, -40.0]])
+        across = np.linalg.svd(along[None])[2][1:]
+        ways = np.cos(turns) * across[0] + np.sin(turns) * across[1]
+        every = stand + OUTSIDE * np.concatenate([ways, ways + along])
+        for axis in range(3):
+            for side, away in ((0, -1.0), (1, 1.0)):
+                border = away * (away * every[:, axis]).max()
+                for more, fits in ((0.01, True), (-0.01, False)):
+                    travel = [[-1e3, 1e3] for _ in "XYZ"]
+                    travel[axis][side] = border + away * more
+                    small = replace(believed, travel=tuple(map(tuple, travel)))
+                    assert inside(small, stand, degrees, OUTSIDE)[0] == fits
+
+
+def test_table_and_probe_lean_from_z_too():
+    """A cradle and a head that turn alike: they stand as at 0 to each other, and not to Z."""
+    alike = Chain((CRADLE,), (replace(CRADLE, letter="B"),))
+    degrees = np.array([[70.0, 70.0], [70.0, -70.0], [70.0, 0.0], [0.0, 70.0], [50.0, 50.0]])
+    assert upright(alike, degrees, 75.0).tolist() == [True, False, True, True, True]
+    assert upright(alike, degrees, 60.0).tolist() == [False, False, False, False, True]
 
 
 def test_a_ball_behind_another_is_not_probed_through_it(kind):
@@ -422,16 +455,34 @@ def test_a_head_that_may_pass_the_horizontal_is_refused(tmp_path, monkeypatch):
     assert hangs(chain(), np.array([[0.0, 0.0], [0.0, 10.0]]))
 
 
-def test_the_least_height_is_that_of_the_lowest_tip_between():
-    """A head from -60 to 60 degrees passes 0, where the tip is lowest: by hand."""
-    head = Rotary("B", (0.0, 1.0, 0.0), (0.0, 0.0, 150.0), 1, (-90.0, 90.0))
-    one = Chain((), (head,), (0.0, 0.0, -120.0))
-    balls = np.array([[10.0, 20.0, -200.0], [0.0, 0.0, -230.0]])
-    degrees = np.array([[-60.0], [60.0]])
-    assert least_height(one, balls, degrees, 18.0) == pytest.approx(-200.0 + 18.0 + 120.0, abs=0.05)
-    assert least_height(one, balls, degrees, 18.0) >= -200.0 + 18.0 + 120.0
-    table = Rotary("A", (1.0, 0.0, 0.0), (0.0, 0.0, -230.0), -1, (-90.0, 90.0))
-    both = Chain((table,), (head,), (0.0, 0.0, -120.0))
-    degrees = np.array([[-90.0, 0.0], [90.0, 0.0]])
-    top = -230.0 + np.hypot(20.0, 30.0)  # the first ball goes round, and is highest on the way
-    assert least_height(both, balls, degrees, 18.0) == pytest.approx(top + 18.0 + 120.0, abs=0.1)
+SWIVEL = Rotary("B", (0.0, 1.0, 0.0), (0.0, 0.0, 150.0), 1, (-90.0, 90.0))
+CRADLE = Rotary("A", (1.0, 0.0, 0.0), (0.0, 0.0, -230.0), -1, (-90.0, 90.0))
+TWO = np.array([[10.0, 20.0, -200.0], [0.0, 0.0, -230.0]])
+
+
+@pytest.mark.parametrize(("one", "other"), [(-60.3, 60.4), (30.0, 60.0), (-60.0, -20.0)])
+def test_the_least_height_is_that_of_the_lowest_tip_between(one, other):
+    """A head that passes 0, or starts there: the tip is lowest upright."""
+    head = Chain((), (SWIVEL,), (0.0, 0.0, -120.0))
+    height, exact = least_height(head, TWO, np.array([[one], [other]]), 18.0), -200.0 + 18.0 + 120.0
+    assert exact <= height < exact + 0.05
+
+
+def test_the_least_height_is_that_of_the_highest_ball_between():
+    """The first ball goes round on a cradle, and is highest on the way."""
+    both = Chain((CRADLE,), (SWIVEL,), (0.0, 0.0, -120.0))
+    exact = -230.0 + np.hypot(20.0, 30.0) + 18.0 + 120.0
+    height = least_height(both, TWO, np.array([[-89.7, 0.0], [89.6, 0.0]]), 18.0)
+    assert exact <= height < exact + 0.1
+
+
+@pytest.mark.parametrize(
+    ("change", "lowest"), [({"limits": None}, 180.0), ({"wrap": 360.0}, 180.0), ({}, 100.0)]
+)
+def test_an_axis_without_an_end_may_go_the_other_way_round(change, lowest):
+    """From 10 to 100 degrees, or over 180, where the tip of this one is lowest."""
+    below = Rotary("B", (0.0, 1.0, 0.0), (0.0, 0.0, -150.0), 1, (0.0, 300.0))
+    head = Chain((), (replace(below, **change),), (0.0, 0.0, -120.0))
+    height = least_height(head, TWO, np.array([[10.0], [100.0]]), 18.0)
+    tip = -150.0 + 30.0 * np.cos(np.radians(lowest))
+    assert height == pytest.approx(-200.0 + 18.0 - tip, abs=0.05)

@@ -149,10 +149,8 @@ class _Blocks:
         self._go("G1", "XYZ", place, f"F{_number(FEEDS['way'])}")
 
     def touch(self, place: FloatArray) -> None:
-        """Probe towards a place, and forget where that ends: it is where the ball is."""
-        before = dict(self._at)
+        """Probe towards a place. It ends before, and the way back writes whatever moved."""
         self._go(self.style.probe, "XYZ", place, f"F{_number(FEEDS['probe'])}")
-        self._at = {a: text for a, text in self._at.items() if text == before.get(a)}
         if self.style.after:
             self.lines.append(self.style.after)
 

@@ -12,6 +12,7 @@ from faults import (
     cycles,
     flow,
     frames,
+    heads,
     kinematics,
     passes,
     proof,
@@ -49,4 +50,5 @@ MUTATIONS: tuple[Mutation, ...] = (
     *simulating.MUTATIONS,
     *rotary.MUTATIONS,
     *kinematics.MUTATIONS,
+    *heads.MUTATIONS,
 )
