@@ -60,13 +60,15 @@ def probing_program(
     """Return the program, with a block `after` each touch. Raises UsageError (GX491)."""
     style = STYLES[dialect]
     style = style if after is None else replace(style, after=after)
-    blocks = _Blocks(style, _height(chain, poses, probing))
+    height, over = _height(chain, poses, probing)
+    blocks = _Blocks(style, height)
     blocks.lines += ["%", "O1"] if dialect == "fanuc" else []
     blocks.lines += [
         f"(BALLS AT {len(poses.points)} POSES, {TOUCHES} TOUCHES EACH)",
         "(POSITIONS OF THE AXES: G54 HAS TO BE 0, NO TOOL LENGTH AND NO RTCP IN FORCE)",
         "(MOVES BETWEEN THE TOUCHES ARE NOT GUARDED: TRY THEM WITH CARE)",
         *(["(THE HEAD TURNS: START WITH ALL ROTARY AXES AT 0)"] if chain.head else []),
+        *([] if over else ["(THE TABLE LIFTS BALLS ABOVE THE TIP WHILE IT TURNS: MIND THEIR WAY)"]),
         "G21 G90 G94 G17 G40 G49 G54",
         *style.head,
     ]
@@ -77,29 +79,28 @@ def probing_program(
     return "\n".join([*blocks.lines, *style.tail]) + "\n"
 
 
-def _height(chain: Chain, poses: Poses, probing: Probing) -> float:
-    """Return where Z is while axes turn: as high as it goes, or well above all balls."""
-    room, high = probing.radius + probing.clearance, chain.travel[2][1]
-    top = float(poses.points[:, 2].max()) + room
-    least = _least_height(chain, poses, room) if chain.head else top
-    if not np.isfinite(high):
-        return float(np.ceil(least + 100.0))
-    if high < least:
-        message = f"Z has to be at {least:.1f} to be above the balls, and it goes up to {high:g}"
-        hint = "put the balls lower, or take a shorter probe; a head that turns needs more"
-        raise UsageError.one("GX491", message, hint=hint)
-    return float(high)
+def _height(chain: Chain, poses: Poses, probing: Probing) -> tuple[float, bool]:
+    """Return where Z is while axes turn, as high as it goes, and whether that is above all balls.
 
-
-def _least_height(chain: Chain, poses: Poses, room: float) -> float:
-    """Return the Z from which on a head turns above all balls. Raises UsageError (GX491)."""
+    A head has to be. A table that tilts may lift a ball higher than Z goes, somewhere else; so for
+    it only the poses themselves have to be lower. Raises UsageError (GX491).
+    """
     if hangs(chain, poses.degrees):
         message = "between the poses the head may turn past the horizontal"
         hint = "limit the axes of the head in the machine file, or allow less tilt"
         raise UsageError.one("GX491", message, hint=hint)
     tips = chain.forward(poses.points, poses.degrees)[0]
     balls = np.array([tips[poses.ball.index(name)] for name in poses.balls])
-    return least_height(chain, balls, poses.degrees, room)
+    room, high = probing.radius + probing.clearance, chain.travel[2][1]
+    over = least_height(chain, balls, poses.degrees, room)
+    if not np.isfinite(high):
+        return float(np.ceil(over + 100.0)), True
+    least = over if chain.head else float(poses.points[:, 2].max()) + room
+    if high < least:
+        message = f"Z has to be at {least:.1f} to be above the balls, and it goes up to {high:g}"
+        hint = "put the balls lower, or take a shorter probe; a head that turns needs more"
+        raise UsageError.one("GX491", message, hint=hint)
+    return float(high), high >= over
 
 
 def _probe_pose(
