@@ -12,6 +12,7 @@ from faults import (
     cycles,
     flow,
     frames,
+    heads,
     kinematics,
     passes,
     proof,
@@ -51,4 +52,5 @@ MUTATIONS: tuple[Mutation, ...] = (
     *simulating.MUTATIONS,
     *rotary.MUTATIONS,
     *kinematics.MUTATIONS,
+    *heads.MUTATIONS,
 )
