@@ -110,6 +110,47 @@ def test_what_they_mean_is_said_by_the_machine_file(tmp_path):
     assert linuxcnc(tmp_path, control=NUTATING).run(text_of(other)).text == one
 
 
+def anyhow(rng):
+    """Return lines with codes and turns anywhere, and where it is refused first, told line by line.
+
+    The model knows one thing at a time: what is on, and whether an axis is turned.
+    """
+    lines, state, turned, wrong = [*HEAD, "G1 F500."], None, False, []
+    for _ in range(int(rng.integers(3, 12))):
+        kind = rng.choice(["on", "off", "turn", "back", "move"], p=[0.25, 0.1, 0.2, 0.35, 0.1])
+        before = turned
+        if kind in ("on", "off"):
+            lines.append("M428" if kind == "on" else "M429")
+            state = str(kind)
+            wrong += [len(lines)] * turned
+            continue
+        turned = {"turn": True, "back": False}.get(str(kind), turned)
+        angles = {"turn": f" A{rng.integers(1, 40)}. C7.", "back": " A0 C0"}.get(str(kind), "")
+        lines.append(f"X{rng.uniform(-9.0, 9.0):.3f}{angles}")
+        wrong += [len(lines)] * ((before or turned) and state != "on")
+    return [*lines, "M2"], wrong
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_a_model_that_reads_line_by_line_agrees(tmp_path, seed):
+    rng = np.random.default_rng(seed)
+    lines, wrong = anyhow(rng)
+    run = Run(linuxcnc(tmp_path), Source.of_bytes(text_of(lines)), "on")
+    parts = []
+    out = Output(parts.append, None)
+    size = int(rng.choice([0, 1, 30, 90]))
+    if wrong:
+        with pytest.raises(gx.InputError) as error:
+            run.over(out, abs, size)
+        found = error.value.diagnostics[0]
+        assert found.code == "GX330"
+        assert found.where.line in wrong
+        return
+    run.over(out, abs, size)
+    plain, _ = without(lines, {k for k, line in enumerate(lines) if line[:3] == "M42"})
+    assert b"".join(parts) == linuxcnc(tmp_path, control="").run(plain).text
+
+
 def with_line(number, *new):
     return [*WHOLE[:number], *new, *WHOLE[number:]]
 

@@ -209,7 +209,7 @@ class Rtcp(gx.Pass):
             switches.refuse()
         if not len(path) or self._nothing_to_correct(context):
             return path.replace(blocks=self.timed(path.blocks))
-        if switches is not None and not switches.codes:
+        if switches is not None and (context.source.tip_codes or not switches.codes):
             Place(path, context).refuse_followed_late()
         if self.turns_anew:
             source, target = self._machines(path, context)

@@ -17,7 +17,7 @@ import gcxform as gx
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-TURN_BACK = "turn them to 0 before, in a block that names them all"
+TURN_BACK = "turn them to 0 before; or say where they stand: start = { A = 0.0, ... } in [input]"
 UNKNOWN, OFF, ON = 0, 1, 2
 
 
