@@ -24,7 +24,7 @@ from gcxform.modal.tables import MeaningTable
 from gcxform.source import Source, lines_in
 from gcxform.syntax.scan import Window
 from gcxform.textpasses import TextRun
-from gcxform.tipcodes import without_tip_codes
+from gcxform.tipcodes import switches_of, without_tip_codes
 from gcxform.toolpath.path import Toolpath
 from gcxform.verify import Findings, Verifier
 from gcxform.worker import Worker, ahead, worker
@@ -78,13 +78,14 @@ class Run:
         self.verify = verify
         self.steps = pipeline.path_passes
         self.text = TextRun(pipeline.text_passes, pipeline.target, source.name)
+        self.dialect = pipeline.read_as
         if not pipeline.copies:
-            self.source = written_out(source, pipeline.source, pipeline.machine_reading)
+            self.source = written_out(source, self.dialect, pipeline.machine_reading)
         self.executes = self.source is not source
         if any(step.reads_tip_codes for step in self.steps):
             self.source = without_tip_codes(self.source, pipeline.source)
         self.given = source
-        self.reader = WindowReader(pipeline.source)
+        self.reader = WindowReader(self.dialect)
         self.measured: dict[str, float] = {}
         self.verifier: Verifier | None = None
         self.findings = Findings()
@@ -99,7 +100,7 @@ class Run:
         axes = "".join(axis for axis in pipeline.source.axes if axis in written)
         reading = _with_assumed_start(pipeline, axes)
         self.axes = axes
-        self.interpreter = Interpreter(pipeline.source, reading, axes, self.source.name)
+        self.interpreter = Interpreter(self.dialect, reading, axes, self.source.name)
         start = self.interpreter.state.position
         self.emitter = Emitter(pipeline.manner, start, self.source.name)
         self.emitter.believed.inch = int(_first_units(pipeline) == "in")
@@ -113,7 +114,14 @@ class Run:
                 pipeline.angle_limit(),
                 self.source.name,
                 any(step.folds for step in self.steps),
+                self._switches(),
             )
+
+    def _switches(self) -> frozenset[str]:
+        """Return the M codes that a pass takes over from the control."""
+        if self.dialect is self.pipeline.source:
+            return frozenset()
+        return frozenset(switches_of(self.pipeline.machine_reading.control))
 
     def _unresolved(self) -> tuple[Pass, ...]:
         """Return the passes after the last one that gives the program another path on purpose."""
@@ -147,7 +155,7 @@ class Run:
             texts = whole_stretches(texts)
         if any(step.whole_cuts for step in self.steps):
             texts = whole_cuts(texts)
-        read = WindowReader(self.pipeline.source).read_apart
+        read = WindowReader(self.dialect).read_apart
         long = self.source.is_long(size)
         proved = long and self.verifier is not None
         with worker(read, long) as reader, worker(self._check, proved) as proof:

@@ -3,6 +3,11 @@
 `G43.4 H1` says that X, Y and Z are those of the tip from here on, whatever the rotary axes do. A
 pass that turns tips into axes reads it as `G43 H1`, and that is what is left in the output. G43
 itself has positions of axes, so a program with both is refused.
+
+Other controls are switched by M codes of the machine's own, which mean opposite things on different
+machines: LinuxCNC's M428 and M429. The machine file says which is which. They are read as codes of
+the dialect, their acts are those of the frame (`following`), and they are not written: the control
+stays as it is without them. What reads the output does not know them.
 """
 
 from __future__ import annotations
@@ -12,6 +17,8 @@ from collections.abc import Iterator, Mapping
 
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect import Dialect
+from gcxform.machine.machine import SWITCHES
+from gcxform.modal.codes import MCode
 from gcxform.source import Source, lines_in
 
 COMMENT = rb"\([^()\r\n]*\)"
@@ -53,6 +60,19 @@ class WithoutTipCodes(Source):
         names = ", ".join(code.decode() for code in self.codes)
         message = f"{code.decode()} has positions of axes, and {names} those of the tip"
         raise InputError.one("GX330", message, Location(self.name, line))
+
+
+def switches_of(control: Mapping[str, str | float]) -> dict[str, str]:
+    """Return the M codes with which a control follows the tip and leaves it: their acts by code."""
+    return {str(control[act]): act for act in SWITCHES if act in control}
+
+
+def with_switches(dialect: type[Dialect], control: Mapping[str, str | float]) -> type[Dialect]:
+    """Return the dialect with the codes of a control that follow the tip; itself without them."""
+    codes = {int(code[1:]): MCode("tip", act=act) for code, act in switches_of(control).items()}
+    if not codes:
+        return dialect
+    return type(dialect.__name__, (dialect,), {"m_codes": {**dialect.m_codes, **codes}})
 
 
 def without_tip_codes(source: Source, dialect: type[Dialect]) -> Source:

@@ -74,9 +74,11 @@ class Verifier:
         angle_budget: float,
         file: str = "-",
         folded: bool = False,
+        switches: frozenset[str] = frozenset(),
     ) -> None:
         self.passes = passes
         self.folded = folded
+        self.switches = switches
         self.context = context
         self.reader = WindowReader(context.target)
         self.interpreter = Interpreter(context.target, reading, axes, "output")
@@ -118,7 +120,7 @@ class Verifier:
         if self.feed_modes:
             for wrong in self._proof(trace).left_behind(read, back):
                 self._raise(*wrong)
-        self._events(self._told(read.path), self._told(back.path), trace)
+        self._events(self._without_switches(read.path), self._told(back.path), trace)
         return self.findings
 
     def _count(self, read: Interpreted, lines: range, trace: Trace) -> None:
@@ -241,6 +243,10 @@ class Verifier:
         changed = (after.side != before.side[owner]) | ~((radius == old) | np.isnan(radius + old))
         if changed.any():
             self._fail("cutter compensation has changed", trace, int(np.argmax(changed)))
+
+    def _without_switches(self, path: Toolpath) -> tuple[Event, ...]:
+        """Return the events of the source without those that a pass has taken over."""
+        return tuple(event for event in self._told(path) if event.what not in self.switches)
 
     def _told(self, path: Toolpath) -> tuple[Event, ...]:
         """Return the events that have to be in the output too: not those that are folded away."""

@@ -289,7 +289,8 @@ CODES: dict[str, tuple[str, str]] = {
         "`rtcp` converts plain lines in one work offset that is taken with all rotary axes at 0, "
         "with tool lengths that are known and do not change while axes are turned. Moves to "
         "machine coordinates, rapids that turn axes and axes that the machine file does not have "
-        "are refused, because where the tip goes is not known.",
+        "are refused, because where the tip goes is not known. So are axes that are turned while "
+        "a program leaves its control in axes, and a switch between both with an axis turned.",
     ),
     "GX331": (
         "An axis would go beyond its limits",

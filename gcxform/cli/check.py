@@ -98,7 +98,7 @@ def _budget(pipeline: Pipeline) -> list[str]:
 def _check(pipeline: Pipeline, source: Source) -> int:
     """Say what speaks against a program; return the exit code."""
     found = list(_first(_reading(pipeline, source))) or _refusals(pipeline, source)
-    lines = sum(len(window) for window, _ in windows_of(source, pipeline.source))
+    lines = sum(len(window) for window, _ in windows_of(source, pipeline.read_as))
     warn(found)
     count = f"{len(found)}{'+' if len(found) >= ENOUGH else ''}" if found else "no"
     click.echo(f"{source.name}: {lines} lines, {count} finding{'' if len(found) == 1 else 's'}")
@@ -108,7 +108,7 @@ def _check(pipeline: Pipeline, source: Source) -> int:
 def _reading(pipeline: Pipeline, source: Source) -> Iterator[Diagnostic]:
     """Yield what speaks against reading a program, or the blocks that it executes."""
     try:
-        executed = written_out(source, pipeline.source, pipeline.machine_reading)
+        executed = written_out(source, pipeline.read_as, pipeline.machine_reading)
     except InputError as error:
         yield from error.diagnostics
         return
@@ -128,10 +128,10 @@ def reading_findings(pipeline: Pipeline, source: Source) -> Iterator[Diagnostic]
     only those findings count that are about a block by itself.
     """
     axes = source.axes(pipeline.source.axes)
-    interpreter = Interpreter(pipeline.source, pipeline.machine_reading, axes, source.name)
+    interpreter = Interpreter(pipeline.read_as, pipeline.machine_reading, axes, source.name)
     ending = Ending(pipeline.source, source.name)
     refused = False
-    for window, reader in windows_of(source, pipeline.source):
+    for window, reader in windows_of(source, pipeline.read_as):
         try:
             interpreter.interpret(window, reader.table)
         except InputError as error:

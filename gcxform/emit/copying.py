@@ -68,6 +68,7 @@ class Copying:
             self.lines |= stands
         if self.path.folded:
             self.lines[self.task.table.flag("framing", self.task.shape)] = False
+        self.lines &= ~self.task.table.flag("switches", self.task.shape)
         if self.path.blocks.uncompensated:
             self.lines &= ~self.task.table.flag("compensates", self.task.shape)
         self.lines[pieces.line[pieces.repaired]] = False
@@ -164,7 +165,17 @@ class Copying:
             where = self.task.location(int(np.argmax(skipped)))
             message = "a block that is skipped cannot be taken into another dialect"
             raise InputError.one("GX501", message, where, "leave the block out of the program")
+        self._refuse_switches(skipped)
         self.lines |= skipped
+
+    def _refuse_switches(self, skipped: Flags) -> None:
+        """Refuse to copy a code, in a block that is skipped, of what a pass does instead."""
+        shape = self.task.window.shape[: len(self.task.shape)]
+        wrong = np.flatnonzero(skipped & self.task.table.flag("switches", shape))
+        if len(wrong):
+            message = "a block that is skipped would let the control follow the tip"
+            where = self.task.location(int(wrong[0]))
+            raise InputError.one("GX330", message, where, "leave it out of the program")
 
     def _nothing_to_say(self) -> Flags:
         """Return the lines without any item: the same in every dialect."""

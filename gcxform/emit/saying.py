@@ -7,6 +7,7 @@ from itertools import pairwise
 
 from gcxform.dialect import Dialect
 from gcxform.emit.manner import Manner
+from gcxform.machine.machine import SWITCHES
 from gcxform.modal.codes import Code, MCode
 from gcxform.modal.meaning import FRAMING, Meaning
 from gcxform.modal.sorting import only_for_cycles
@@ -41,13 +42,15 @@ def code_of(word: Word) -> str:
     return f"{word.address}{round(word.value.value, 6):g}"
 
 
-def folded_words(meaning: Meaning, work: str) -> frozenset[str]:
-    """Return codes and addresses that are not written where frames are folded into the words.
+def unsaid_words(meaning: Meaning, work: str) -> frozenset[str]:
+    """Return codes and addresses that are not written.
 
-    The code of the work offset in which the program stays is written as it was.
+    They are codes of what a pass does instead of the control; and where frames are folded into the
+    words (`work`, if it is not "", is where the program then stays) those that set frames. The code
+    of the work offset in which the program stays is written as it was.
     """
-    gone: set[str] = set()
-    for act in meaning.acts:
+    gone = {act.code for act in meaning.acts if act.name in SWITCHES}
+    for act in meaning.acts if work else ():
         if act.name in FRAMING and act.code != work:
             gone |= {act.code, *(address for address, _ in act.slots)}
     return frozenset(gone)
@@ -91,16 +94,16 @@ def event_text(event: Event, target: type[Dialect], gap: bytes) -> bytes | None:
 def nothing_left(items: tuple[Item, ...], meaning: Meaning, manner: Manner, work: str) -> bool:
     """Whether of a block that has items nothing but its number would be written.
 
-    That is so for parts of the program frame that the target has not, and for codes that are folded
-    into the words of moves (`work`, if it is not "", is where the program then stays).
+    That is so for parts of the program frame that the target has not, and for codes that are not
+    written (`unsaid_words`).
     """
-    folded = folded_words(meaning, work) if work else frozenset()
+    unsaid = unsaid_words(meaning, work)
 
     def goes(item: Item) -> bool:
         if isinstance(item, Word):
             name = code_of(item) if item.address in CODES else item.address
             idle = only_for_cycles(name, manner.source, manner.target)
-            return name == "N" or name in folded or idle
+            return name == "N" or name in unsaid or idle
         slash = isinstance(item, Mark) and item.kind == "block_delete"
         return slash or is_foreign(item, manner.target)
 

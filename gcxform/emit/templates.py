@@ -28,10 +28,10 @@ from gcxform.emit.saying import (
     CannotSayError,
     code_of,
     comment_in,
-    folded_words,
     is_foreign,
     left_out,
     own_gap,
+    unsaid_words,
 )
 from gcxform.modal.meaning import DRILL_WORDS, Meaning
 from gcxform.modal.sorting import program_number_fits
@@ -62,7 +62,7 @@ class TemplateWriter:
         self.source = manner.source
         self.target = manner.target
         self.axes = axes
-        self.folded = folded_words(meaning, folded_to) if folded_to else frozenset()
+        self.unsaid = unsaid_words(meaning, folded_to)
         self.gap = own_gap(shape, gap)
         self.uncompensated = uncompensated
 
@@ -120,10 +120,10 @@ class TemplateWriter:
     # --- one item ---
 
     def _goes(self, item: Item) -> bool:
-        """Whether an item is folded into the words of moves."""
+        """Whether an item is folded into the words of moves, or done by a pass."""
         if not isinstance(item, Word):
             return False
-        return (code_of(item) if item.address in CODES else item.address) in self.folded
+        return (code_of(item) if item.address in CODES else item.address) in self.unsaid
 
     def _item(self, item: Item, lead: bytes, slot: int) -> None:
         if isinstance(item, Word):

@@ -19,7 +19,7 @@ import msgspec
 
 from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.machine import presets
-from gcxform.machine.machine import MARK, Axis, Machine, MachineFile, Offset, Tool
+from gcxform.machine.machine import MARK, SWITCHES, Axis, Machine, MachineFile, Offset, Tool
 from gcxform.machine.modelfile import CODES, check_version
 from gcxform.machine.quantities import (
     ANGLE,
@@ -207,10 +207,26 @@ def _findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
     yield from _chain_findings(document, file)
     yield from _offset_findings(document, file)
     yield from _tool_findings(document, file)
+    yield from _switch_findings(document, file)
     for name, value in file.control.items():
         if isinstance(value, list) != (name == INERT):
             wanted = "a list of M codes, such as [100, 101]" if name == INERT else "one value"
             message = f"{name}: expected {wanted}"
+            yield Diagnostic(document.codes.wrong_value, message, document.where("control", name))
+
+
+def _switch_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
+    """Yield what is wrong with the codes that let the control follow the tip, and leave it."""
+    given = {name: file.control[name] for name in SWITCHES if name in file.control}
+    for name, code in given.items():
+        message = ""
+        if not isinstance(code, str) or not re.fullmatch("M[1-9][0-9]{2,3}", code):
+            message = f'{name}: expected an M code of the machine\'s own, such as "M428"'
+        elif len(given) < len(SWITCHES):
+            message = f"{name}: {' and '.join(SWITCHES)} are given together"
+        elif len(set(given.values())) == 1:
+            message = f"{name}: one code cannot say both"
+        if message:
             yield Diagnostic(document.codes.wrong_value, message, document.where("control", name))
 
 

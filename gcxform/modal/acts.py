@@ -11,6 +11,8 @@ ACTS: Mapping[str, Act] = {
     "change-tool": lengths.change_tool,
     "set-tool": lengths.set_tool,
     "user-code": lengths.user_code,
+    "tip-on": lengths.tip_on,
+    "tip-off": lengths.tip_off,
     "length": lengths.length,
     "length-negative": lengths.length_negative,
     "length-vector": lengths.length_vector,

@@ -43,6 +43,7 @@ class FrameState:
     turns         rotation, scaling and mirror of the program, the innermost first
     polar, diameter   G16 and G7 are in force
     homes         machine positions of G28 and G30
+    following     whether the control follows the tip of the tool; None where that is not known
     """
 
     axes: str
@@ -62,6 +63,7 @@ class FrameState:
     polar: bool = False
     diameter: bool = False
     homes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    following: bool | None = None
 
     @classmethod
     def at_start(
@@ -129,7 +131,14 @@ class FrameState:
         for k in range(0 if matrix is None else 3, len(shift)):
             shift[k] += self.preset[k] + self.local[k]
         return Frame(
-            self.work, tuple(shift), tuple(origin), matrix, self.diameter, self.polar, self.tool
+            self.work,
+            tuple(shift),
+            tuple(origin),
+            matrix,
+            self.diameter,
+            self.polar,
+            self.tool,
+            self.following,
         )
 
     def _matrix(self) -> tuple[Matrix | None, Sequence[float]]:

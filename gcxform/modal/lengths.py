@@ -28,6 +28,16 @@ def user_code(state: FrameState, asked: Asked) -> FrameState:
     return state
 
 
+def tip_on(state: FrameState, asked: Asked) -> FrameState:
+    """Codes of the machine file: from here on the control follows the tip of the tool."""
+    return replace(state, following=True)
+
+
+def tip_off(state: FrameState, asked: Asked) -> FrameState:
+    """Codes of the machine file: X, Y and Z are again those of the axes."""
+    return replace(state, following=False)
+
+
 def set_tool(state: FrameState, asked: Asked) -> FrameState:
     """M61 Q: another number for the tool that is in the spindle."""
     if "Q" not in asked.words:

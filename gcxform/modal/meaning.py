@@ -55,6 +55,8 @@ ACT_ORDER = (
     "change-tool",
     "set-tool",
     "user-code",
+    "tip-on",
+    "tip-off",
     "diameter",
     "length",
     "length-negative",

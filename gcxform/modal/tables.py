@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import Dialect
+from gcxform.machine.machine import SWITCHES
 from gcxform.modal.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning
 from gcxform.modal.sorting import meaning_of
 from gcxform.syntax.shapes import ShapeTable
@@ -102,6 +103,7 @@ FLAGS = (
     "in_machine",
     "work_only",
     "framing",
+    "switches",
     "presets",
     "takes_lengths",
     "computes",
@@ -180,6 +182,7 @@ class MeaningTable:
             any(act.name == "machine" for act in meaning.acts),
             [act.name for act in meaning.acts] == ["work"] and "frame" in meaning.groups,
             any(act.name in FRAMING for act in meaning.acts),
+            any(act.name in SWITCHES for act in meaning.acts),
             any(act.name in PRESETS for act in meaning.acts),
             bool(meaning.lengths),
             bool(meaning.assignments or meaning.expressions or meaning.runs_macro),

@@ -37,6 +37,8 @@ class Frame:
     polar    whether the first two words of the plane are radius and angle (G16)
     tool     mm, from the tool's tip to the spindle's reference point, as the control adds it;
              nan where it adds a length that is not known
+    following  whether the control takes X, Y and Z for the tip; None where that is not known, or no
+             code that is read switches it
     """
 
     work: str
@@ -46,6 +48,7 @@ class Frame:
     diameter: bool = False
     polar: bool = False
     tool: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    following: bool | None = None
 
     @property
     def shifts_only(self) -> bool:

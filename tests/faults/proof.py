@@ -30,7 +30,7 @@ MUTATIONS = (
     _feeds("times are ignored", "if len(wrong):"),
     _verifier(
         "events are ignored",
-        "self._events(self._told(read.path), self._told(back.path), trace)",
+        "self._events(self._without_switches(read.path), self._told(back.path), trace)",
         "",
     ),
     _verifier("missing events are ignored", "if len(old) != len(new):"),

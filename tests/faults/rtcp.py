@@ -16,6 +16,7 @@ RETARGET = "tests/test_rtcp_retarget.py"
 CHOICE = f"{PASSES}/rtcp_choice.py"
 MOVING = f"{PASSES}/rtcp_moving.py"
 PROOF = f"{PASSES}/rtcp_proof.py"
+SWITCHES = f"{PASSES}/rtcp_switches.py"
 CHOOSING = "tests/test_rtcp_choice.py"
 HOLDS = f"{TESTS}::test_the_bound_holds_for_any_piece"
 
@@ -215,5 +216,96 @@ MUTATIONS = (
         "bare[self.which] & turned_at(self.angles(self.path.end))",
         "np.zeros(len(self.which), np.bool_)",
         "tests/test_corpus.py::test_case",
+    ),
+    Mutation(
+        "rtcp: axes may be turned while the control is off",
+        SWITCHES,
+        "yield from self._rows((self.state == OFF) & moves, message)",
+        "yield from self._rows((self.state == OFF) & (not moves.size), message)",
+        "tests/test_tip_switches.py",
+    ),
+    Mutation(
+        "rtcp: axes may be turned while it is not known what is on",
+        SWITCHES,
+        "yield from self._rows((self.state == UNKNOWN) & moves, message)",
+        "yield from self._rows((self.state == UNKNOWN) & (not moves.size), message)",
+        "tests/test_tip_switches.py",
+    ),
+    Mutation(
+        "rtcp: only where moves end is looked at for turned axes",
+        SWITCHES,
+        "turns[1:] | turns[:-1]",
+        "turns[:-1]",
+        "tests/test_tip_switches.py",
+    ),
+    Mutation(
+        "rtcp: an axis may be anywhere where the control is switched",
+        SWITCHES,
+        "event.what in self.codes and not rest[event.row]",
+        "event.what in self.codes and not rest.any()",
+        "tests/test_tip_switches.py",
+    ),
+    Mutation(
+        "rtcp: it is not seen that a position was lost before a switch",
+        SWITCHES,
+        "(self.state != self.before) & ~rest[:-1]",
+        "(self.state != self.before) & (self.state < 0)",
+        "tests/test_tip_switches.py",
+    ),
+    Mutation(
+        "rtcp: a move may stand beside a switch",
+        SWITCHES,
+        "lines[np.isin(lines, self.path.source)]",
+        "lines[:0]",
+        "tests/test_tip_switches.py",
+    ),
+    Mutation(
+        "rtcp: on is off",
+        "gcxform/modal/lengths.py",
+        "return replace(state, following=True)",
+        "return replace(state, following=False)",
+        "tests/test_tip_switches.py",
+    ),
+    Mutation(
+        "rtcp: once on, the control stays on",
+        "gcxform/modal/lengths.py",
+        "return replace(state, following=False)",
+        "return state",
+        "tests/test_tip_switches.py",
+    ),
+    Mutation(
+        "rtcp: a frame does not say what follows the tip",
+        "gcxform/modal/frames.py",
+        "            self.following,\n",
+        "            None,\n",
+        "tests/test_tip_switches.py",
+    ),
+    Mutation(
+        "rtcp: offsets forget what follows the tip",
+        f"{PASSES}/offsets.py",
+        "following=frame.following",
+        "following=None",
+        "tests/test_tip_switches.py",
+    ),
+    Mutation(
+        "rtcp: codes of what rtcp does are copied",
+        "gcxform/emit/copying.py",
+        'self.lines &= ~self.task.table.flag("switches", self.task.shape)',
+        "self.lines &= True",
+        "tests/test_tip_switches.py",
+    ),
+    Mutation(
+        "rtcp: a skipped block keeps its code",
+        "gcxform/emit/copying.py",
+        'skipped & self.task.table.flag("switches", shape)',
+        "skipped & ~skipped",
+        "tests/test_tip_switches.py",
+    ),
+    Mutation(
+        "rtcp: one code may say both",
+        "gcxform/machine/machinefile.py",
+        "len(set(given.values())) == 1",
+        "len(given) == 1",
+        "tests/test_tip_switches.py",
     ),
 )

@@ -34,7 +34,13 @@ class Offsets(gx.Pass):
         """Return the frame in which only the tool length is left."""
         tool = np.zeros(len(frame.shift))
         tool[:3] = np.nan_to_num(np.array(frame.tool))
-        return gx.Frame(path.first, tuple(tool.tolist()), frame.origin, tool=frame.tool)
+        return gx.Frame(
+            path.first,
+            tuple(tool.tolist()),
+            frame.origin,
+            tool=frame.tool,
+            following=frame.following,
+        )
 
     def _check_known(self, path: gx.Toolpath) -> None:
         """Refuse moves in coordinates of which it is not known where they are."""

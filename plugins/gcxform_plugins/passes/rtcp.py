@@ -25,6 +25,7 @@ from gcxform_plugins.passes.rtcp_cutting import STILL, Cutting
 from gcxform_plugins.passes.rtcp_moving import Correcting, Moving
 from gcxform_plugins.passes.rtcp_place import Place, turned_at
 from gcxform_plugins.passes.rtcp_proof import Driven, Led, Proof
+from gcxform_plugins.passes.rtcp_switches import Switches
 from gcxform_plugins.passes.rtcp_undoing import Undoing
 from gcxform_plugins.passes.rtcp_ways import Between, Corrected
 
@@ -57,8 +58,8 @@ class Rtcp(gx.Pass):
     tip_codes: Annotated[
         Literal["refuse", "read"],
         gx.Option(
-            "to-machine: programs that let the control follow the tip (G43.4, G234): read them as "
-            "tool lengths, for a control that does not"
+            "to-machine: programs that let the control follow the tip (G43.4, G234, tip-on of the "
+            "machine file): read them as what it is without, for a control that does not"
         ),
     ] = "refuse"
     rapids: Annotated[
@@ -203,9 +204,12 @@ class Rtcp(gx.Pass):
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path of the axes for one of tips; if asked the reverse, or one corrected."""
+        switches = Switches(path, context) if self.reads_tip_codes else None
+        if switches is not None:
+            switches.refuse()
         if not len(path) or self._nothing_to_correct(context):
             return path.replace(blocks=self.timed(path.blocks))
-        if self.reads_tip_codes:
+        if switches is not None and (context.source.tip_codes or not switches.codes):
             Place(path, context).refuse_followed_late()
         if self.turns_anew:
             source, target = self._machines(path, context)

@@ -1,0 +1,91 @@
+"""Where a control that is switched by M codes follows the tip of the tool, for `rtcp`.
+
+A program that switches with the codes of the machine file is one of tips while they are on. With
+all rotary axes at 0 tip and axes are at one position, so there a program may be off as well, and
+only there may it switch: with an axis turned the same numbers are another place after it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+import gcxform as gx
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+TURN_BACK = "turn them to 0 before; or say where they stand: start = { A = 0.0, ... } in [input]"
+UNKNOWN, OFF, ON = 0, 1, 2
+
+
+class Switches:
+    """What a window says of the codes; `codes` are those of the machine file, of which none may be.
+
+    `angles` (n + 1, m) are those of the rotary axes before each row and behind the last one, nan
+    where they are not known; `state` (n,) holds in each row, and `before` in the one before it.
+    """
+
+    def __init__(self, path: gx.Toolpath, context: gx.PassContext) -> None:
+        assert context.machine is not None
+        control = context.machine.control
+        self.path = path
+        self.codes = {control[name] for name in ("tip-on", "tip-off") if name in control}
+        last = path.end[-1:] if len(path) else path.entry[None, :]
+        self.angles = self._angles(np.vstack([path.start, last]), gx.chain_of(context.machine))
+        of_frame = np.array([self._state(frame) for frame in path.frames])
+        self.state = of_frame[path.frame]
+        self.before = np.append(of_frame[:1], self.state[:-1])[: len(path)]
+
+    def _angles(self, positions: Floats, chain: gx.Chain) -> Floats:
+        unknown = np.full(len(positions), np.nan)
+        axes = self.path.axes
+        columns = [positions[:, axes.index(a)] if a in axes else unknown for a in chain.letters]
+        return np.stack(columns, axis=1)
+
+    @staticmethod
+    def _state(frame: gx.Frame) -> int:
+        if frame.following is None:
+            return UNKNOWN
+        return ON if frame.following else OFF
+
+    def refuse(self) -> None:
+        """Refuse what is not one program of tips, wherever axes are turned. Raises InputError."""
+        if not self.codes:
+            return
+        self._refuse_company()
+        for line, message, hint in self._wrong():
+            raise gx.InputError.one("GX330", message, gx.Location("", line + 1), hint)
+
+    def _refuse_company(self) -> None:
+        """Refuse codes beside a move, or one another: which acts first is not known."""
+        lines = np.array([event.line for event in self.path.events if event.what in self.codes])
+        twice = lines[1:][lines[1:] == lines[:-1]]
+        company = np.append(twice, lines[np.isin(lines, self.path.source)])
+        if len(company):
+            message = "what follows the tip is switched beside a move, or twice in a block"
+            where = gx.Location("", int(company.min()) + 1)
+            raise gx.InputError.one("GX330", message, where, "give each code its own block")
+
+    def _wrong(self) -> Iterator[tuple[int, str, str]]:
+        """Yield lines of what is refused, with messages and hints."""
+        rest = (self.angles == 0.0).all(axis=1)  # not where an angle is not known
+        for event in self.path.events:
+            if event.what in self.codes and not rest[event.row]:
+                message = f"{event.what} where not all rotary axes are known to be at 0"
+                yield event.line, message, TURN_BACK
+        changed = (self.state != self.before) & ~rest[:-1]
+        yield from self._rows(changed, "the control was switched where axes may be turned")
+        turned = np.isfinite(self.angles) & (self.angles != 0.0)
+        turns = turned.any(axis=1)
+        moves = turns[1:] | turns[:-1]
+        message = "axes are turned while the control does not follow the tip"
+        yield from self._rows((self.state == OFF) & moves, message)
+        message = "axes are turned, and whether the control follows the tip is not known"
+        yield from self._rows((self.state == UNKNOWN) & moves, message)
+
+    def _rows(self, wrong: Flags, message: str) -> Iterator[tuple[int, str, str]]:
+        for row in np.flatnonzero(wrong)[:1].tolist():
+            yield int(self.path.source[row]), message, TURN_BACK

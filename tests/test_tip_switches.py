@@ -1,0 +1,275 @@
+"""M codes of the machine that let the control follow the tip, as `rtcp` reads them."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from rtcp_kit import chain_of_kind, machine_text, pipeline
+
+import gcxform as gx
+from gcxform.registry import default_registry
+from gcxform.run import Output, Run
+from gcxform.source import Source
+from gcxform.tipcodes import with_switches
+
+CONTROL = '[control]\ntip-on = "M428"\ntip-off = "M429"\n'
+NUTATING = '[control]\ntip-on = "M429"\ntip-off = "M428"\n'
+LINUXCNC = default_registry().dialect("linuxcnc")
+HEAD = ["G21 G90 G94 G17 G54", "G0 X0 Y0 Z90 A0 C0", "G43 H1"]
+WHOLE = [
+    *HEAD,
+    "M428",
+    "G1 X10. Y5. Z3. A0. C0. F600.",
+    "X12. Y7. Z4. A20. C30.",
+    "X9. Y2. A0. C0.",
+    "M429",
+    "G49",
+    "M2",
+]
+
+
+def linuxcnc(folder, control=CONTROL, **options):
+    """Return the pipeline of `rtcp` for a LinuxCNC with a trunnion."""
+    machine = machine_text("ac-trunnion", chain_of_kind("ac-trunnion", 3)) + control
+    pipeline(folder, machine, tolerance=0.01, **{"tip_codes": "read", **options})
+    text = (folder / "p.toml").read_text().replace('"fanuc"', '"linuxcnc"')
+    (folder / "p.toml").write_text(text)
+    return gx.Pipeline.load(folder / "p.toml")
+
+
+def text_of(lines):
+    return "".join(f"{line}\n" for line in lines).encode()
+
+
+def switched(seed):
+    """Return lines of a program in cuts of tips, and which of them switch, by the sense of each.
+
+    Between the cuts axes are at 0, and there it switches off and on, or says again what holds.
+    """
+    rng = np.random.default_rng(seed)
+    lines, senses = list(HEAD), {}
+    for cut in range(int(rng.integers(1, 4))):
+        for sense in [False] * int(rng.integers(0, 2)) + [True] * int(rng.integers(1, 3)):
+            senses[len(lines)] = sense
+            lines.append("M428" if sense else "M429")
+        lines.append(f"G1 X{cut}. Y0. A0. C0. F500.")
+        for _ in range(int(rng.integers(1, 5))):
+            x, y, z, a, c = rng.uniform(-1.0, 1.0, 5) * [50.0, 50.0, 20.0, 40.0, 90.0]
+            lines.append(f"X{x:.3f} Y{y:.3f} Z{z:.3f} A{a:.3f} C{c:.3f}")
+        lines.append(f"X{cut}. A0. C0.")
+        if rng.random() < 0.5:
+            senses[len(lines)] = False
+            lines += ["M429", "X20. Y3."]
+    return [*lines, "G49", "M2"], senses
+
+
+def without(lines, gone):
+    """Return a program without some lines, and which line each of the others was."""
+    kept = [k for k in range(len(lines)) if k not in gone]
+    return text_of(lines[k] for k in kept), kept
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_it_writes_what_it_writes_of_a_program_without_the_codes(tmp_path, seed):
+    lines, senses = switched(seed)
+    plain, kept = without(lines, senses)
+    step = linuxcnc(tmp_path)
+    read = step.run(text_of(lines))
+    there = linuxcnc(tmp_path, control="").run(plain)
+    assert read.certificate.verified
+    assert read.text == there.text
+    assert b"M42" not in read.text
+    assert list(read.source_map) == [kept[line] for line in there.source_map]
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("size", [1, 40, 200])
+def test_windows_of_any_size_are_alike(tmp_path, seed, size):
+    program = text_of(switched(seed)[0])
+    step = linuxcnc(tmp_path)
+    parts = []
+    Run(step, Source.of_bytes(program), "on").over(Output(parts.append, None), abs, size)
+    assert b"".join(parts) == step.run(program).text
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("size", [1, 0])
+def test_each_code_counts(tmp_path, seed, size):
+    """With the senses turned round it is a program in axes wherever it was one of tips."""
+    step = linuxcnc(tmp_path, control=NUTATING)
+    run = Run(step, Source.of_bytes(text_of(switched(seed)[0])), "on")
+    with pytest.raises(gx.InputError, match="axes are turned while the control does not follow"):
+        run.over(Output(len, None), abs, size)
+
+
+def test_what_they_mean_is_said_by_the_machine_file(tmp_path):
+    other = [{"M428": "M429", "M429": "M428"}.get(line, line) for line in WHOLE]
+    one = linuxcnc(tmp_path).run(text_of(WHOLE)).text
+    assert linuxcnc(tmp_path, control=NUTATING).run(text_of(other)).text == one
+
+
+def anyhow(rng):
+    """Return lines with codes and turns anywhere, and where it is refused first, told line by line.
+
+    The model knows one thing at a time: what is on, and whether an axis is turned.
+    """
+    lines, state, turned, wrong = [*HEAD, "G1 F500."], None, False, []
+    for _ in range(int(rng.integers(3, 12))):
+        kind = rng.choice(["on", "off", "turn", "back", "move"], p=[0.25, 0.1, 0.2, 0.35, 0.1])
+        before = turned
+        if kind in ("on", "off"):
+            lines.append("M428" if kind == "on" else "M429")
+            state = str(kind)
+            wrong += [len(lines)] * turned
+            continue
+        turned = {"turn": True, "back": False}.get(str(kind), turned)
+        angles = {"turn": f" A{rng.integers(1, 40)}. C7.", "back": " A0 C0"}.get(str(kind), "")
+        lines.append(f"X{rng.uniform(-9.0, 9.0):.3f}{angles}")
+        wrong += [len(lines)] * ((before or turned) and state != "on")
+    return [*lines, "M2"], wrong
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_a_model_that_reads_line_by_line_agrees(tmp_path, seed):
+    rng = np.random.default_rng(seed)
+    lines, wrong = anyhow(rng)
+    run = Run(linuxcnc(tmp_path), Source.of_bytes(text_of(lines)), "on")
+    parts = []
+    out = Output(parts.append, None)
+    size = int(rng.choice([0, 1, 30, 90]))
+    if wrong:
+        with pytest.raises(gx.InputError) as error:
+            run.over(out, abs, size)
+        found = error.value.diagnostics[0]
+        assert found.code == "GX330"
+        assert found.where.line in wrong
+        return
+    run.over(out, abs, size)
+    plain, _ = without(lines, {k for k, line in enumerate(lines) if line[:3] == "M42"})
+    assert b"".join(parts) == linuxcnc(tmp_path, control="").run(plain).text
+
+
+def with_line(number, *new):
+    return [*WHOLE[:number], *new, *WHOLE[number:]]
+
+
+REFUSED = {
+    "off": (with_line(5, "M429"), 7, "does not follow the tip"),
+    "on with an axis turned": (with_line(6, "M428"), 7, "M428 where not all"),
+    "off with an axis turned": (with_line(6, "M429"), 7, "M429 where not all"),
+    "there and back": (with_line(6, "M429", "M428"), 7, "M429 where not all"),
+    "never": ([line for line in WHOLE if line[:2] != "M4"], 5, "is not known"),
+    "not yet": ([*WHOLE[:3], "G1 X1. C5. F100.", "C0.", *WHOLE[3:]], 4, "is not known"),
+    "no longer": (with_line(8, "G1 C5. F100."), 9, "does not follow the tip"),
+    "where axes stand is not known": (["G21 G90 G94 G17 G54", "M428", *WHOLE[1:]], 2, "known"),
+    "beside a move": ([*WHOLE[:3], "M428 G1 X10. Y5. F600.", *WHOLE[5:]], 4, "beside a move"),
+    "another length": (with_line(6, "G43.1 Z5."), 8, "the tool length changes"),
+    "behind the last move": ([*WHOLE[:6], "M429", "M2"], 7, "M429 where not all"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+@pytest.mark.parametrize("size", [1, 0])
+def test_it_is_refused_by_name(tmp_path, name, size):
+    lines, line, message = REFUSED[name]
+    run = Run(linuxcnc(tmp_path), Source.of_bytes(text_of(lines)), "on")
+    with pytest.raises(gx.InputError, match=message) as error:
+        run.over(Output(len, None), abs, size)
+    found = error.value.diagnostics[0]
+    assert (found.code, found.where.line) == ("GX330", line)
+
+
+def test_a_position_that_is_lost_is_not_known(tmp_path):
+    """M101 may move axes; where nothing moves behind it in its window, the next one says so."""
+    lines = [*WHOLE[:4], "M429", "M101", "M428", *WHOLE[4:]]
+    step = linuxcnc(tmp_path, control=CONTROL + 'user-codes = "keep"\n')
+    for size in (1, 8, 12, 16, 24, 32, 40, 48, 56, 64, 72, 80, 0):
+        with pytest.raises(gx.InputError, match="GX330"):
+            Run(step, Source.of_bytes(text_of(lines)), "on").over(Output(len, None), abs, size)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"tip_codes": "refuse"},
+        {"tip_codes": "refuse", "direction": "to-tip"},
+        {"tip_codes": "refuse", "direction": "repost", "calibrated": "machine.toml"},
+        {"control": ""},
+    ],
+)
+def test_otherwise_no_such_program_is_read(tmp_path, options):
+    with pytest.raises(gx.InputError, match="GX201"):
+        linuxcnc(tmp_path, **options).run(text_of(WHOLE))
+
+
+def test_a_block_that_is_skipped_keeps_no_code(tmp_path):
+    lines = with_line(4, "/M428")
+    step = linuxcnc(tmp_path)
+    text = (tmp_path / "p.toml").read_text()
+    for policy in ("skip", "execute"):
+        said = text.replace("[machine]", f'block-delete = "{policy}"\n[machine]')
+        (tmp_path / "p.toml").write_text(said)
+        step = gx.Pipeline.load(tmp_path / "p.toml")
+        if policy == "skip":
+            with pytest.raises(gx.InputError, match="GX330"):
+                step.run(text_of(lines))
+        else:
+            assert b"M428" not in step.run(text_of(lines)).text
+
+
+def test_in_a_subprogram_they_are_read(tmp_path):
+    """Sub and call are written out, and the codes are read where they are executed."""
+    sub = ["o<on> sub", "M428", "o<on> endsub"]
+    called = [*sub, *("o<on> call" if line == "M428" else line for line in WHOLE)]
+    plain, _ = without(WHOLE, {3, 7})
+    read = linuxcnc(tmp_path).run(text_of(called))
+    assert read.text == linuxcnc(tmp_path, control="").run(plain).text
+
+
+def test_behind_offsets_they_are_read(tmp_path):
+    offsets = '[[pass]]\nuse = "offsets"\n[[pass]]\nuse = "segment"\nchord-error = 0.001\n'
+    lines = [*WHOLE[:3], "G92 X5.", *WHOLE[3:8], "G92.1", *WHOLE[8:]]
+    read = linuxcnc(tmp_path, before=offsets).run(text_of(lines))
+    plain, _ = without(lines, {4, 8})
+    assert read.text == linuxcnc(tmp_path, control="", before=offsets).run(plain).text
+    with pytest.raises(gx.InputError, match="GX330"):
+        linuxcnc(tmp_path, before=offsets, control=NUTATING).run(text_of(lines))
+
+
+def test_comment_and_other_words_of_their_blocks_stay(tmp_path):
+    lines = [line.replace("M428", "N7 m 0428 M8 (tips) ") for line in WHOLE]
+    text = linuxcnc(tmp_path).run(text_of(lines)).text
+    assert re.search(rb"^N7 M8 \(tips\) $", text, re.MULTILINE)
+
+
+def test_a_code_that_is_left_is_no_proof(tmp_path, monkeypatch):
+    """Whoever leaves a code in the text is found out: what reads it does not know the code."""
+    monkeypatch.setattr("gcxform.emit.templates.unsaid_words", lambda *_: frozenset())
+    monkeypatch.setattr("gcxform.emit.emitter.nothing_left", lambda *_: False)
+    with pytest.raises(gx.VerificationError, match="M428"):
+        linuxcnc(tmp_path).run(text_of(WHOLE))
+
+
+def test_the_dialect_itself_stays_as_it_is():
+    other = with_switches(LINUXCNC, {"tip-on": "M430", "tip-off": "M429"})
+    assert {429, 430} == set(other.m_codes) - set(LINUXCNC.m_codes)
+    assert with_switches(LINUXCNC, {"g52": "fanuc"}) is LINUXCNC
+
+
+@pytest.mark.parametrize(
+    ("control", "message"),
+    [
+        ('tip-on = "M428"', "given together"),
+        ('tip-off = "M428"', "given together"),
+        ('tip-on = "M428"\ntip-off = "M428"', "cannot say both"),
+        ('tip-on = "M428"\ntip-off = "G49"', "expected an M code"),
+        ('tip-on = "M5"\ntip-off = "M428"', "expected an M code"),
+        ('tip-on = 428\ntip-off = "M429"', "expected an M code"),
+        ('tip-on = ["M428"]\ntip-off = "M429"', "expected"),
+    ],
+)
+def test_settings_that_say_nothing_are_refused(tmp_path, control, message):
+    with pytest.raises(gx.UsageError, match=message):
+        linuxcnc(tmp_path, control=f"[control]\n{control}\n")
