@@ -38,6 +38,7 @@ def certificate(run: Run, out: Output) -> Certificate:
         run.verifier is not None or (pipeline.copies and run.verify != "off"),
     )
     made.measured = run.measured
+    made.added = run.added
     _fill(run, made)
     return made
 
