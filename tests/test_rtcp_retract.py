@@ -6,24 +6,21 @@ program, and there shall be no more of them than limits ask for.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from gcxform_plugins.passes.rtcp_choice import LEAP
-from kinematics_kit import tool
-from rtcp_kit import (
-    ROUNDED,
-    between,
-    chain_of_kind,
-    machine_text,
-    pipeline,
-    positions,
-    tips,
-)
-from test_rtcp_repost import ROOM
+from gcxform_plugins.passes.rtcp_choice import LEAP, Choice, NoWayError, Trouble
+from hypothesis import given
+from hypothesis import strategies as st
+from kinematics_kit import leaning, tool
+from rtcp_kit import ROUNDED, between, chain_of_kind, machine_text, pipeline, positions, tips
+from test_rtcp_choice import in_a_cut, trunnion, with_axis
+from test_rtcp_repost import ROOM, step_of
 
 import gcxform as gx
 
-BACK, FEED, TOLERANCE = 25.0, 800.0, 0.02
+BACK, FEED, TOLERANCE = 25.0, 830.0, 0.02
 OPTIONS = {"retract": f"{BACK} mm", "retract_feed": FEED}
 LIMITS = {
     "ac-trunnion": {"A": (-30.0, 110.0), "C": (-200.0, 200.0)},
@@ -144,6 +141,197 @@ def test_the_tool_is_drawn_back_where_axes_must_turn(tmp_path, kind):
     result = steps.run(text, "full")
     count = check_program(text, result, source, target, LIMITS[kind])
     told = result.certificate.added
-    assert told["retracts to turn rotary axes"] == count >= 1
-    owner = np.array(result.source_map)
-    assert told["moves of these"] < len(owner)
+    assert told["retracts"] == count >= 1
+    clear = f"{count} retracts, {told['moves of retracts']} moves of retracts"
+    assert any(clear in said for said in result.certificate.not_checked)
+
+
+def test_not_where_there_is_a_way_without(tmp_path):
+    """With limits wide enough the option changes no byte; and what is refused else, still is."""
+    limits = {"A": (-110.0, 110.0), "C": (-400.0, 400.0)}
+    plain, _, _ = steps_of(tmp_path, "ac-trunnion", limits)
+    steps, _, _ = steps_of(tmp_path, "ac-trunnion", limits, **OPTIONS)
+    found = steps.run(round_about(), "full")
+    assert found.text == plain.run(round_about()).text
+    assert found.certificate.added == {"retracts": 0, "moves of retracts": 0}
+    leaned = round_about(tilt=25.0).replace(b"A29.0", b"A118.0")
+    with pytest.raises(gx.InputError, match=r"GX331.*\n.*A118"):
+        steps.run(leaned)
+
+
+def test_several_cuts_are_counted_together(tmp_path, monkeypatch):
+    """The certificate has the sum of all windows, and a cut does not depend on the one before."""
+    monkeypatch.setattr("gcxform.source.WINDOW", 1)
+    monkeypatch.setattr("gcxform.worker.MAY_COPY", False)
+    steps, _, _ = steps_of(tmp_path, "ac-trunnion", LIMITS["ac-trunnion"], **OPTIONS)
+    head, _, rest = round_about(tilt=25.0).partition(b"G0 X20.")
+    cut = b"G0 X20." + rest.removesuffix(b"M30\n")
+    result = steps.run(head + 3 * cut + b"M30\n", "full")
+    once = steps.run(head + cut + b"M30\n", "full")
+    assert once.certificate.added["retracts"] == 1
+    assert result.certificate.added == {n: 3 * k for n, k in once.certificate.added.items()}
+
+
+def test_beyond_travel_it_says_what_for(tmp_path):
+    """GX331 tells that it is the retract that does not fit."""
+    limits = LIMITS["ac-trunnion"] | {"Z": (-500.0, 60.0)}
+    steps, _, _ = steps_of(tmp_path, "ac-trunnion", limits, **OPTIONS)
+    with pytest.raises(gx.InputError, match=r"GX331.*Z would have.*where the tool is drawn back"):
+        steps.run(round_about(tilt=25.0))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"retract": 20.0}, "go together"),
+        ({"retract_feed": 100.0}, "go together"),
+        ({"retract": 0.05, "retract_feed": 100.0}, "0.1"),
+    ],
+)
+def test_options_that_do_not_fit(tmp_path, options, message):
+    """Both are given, for another machine, and the way is no trifle."""
+    with pytest.raises(gx.UsageError, match=message):
+        steps_of(tmp_path, "ac-trunnion", {}, **options)
+
+
+def test_it_is_for_another_machine(tmp_path):
+    """Other directions do not choose attitudes."""
+    text = machine_text("ac-trunnion", chain_of_kind("ac-trunnion", 3))
+    with pytest.raises(gx.UsageError, match="retract is an option of retarget"):
+        pipeline(tmp_path, text, before="", tolerance=0.01, **OPTIONS)
+
+
+# --- the search ---
+
+
+def test_as_late_or_soon_as_it_may_but_not_more_often():
+    """A sweep of 850 degrees within 540: one unwinding, at a point where it is allowed."""
+    axis = leaning(np.full(171, 40.0), np.linspace(0.0, 850.0, 171))
+    may = np.zeros(171, np.bool_)
+    may[100:110] = True
+    choice = Choice(trunnion(), axis, in_a_cut(171), may)
+    angles = choice.run(np.zeros(2))
+    (at,) = choice.retracts
+    assert may[at]
+    assert len(angles) == 172
+    steps = np.abs(np.diff(angles, axis=0)).max(axis=1)
+    assert np.flatnonzero(steps > LEAP).tolist() == [at]
+    with pytest.raises(NoWayError) as caught:
+        Choice(trunnion(), axis, in_a_cut(171), np.zeros(171, np.bool_)).run(np.zeros(2))
+    assert caught.value.trouble is Trouble.FLIP
+
+
+@given(st.integers(0, 100_000))
+def test_no_way_has_fewer(seed):
+    """Against all sequences of candidates along a random walk of the azimuth."""
+    rng = np.random.default_rng(seed)
+    azimuth = np.cumsum(rng.choice([-40.0, 30.0, 40.0], 9)) + rng.uniform(-180.0, 180.0)
+    axis = leaning(np.full(9, 40.0), azimuth)
+    low, high = rng.uniform(-260.0, -190.0), rng.uniform(10.0, 200.0)
+    chain = trunnion(a=(-110.0, 110.0), c=(low, high))
+    choice = Choice(chain, axis, in_a_cut(9), np.ones(9, np.bool_))
+    try:
+        angles = choice.run(np.zeros(2))
+    except NoWayError:
+        return
+    assert len(angles) == 9 + len(choice.retracts)
+    angle, allowed = gx.turns(chain, gx.attitudes(chain, axis).angle)
+    fewest = {0: np.zeros(len(angle[0][allowed[0]]))}
+    for at in range(1, 9):
+        old, new = (angle[k][allowed[k]] for k in (at - 1, at))
+        before = fewest[at - 1] + 0.0
+        if at > 1:
+            before = np.minimum(before, before.min() + 1.0)
+        near = np.abs(old[:, None] - new[None]).max(axis=-1) <= LEAP
+        fewest[at] = np.where(near, before[:, None], np.inf).min(axis=0)
+    assert len(choice.retracts) == fewest[8].min()
+
+
+# --- the proof ---
+
+
+@pytest.fixture
+def drawn(tmp_path):
+    """Return the pass, its context, the path of a program, and that with the tool drawn back."""
+    steps, _, _ = steps_of(tmp_path, "bc-trunnion", LIMITS["bc-trunnion"], **OPTIONS)
+    read = gx.Program(round_about(0.8, 25.0), steps.source, steps.machine_reading)
+    path = with_axis(read.path, "B")
+    step = step_of(steps)
+    after = step.apply(path, steps.context)
+    step.prove(path, after, steps.context)
+    assert step.added(path, after, steps.context)["retracts"] == 1
+    return step, steps.context, path, after
+
+
+def first_of(after):
+    """Return the first row that draws the tool back, and the number of rows until it is in."""
+    angles = after.end[:, [after.axes.index("B"), after.axes.index("C")]]
+    feeds = np.flatnonzero(np.abs(after.feed * BACK / FEED - 1.0) < 1e-9)
+    first, last = feeds
+    assert np.abs(angles[last] - angles[first]).max() > LEAP
+    return int(first), int(last - first + 1)
+
+
+def refused(drawn, after, what=None):
+    """Check that the proof refuses a path: GX606."""
+    step, context, path, _ = drawn
+    with pytest.raises(gx.VerificationError, match="GX606"):
+        (what or step).prove(path, after, context)
+
+
+def test_the_proof_takes_nothing_else(drawn):
+    """Farther, aside, faster, leaning, or without the option: what is added is refused."""
+    step, context, path, after = drawn
+    first, count = first_of(after)
+    for row, column, size in (
+        (first, 2, 0.001),  # not as far as asked
+        (first, 0, 0.001),  # aside
+        (first + count // 2, 1, 0.2 * BACK),  # away while axes turn
+        (first + count - 1, 0, 0.001),  # in beside where it was
+        (first + count - 1, after.axes.index("C"), 0.7),  # in with another tool axis
+    ):
+        end = after.end.copy()
+        end[row, column] += size
+        refused(drawn, after.replace(end=end))
+    for row in (first, first + 1, first + count - 1):
+        feed = after.feed.copy()
+        feed[row] *= 1.001
+        refused(drawn, after.replace(feed=feed))
+    plain = replace(step, retract=None, retract_feed=None)
+    refused(drawn, after, plain)
+    refused(drawn, after, replace(step, retract=BACK + 0.001))
+    strict = replace(step, axis_tolerance=1e-9)  # less than rounded angles hold
+    assert strict.added(path, after, context)["retracts"] == 0
+
+
+def test_the_proof_wants_it_whole_and_in_a_line(drawn):
+    """A part of it, or rapids, or one that begins before any move of its line: refused."""
+    _, _, _, after = drawn
+    first, count = first_of(after)
+    for gone in (range(first, first + 1), range(first, first + count), [first + count - 1]):
+        counts = np.ones(len(after), np.int64)
+        counts[[*gone]] = 0
+        refused(drawn, after.with_rows(counts, end=after.end[counts > 0]))
+    kind = after.kind.copy()
+    kind[first + 1] = gx.Kind.RAPID
+    refused(drawn, after.replace(kind=kind))
+    source = after.source.copy()
+    source[first:] += 1
+    refused(drawn, after.replace(source=source))
+
+
+def test_axes_do_not_turn_to_and_fro(drawn):
+    """A turn beyond where the tool goes in, and back, is no part of it."""
+    step, context, path, after = drawn
+    first, count = first_of(after)
+    c = after.axes.index("C")
+    counts = np.ones(len(after), np.int64)
+    middle = first + count - 2
+    counts[middle] = 3
+    end = np.repeat(after.end, counts, axis=0)
+    end[middle + 1, c] += 0.01
+    feed = np.repeat(after.feed, counts)
+    feed[middle + 1 : middle + 3] = FEED / 0.01
+    more = after.with_rows(counts, end=end, feed=feed)
+    assert step.added(path, more, context)["retracts"] == 0
+    refused(drawn, more)

@@ -87,7 +87,7 @@ class Rtcp(gx.Pass):
         gx.Option(
             "retarget: where axes have to flip or unwind in a cut, draw the tool back along its "
             "axis by so much and turn them there; absent: an error",
-            above=0.0,
+            above=0.1,
         ),
     ] = None
     retract_feed: Annotated[
@@ -302,8 +302,8 @@ class Rtcp(gx.Pass):
         _, target = self._machines(after, context)
         drawn = Retracted(self, Driven(self, after, target)).found
         return {
-            "retracts to turn rotary axes": len(drawn),
-            "moves of these": sum(len(rows) for rows in drawn),
+            "retracts": len(drawn),
+            "moves of retracts": sum(len(rows) for rows in drawn),
         }
 
     def _leans(self) -> tuple[float, float]:

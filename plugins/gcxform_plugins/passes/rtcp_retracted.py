@@ -2,8 +2,9 @@
 
 Such moves follow a piece of a line and belong to its block: one back along the tool's axis, by the
 length asked for and with all angles as they are; some in which axes turn, each steadily one way,
-with the tip near where it is; and one with all angles as they are, to where the tip was. Each takes
-the time that its feed says. What is anything else is no such move, and has to be one of the source.
+with the tip near where it is; and one with all angles as they are, to where the tip was, with the
+tool axis that it had. Each takes the time that its feed says. What is anything else is no such
+move, and has to be one of the source.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ class Retracted:
         assert step.retract is not None
         assert step.retract_feed is not None
         self.length, self.feed = step.retract, step.retract_feed
+        self.lean = np.radians(step.axis_tolerance)
         self.path, self.target = target.path, target
         step_of_angles = target.place.angles(target.end) - target.place.angles(target.start)
         self.turn = np.nan_to_num(step_of_angles, nan=np.inf)
@@ -67,11 +69,13 @@ class Retracted:
         tips, axis, _ = self.target.at(np.array([first, first, last]), np.array([0.0, 1.0, 1.0]))
         back = tips[0] + self.length * axis[0]
         off = np.linalg.norm([back - tips[1], tips[0] - tips[2]], axis=1)
+        lean = np.linalg.norm(axis[2] - axis[0])
         turning = np.arange(first + 1, last)
         turn = self.turn[turning]
         steady = np.abs(turn).sum(axis=0) - np.abs(turn.sum(axis=0))
         return bool(
             (off <= SAME).all()
+            and lean <= self.lean
             and (steady <= SAME).all()
             and self._held(turning, back)
             and self._in_time(first, turning, last)

@@ -24,6 +24,7 @@ Ints = NDArray[np.int64]
 
 HELD = 0.08
 """How far the tip may move while axes turn, as a part of the way it was drawn back."""
+MOST = 10_000  # moves in which axes turn
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,11 @@ def _turning(work: Moving, row: int, tip: Floats, sides: tuple[Floats, Floats]) 
         points = np.repeat(point, count, axis=0)
         worst = float(leaving(chain, (points, points), (angles[:-1], angles[1:])).max())
         if worst <= limit:
-            return angles
+            return np.asarray(angles[np.diff(angles, axis=0, prepend=np.inf).any(axis=1)])
+        if count > MOST:
+            message = f"to turn here would take more than {MOST} moves"
+            hint = "draw the tool back farther: raise retract"
+            raise work.path.refuse("GX330", np.array([row]), message, hint)
         count = min(max(int(np.ceil(count * np.sqrt(worst / limit))), count + 1), 4 * count)
 
 
