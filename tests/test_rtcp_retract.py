@@ -221,6 +221,17 @@ def test_as_late_or_soon_as_it_may_but_not_more_often():
     assert caught.value.trouble is Trouble.FLIP
 
 
+def test_a_long_turn_before_the_cut_is_better():
+    """C-350 is far, and C10 near; but from there the tool would have to flip in the cut."""
+    tilt = np.concatenate([np.linspace(40.0, 10.0, 20), np.full(61, 10.0)])
+    axis = leaning(tilt, np.linspace(-80.0, 320.0, 81))
+    chain = trunnion(a=(-30.0, 110.0), c=(-350.0, 350.0))
+    choice = Choice(chain, axis, in_a_cut(81), np.ones(81, np.bool_))
+    angles = choice.run(np.zeros(2))
+    assert choice.retracts == []
+    assert angles[0] == pytest.approx([40.0, -350.0])
+
+
 @given(st.integers(0, 100_000))
 def test_no_way_has_fewer(seed):
     """Against all sequences of candidates along a random walk of the azimuth."""
@@ -281,7 +292,7 @@ def refused(drawn, after, what=None):
 
 def test_the_proof_takes_nothing_else(drawn):
     """Farther, aside, faster, leaning, or without the option: what is added is refused."""
-    step, context, path, after = drawn
+    step, _, _, after = drawn
     first, count = first_of(after)
     for row, column, size in (
         (first, 2, 0.001),  # not as far as asked
@@ -300,13 +311,29 @@ def test_the_proof_takes_nothing_else(drawn):
     plain = replace(step, retract=None, retract_feed=None)
     refused(drawn, after, plain)
     refused(drawn, after, replace(step, retract=BACK + 0.001))
-    strict = replace(step, axis_tolerance=1e-9)  # less than rounded angles hold
-    assert strict.added(path, after, context)["retracts"] == 0
+
+
+@pytest.mark.parametrize(("turn", "count"), [(0.4, 1), (0.7, 0)])
+def test_the_tool_goes_in_with_the_axis_it_had(drawn, turn, count):
+    """Axes that end a little farther, the tip where it should be: as much as is allowed to lean."""
+    step, context, path, after = drawn
+    first, moves = first_of(after)
+    rows = np.array([first + moves - 2, first + moves - 1])
+    _, place = step._machines(after, context)
+    held = place.tips_of(after.end[rows, :3], place.angles(after.end[rows]), rows)
+    end, feed, column = after.end.copy(), after.feed.copy(), after.axes.index("B")
+    way = end[rows[0]] - end[rows[0] - 1]
+    end[rows, column] += np.copysign(turn, way[column])
+    end[rows, :3] = place.axes_of(held, place.angles(end[rows]), rows)
+    way = end[rows[0]] - end[rows[0] - 1]
+    feed[rows[0]] = FEED / np.linalg.norm(way[place.columns])
+    other = after.replace(end=end, feed=feed)
+    assert step.added(path, other, context)["retracts"] == count
 
 
 def test_the_proof_wants_it_whole_and_in_a_line(drawn):
     """A part of it, or rapids, or one that begins before any move of its line: refused."""
-    _, _, _, after = drawn
+    step, context, path, after = drawn
     first, count = first_of(after)
     for gone in (range(first, first + 1), range(first, first + count), [first + count - 1]):
         counts = np.ones(len(after), np.int64)
@@ -318,6 +345,7 @@ def test_the_proof_wants_it_whole_and_in_a_line(drawn):
     source = after.source.copy()
     source[first:] += 1
     refused(drawn, after.replace(source=source))
+    assert step.added(path, after.replace(source=source), context)["retracts"] == 0
 
 
 def test_axes_do_not_turn_to_and_fro(drawn):

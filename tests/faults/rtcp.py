@@ -225,7 +225,7 @@ MUTATIONS = (
         CHOICE,
         "np.where(same, 0.0, RETRACT + way)",
         "np.where(same, 0.0, 0.0 * RETRACT + way)",
-        f"{DRAWN}::test_no_way_has_fewer",
+        f"{DRAWN}::test_a_long_turn_before_the_cut_is_better",
     ),
     Mutation(
         "rtcp: the tool is drawn back anywhere",
@@ -281,7 +281,7 @@ MUTATIONS = (
         RETRACTED,
         "and lean <= self.lean",
         "and lean <= 1.0",
-        f"{DRAWN}::test_the_proof_takes_nothing_else",
+        f"{DRAWN}::test_the_tool_goes_in_with_the_axis_it_had",
     ),
     Mutation(
         "rtcp: axes may turn to and fro where the tool is drawn back",
