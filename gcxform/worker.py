@@ -3,7 +3,8 @@
 Two threads of one process take turns at Python's lock, and lose a third of their time to it; two
 processes do not. A process begins as a copy of this one, so nothing has to be said twice, and what
 it is given later goes through memory that both can see. Where a process cannot be copied safely
-(another system than Linux, other threads) the work is done here, when its result is needed.
+(another system than Linux, other threads, a process of a pool) the work is done here, when its
+result is needed.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 Work = Callable[..., Result]
 LATER = 5  # niceness: the process that waits for all others goes first
-MAY_COPY = sys.platform == "linux"
+LINUX = sys.platform == "linux"
 PIECE = 1 << 30  # bytes; the system writes less than two of these at once
 STOP: list[int] = []  # no sizes: nothing more is to be done
 DIED = "a process that took part in this run has been ended"
@@ -71,8 +72,14 @@ class Worker(ABC, Generic[Result]):
 
 def worker(work: Work[Result], long: bool) -> Worker[Result]:
     """Return who is to do some work: it takes a process of its own if it is long."""
-    alone = MAY_COPY and threading.active_count() == 1
-    return Process(work) if long and alone else Here(work)
+    return Process(work) if long and _may_copy() else Here(work)
+
+
+def _may_copy() -> bool:
+    """Whether this process may be copied: one of a pool has no processes of its own."""
+    from multiprocessing import current_process
+
+    return LINUX and threading.active_count() == 1 and not current_process().daemon
 
 
 def ahead(reader: Worker[Result], items: Iterable[object]) -> Iterator[Result]:
@@ -117,17 +124,20 @@ class Process(Worker[Result]):
         self.here, there = context.Pipe()
         given = work, there, self.here, self.shared
         self.process = context.Process(target=_serve, args=given, daemon=True)
+        # an interrupt is for the one who waits: in the copy it stays blocked
+        ours = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         self.process.start()
+        signal.pthread_sigmask(signal.SIG_SETMASK, ours)
         there.close()
 
     def _begin(self, given: tuple[object, ...]) -> None:
-        with suppress(BrokenPipeError):  # that it has died is said when it is waited for
+        with suppress(ConnectionError):  # that it has died is said when it is waited for
             self.here.send(_lay_down(self.shared, given))
 
     def _end(self) -> Result:
         try:
             error, result = _pick_up(self.shared, self.here.recv())
-        except (EOFError, ConnectionResetError):
+        except (EOFError, ConnectionError):
             raise FileError.one("GX903", DIED, hint=HINT) from None
         if error is not None:
             raise error
@@ -136,7 +146,7 @@ class Process(Worker[Result]):
 
     def __exit__(self, *_: object) -> None:
         """End the process."""
-        with suppress(BrokenPipeError):
+        with suppress(ConnectionError):
             self.here.send(STOP)
         self.here.close()
         self.process.join()
@@ -147,9 +157,8 @@ def _serve(work: Work[Any], there: Connection, here: Connection, shared: int) ->
     """Do what is asked for, until nobody is left who could ask."""
     here.close()
     os.nice(LATER)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the one who waits is asked to stop as well
     heap = Heap()
-    with suppress(EOFError, BrokenPipeError):
+    with suppress(EOFError, ConnectionError):
         while (sizes := there.recv()) != STOP:
             there.send(_lay_down(shared, _done(work, _pick_up(shared, sizes))))
             heap.give_back()

@@ -157,6 +157,14 @@ def test_linuxcnc_reads_the_program_as_we_do(here):
         assert [move.end["A"], move.end["C"]] == pytest.approx(poses.degrees[k // 5], abs=1e-3)
 
 
+@pytest.mark.parametrize(("high", "said"), [("170.0", True), ("250.0", False)])
+def test_a_table_that_lifts_balls_above_the_tip_is_said(here, high, said):
+    """The first ball is 119 mm from A, and on the other side of C farther: above 170 on the way."""
+    Path("m.toml").write_text(MACHINE.replace("170.0", high))
+    plan("--poses", "12", "-o", "p.csv", "--program", "probe.ngc")
+    assert ("(THE TABLE LIFTS BALLS" in Path("probe.ngc").read_text()) == said
+
+
 def touched(text, probe, true):
     """Return the touches (n, 3): where each probing move meets the sphere about a true centre."""
     here, found = {}, []
@@ -309,7 +317,7 @@ def test_each_touch_is_stored_where_that_is_asked_for(here):
         (("", ""), ["--tool", "7"], "GX707", 2),
         (("", ""), ["--axis", "B"], "GX707", 2),
         (("", ""), ["--axis", "C"], "GX728", 2),
-        (('["A", "C"]', '["C"]\nhead = ["A"]'), ["--program", "x.ngc"], "GX707", 2),
+        (('["A", "C"]', '["C"]\nhead = ["A"]'), ["--program", "x.ngc"], "GX491", 2),
         (('["A", "C"]', "[]"), [], "GX452", 2),
     ],
 )

@@ -2,9 +2,13 @@
 
 import os
 import signal
+import subprocess
+import sys
 import threading
+import time
 from dataclasses import replace
 from itertools import count
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +16,7 @@ from test_corpus import CASES, PLACES, joins, name
 
 import gcxform as gx
 from gcxform.cli import main
-from gcxform.cli.failures import FAILED
+from gcxform.cli.failures import FAILED, INTERRUPTED
 from gcxform.diagnostics import FileError, InputError, Location
 from gcxform.emit.emitter import Emitter
 from gcxform.testing.cases import outcome, run_case
@@ -139,6 +143,12 @@ def test_no_process_is_copied_beside_threads():
         assert isinstance(one, Here)
 
 
+def test_a_process_of_a_pool_is_not_copied():
+    with Process(lambda: isinstance(worker(count, True), Here)) as one:
+        one.begin()
+        assert one.end()
+
+
 SOME = [case for case in CASES[::15] if not case.xfail]
 
 
@@ -177,7 +187,7 @@ def test_shapes_begin_anew_in_both(monkeypatch):
     )
     pipeline = gx.Pipeline.parse("absolute", "linuxcnc")
     there = pipeline.run(b"G0 X0 Y0 Z0\n" + text)
-    monkeypatch.setattr("gcxform.worker.MAY_COPY", False)
+    monkeypatch.setattr("gcxform.worker.LINUX", False)
     assert pipeline.run(b"G0 X0 Y0 Z0\n" + text).text == there.text
 
 
@@ -195,7 +205,7 @@ def test_a_wrong_output_is_found_there(monkeypatch):
     said = []
     monkeypatch.setattr("gcxform.source.WINDOW", 20)
     for copies in (True, False):
-        monkeypatch.setattr("gcxform.worker.MAY_COPY", copies)
+        monkeypatch.setattr("gcxform.worker.LINUX", copies)
         with pytest.raises(gx.VerificationError) as caught:
             pipeline.run(text)
         said.append(caught.value.diagnostics[0].render().splitlines()[0])
@@ -217,3 +227,54 @@ def test_the_command_line_says_that_one_has_died(tmp_path, monkeypatch, capsys):
     assert left.value.code == FAILED
     assert "GX903" in capsys.readouterr().err
     assert not out.exists()
+
+
+LONG = b"G21 G90 G94 G17\nG0 X0. Y0. Z5.\n" + b"".join(
+    b"G1 X%d.5 Y%d.25 F%d\n" % (n % 977, n % 613, 100 + n % 7) for n in range(400_000)
+)
+
+
+@pytest.fixture(scope="module")
+def long_program(tmp_path_factory):
+    file = tmp_path_factory.mktemp("long") / "a.nc"
+    file.write_bytes(LONG)
+    return file
+
+
+def started(program, out):
+    """Return a run of its own process group, and the processes that it has copied itself to."""
+    words = ["run", "-q", "-f", "linuxcnc", "-x", "metric", str(program), "-o", str(out)]
+    command = [sys.executable, "-c", "from gcxform.cli import main; main()", *words]
+    run = subprocess.Popen(command, stderr=subprocess.PIPE, process_group=0)
+    children = Path(f"/proc/{run.pid}/task/{run.pid}/children")
+    deadline = time.monotonic() + 30
+    while len(children.read_text().split()) < 2:
+        assert run.poll() is None
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    return run, [int(pid) for pid in children.read_text().split()]
+
+
+def all_gone(pids):
+    deadline = time.monotonic() + 30
+    while any(Path(f"/proc/{pid}/statm").exists() for pid in pids):
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    return True
+
+
+def test_an_interrupted_run_leaves_nothing(long_program, tmp_path):
+    run, others = started(long_program, tmp_path / "b.nc")
+    os.killpg(run.pid, signal.SIGINT)
+    _, said = run.communicate(timeout=30)
+    assert (run.returncode, said) == (INTERRUPTED, b"interrupted\n")
+    assert all_gone(others)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_killed_run_leaves_no_process(long_program, tmp_path):
+    run, others = started(long_program, tmp_path / "b.nc")
+    run.kill()
+    assert all_gone(others)
+    assert run.communicate(timeout=30)[1] == b""
+    assert not (tmp_path / "b.nc").exists()

@@ -1,10 +1,11 @@
 """Poses for a bundle: where to probe balls so that the rotary axes are found well.
 
 Candidates are all combinations of angles on a grid inside the limits of the axes, for each ball,
-where the table is not tilted too far and X, Y and Z stay inside their limits with room for the
-probe. Of them those are taken one after the other that add most to the information of what is
-there (D-optimal: the determinant of the normal matrix grows most), by the design of the bundle
-itself. So conditioning and uncertainties are known before anything is measured.
+where table and head do not lean too far, X, Y and Z stay inside their limits with room for the
+probe, and it stays away from other balls. Of them those are taken one after the other that add most
+to the information of what is there (D-optimal: the determinant of the normal matrix grows most), by
+the design of the bundle itself. So conditioning and uncertainties are known before anything is
+measured.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from typing import Final
 import numpy as np
 
 from gcxform.calibrate.bundle import MODES, Bundled, Layout, Poses, check
+from gcxform.calibrate.clearance import clear, inside, upright
 from gcxform.calibrate.rotary import Kept
 from gcxform.diagnostics import UsageError
 from gcxform.machine.chain import Chain, Rotary, Triple
@@ -69,7 +71,7 @@ def planned_circle(chain: Chain, letter: str, ball: Triple, wanted: Wanted) -> P
     angles = np.zeros((len(every), len(chain.axes)))
     angles[:, k] = every
     stands = chain.linear(np.tile(np.array(ball), (len(every), 1)), angles)
-    good = _inside(chain, stands, wanted.room) & _upright(chain, angles, wanted.tilt)
+    good = inside(chain, stands, angles, wanted.room) & upright(chain, angles, wanted.tilt)
     if closed and good.all():
         turns = every[0] + np.arange(wanted.poses) * 360.0 / wanted.poses
     else:
@@ -106,14 +108,15 @@ def _longest(every: FloatArray, good: Kept, closed: bool) -> tuple[float, float]
 def _candidates(chain: Chain, balls: Sequence[Triple], wanted: Wanted) -> Poses:
     """Return all poses on the grid that are inside the limits."""
     every = np.array([*itertools.product(*map(_grid, chain.axes))])
-    every = every[_upright(chain, every, wanted.tilt)]
+    every = every[upright(chain, every, wanted.tilt)]
     parts = []
     for number, ball in enumerate(balls, 1):
         stands = chain.linear(np.tile(np.array(ball), (len(every), 1)), every).round(3)
-        good = _inside(chain, stands, wanted.room)
+        good = inside(chain, stands, every, wanted.room)
+        good &= clear(chain, balls, number - 1, every, 2.0 * wanted.room)
         parts.append((str(number), every[good], stands[good]))
         if not good.any():
-            message = f"no pose of ball {number} is inside the limits"
+            message = f"no pose of ball {number} is inside the limits, and clear of other balls"
             raise UsageError.one("GX491", message, hint=HINT)
     return Poses(
         np.concatenate([degrees for _, degrees, _ in parts]),
@@ -129,18 +132,6 @@ def _grid(axis: Rotary) -> FloatArray:
         return np.asarray(low + np.arange(0.0, 360.0, GRID))
     low, high = axis.limits
     return np.linspace(low, high, max(2, math.ceil((high - low) / GRID) + 1)).round(3)
-
-
-def _upright(chain: Chain, degrees: FloatArray, tilt: float) -> Kept:
-    """Return at which angles (n, m) the table is tilted no farther than it may be."""
-    return np.asarray(chain.tool_axis(degrees)[:, 2] >= math.cos(math.radians(tilt)) - 1e-12)
-
-
-def _inside(chain: Chain, stands: FloatArray, room: float) -> Kept:
-    """Return which positions (n, 3) have room around them, and above, inside the limits."""
-    low, high = np.array(chain.travel).T
-    below = np.array([room, room, 0.0])
-    return np.asarray(((stands >= low + below) & (stands <= high - room)).all(axis=1))
 
 
 def _best(design: FloatArray, count: int) -> list[int]:

@@ -1,21 +1,24 @@
 """The program that probes balls at planned poses, and the centres of what it touched.
 
-Each ball is touched from above, and from four sides at the height of its centre: square to each
-other, half way between where its post may be when the table is tilted. From two opposite touches
-comes the centre along their line, whatever the radius; from the one above, which need not be above
-the middle, its height by the radius of ball and stylus together. Positions are those of the axes:
-no tool length, and a work offset of 0, so that nothing has to be known to read the touches.
+Each ball is touched along the probe, and from four sides across it through its centre: square to
+each other, half way between where its post may be when table or head are tilted. From two opposite
+touches comes the centre along their line, whatever the radius; from the one along the probe, which
+need not be over the middle, its height by the radius of ball and stylus together. Where the spindle
+is upright that is from above; a head that turns takes all of it along. Positions are those of the
+axes: no tool length, and a work offset of 0, so that nothing has to be known to read the touches;
+a probe that is turned does not move while it touches, so X, Y and Z move as its tip does.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from gcxform.calibrate.bundle import Poses
+from gcxform.calibrate.clearance import hangs, least_height
 from gcxform.diagnostics import InputError, Location, UsageError
 from gcxform.machine.chain import Chain
 from gcxform.machine.errors import AXES, FloatArray
@@ -57,73 +60,122 @@ def probing_program(
     """Return the program, with a block `after` each touch. Raises UsageError (GX491)."""
     style = STYLES[dialect]
     style = style if after is None else replace(style, after=after)
-    up = _height(chain, poses, probing)
-    lines = ["%", "O1"] if dialect == "fanuc" else []
-    lines += [
+    height, over = _height(chain, poses, probing)
+    blocks = _Blocks(style, height)
+    blocks.lines += ["%", "O1"] if dialect == "fanuc" else []
+    blocks.lines += [
         f"(BALLS AT {len(poses.points)} POSES, {TOUCHES} TOUCHES EACH)",
-        "(POSITIONS OF THE AXES: G54 HAS TO BE 0 AND NO TOOL LENGTH IN FORCE)",
+        "(POSITIONS OF THE AXES: G54 HAS TO BE 0, NO TOOL LENGTH AND NO RTCP IN FORCE)",
         "(MOVES BETWEEN THE TOUCHES ARE NOT GUARDED: TRY THEM WITH CARE)",
+        *(["(THE HEAD TURNS: START WITH ALL ROTARY AXES AT 0)"] if chain.head else []),
+        *([] if over else ["(THE TABLE LIFTS BALLS ABOVE THE TIP WHILE IT TURNS: MIND THEIR WAY)"]),
         "G21 G90 G94 G17 G40 G49 G54",
         *style.head,
-        f"G0 Z{_number(up)}",
     ]
     for k in range(len(poses.points)):
-        lines += _pose(chain, poses, k, probing, style, up)
-    return "\n".join([*lines, f"G0 Z{_number(up)}", *style.tail]) + "\n"
+        blocks.lines.append(f"(POSE {k + 1}, BALL {poses.ball[k]})")
+        _probe_pose(blocks, chain, poses.points[k], poses.degrees[k], probing)
+    blocks.up()
+    return "\n".join([*blocks.lines, *style.tail]) + "\n"
 
 
-def _height(chain: Chain, poses: Poses, probing: Probing) -> float:
-    """Return where Z is while the table turns: as high as it goes, or well above all balls."""
-    high = chain.travel[2][1]
-    top = float(poses.points[:, 2].max()) + probing.radius + probing.clearance
-    if np.isfinite(high):
-        if high < top:
-            raise UsageError.one("GX491", "there is no room above the highest ball")
-        return float(high)
-    return float(np.ceil(top + 100.0))
+def _height(chain: Chain, poses: Poses, probing: Probing) -> tuple[float, bool]:
+    """Return where Z is while axes turn, as high as it goes, and whether that is above all balls.
+
+    A head has to be. A table that tilts may lift a ball higher than Z goes, somewhere else; so for
+    it only the poses themselves have to be lower. Raises UsageError (GX491).
+    """
+    if hangs(chain, poses.degrees):
+        message = "between the poses the head may turn past the horizontal"
+        hint = "limit the axes of the head in the machine file, or allow less tilt"
+        raise UsageError.one("GX491", message, hint=hint)
+    tips = chain.forward(poses.points, poses.degrees)[0]
+    balls = np.array([tips[poses.ball.index(name)] for name in poses.balls])
+    room, high = probing.radius + probing.clearance, chain.travel[2][1]
+    over = least_height(chain, balls, poses.degrees, room)
+    if not np.isfinite(high):
+        return float(np.ceil(over + 100.0)), True
+    least = over if chain.head else float(poses.points[:, 2].max()) + room
+    if high < least:
+        message = f"Z has to be at {least:.1f} to be above the balls, and it goes up to {high:g}"
+        hint = "put the balls lower, or take a shorter probe; a head that turns needs more"
+        raise UsageError.one("GX491", message, hint=hint)
+    return float(high), high >= over
 
 
-def _pose(
-    chain: Chain, poses: Poses, k: int, probing: Probing, style: Style, up: float
-) -> Iterator[str]:
-    """Yield the blocks that probe a ball at a pose."""
-    centre, degrees = poses.points[k], poses.degrees[k]
-    pairs = zip(chain.letters, degrees.tolist(), strict=True)
-    turn = " ".join(f"{letter}{_number(angle)}" for letter, angle in pairs)
+def _probe_pose(
+    blocks: _Blocks, chain: Chain, centre: FloatArray, degrees: FloatArray, probing: Probing
+) -> None:
+    """Write the blocks that probe a ball at a pose: along the probe, then from the sides."""
     outside, inside = probing.radius + probing.clearance, probing.radius - probing.clearance
-    upwards, way = np.array([0.0, 0.0, 1.0]), _number(FEEDS["way"])
-    above = _words("Z", centre + outside * upwards)
-    yield f"(POSE {k + 1}, BALL {poses.ball[k]})"
-    yield f"G0 Z{_number(up)}"
-    yield f"G0 {turn}"
-    yield f"G0 {_words('XY', centre)}"
-    yield f"G1 {above} F{way}"
-    yield from _touch(style, _words("Z", centre + inside * upwards))
-    yield f"G1 {above} F{way}"
+    along = chain.spindle(degrees[None, :])[0]
+    above = centre + outside * along
+    blocks.up()
+    blocks.turn(dict(zip(chain.letters, degrees.tolist(), strict=True)))
+    blocks.rapid("XY", above)
+    blocks.feed(above)
+    blocks.touch(centre + inside * along)
+    blocks.feed(above)
     for side in sides(chain, degrees):
-        yield f"G1 {_words('XY', centre + outside * side)}"
-        yield f"G1 {_words('Z', centre)}"
-        yield from _touch(style, _words("XY", centre + inside * side))
-        yield f"G1 {_words('XY', centre + outside * side)} F{way}"
-        yield f"G1 {above}"
+        blocks.feed(above + outside * side)
+        blocks.feed(centre + outside * side)
+        blocks.touch(centre + inside * side)
+        blocks.feed(centre + outside * side)
+        blocks.feed(above + outside * side)
 
 
-def _touch(style: Style, words: str) -> Iterator[str]:
-    yield f"{style.probe} {words} F{_number(FEEDS['probe'])}"
-    if style.after:
-        yield style.after
+class _Blocks:
+    """The blocks of a program, in which only those coordinates are written that change."""
+
+    def __init__(self, style: Style, up: float) -> None:
+        self.style = style
+        self.height = np.array([0.0, 0.0, up])
+        self.lines: list[str] = []
+        self._at: dict[str, str] = {}
+
+    def up(self) -> None:
+        """Go to where axes may turn."""
+        self.rapid("Z", self.height)
+
+    def turn(self, degrees: Mapping[str, float]) -> None:
+        """Turn all rotary axes."""
+        self.lines.append(" ".join(["G0", *(f"{a}{_number(d)}" for a, d in degrees.items())]))
+
+    def rapid(self, letters: str, place: FloatArray) -> None:
+        """Go to some coordinates of a place."""
+        self._go("G0", letters, place)
+
+    def feed(self, place: FloatArray) -> None:
+        """Go to a place in a straight line."""
+        self._go("G1", "XYZ", place, f"F{_number(FEEDS['way'])}")
+
+    def touch(self, place: FloatArray) -> None:
+        """Probe towards a place. It ends before, and the way back writes whatever moved."""
+        self._go(self.style.probe, "XYZ", place, f"F{_number(FEEDS['probe'])}")
+        if self.style.after:
+            self.lines.append(self.style.after)
+
+    def _go(self, code: str, letters: str, place: FloatArray, *after: str) -> None:
+        there = {a: _number(float(place[AXES.index(a)])) for a in letters}
+        words = [f"{a}{text}" for a, text in there.items() if text != self._at.get(a)]
+        self._at |= there
+        if words:
+            self.lines.append(" ".join([code, *words, *after]))
 
 
 def sides(chain: Chain, degrees: FloatArray) -> FloatArray:
-    """Return the directions (4, 3) in X and Y from which a ball is touched at angles (m,).
+    """Return the directions (4, 3) across the probe from which a ball is touched at angles (m,).
 
     Opposite ones are beside each other. The post of the ball points out of the table.
     """
-    ends = chain.onto_machine(np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0]]), degrees[None, :])
-    x, y, _ = (ends[0] - ends[1]).tolist()
-    toward = float(np.arctan2(y, x)) if np.hypot(x, y) > 1e-9 else 0.0
-    turns = toward + np.radians([45.0, 225.0, 135.0, 315.0])
-    return np.column_stack([np.cos(turns), np.sin(turns), np.zeros(4)])
+    along, up = chain.spindle(degrees[None, :])[0], chain.upwards(degrees[None, :])[0]
+    toward = up - (up @ along) * along
+    if np.linalg.norm(toward) <= 1e-9:
+        near = np.eye(3)[int(np.abs(along).argmin())]
+        toward = near - (near @ along) * along
+    toward /= np.linalg.norm(toward)
+    turns = np.radians([45.0, 225.0, 135.0, 315.0])[:, None]
+    return np.asarray(np.cos(turns) * toward + np.sin(turns) * np.cross(along, toward))
 
 
 # --- what was touched ---
@@ -141,13 +193,14 @@ def centres(chain: Chain, plan: Poses, touches: FloatArray, radius: float, file:
         raise InputError.one("GX492", message, Location(file))
     _check_angles(chain, plan, touches, file)
     found = touches[:, :3].reshape(count, TOUCHES, 3) - plan.points[:, None]
-    aside = found[:, 1:, :2].sum(axis=1) / 2.0  # of two middles; across, both sides cancel
+    along = chain.spindle(plan.degrees)
+    aside = found[:, 1:].sum(axis=1) / 2.0  # of two middles; across, both sides cancel
+    aside -= (aside * along).sum(axis=1, keepdims=True) * along
     if (far := np.linalg.norm(aside, axis=1)).max() >= radius:
         message = f"the ball of pose {int(far.argmax()) + 1} is {far.max():.3g} mm from its plan"
         raise InputError.one("GX492", message, Location(file))
-    points = plan.points.copy()
-    points[:, :2] += aside
-    points[:, 2] += found[:, 0, 2] - np.sqrt(radius**2 - far**2)
+    height = (found[:, 0] * along).sum(axis=1) - np.sqrt(radius**2 - far**2)
+    points = plan.points + aside + height[:, None] * along
     return replace(plan, points=points)
 
 
@@ -176,10 +229,6 @@ def parse_touches(text: str, file: str) -> FloatArray:
             raise InputError.one("GX492", message, Location(file, number, 1, line, len(line)))
         rows.append(row)
     return np.array(rows).reshape(len(rows), -1)
-
-
-def _words(letters: Sequence[str], place: FloatArray) -> str:
-    return " ".join(f"{a}{_number(float(place[AXES.index(a)]))}" for a in letters)
 
 
 def _number(value: float) -> str:

@@ -73,14 +73,16 @@ CODES: dict[str, tuple[str, str]] = {
     "GX491": (
         "No room for the poses of a calibration",
         "Balls are probed at poses inside the limits of all axes, with room for the probe around "
-        "the ball and above it, and with a table that is not tilted too far. There are not enough "
-        "of them. Put the ball elsewhere, or allow more tilt; the limits are those of the machine "
-        "file.",
+        "the ball and before it, with table and probe not leaning too far, and clear of other "
+        "balls. There are not enough of them. Or a head cannot turn safely between them: Z does "
+        "not go so high that the tip is above all balls at every angle on the way, or the head may "
+        "pass the horizontal. Put the balls elsewhere, allow more tilt, or take a shorter probe; "
+        "the limits are those of the machine file.",
     ),
     "GX492": (
         "Touches that are not those of the plan",
         "A log of touches has a line for each, X, Y and Z and then perhaps A, B and C, five at "
-        "each pose in the order of the plan: from above, and from two opposite sides twice. A "
+        "each pose in the order of the plan: along the probe, and from two opposite sides twice. A "
         "touch is missing or stands twice, or the log belongs to another plan.",
     ),
     "GX501": (

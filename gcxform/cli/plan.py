@@ -10,7 +10,7 @@ import click
 from gcxform.cli.asked import Asked
 from gcxform.cli.measured import any_length, check_axis, length_of, path_of, three_lengths, write
 from gcxform.cli.outputs import STDOUT, check_places
-from gcxform.diagnostics import FileError, Location, UsageError
+from gcxform.diagnostics import FileError, UsageError
 
 if TYPE_CHECKING:
     from gcxform.calibrate.bundle import Poses
@@ -51,7 +51,7 @@ _OUTPUT = click.option(
     type=click.FloatRange(0.0, 90.0),
     default=80.0,
     show_default=True,
-    help="How far the table may be tilted.",
+    help="How far table and probe may lean, from Z and each other.",
 )
 @click.option(
     "--linear",
@@ -99,8 +99,8 @@ def plan(
     """Choose poses inside the limits that tell the rotary axes and the squareness best.
 
     Printed are the conditioning, and the uncertainties that a bundle of them will have; with --axis
-    it is a circle for `calibrate rotary`, at equal steps. A program is for axes of the table: a
-    probe that turns with the head is led by hand.
+    it is a circle for `calibrate rotary`, at equal steps. A head may turn the probe: the program
+    then probes along and across it, and starts with all rotary axes at 0.
     """
     from gcxform.calibrate.ballfile import plan_csv
     from gcxform.calibrate.plan import Wanted
@@ -112,9 +112,6 @@ def plan(
     assert believed is not None
     chain = probing(believed, tool)
     check_axis(axis, chain.letters, believed.name)
-    if program and chain.head:
-        message = f"{chain.head[0].letter} turns the head: there is no program for that"
-        raise UsageError.one("GX707", message, Location("--program"))
     lengths = Probing(*(length_of(given[name], f"--{name}") for name in ("radius", "clearance")))
     room = lengths.radius + lengths.clearance
     wanted = Wanted(given["poses"], room, given["tilt"], given["linear"])

@@ -143,11 +143,23 @@ class Chain:
 
     def tool_axis(self, angles: FloatArray) -> FloatArray:
         """Return the tool axis (..., 3) in the frame of the workpiece, from tip to spindle."""
+        vectors = self.spindle(angles)
+        for k, axis in enumerate(self.table):
+            vectors = axis.swing(vectors, -angles[..., k])
+        return vectors
+
+    def spindle(self, angles: FloatArray) -> FloatArray:
+        """Return the tool axis (..., 3) in machine coordinates, from tip to spindle."""
         vectors = self._everywhere(SPINDLE, angles)
         for k, axis in reversed([*enumerate(self.head, len(self.table))]):
             vectors = axis.swing(vectors, angles[..., k])
-        for k, axis in enumerate(self.table):
-            vectors = axis.swing(vectors, -angles[..., k])
+        return vectors
+
+    def upwards(self, angles: FloatArray) -> FloatArray:
+        """Return the Z of the workpiece (..., 3) in machine coordinates: out of the table."""
+        vectors = self._everywhere(SPINDLE, angles)
+        for k, axis in reversed([*enumerate(self.table)]):
+            vectors = axis.swing(vectors, angles[..., k])
         return vectors
 
     @staticmethod

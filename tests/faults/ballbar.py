@@ -123,14 +123,14 @@ MUTATIONS = (
     ),
     _ballbar("plan", "a pose is taken twice", "gains[taken] = -np.inf", "pass", PLAN),
     _ballbar(
-        "plan",
+        "clearance",
         "limits have no room",
-        "(stands <= high - room)",
-        "(stands <= high + 3.0 * room)",
+        "(stands <= high - above)",
+        "(stands <= high + 3.0 * above)",
         PLAN,
     ),
     _ballbar(
-        "plan",
+        "clearance",
         "any tilt will do",
         ">= math.cos(math.radians(tilt)) - 1e-12",
         ">= -2.0",
@@ -153,8 +153,8 @@ MUTATIONS = (
     _ballbar(
         "touching",
         "the centre is where four touches are on average",
-        "found[:, 1:, :2].sum(axis=1) / 2.0",
-        "found[:, 1:, :2].mean(axis=1)",
+        "found[:, 1:].sum(axis=1) / 2.0",
+        "found[:, 1:].mean(axis=1)",
         PLAN,
     ),
     _ballbar(
@@ -217,7 +217,7 @@ MUTATIONS = (
     _ballbar(
         "plan",
         "a circle may tilt the table",
-        "wanted.room) & _upright(chain, angles, wanted.tilt)",
+        "wanted.room) & upright(chain, angles, wanted.tilt)",
         "wanted.room)",
         PLAN,
     ),

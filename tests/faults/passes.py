@@ -302,7 +302,7 @@ MUTATIONS = (
     Mutation(
         "a program without end leaves its feed mode behind",
         "gcxform/run.py",
-        "if feed_modes:",
+        "if any(step.feed_mode is not None for step in self.steps):",
         "if False:",
         f"{CORPUS}[bad/gx321-no-end]",
     ),

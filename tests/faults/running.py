@@ -1,0 +1,43 @@
+"""Faults of a run: of its windows, and of the processes that take part in it."""
+
+from __future__ import annotations
+
+from faults.mutation import Mutation
+
+
+def _worker(name: str, old: str, new: str) -> Mutation:
+    return Mutation(f"worker: {name}", "gcxform/worker.py", old, new, "tests/test_worker.py")
+
+
+MUTATIONS = (
+    Mutation(
+        "run: the last window is not proved",
+        "gcxform/run.py",
+        "        finally:\n            if proof.busy:",
+        "        finally:\n            if False:",
+        "tests/test_verify.py",
+    ),
+    _worker("what was raised is lost", "if error is not None:", "if False:"),
+    _worker("one after the other becomes one less", "    if reader.busy:\n", "    if False:\n"),
+    _worker("who stands beside threads is copied", "threading.active_count() == 1", "True"),
+    _worker(
+        "every column has one value throughout",
+        "slice(None) if stride else slice(1)",
+        "slice(1)",
+    ),
+    _worker("parts lie upon each other", "        place += size\n", ""),
+    Mutation(
+        "reader: a table that was begun anew is gone on with",
+        "gcxform/modal/reader.py",
+        "        if not known:\n            self._begin()\n",
+        "",
+        "tests/test_worker.py",
+    ),
+    Mutation(
+        "heap: nothing is given back",
+        "gcxform/heap.py",
+        "elif _resident() > MORE * self.needed:",
+        "elif False:",
+        "tests/test_heap.py",
+    ),
+)
