@@ -15,7 +15,8 @@ class Certificate:
 
     Lengths are mm, hashes SHA-256. `largest` holds the deviation and its source and output line,
     `growth` the blocks read and written, their ratio (None where nothing was read) and its limit,
-    `measured` what passes tell of their own work, the largest over the program.
+    `measured` what passes tell of their own work, the largest over the program, and `added` what
+    the output has and the source does not, in all.
     """
 
     version: str
@@ -28,6 +29,7 @@ class Certificate:
     largest: dict[str, Any] = field(default_factory=dict)
     checked: dict[str, int] = field(default_factory=dict)
     measured: dict[str, float] = field(default_factory=dict)
+    added: dict[str, int] = field(default_factory=dict)
     not_checked: list[str] = field(default_factory=list)
     assumed: list[str] = field(default_factory=list)
 

@@ -38,6 +38,7 @@ def certificate(run: Run, out: Output) -> Certificate:
         run.verifier is not None or (pipeline.copies and run.verify != "off"),
     )
     made.measured = run.measured
+    made.added = run.added
     _fill(run, made)
     return made
 
@@ -80,6 +81,9 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
     ):
         if count:
             certificate.not_checked.append(f"{what}: {count}")
+    if added := [f"{count} {what}" for what, count in run.added.items() if count]:
+        what = "whether the tool is clear in moves that the source does not have"
+        certificate.not_checked.append(f"{what}: {', '.join(added)}")
     stated = run.interpreter.state.stated
     for group in GROUPS:
         if group not in stated and group not in ("motion", "arc-distance"):

@@ -118,6 +118,10 @@ class Pass:
         """
         return {}
 
+    def added(self, before: Toolpath, after: Toolpath, context: PassContext) -> Mapping[str, int]:
+        """Return how many things of a window the source does not have, by name, if any may be."""
+        return {}
+
     def prove(self, before: Toolpath, after: Toolpath, context: PassContext) -> None:
         """Check what a pass that resolves has made of the path as read; VerificationError if wrong.
 

@@ -87,6 +87,7 @@ class Run:
         self.given = source
         self.reader = WindowReader(self.dialect)
         self.measured: dict[str, float] = {}
+        self.added: dict[str, int] = {}
         self.verifier: Verifier | None = None
         self.findings = Findings()
         self.interpreter: Interpreter | None = None
@@ -269,6 +270,8 @@ class Run:
             raise _located(error, window, self.source.name) from None
         for what, size in step.measure(path, after, self.pipeline.context).items():
             self.measured[what] = max(size, self.measured.get(what, size))
+        for what, number in step.added(path, after, self.pipeline.context).items():
+            self.added[what] = self.added.get(what, 0) + number
         if self.verify == "full":
             for fact in step.ensures:
                 if not fact.check(after):

@@ -317,7 +317,8 @@ CODES: dict[str, tuple[str, str]] = {
         "The axes would have to flip over inside a cut",
         "The limits of the rotary axes leave no way along this cut, whatever attitude and turn it "
         "begins with. Lift the tool off where it is said, and begin another cut there; or "
-        "turn the part on the table.",
+        "turn the part on the table; or let `rtcp` draw the tool back there and turn the axes "
+        "(`retract`).",
     ),
     "GX350": (
         "A contour that the tool cannot follow",

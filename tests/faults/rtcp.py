@@ -17,6 +17,10 @@ CHOICE = f"{PASSES}/rtcp_choice.py"
 MOVING = f"{PASSES}/rtcp_moving.py"
 PROOF = f"{PASSES}/rtcp_proof.py"
 SWITCHES = f"{PASSES}/rtcp_switches.py"
+DRIVEN = f"{PASSES}/rtcp_driven.py"
+RETRACTED = f"{PASSES}/rtcp_retracted.py"
+RETRACTING = f"{PASSES}/rtcp_retracting.py"
+DRAWN = "tests/test_rtcp_retract.py"
 CHOOSING = "tests/test_rtcp_choice.py"
 HOLDS = f"{TESTS}::test_the_bound_holds_for_any_piece"
 
@@ -177,7 +181,7 @@ MUTATIONS = (
     ),
     Mutation(
         "rtcp: the proof lets the tool axis stand still",
-        PROOF,
+        DRIVEN,
         "axis = np.cos(angle)[:, None] * one + np.sin(angle)[:, None] * np.cross(pole, one)",
         "axis = np.cos(angle)[:, None] * one + 0.0 * np.cross(pole, one)",
         f"{CHOOSING}::test_blocks_of_a_great_circle",
@@ -307,5 +311,96 @@ MUTATIONS = (
         "len(set(given.values())) == 1",
         "len(given) == 1",
         "tests/test_tip_switches.py",
+    ),
+    Mutation(
+        "rtcp: drawing the tool back costs no more than the turn",
+        CHOICE,
+        "np.where(same, 0.0, RETRACT + way)",
+        "np.where(same, 0.0, 0.0 * RETRACT + way)",
+        f"{DRAWN}::test_a_long_turn_before_the_cut_is_better",
+    ),
+    Mutation(
+        "rtcp: the tool is drawn back anywhere",
+        CHOICE,
+        "self.may = self.may & cut &",
+        "self.may = cut &",
+        f"{DRAWN}::test_as_late_or_soon_as_it_may_but_not_more_often",
+    ),
+    Mutation(
+        "rtcp: pieces begin as the ones before the tool was drawn back end",
+        MOVING,
+        "np.searchsorted(self.retracts, row + part + (NEAR if after else -NEAR))",
+        "np.searchsorted(self.retracts, row + part - NEAR)",
+        f"{DRAWN}::test_the_tool_is_drawn_back_where_axes_must_turn",
+    ),
+    Mutation(
+        "rtcp: no piece ends where the tool is drawn back",
+        CUTTING,
+        "pieces[rows] = np.ceil(most / self.least[rows]) * self.least[rows]",
+        "pieces[rows] = most",
+        f"{DRAWN}::test_the_tool_is_drawn_back_where_axes_must_turn",
+    ),
+    Mutation(
+        "rtcp: the tool is drawn back along Z of the workpiece",
+        RETRACTING,
+        "tip = tip + length * target.chain.tool_axis(angles)",
+        "tip = tip + length * np.array([0.0, 0.0, 1.0])",
+        f"{DRAWN}::test_the_tool_is_drawn_back_where_axes_must_turn",
+    ),
+    Mutation(
+        "rtcp: the tip is nowhere while axes turn",
+        RETRACTING,
+        "limit, count, worst = HELD * work.step.retract, 1, np.inf",
+        "limit, count, worst = 9.0 * work.step.retract, 1, np.inf",
+        f"{DRAWN}::test_the_tool_is_drawn_back_where_axes_must_turn",
+    ),
+    Mutation(
+        "rtcp: the proof lets the tip go where it likes while axes turn",
+        RETRACTED,
+        "return bool((off <= limit).all())",
+        "return bool((off <= 9.0 * limit).all())",
+        f"{DRAWN}::test_the_proof_takes_nothing_else",
+    ),
+    Mutation(
+        "rtcp: the proof does not look how far the tool is drawn back",
+        RETRACTED,
+        "(off <= SAME).all()",
+        "(off <= 1.0).all()",
+        f"{DRAWN}::test_the_proof_takes_nothing_else",
+    ),
+    Mutation(
+        "rtcp: the tool may go in with another axis",
+        RETRACTED,
+        "and lean <= self.lean",
+        "and lean <= 1.0",
+        f"{DRAWN}::test_the_tool_goes_in_with_the_axis_it_had",
+    ),
+    Mutation(
+        "rtcp: axes may turn to and fro where the tool is drawn back",
+        RETRACTED,
+        "(steady <= SAME).all()",
+        "(steady <= 1.0).all()",
+        f"{DRAWN}::test_axes_do_not_turn_to_and_fro",
+    ),
+    Mutation(
+        "rtcp: moves that draw the tool back have any feed",
+        RETRACTED,
+        "(np.abs(time * self.feed / way - 1.0) <= SAME_TIME).all()",
+        "(np.abs(time * self.feed / way - 1.0) <= 1.0).all()",
+        f"{DRAWN}::test_the_proof_takes_nothing_else",
+    ),
+    Mutation(
+        "rtcp: the tool is drawn back in a line of its own",
+        RETRACTED,
+        "(owner != owner[-1]).any()",
+        "(owner[1:] != owner[-1]).any()",
+        f"{DRAWN}::test_the_proof_wants_it_whole_and_in_a_line",
+    ),
+    Mutation(
+        "what passes add is that of the last window",
+        "gcxform/run.py",
+        "self.added[what] = self.added.get(what, 0) + number",
+        "self.added[what] = number",
+        f"{DRAWN}::test_several_cuts_are_counted_together",
     ),
 )

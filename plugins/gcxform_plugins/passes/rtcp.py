@@ -22,9 +22,11 @@ import numpy as np
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_circling import Circling
 from gcxform_plugins.passes.rtcp_cutting import STILL, Cutting
+from gcxform_plugins.passes.rtcp_driven import Driven, Led
 from gcxform_plugins.passes.rtcp_moving import Correcting, Moving
 from gcxform_plugins.passes.rtcp_place import Place, turned_at
-from gcxform_plugins.passes.rtcp_proof import Driven, Led, Proof
+from gcxform_plugins.passes.rtcp_proof import Proof
+from gcxform_plugins.passes.rtcp_retracted import Retracted
 from gcxform_plugins.passes.rtcp_switches import Switches
 from gcxform_plugins.passes.rtcp_undoing import Undoing
 from gcxform_plugins.passes.rtcp_ways import Between, Corrected
@@ -81,6 +83,18 @@ class Rtcp(gx.Pass):
         gx.KinematicsFile | None,
         gx.Option("retarget: the machine to write for; [machine] is the one posted for"),
     ] = None
+    retract: Annotated[
+        gx.Length | None,
+        gx.Option(
+            "retarget: where axes have to flip or unwind in a cut, draw the tool back along its "
+            "axis by so much and turn them there; absent: an error",
+            above=0.1,
+        ),
+    ] = None
+    retract_feed: Annotated[
+        float | None,
+        gx.Option("feed of that: mm/min of the tip, degrees/min while axes turn", above=0.0),
+    ] = None
     orientation_path: Annotated[
         Literal["angles", "great-circle"],
         gx.Option("to-machine: between blocks angles change in proportion, or the tool axis does"),
@@ -116,6 +130,10 @@ class Rtcp(gx.Pass):
             raise ValueError("tip-codes is an option of to-machine: the others would do it twice")
         if self.direction != "to-machine" and self.orientation_path != "angles":
             raise ValueError("orientation-path is an option of to-machine")
+        if (self.retract is None) != (self.retract_feed is None):
+            raise ValueError("retract and retract-feed go together")
+        if self.direction != "retarget" and self.retract is not None:
+            raise ValueError("retract is an option of retarget")
         if self.direction == "retarget" and self.rapids == "refuse":
             raise ValueError('retarget turns axes in rapids: say rapids = "ends" if all is clear')
 
@@ -278,6 +296,19 @@ class Rtcp(gx.Pass):
         if self.direction == "to-machine":
             return Proof(self, context, Led(before, source), driven)
         return Proof(self, context, Driven(self, before, source), driven)
+
+    def added(
+        self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
+    ) -> dict[str, int]:
+        """Return how often the tool is drawn back, and in how many moves, as the proof has it."""
+        if self.retract is None or not len(after):
+            return {}
+        _, target = self._machines(after, context)
+        drawn = Retracted(self, Driven(self, after, target)).found
+        return {
+            "retracts": len(drawn),
+            "moves of retracts": sum(len(rows) for rows in drawn),
+        }
 
     def _leans(self) -> tuple[float, float]:
         """Return by how much (degrees) the tool axis may lean, and angles may differ."""

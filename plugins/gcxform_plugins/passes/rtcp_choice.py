@@ -5,6 +5,9 @@ over inside the cut. So the whole path is looked at: by dynamic programming, poi
 cheapest way to each candidate is found from the candidates of the point before. A way costs the
 degrees that all axes turn together. Inside a cut no axis may leap: between two points that are
 near each other only a change of attitude does. At the pole the angle of one axis is free; it stays.
+
+Where the tool may be drawn back, axes may leap at a point; as this is dearer than any turn, there
+are as few such points as can be, and none where there is a way without.
 """
 
 from __future__ import annotations
@@ -26,6 +29,7 @@ IN_AIR = 1e-6  # of two ways of equal cost the one is taken that turns before th
 NEAR_POLE = 5.0  # degrees of tilt within which a leap is one of the free axis
 ALIKE = 45.0  # degrees between both attitudes within which they are about to be one
 TURN = 360.0
+RETRACT = 1e9  # degrees; what drawing the tool back costs
 
 
 class Trouble(Enum):
@@ -36,6 +40,37 @@ class Trouble(Enum):
     POLE = "pole"
     BORDER = "border"
     FLIP = "flip"
+
+
+WHY = {
+    Trouble.UNREACHABLE: (
+        "GX332",
+        "no angles give this tool axis",
+        "place the part otherwise, or let the CAM lean the tool less",
+    ),
+    Trouble.LIMITS: (
+        "GX331",
+        "no angles within the limits of the axes give this tool axis",
+        "place the part otherwise, or let the CAM lean the tool less",
+    ),
+    Trouble.POLE: (
+        "GX333",
+        "the tool axis passes the pole, where an axis would have to leap",
+        "lead the tool through the pole or farther beside it, or lift it off and turn the axis",
+    ),
+    Trouble.BORDER: (
+        "GX334",
+        "the tool axis comes to the border of reach, where both attitudes are one",
+        "let the CAM stay some degrees inside of what the axes reach",
+    ),
+    Trouble.FLIP: (
+        "GX335",
+        "within their limits the axes would have to flip over or unwind inside this cut",
+        'let the tool be drawn back to turn them, with retract = "20 mm"; or lift it off here in '
+        "the CAM and begin another cut, or turn the part",
+    ),
+}
+"""What is said of each: a code, a sentence and a hint."""
 
 
 class NoWayError(Exception):
@@ -56,13 +91,20 @@ class _Step:
 
 
 class Choice:
-    """The way of a chain along tool axes (n, 3); `cut` (n,) are the points reached in a cut."""
+    """The way of a chain along tool axes (n, 3); `cut` (n,) are the points reached in a cut.
 
-    def __init__(self, chain: gx.Chain, axis: Floats, cut: Flags) -> None:
+    At points of `may` (n,) the tool may be drawn back; `retracts` are those where it is, once the
+    way is found.
+    """
+
+    def __init__(self, chain: gx.Chain, axis: Floats, cut: Flags, may: Flags | None = None) -> None:
         self.chain = chain
         self.cut = cut
+        self.retracts: list[int] = []
         self.found = gx.attitudes(chain, axis)
         self.angle, self.allowed = gx.turns(chain, self.found.angle)
+        self.may = np.zeros(len(axis), np.bool_) if may is None else may
+        self.may = self.may & cut & (self.found.state != gx.State.POLE)
         self.endless = np.array([each.limits is None for each in chain.axes], np.bool_)
         lost = np.flatnonzero(self.found.state == gx.State.UNREACHABLE)
         if len(lost):
@@ -72,19 +114,43 @@ class Choice:
             raise NoWayError(Trouble.LIMITS, int(lost[0]))
 
     def run(self, start: Floats) -> Floats:
-        """Return the angles (n, m) of the cheapest way from some angles (m,). NoWayError: none."""
+        """Return the angles (n, m) of the cheapest way from some angles (m,). NoWayError: none.
+
+        Of a point where the tool is drawn back there are those before and those after it.
+        """
         step = _Step(start[None, :], np.zeros(1), np.zeros(1, np.int64))
-        steps = []
+        steps, points = [], []
         for at in range(len(self.angle)):
             step = self._next(at, step)
             steps.append(step)
+            points.append(at)
+            if self.may[at]:
+                step = self._drawn_back(at, step)
+                steps.append(step)
+                points.append(at)
         if not steps:
             return np.empty((0, len(start)))
         chosen, which = [], int(np.argmin(steps[-1].cost))
         for step in reversed(steps):
             chosen.append(step.angle[which])
             which = int(step.come[which])
-        return self._counted_on(np.array(chosen[::-1]), start)
+        return self._counted_on(self._told(np.array(chosen[::-1]), points), start)
+
+    def _told(self, chosen: Floats, points: list[int]) -> Floats:
+        """Return angles without those that are told again because the tool stays in the cut."""
+        again = np.diff(points, prepend=-1) == 0
+        stays = again & (np.diff(chosen, axis=0, prepend=np.inf) == 0.0).all(axis=1)
+        self.retracts = np.array(points)[again & ~stays].tolist()
+        return np.asarray(chosen[~stays])
+
+    def _drawn_back(self, at: int, before: _Step) -> _Step:
+        """Return a point's candidates once more, if the tool may be drawn back there to turn."""
+        angle = np.asarray(self.angle[at][self.allowed[at]])
+        way = np.abs(self._way(before.angle[:, None, :], angle[None, :, :])).sum(axis=-1)
+        same = (before.angle[:, None, :] == angle[None, :, :]).all(axis=-1)
+        cost = before.cost[:, None] + np.where(same, 0.0, RETRACT + way)
+        come = np.argmin(cost, axis=0)
+        return _Step(angle, cost[come, np.arange(len(angle))], come)
 
     def _next(self, at: int, before: _Step) -> _Step:
         angle = self._candidates(at, before)

@@ -26,7 +26,7 @@ class Circling(Moving):
     _drives = False
 
     def _entered(self, entry: Floats) -> Floats:
-        return self._written(self.place.angles(entry))
+        return self.written(self.place.angles(entry))
 
     def _choose(self) -> None:
         """Refuse circles that do not lead from angle to angle."""
@@ -45,7 +45,7 @@ class Circling(Moving):
         hint = "program points on the way, or turn the axes in proportion"
         self._refuse("GX333", far, message, hint)
 
-    def _guess(self, positions: Floats, row: Ints, part: Floats) -> Floats:
+    def _guess(self, positions: Floats, row: Ints, part: Floats, after: bool = False) -> Floats:
         return self.place.angles(positions)
 
     def _tips(self, positions: Floats, row: Ints) -> Floats:

@@ -47,6 +47,7 @@ class Cutting:
         self.own = (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
         self.cuts = (path.kind == gx.Kind.LINE) & (path.form == gx.Form.PLAIN)
         per_minute = path.feed_mode == gx.FeedMode.PER_MINUTE
+        self.least = np.ones(len(path), np.int64)
         self.nowhere = self.cuts & self.to_axes & per_minute & (self._ways() < STILL)
 
     def run(self) -> gx.Toolpath:
@@ -91,7 +92,7 @@ class Cutting:
 
     def _pieces(self) -> Ints:
         """Return into how many pieces each row is cut, so that the tip stays on its line."""
-        pieces = np.ones(len(self.path), np.int64)
+        pieces = self.least.copy()
         limit = (1.0 - SHARE) * self.step.tolerance
         way = np.abs(self.place.angles(self.end - self.start)).max(axis=1, initial=0.0)
         rows = np.flatnonzero(self.cuts & (way > 0.0))
@@ -100,7 +101,8 @@ class Cutting:
             over = worst > limit
             more = np.ceil(pieces[rows] * np.sqrt(worst / limit) * 0.98)
             rows, more = rows[over], more[over]
-            pieces[rows] = np.maximum(np.minimum(more, 4 * pieces[rows]), pieces[rows] + 1)
+            most = np.maximum(np.minimum(more, 4 * pieces[rows]), pieces[rows] + 1)
+            pieces[rows] = np.ceil(most / self.least[rows]) * self.least[rows]
             if len(rows) and int(pieces[rows].max()) > MOST:
                 row = rows[np.argmax(pieces[rows])]
                 message = f"this block would become more than {MOST} pieces"
@@ -267,12 +269,20 @@ class Cutting:
                 named.append((axis.letter, axis.limits, values))
         self._check_named(named, row)
 
-    def _check_named(self, named: list[tuple[str, tuple[float, float], Floats]], row: Ints) -> None:
+    def _check_named(
+        self,
+        named: list[tuple[str, tuple[float, float], Floats]],
+        row: Ints,
+        why: Flags | None = None,
+    ) -> None:
+        """Refuse what is beyond; `why` (n,) are the moves that draw the tool back."""
         for letter, (low, high), values in named:
             beyond = ((values < low - SAME) | (values > high + SAME)) & ~self.own[row]
             if beyond.any():
                 at = int(np.argmax(beyond))
                 message = f"{letter} would have to go to {values[at]:.3f}"
+                if why is not None and why[at]:
+                    message += " where the tool is drawn back to turn axes"
                 hint = f"it goes from {low:g} to {high:g}"
                 raise self.path.refuse("GX331", row[at : at + 1], message, hint)
 

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_bound import leaving
-from gcxform_plugins.passes.rtcp_choice import Choice, NoWayError, Trouble, nearest
+from gcxform_plugins.passes.rtcp_choice import WHY, Choice, NoWayError, Trouble, nearest
 from gcxform_plugins.passes.rtcp_cutting import Cutting
 from gcxform_plugins.passes.rtcp_place import Place
+from gcxform_plugins.passes.rtcp_retracting import Retract, inserted
 from gcxform_plugins.passes.rtcp_small import bend_of_correction
 from gcxform_plugins.passes.rtcp_ways import Between
 
@@ -29,35 +30,9 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 NEXT = 1e-9  # degrees; rows that do not turn still follow one another
+NEAR = 1e-7  # part of a row
 SAMPLE = 5.0  # degrees; how far the axes of the source turn between two points of the search
 STILL = 1e-7  # mm, degrees; what moves by less stands still
-WHY = {
-    Trouble.UNREACHABLE: (
-        "GX332",
-        "no angles give this tool axis",
-        "place the part otherwise, or let the CAM lean the tool less",
-    ),
-    Trouble.LIMITS: (
-        "GX331",
-        "no angles within the limits of the axes give this tool axis",
-        "place the part otherwise, or let the CAM lean the tool less",
-    ),
-    Trouble.POLE: (
-        "GX333",
-        "the tool axis passes the pole, where an axis would have to leap",
-        "lead the tool through the pole or farther beside it, or lift it off and turn the axis",
-    ),
-    Trouble.BORDER: (
-        "GX334",
-        "the tool axis comes to the border of reach, where both attitudes are one",
-        "let the CAM stay some degrees inside of what the axes reach",
-    ),
-    Trouble.FLIP: (
-        "GX335",
-        "within their limits the axes would have to flip over or unwind inside this cut",
-        "lift the tool off here in the CAM and begin another cut, or turn the part",
-    ),
-}
 
 
 class Moving(Cutting):
@@ -70,6 +45,9 @@ class Moving(Cutting):
         self.target = target
         self.known = np.isfinite(self.end[:, [0, 1, 2, *source.columns]]).all(axis=1) & ~self.own
         self.starts_known = np.isfinite(self.start[:, [0, 1, 2, *source.columns]]).all(axis=1)
+        self.retracts = np.zeros(0)
+        self.blocks_may = (path.feed_mode == gx.FeedMode.INVERSE_TIME) & self.cuts
+        self.blocks_may &= ~path.blocks.leaves[path.block]
 
     def run(self) -> gx.Toolpath:
         """Return the path of the target."""
@@ -79,14 +57,20 @@ class Moving(Cutting):
         path = self.path
         pieces = np.where(self.nowhere, 0, self._pieces())
         row = np.repeat(np.arange(len(path)), pieces)
-        result = self._moved(self._cut(pieces, row), row, self._parts(pieces, row))
-        self._leave(result, row)
-        self._check_reach(result, row)
-        end = np.asfortranarray(result)
-        nth = path.nth[row] + np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+        source, part = self._cut(pieces, row), self._parts(pieces, row)
+        end = np.asfortranarray(self._moved(source, row, part))
         entry = self._entry()
         feeds = self._feeds(pieces, row, np.concatenate([entry[None, :], end]))
-        new = path.with_rows(pieces, end=end, nth=nth, **feeds)
+        retracts = self._retracts(source, row, part, end)
+        for name, column in feeds.items():
+            feeds[name] = inserted(column, retracts, name)
+        row, end = inserted(row, retracts, "row"), inserted(end, retracts, "end")
+        drawn = inserted(np.zeros(len(part), np.bool_), retracts, "drawn")
+        pieces = np.bincount(row, minlength=len(path))
+        self._leave(end, row)
+        self._check_reach(end, row, drawn)
+        nth = path.nth[row] + np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+        new = path.with_rows(pieces, end=np.asfortranarray(end), nth=nth, **feeds)
         others = "".join(a for a in self.place.chain.letters if a not in self.target.chain.letters)
         return new.replace(entry=entry, left_out=path.left_out + others)
 
@@ -96,7 +80,7 @@ class Moving(Cutting):
         """Return positions as they are: angles of the source are not written."""
         return positions.copy()
 
-    def _written(self, angles: Floats) -> Floats:
+    def written(self, angles: Floats) -> Floats:
         """Return angles (n, m) of the target as they are written."""
         decimals = [self.context.decimals_of_angle(a) for a in self.target.chain.letters]
         columns = [np.round(angles[:, k], d) for k, d in enumerate(decimals)]
@@ -115,24 +99,27 @@ class Moving(Cutting):
         """Return the tool axes (n, 3) at positions, which are parts of rows."""
         return self.place.chain.tool_axis(self.place.angles(positions))
 
-    def _moved(self, positions: Floats, row: Ints, part: Floats) -> Floats:
-        """Return the positions (n, axes) of the target for those of the source."""
+    def _moved(self, positions: Floats, row: Ints, part: Floats, after: bool = False) -> Floats:
+        """Return the positions (n, axes) of the target for those of the source.
+
+        Where the tool is drawn back they are those before it, or those after.
+        """
         tips = self._tips(positions, row)
-        angles = self._angles(positions, row, part)
+        angles = self._angles(positions, row, part, after)
         found = positions.copy()
         found[:, self.place.columns] = np.nan
         found[:, self.target.columns] = angles
         found[:, :3] = self.target.axes_of(tips, angles, row)
         return found
 
-    def _angles(self, positions: Floats, row: Ints, part: Floats) -> Floats:
+    def _angles(self, positions: Floats, row: Ints, part: Floats, after: bool = False) -> Floats:
         """Return the angles (n, m) as written; 0 where X, Y or Z is not known yet, nan at home."""
         angles = np.where(self.own[row][:, None], np.nan, np.zeros((len(row), 2)))
         here = np.flatnonzero(self.known[row])
-        guess = self._guess(positions[here], row[here], part[here])
+        guess = self._guess(positions[here], row[here], part[here], after)
         axis = self._axis(positions[here], row[here], part[here])
         found = nearest(self.target.chain, axis, guess)
-        angles[here] = self._written(self._mixed(found, positions[here], row[here]))
+        angles[here] = self.written(self._mixed(found, positions[here], row[here]))
         return angles
 
     def _mixed(self, angles: Floats, positions: Floats, row: Ints) -> Floats:
@@ -196,7 +183,7 @@ class Moving(Cutting):
             self.first[rows] = np.append(place[0] - 1.0, place[:-1])
             self.count[rows] = place - self.first[rows]
             found.append(angles)
-            total += len(angles)
+            total = round(float(place[-1])) + 1
         self.samples = np.concatenate([*found, np.zeros((1, len(self.target.chain.axes)))])
 
     def _groups(self) -> list[Ints]:
@@ -229,29 +216,53 @@ class Moving(Cutting):
         count = np.where(kept, np.maximum(np.ceil(turn / SAMPLE), 1.0), 0.0).astype(np.int64)
         row, pieces = np.repeat(rows, count), np.zeros(len(self.path), np.int64)
         pieces[rows] = count
-        axis = self._axis(self._cut(pieces, row), row, self._parts(pieces, row))
-        angles = self._choice(axis, np.repeat(~rapid, count), row)
+        part = self._parts(pieces, row)
+        axis = self._axis(self._cut(pieces, row), row, part)
+        angles, retracts = self._choice(axis, np.repeat(~rapid, count), row)
+        self.retracts = np.append(self.retracts, row[retracts] + part[retracts])
+        inner = [at for at in retracts if part[at] < 1.0]
+        self.least[row[inner]] = pieces[row[inner]]
         along += NEXT * np.arange(len(rows))
         ends = np.cumsum(count)[kept] - 1.0
         return angles, np.interp(along, along[kept], ends)
 
-    def _choice(self, axis: Floats, cut: Flags, row: Ints) -> Floats:
-        """Return the angles of the target for tool axes along the source. Raises InputError."""
-        try:
-            return Choice(self.target.chain, axis, cut).run(np.zeros(2))
-        except NoWayError as problem:
-            code, message, hint = WHY[problem.trouble]
-            at = row[problem.at : problem.at + 1]
-            raise self.path.refuse(code, at, message, hint) from None
+    def _choice(self, axis: Floats, cut: Flags, row: Ints) -> tuple[Floats, list[int]]:
+        """Return the angles of the target for tool axes along the source. Raises InputError.
 
-    def _guess(self, positions: Floats, row: Ints, part: Floats) -> Floats:
+        With them come the numbers of the places where the tool is drawn back; nowhere, if there is
+        a way without that.
+        """
+        may = self.blocks_may[row]
+        for allowed in (None, may):
+            try:
+                choice = Choice(self.target.chain, axis, cut, allowed)
+                return choice.run(np.zeros(2)), choice.retracts
+            except NoWayError as problem:
+                trouble = problem
+            if self.step.retract is None or trouble.trouble is not Trouble.FLIP:
+                break
+        code, message, hint = WHY[trouble.trouble]
+        raise self.path.refuse(code, row[trouble.at : trouble.at + 1], message, hint)
+
+    def _guess(self, positions: Floats, row: Ints, part: Floats, after: bool = False) -> Floats:
         """Return the angles (n, m) between those that were chosen, at parts of rows."""
         rapid = self.path.kind[row] == gx.Kind.RAPID
-        along = self.first[row] + np.where(rapid, 1.0, part) * self.count[row]
+        part = np.where(rapid, 1.0, part)
+        along = self.first[row] + part * self.count[row]
+        along += np.searchsorted(self.retracts, row + part + (NEAR if after else -NEAR))
         low = np.maximum(np.floor(along + 1e-9).astype(np.int64), 0)
         high = np.minimum(low + 1, len(self.samples) - 1)
         share = np.clip(along - low, 0.0, 1.0)[:, None]
         return np.asarray((1.0 - share) * self.samples[low] + share * self.samples[high])
+
+    def _retracts(self, source: Floats, row: Ints, part: Floats, end: Floats) -> list[Retract]:
+        """Return the moves that draw the tool back, of pieces from whose ends they begin."""
+        found = []
+        for at in np.searchsorted(row + part, self.retracts - NEAR).tolist():
+            here = slice(at, at + 1)
+            leaves = self._moved(source[here], row[here], part[here], after=True)[0]
+            found.append(Retract.of(self, at, int(row[at]), (end[at], leaves)))
+        return found
 
     # --- pieces ---
 
@@ -267,7 +278,7 @@ class Moving(Cutting):
         start[first] = self.start[rows]
         part = self._parts(pieces, row)
         begin = part - 1.0 / np.repeat(count, count)
-        moved = self._moved(start, row, begin), self._moved(end, row, part)
+        moved = self._moved(start, row, begin, after=True), self._moved(end, row, part)
         far = self._far((start, end), moved, row)
         return np.asarray(np.maximum.reduceat(far, first))
 
@@ -296,14 +307,14 @@ class Moving(Cutting):
         message = "where the axes stand is not known here"
         self._refuse("GX311", some, message, "program all axes before")
 
-    def _check_reach(self, result: Floats, row: Ints) -> None:
+    def _check_reach(self, result: Floats, row: Ints, drawn: Flags) -> None:
         """Refuse positions that the target does not reach."""
         axes = result[:, :3] + self.target.zero
         named = [*zip("XYZ", self.target.chain.travel, axes.T, strict=True)]
         for axis, values in zip(self.target.chain.axes, self.target.angles(result).T, strict=True):
             if axis.limits is not None:
                 named.append((axis.letter, axis.limits, values))
-        self._check_named(named, row)
+        self._check_named(named, row, drawn)
 
 
 class Correcting(Moving):
@@ -316,9 +327,9 @@ class Correcting(Moving):
     def _entered(self, entry: Floats) -> Floats:
         said = self.place.angles(entry)
         found = nearest(self.target.chain, self.place.chain.tool_axis(said), said)
-        return self._written(self._mixed(found, entry, np.array([0])))
+        return self.written(self._mixed(found, entry, np.array([0])))
 
-    def _guess(self, positions: Floats, row: Ints, part: Floats) -> Floats:
+    def _guess(self, positions: Floats, row: Ints, part: Floats, after: bool = False) -> Floats:
         return self.place.angles(positions)
 
     def _mixed(self, angles: Floats, positions: Floats, row: Ints) -> Floats:
@@ -327,7 +338,7 @@ class Correcting(Moving):
         Between half of the largest turn and all of it the correction fades out.
         """
         posted = self.place.angles(positions)
-        turn = np.abs(self._written(angles) - posted).max(axis=1, initial=0.0)
+        turn = np.abs(self.written(angles) - posted).max(axis=1, initial=0.0)
         largest = self.step.largest_turn
         if self.step.orientation == "correct":
             far = np.zeros(len(self.path), np.bool_)

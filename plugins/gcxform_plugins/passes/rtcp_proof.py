@@ -2,7 +2,8 @@
 
 It has the forward models of both machines, and no search. A move of the source is followed from
 end to end beside the moves that it became, which share it evenly; at so many places that between
-them each tip is within a tenth of the tolerance of its chord. There both tools are compared.
+them each tip is within a tenth of the tolerance of its chord. There both tools are compared. Moves
+that draw the tool back are taken out before (`rtcp_retracted.py`): the rest has to be the source.
 """
 
 from __future__ import annotations
@@ -13,72 +14,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
-from gcxform_plugins.passes.rtcp_place import Place
-from gcxform_plugins.passes.rtcp_undoing import SHARE, Undoing
+from gcxform_plugins.passes.rtcp_driven import Driven, Led
+from gcxform_plugins.passes.rtcp_retracted import Retracted
+from gcxform_plugins.passes.rtcp_undoing import SHARE
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp import Rtcp
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 AT_ONCE = 20_000  # places compared at once
 LEAN_SHARE = 0.02  # of the tolerance of the tool axis, that is left to the places looked at
 SAME_TIME = 1e-9  # relative
 STILL = 1e-7  # mm, degrees; what moves by less stands still
-
-
-class Driven:
-    """A path whose axes all move in proportion."""
-
-    def __init__(self, step: Rtcp, path: gx.Toolpath, place: Place) -> None:
-        self.path, self.place = path, place
-        self.start, self.end = path.start, path.end
-        self.bends = Undoing(step, path, place, to_tips=True).bends()
-        turn = np.abs(np.radians(place.angles(self.end - self.start))).sum(axis=1)
-        self.leans = np.nan_to_num(turn) ** 2 / 8.0
-
-    def at(self, rows: Ints, part: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return tips, tool axes and angles at parts (n,) of rows."""
-        here = _between(self.start, self.end, rows, part)
-        angles = self.place.angles(here)
-        tips = self.place.tips_of(here[:, :3], angles, rows)
-        return tips, self.place.chain.tool_axis(angles), angles
-
-
-class Led:
-    """A path of the tip, which goes straight, while the tool axis goes on great circles."""
-
-    def __init__(self, path: gx.Toolpath, place: Place) -> None:
-        self.path, self.place = path, place
-        self.start, self.end = path.start, path.end
-        self.bends = np.zeros(len(path))
-        one, other = (place.chain.tool_axis(place.angles(s)) for s in (self.start, self.end))
-        between = np.arctan2(
-            np.linalg.norm(np.cross(one, other), axis=1), np.einsum("ij,ij->i", one, other)
-        )
-        self.leans = np.nan_to_num(between) ** 2 / 8.0
-
-    def at(self, rows: Ints, part: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return tips, tool axes and angles at parts (n,) of rows."""
-        here = _between(self.start, self.end, rows, part)
-        chain = self.place.chain
-        one, other = (
-            chain.tool_axis(self.place.angles(side[rows])) for side in (self.start, self.end)
-        )
-        across = np.cross(one, other)
-        size = np.linalg.norm(across, axis=1)
-        angle = np.arctan2(size, np.einsum("ij,ij->i", one, other)) * part
-        pole = across / np.where(size > 0.0, size, 1.0)[:, None]
-        axis = np.cos(angle)[:, None] * one + np.sin(angle)[:, None] * np.cross(pole, one)
-        last = (part == 1.0)[:, None]
-        return here[:, :3], np.where(last, other, axis), self.place.angles(here)
-
-
-def _between(start: Floats, end: Floats, rows: Ints, part: Floats) -> Floats:
-    return np.where(
-        (part == 1.0)[:, None], end[rows], start[rows] + part[:, None] * (end[rows] - start[rows])
-    )
 
 
 class Proof:
@@ -90,22 +40,34 @@ class Proof:
         self.step, self.context = step, context
         self.source, self.target = source, target
         self.before, self.after = source.path, target.path
+        self.drawn = self._drawn()
         self.owner = self._owners()
+        self.kept = np.flatnonzero(~self.drawn)
+        self.count = np.bincount(self.owner[self.kept], minlength=len(self.before))
         self.tip, self.lean, self.turn = 0.0, 0.0, 0.0
         self.worst = 0
+
+    def _drawn(self) -> Flags:
+        """Return which rows (n,) draw the tool back."""
+        drawn = np.zeros(len(self.after), np.bool_)
+        if self.step.retract is not None:
+            for rows in Retracted(self.step, self.target).found:
+                drawn[rows.start : rows.stop] = True
+        return drawn
 
     def _owners(self) -> Ints:
         """Return the row of the source for each row: of a line with more than one, one for one."""
         lines, first, old = np.unique(self.before.source, return_index=True, return_counts=True)
         line = np.searchsorted(lines, self.after.source)
         begins = np.append(True, np.diff(self.after.source) != 0)[: len(line)]
-        nth = np.arange(len(line)) - np.flatnonzero(begins)[np.cumsum(begins) - 1]
+        nth = np.cumsum(~self.drawn) - 1
+        nth = nth - nth[np.flatnonzero(begins)[np.cumsum(begins) - 1]]
         line = np.minimum(line, len(lines) - 1)
         return np.asarray(first[line] + np.minimum(nth, old[line] - 1))
 
     def run(self) -> None:
         """Measure `tip` (mm), `lean` and `turn` (degrees), with the row where the tip is worst."""
-        before, after = self.before, self.after
+        after = self.after
         own = np.isin(after.form, (gx.Form.HOME, gx.Form.MACHINE))
         columns = [0, 1, 2, *self.target.place.columns]
         known = np.isfinite(after.end[:, columns]).all(axis=1) & ~own
@@ -113,8 +75,7 @@ class Proof:
         ends = np.flatnonzero(known & rapid)
         whole, none = np.ones(len(ends)), np.zeros(len(ends))
         self._compare((self.owner[ends], whole), (ends, whole), (none, none))
-        lines = np.flatnonzero(known & ~rapid)
-        count = np.bincount(self.owner, minlength=len(before))
+        lines, count = np.flatnonzero(known & ~rapid & ~self.drawn), self.count
         shared = count[self.owner] ** 2
         bend = self.source.bends[self.owner] / shared + self.target.bends
         lean = self.source.leans[self.owner] / shared + self.target.leans
@@ -122,7 +83,7 @@ class Proof:
         many = np.sqrt(np.maximum(bend / (SHARE * self.step.tolerance), lean / finest))
         many = np.maximum(np.ceil(many - 1e-9), 1.0).astype(np.int64)
         first = np.cumsum(count) - count
-        nth = np.arange(len(after)) - first[self.owner]
+        nth = np.cumsum(~self.drawn) - 1 - first[self.owner]
         cuts = np.cumsum(many[lines] + 1) // AT_ONCE
         for rows in np.split(lines, np.flatnonzero(np.diff(cuts)) + 1):
             slack = bend[rows] / many[rows] ** 2, lean[rows] / many[rows] ** 2
@@ -177,15 +138,14 @@ class Proof:
         same &= before.kind[self.owner] == after.kind
         same &= timed | rapid | (after.feed == before.feed[self.owner])
         same &= timed | (before.feed_mode[self.owner] == after.feed_mode) | rapid
-        gone = np.bincount(self.owner, minlength=len(before)) == 0
+        gone = self.count == 0
         gone &= self._ways() > STILL
         if not same.all() or gone.any():
             row = int(np.argmax(gone)) if gone.any() else int(self.owner[np.argmin(same)])
             self._fail("a move or its feed has changed", row)
-        rows = np.flatnonzero(timed)
+        rows = np.flatnonzero(timed & ~self.drawn)
         owner = self.owner[rows]
-        count = np.bincount(self.owner, minlength=len(before))
-        time, wanted = 1.0 / after.feed[rows], self._times()[owner] / count[owner]
+        time, wanted = 1.0 / after.feed[rows], self._times()[owner] / self.count[owner]
         least = np.where(before.feed_mode[owner] == after.feed_mode[rows], 0.0, self._least()[rows])
         wanted = np.maximum(wanted, least)
         wrong = owner[~(np.abs(time / wanted - 1.0) <= SAME_TIME)]

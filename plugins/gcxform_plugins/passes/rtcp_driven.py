@@ -1,0 +1,71 @@
+"""Where tools are along a path, for the proof of `rtcp`: as axes drive them, or as it is led."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+import gcxform as gx
+from gcxform_plugins.passes.rtcp_place import Place
+from gcxform_plugins.passes.rtcp_undoing import Undoing
+
+if TYPE_CHECKING:
+    from gcxform_plugins.passes.rtcp import Rtcp
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class Driven:
+    """A path whose axes all move in proportion."""
+
+    def __init__(self, step: Rtcp, path: gx.Toolpath, place: Place) -> None:
+        self.path, self.place = path, place
+        self.start, self.end = path.start, path.end
+        self.bends = Undoing(step, path, place, to_tips=True).bends()
+        turn = np.abs(np.radians(place.angles(self.end - self.start))).sum(axis=1)
+        self.leans = np.nan_to_num(turn) ** 2 / 8.0
+
+    def at(self, rows: Ints, part: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return tips, tool axes and angles at parts (n,) of rows."""
+        here = _between(self.start, self.end, rows, part)
+        angles = self.place.angles(here)
+        tips = self.place.tips_of(here[:, :3], angles, rows)
+        return tips, self.place.chain.tool_axis(angles), angles
+
+
+class Led:
+    """A path of the tip, which goes straight, while the tool axis goes on great circles."""
+
+    def __init__(self, path: gx.Toolpath, place: Place) -> None:
+        self.path, self.place = path, place
+        self.start, self.end = path.start, path.end
+        self.bends = np.zeros(len(path))
+        one, other = (place.chain.tool_axis(place.angles(s)) for s in (self.start, self.end))
+        between = np.arctan2(
+            np.linalg.norm(np.cross(one, other), axis=1), np.einsum("ij,ij->i", one, other)
+        )
+        self.leans = np.nan_to_num(between) ** 2 / 8.0
+
+    def at(self, rows: Ints, part: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return tips, tool axes and angles at parts (n,) of rows."""
+        here = _between(self.start, self.end, rows, part)
+        chain = self.place.chain
+        one, other = (
+            chain.tool_axis(self.place.angles(side[rows])) for side in (self.start, self.end)
+        )
+        across = np.cross(one, other)
+        size = np.linalg.norm(across, axis=1)
+        angle = np.arctan2(size, np.einsum("ij,ij->i", one, other)) * part
+        pole = across / np.where(size > 0.0, size, 1.0)[:, None]
+        axis = np.cos(angle)[:, None] * one + np.sin(angle)[:, None] * np.cross(pole, one)
+        last = (part == 1.0)[:, None]
+        return here[:, :3], np.where(last, other, axis), self.place.angles(here)
+
+
+def _between(start: Floats, end: Floats, rows: Ints, part: Floats) -> Floats:
+    return np.where(
+        (part == 1.0)[:, None], end[rows], start[rows] + part[:, None] * (end[rows] - start[rows])
+    )
