@@ -146,7 +146,7 @@ class Process(Worker[Result]):
     def _end(self) -> Result:
         try:
             error, result = _pick_up(self.shared, self.here.recv())
-        except (EOFError, ConnectionError):
+        except (EOFError, OSError):  # the latter if it died in the middle of what it said
             raise FileError.one("GX903", DIED, hint=HINT) from None
         if error is not None:
             raise error
@@ -179,8 +179,8 @@ def _done(work: Work[Any], given: tuple[object, ...]) -> tuple[BaseException | N
         return None, work(*given)
     except GcxformError as error:
         return error, None
-    except Exception:
-        return RuntimeError(traceback.format_exc()), None
+    except Exception as error:
+        return _unforeseen(error), None
 
 
 def _answer(shared: int, done: tuple[BaseException | None, Any]) -> list[int]:
@@ -190,9 +190,15 @@ def _answer(shared: int, done: tuple[BaseException | None, Any]) -> list[int]:
         return _lay_down(shared, done)
     except OSError as error:
         why = FileError.one("GX903", str(error), hint=HINT)
-    except Exception:  # a plugin may raise what cannot be copied
-        why = RuntimeError(f"{done[0] or ''}\n{traceback.format_exc()}".strip())
+    except Exception as error:  # a plugin may raise what cannot be copied
+        why = _unforeseen(done[0] or error)
     return _lay_down(shared, (why, None))
+
+
+def _unforeseen(error: BaseException) -> RuntimeError:
+    """Return an error as one that can be copied: what it says comes first, for who reports it."""
+    said = traceback.format_exception_only(error)
+    return RuntimeError("".join([*said, *traceback.format_exception(error)]))
 
 
 # --- what goes from one to the other ---

@@ -2,7 +2,6 @@
 
 import os
 import pickle
-import resource
 import signal
 import subprocess
 import sys
@@ -70,7 +69,7 @@ def test_the_first_error_is_raised(kind):
 def test_what_nobody_foresaw_keeps_its_trace():
     with Process(lambda: {}["missing"]) as one:
         one.begin()
-        with pytest.raises(RuntimeError, match=r"KeyError: 'missing'"):
+        with pytest.raises(RuntimeError, match=r"^KeyError: 'missing'\nTraceback"):
             one.end()
         one.begin()  # it goes on
         with pytest.raises(RuntimeError):
@@ -129,6 +128,18 @@ def test_a_process_that_dies_is_told():
             one.end()
 
 
+def test_a_process_that_dies_while_it_answers_is_told():
+    def half():
+        there = sys._getframe(2).f_locals["there"]
+        os.write(there.fileno(), b"\0\0\1\0half")
+        os._exit(1)
+
+    with Process(half) as one:
+        one.begin()
+        with pytest.raises(FileError, match=DIED):
+            one.end()
+
+
 def test_what_could_not_be_begun_is_not_waited_for():
     """As a run does when something cannot be handed over, or is interrupted on the way."""
     with Process(lambda given: given) as one:
@@ -155,6 +166,8 @@ def test_an_error_that_has_no_copy_is_told():
 
 def limited(size):
     """Let this process write files no longer than that."""
+    import resource
+
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
 
 
