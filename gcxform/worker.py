@@ -158,8 +158,8 @@ class Process(Worker[Result]):
         with suppress(ConnectionError):
             self.here.send(STOP)
         self.here.close()
-        self.process.join()
         os.close(self.shared)
+        self.process.join()
 
 
 def _serve(work: Work[Any], there: Connection, here: Connection, shared: int) -> None:

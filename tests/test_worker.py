@@ -20,6 +20,7 @@ from gcxform.cli import main
 from gcxform.cli.failures import FAILED, INTERRUPTED
 from gcxform.diagnostics import FileError, InputError, Location
 from gcxform.emit.emitter import Emitter
+from gcxform.modal.interpreter import Interpreter
 from gcxform.testing.cases import outcome, run_case
 from gcxform.verify import Verifier
 from gcxform.worker import DIED, Here, Process, ahead, worker
@@ -298,6 +299,26 @@ def test_a_wrong_output_is_found_there(monkeypatch):
             pipeline.run(text)
         said.append(caught.value.diagnostics[0].render().splitlines()[0])
     assert said[0] == said[1]
+
+
+@pytest.mark.parametrize("copies", [True, False])
+@pytest.mark.parametrize("what", ["interpret", "check"])
+def test_nothing_ends_a_run_before_its_program(monkeypatch, copies, what):
+    """Python takes StopIteration for the end of a loop; a plugin that raises it must not be."""
+    kind = {"interpret": Interpreter, "check": Verifier}[what]
+    done, calls = getattr(kind, what), count()
+
+    def stop(self, *given):
+        if next(calls) >= 4:
+            raise StopIteration
+        return done(self, *given)
+
+    monkeypatch.setattr(kind, what, stop)
+    monkeypatch.setattr("gcxform.source.WINDOW", 20)
+    monkeypatch.setattr("gcxform.worker.LINUX", copies)
+    text = b"G21 G90 G94\nG0 X0. Y0. Z0.\n" + b"".join(b"G1 X%d. F100.\n" % n for n in range(20))
+    with pytest.raises((RuntimeError, StopIteration)):
+        gx.Pipeline.parse("absolute", "linuxcnc").run(text)
 
 
 def test_the_command_line_says_that_one_has_died(tmp_path, monkeypatch, capsys):
