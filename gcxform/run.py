@@ -161,7 +161,7 @@ class Run:
         proved = long and self.verifier is not None
         with worker(read, long) as reader, worker(self._check, proved) as proof:
             windows = ahead(reader, self._counted(texts, out))
-            self._write_all(map(self._transform, windows), proof, out, progress)
+            self._write_all(windows, proof, out, progress)
 
     def _check(self, *given: Any) -> Findings:
         """Check a window that is to be proved: see `Verifier.check`."""
@@ -177,15 +177,16 @@ class Run:
 
     def _write_all(
         self,
-        windows: Iterator[Transformed],
+        windows: Iterator[Apart],
         proof: Worker[Findings],
         out: Output,
         progress: Progress,
     ) -> None:
-        """Write the windows; of several errors the first in the program is raised."""
+        """Transform and write the windows; of several errors the first in the program is raised."""
         heap = Heap()
         try:
-            for one in windows:
+            for apart in windows:
+                one = self._transform(apart)
                 emitted = self.emitter.emit(one.window, one.table, one.read, one.path)
                 if proof.busy:
                     self.findings = proof.end()
@@ -194,7 +195,7 @@ class Run:
                     proof.begin(replace(one.read, path=one.meant), *given)
                 self._hand_on(one.window, emitted, out)
                 progress(len(one.window.text))
-                del one, emitted  # or they would last until the next one is there
+                del apart, one, emitted  # or they would last until the next one is there
                 heap.give_back()
             if any(step.feed_mode is not None for step in self.steps):
                 self._check_end()

@@ -33,7 +33,7 @@ Result = TypeVar("Result")
 Work = Callable[..., Result]
 LATER = 5  # niceness: the process that waits for all others goes first
 LINUX = sys.platform == "linux"
-PIECE = 1 << 30  # bytes; the system writes less than two of these at once
+PIECE = 1 << 30  # bytes; the system writes and reads less than two of these at once
 STOP: list[int] = []  # no sizes: nothing more is to be done
 DIED = "a process that took part in this run has been ended"
 HINT = "was there enough memory? A long program is read and proved by processes of their own"
@@ -48,8 +48,8 @@ class Worker(ABC, Generic[Result]):
     def begin(self, *given: object) -> None:
         """Begin a piece of work."""
         assert not self.busy
-        self.busy = True
         self._begin(given)
+        self.busy = True  # not before: nobody would ever end what could not be begun
 
     def end(self) -> Result:
         """Wait for what was begun; return what it gave, or raise what it raised."""
@@ -71,15 +71,19 @@ class Worker(ABC, Generic[Result]):
 
 
 def worker(work: Work[Result], long: bool) -> Worker[Result]:
-    """Return who is to do some work: it takes a process of its own if it is long."""
-    return Process(work) if long and _may_copy() else Here(work)
+    """Return who is to do some work: a process of its own if it is long and the system has one."""
+    if long and _may_copy():
+        with suppress(OSError):
+            return Process(work)
+    return Here(work)
 
 
 def _may_copy() -> bool:
     """Whether this process may be copied: one of a pool has no processes of its own."""
     from multiprocessing import current_process
 
-    return LINUX and threading.active_count() == 1 and not current_process().daemon
+    able = LINUX and hasattr(os, "memfd_create")  # Python built for an old system lacks it
+    return able and threading.active_count() == 1 and not current_process().daemon
 
 
 def ahead(reader: Worker[Result], items: Iterable[object]) -> Iterator[Result]:
@@ -126,8 +130,13 @@ class Process(Worker[Result]):
         self.process = context.Process(target=_serve, args=given, daemon=True)
         # an interrupt is for the one who waits: in the copy it stays blocked
         ours = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        self.process.start()
-        signal.pthread_sigmask(signal.SIG_SETMASK, ours)
+        try:
+            self.process.start()
+        except OSError:
+            os.close(self.shared)
+            raise
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, ours)
         there.close()
 
     def _begin(self, given: tuple[object, ...]) -> None:
@@ -137,7 +146,7 @@ class Process(Worker[Result]):
     def _end(self) -> Result:
         try:
             error, result = _pick_up(self.shared, self.here.recv())
-        except (EOFError, ConnectionError):
+        except (EOFError, OSError):  # the latter if it died in the middle of what it said
             raise FileError.one("GX903", DIED, hint=HINT) from None
         if error is not None:
             raise error
@@ -149,8 +158,8 @@ class Process(Worker[Result]):
         with suppress(ConnectionError):
             self.here.send(STOP)
         self.here.close()
-        self.process.join()
         os.close(self.shared)
+        self.process.join()
 
 
 def _serve(work: Work[Any], there: Connection, here: Connection, shared: int) -> None:
@@ -160,7 +169,7 @@ def _serve(work: Work[Any], there: Connection, here: Connection, shared: int) ->
     heap = Heap()
     with suppress(EOFError, ConnectionError):
         while (sizes := there.recv()) != STOP:
-            there.send(_lay_down(shared, _done(work, _pick_up(shared, sizes))))
+            there.send(_answer(shared, _done(work, _pick_up(shared, sizes))))
             heap.give_back()
 
 
@@ -170,8 +179,26 @@ def _done(work: Work[Any], given: tuple[object, ...]) -> tuple[BaseException | N
         return None, work(*given)
     except GcxformError as error:
         return error, None
-    except Exception:
-        return RuntimeError(traceback.format_exc()), None
+    except Exception as error:
+        return _unforeseen(error), None
+
+
+def _answer(shared: int, done: tuple[BaseException | None, Any]) -> list[int]:
+    """Lay down what was done, or why it cannot be: there is no room, or it is of a kind unknown."""
+    why: BaseException
+    try:
+        return _lay_down(shared, done)
+    except OSError as error:
+        why = FileError.one("GX903", str(error), hint=HINT)
+    except Exception as error:  # a plugin may raise what cannot be copied
+        why = _unforeseen(done[0] or error)
+    return _lay_down(shared, (why, None))
+
+
+def _unforeseen(error: BaseException) -> RuntimeError:
+    """Return an error as one that can be copied: what it says comes first, for who reports it."""
+    said = traceback.format_exception_only(error)
+    return RuntimeError("".join([*said, *traceback.format_exception(error)]))
 
 
 # --- what goes from one to the other ---
@@ -193,18 +220,26 @@ def _lay_down(shared: int, given: object) -> list[int]:
     first = io.BytesIO()
     _Pickler(first, protocol=5, buffer_callback=arrays.append).dump(given)
     sizes: list[int] = []
+    place = 0
     for part in (first.getbuffer(), *(array.raw() for array in arrays)):
-        place = sum(sizes)
-        for done in range(0, part.nbytes, PIECE):
-            os.pwrite(shared, part[done : done + PIECE], place + done)
         sizes.append(part.nbytes)
+        place = _write(shared, part, place)
     return sizes
+
+
+def _write(shared: int, part: memoryview, place: int) -> int:
+    """Write all of a part; return where it ends. The system may take less than it is given."""
+    while part.nbytes:
+        done = os.pwrite(shared, part[:PIECE], place)
+        part, place = part[done:], place + done
+    return place
 
 
 def _pick_up(shared: int, sizes: list[int]) -> Any:
     """Return what is in shared memory, as a copy that only this process has."""
     parts, place = [], 0
     for size in sizes:
-        parts.append(os.pread(shared, size, place))
+        pieces = [(place + done, min(PIECE, size - done)) for done in range(0, size, PIECE)]
+        parts.append(b"".join([os.pread(shared, most, at) for at, most in pieces]))
         place += size
     return pickle.loads(parts[0], buffers=parts[1:])

@@ -1,6 +1,7 @@
 """Long programs are read and proved by processes of their own, which changes only the time."""
 
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -19,6 +20,7 @@ from gcxform.cli import main
 from gcxform.cli.failures import FAILED, INTERRUPTED
 from gcxform.diagnostics import FileError, InputError, Location
 from gcxform.emit.emitter import Emitter
+from gcxform.modal.interpreter import Interpreter
 from gcxform.testing.cases import outcome, run_case
 from gcxform.verify import Verifier
 from gcxform.worker import DIED, Here, Process, ahead, worker
@@ -68,7 +70,7 @@ def test_the_first_error_is_raised(kind):
 def test_what_nobody_foresaw_keeps_its_trace():
     with Process(lambda: {}["missing"]) as one:
         one.begin()
-        with pytest.raises(RuntimeError, match=r"KeyError: 'missing'"):
+        with pytest.raises(RuntimeError, match=r"^KeyError: 'missing'\nTraceback"):
             one.end()
         one.begin()  # it goes on
         with pytest.raises(RuntimeError):
@@ -125,6 +127,93 @@ def test_a_process_that_dies_is_told():
         one.begin()
         with pytest.raises(FileError, match=DIED):
             one.end()
+
+
+def test_a_process_that_dies_while_it_answers_is_told():
+    def half():
+        there = sys._getframe(2).f_locals["there"]
+        os.write(there.fileno(), b"\0\0\1\0half")
+        os._exit(1)
+
+    with Process(half) as one:
+        one.begin()
+        with pytest.raises(FileError, match=DIED):
+            one.end()
+
+
+def test_what_could_not_be_begun_is_not_waited_for():
+    """As a run does when something cannot be handed over, or is interrupted on the way."""
+    with Process(lambda given: given) as one:
+        with pytest.raises((AttributeError, pickle.PicklingError)):
+            one.begin(lambda: "has no copy")
+        assert not one.busy
+        one.begin(5)
+        assert one.end() == 5
+
+
+def test_an_error_that_has_no_copy_is_told():
+    class Local(InputError):
+        """Of a function: it cannot be found by its name."""
+
+    def refuse():
+        raise Local.one("GX213", "two")
+
+    with Process(refuse) as one:
+        for _ in range(2):
+            one.begin()
+            with pytest.raises(RuntimeError, match="two"):
+                one.end()
+
+
+def limited(size):
+    """Let this process write files no longer than that."""
+    import resource
+
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+
+
+def test_what_has_no_room_is_told():
+    """The system writes what there is room for, and says nothing but how much that was."""
+    column = np.ones(1000)
+    with Process(lambda given: limited(5000) or given) as one:
+        one.begin(column)
+        with pytest.raises(FileError, match="too large"):
+            one.end()
+    with Process(len) as one, Process(lambda: limited(5000) or one.begin(column)) as outer:
+        outer.begin()
+        with pytest.raises(RuntimeError, match="too large"):
+            outer.end()
+
+
+def test_large_columns_go_piece_by_piece(monkeypatch):
+    """The system takes and gives less than two GiB at once, and may take less than it is given."""
+    pwrite, pread, most = os.pwrite, os.pread, 1000
+    monkeypatch.setattr("gcxform.worker.PIECE", 3000)
+    monkeypatch.setattr(os, "pwrite", lambda file, part, at: pwrite(file, part[:most], at))
+    monkeypatch.setattr(os, "pread", lambda file, size, at: pread(file, min(size, 3000), at))
+    given = np.arange(10_000.0)
+    with Process(lambda column: column) as one:
+        one.begin([given, given[:1]])
+        there = one.end()
+    np.testing.assert_array_equal(there[0], given)
+    assert there[1] == given[:1]
+
+
+@pytest.mark.parametrize("missing", ["fork", "memfd"])
+def test_without_a_process_the_work_is_done_here(monkeypatch, missing):
+    def refuse():
+        raise BlockingIOError("too many processes")
+
+    if missing == "fork":
+        monkeypatch.setattr(os, "fork", refuse)
+    else:
+        monkeypatch.delattr(os, "memfd_create")
+    with worker(lambda number: number, True) as one:
+        assert isinstance(one, Here)
+        one.begin(5)
+        assert one.end() == 5
+    assert not signal.pthread_sigmask(signal.SIG_BLOCK, [])
+    assert not [at for at in Path("/proc/self/fd").iterdir() if "memfd" in os.path.realpath(at)]
 
 
 def test_no_process_is_copied_beside_threads():
@@ -210,6 +299,26 @@ def test_a_wrong_output_is_found_there(monkeypatch):
             pipeline.run(text)
         said.append(caught.value.diagnostics[0].render().splitlines()[0])
     assert said[0] == said[1]
+
+
+@pytest.mark.parametrize("copies", [True, False])
+@pytest.mark.parametrize("what", ["interpret", "check"])
+def test_nothing_ends_a_run_before_its_program(monkeypatch, copies, what):
+    """Python takes StopIteration for the end of a loop; a plugin that raises it must not be."""
+    kind = {"interpret": Interpreter, "check": Verifier}[what]
+    done, calls = getattr(kind, what), count()
+
+    def stop(self, *given):
+        if next(calls) >= 4:
+            raise StopIteration
+        return done(self, *given)
+
+    monkeypatch.setattr(kind, what, stop)
+    monkeypatch.setattr("gcxform.source.WINDOW", 20)
+    monkeypatch.setattr("gcxform.worker.LINUX", copies)
+    text = b"G21 G90 G94\nG0 X0. Y0. Z0.\n" + b"".join(b"G1 X%d. F100.\n" % n for n in range(20))
+    with pytest.raises((RuntimeError, StopIteration)):
+        gx.Pipeline.parse("absolute", "linuxcnc").run(text)
 
 
 def test_the_command_line_says_that_one_has_died(tmp_path, monkeypatch, capsys):

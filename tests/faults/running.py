@@ -26,6 +26,23 @@ MUTATIONS = (
         "slice(1)",
     ),
     _worker("parts lie upon each other", "        place += size\n", ""),
+    _worker(
+        "what could not be begun is waited for",
+        "        self._begin(given)\n        self.busy = True",
+        "        self.busy = True\n        self._begin(given)",
+    ),
+    _worker(
+        "what the system did not take is left out",
+        "part, place = part[done:], place + done",
+        "part, place = part[:0], place + part.nbytes",
+    ),
+    Mutation(
+        "run: a pass can end it before its program",
+        "gcxform/run.py",
+        "            for apart in windows:\n                one = self._transform(apart)\n",
+        "            for one in map(self._transform, windows):\n                apart = None\n",
+        "tests/test_worker.py",
+    ),
     Mutation(
         "reader: a table that was begun anew is gone on with",
         "gcxform/modal/reader.py",
