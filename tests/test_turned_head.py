@@ -170,6 +170,80 @@ def test_before_the_head_turns_nothing_is_different(tmp_path, kind):
     assert gx.Pipeline.load(tmp_path / "p.toml").run(texts[0], "full").text == one.text
 
 
+class Undone:
+    """What the undo of `volumetric` was given in a run, and what it made of it."""
+
+    def __init__(self, monkeypatch, steps) -> None:
+        kind = next(type(p) for p in steps.path_passes if p.name == "volumetric")
+        self.found, undo = [], kind.undo
+
+        def recorded(step, path, context):
+            self.found.append((path, undo(step, path, context)))
+            return self.found[-1][1]
+
+        monkeypatch.setattr(kind, "undo", recorded)
+
+    def farthest(self, model, chain, inverse):
+        """Return how far (mm) the pieces are from the curves they stand for, and may be."""
+        worst, allowed = 0.0, 0.0
+        share = np.linspace(0.0, 1.0, 9)[:, None, None]
+        for path, made in self.found:
+            allowed = max(allowed, made.slack - path.slack)
+            columns = [path.axes.index(letter) for letter in ("X", "Y", "Z", *chain.letters)]
+            key = {
+                (s, n): row for row, (s, n) in enumerate(zip(path.source, path.nth, strict=True))
+            }
+            pieces = [(s, n) for s, n in zip(made.source, made.nth, strict=True)]
+            of = np.array([key[piece] for piece in pieces], int)
+            rows = np.flatnonzero((made.kind == gx.Kind.LINE) & path.starts_known[of])
+            begin, stop = path.start[of[rows]][:, columns], path.end[of[rows]][:, columns]
+            first, last = made.start[rows][:, columns], made.end[rows][:, columns]
+            here = first + share * (last - first)
+            axis = 3 + np.argmax(np.abs(stop - begin)[:, 3:], axis=1)
+            which = np.arange(len(rows))
+            way = (stop - begin)[which, axis]
+            part = (here[:, which, axis] - begin[which, axis]) / way
+            curve = begin + part[..., None] * (stop - begin)
+            curve = moved(model, chain, curve.reshape(-1, 5), inverse)
+            off = np.linalg.norm(here[..., :3].reshape(-1, 3) - curve, axis=1)
+            assert np.isfinite(off).all()
+            worst = max(worst, float(off.max(initial=0.0)))
+        return worst, allowed
+
+
+def moved(model, chain, positions, inverse):
+    """Return where the machine is with positions (n, 5) of the axes; the inverse: with which."""
+    ways, shift = levers(chain, positions[:, 3:]), 0.0
+    for _ in range(30 if inverse else 1):
+        place = positions[:, :3] + shift + ZERO
+        error = model.error(place, gx.Outside.EXTRAPOLATE, ways)
+        shift = -error if inverse else error
+    return positions[:, :3] + shift
+
+
+@pytest.mark.parametrize("kind", HEADS)
+@pytest.mark.parametrize("inverse", [False, True])
+@pytest.mark.parametrize("still", [False, True])
+def test_the_undo_is_as_near_to_the_curve_as_it_says(tmp_path, monkeypatch, kind, inverse, still):
+    """In pieces: 9 places of each, for lines in long turns; where the linear axes stand as well."""
+    chain = chain_of_kind(kind, 12)
+    letters = ("X", "Y", "Z", *chain.letters)
+    farthest_of_all = 0.0
+    for seed in range(3):
+        model = rigid(seed, size=0.004, angle=300e-6) if seed else lattice(7, (5, 4, 4))
+        steps = steps_of(
+            tmp_path, kind, model, "max-correction = 2.0\n" + "inverse = true" * inverse
+        )
+        seen = Undone(monkeypatch, steps)
+        poses = walk(seed, 4, turned=80.0) * ([0, 0, 0, 1, 1] if still else [1, 1, 1, 1, 1])
+        steps.run(program(poses, letters, "F5."), "full")
+        worst, allowed = seen.farthest(model, chain, inverse)
+        assert seen.found
+        assert worst <= allowed + 1e-9
+        farthest_of_all = max(farthest_of_all, worst)
+    assert farthest_of_all > 1e-7
+
+
 MODELS = st.sampled_from(["rigid", "lattice", "sum"])
 
 
