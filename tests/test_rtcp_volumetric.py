@@ -65,6 +65,20 @@ def chained(folder, kind, nominal, real, model, **options):
     return pipeline(folder, machine or machine_text(kind, nominal), **given)
 
 
+@pytest.mark.parametrize("direction", ["to-tip", "retarget"])
+def test_positions_that_are_not_those_of_the_machine_are_refused(tmp_path, direction):
+    """After `to-tip` they are tips, and after `retarget` of axes that the machine file has not."""
+    nominal = chain_of_kind("cb-fork", 12)
+    (tmp_path / "target.toml").write_text(machine_text("cb-fork", nominal))
+    options = {"direction": direction, "tolerance": TOLERANCE}
+    if direction == "retarget":
+        options |= {"target": "target.toml", "rapids": "ends", "before": ""}
+    text = machine_text("cb-fork", nominal)
+    assert pipeline(tmp_path, text, **options)
+    with pytest.raises(gx.UsageError, match="volumetric, requires AXIS_POSITIONS"):
+        pipeline(tmp_path, text, after=volumetric(RIGID), **options)
+
+
 def beside(points, line):
     """Return the distances (n,) of points from a line through others (m, 3)."""
     start, way = line[:-1], np.diff(line, axis=0)

@@ -41,7 +41,7 @@ class Volumetric(gx.Pass):
     """
 
     name = "volumetric"
-    requires = frozenset({gx.NOMINAL})
+    requires = frozenset({gx.NOMINAL, gx.AXIS_POSITIONS})
     ensures = frozenset({gx.COMPENSATED})
     clears = frozenset({gx.NOMINAL})
 
@@ -108,7 +108,8 @@ class Volumetric(gx.Pass):
         if self.inverse and self.iterations:
             raise ValueError("inverse writes where the machine goes, which takes no iterations")
         if self.inverse:
-            turned = {"requires": self.ensures, "ensures": self.requires, "clears": self.ensures}
+            asked = self.ensures | {gx.AXIS_POSITIONS}
+            turned = {"requires": asked, "ensures": self.requires, "clears": self.ensures}
             for name, facts in turned.items():
                 object.__setattr__(self, name, facts)
 
