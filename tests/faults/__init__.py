@@ -23,6 +23,7 @@ from faults import (
     tables,
     thermal,
     tied,
+    turned,
     writing,
 )
 from faults.mutation import Mutation
@@ -41,6 +42,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     *splines.MUTATIONS,
     *thermal.MUTATIONS,
     *tied.MUTATIONS,
+    *turned.MUTATIONS,
     *tables.MUTATIONS,
     *proof.MUTATIONS,
     *rtcp.MUTATIONS,
