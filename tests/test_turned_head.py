@@ -151,6 +151,36 @@ def test_where_only_the_head_bends_the_error(tmp_path, inverse):
         assert fewest <= count <= 3 * fewest
 
 
+@pytest.mark.parametrize("tolerance", [0.001, 0.01])
+def test_arcs_under_a_head_that_stands_turned(tmp_path, tolerance):
+    """Circles with the head at an angle stay arcs, and the exact tip stays on them."""
+    chain = chain_of_kind("cb-fork", 12)
+    letters = ("X", "Y", "Z", *chain.letters)
+    text = (
+        b"G21 G90 G94 G17 G54\nG0 X0. Y0. C0. B0.\nG43 H1 Z0.\nG0 X50. C35. B-40.\n"
+        b"G1 Y10. F500.\nG2 X50. Y110. J50.\nG3 X-30. Y30. I-80.\nM30\n"
+    )
+    model = rigid(3, size=0.004, angle=60e-6)
+    result = steps_of(tmp_path, "cb-fork", model, f"tolerance = {tolerance}").run(text, "full")
+    source, told = (gx.read(t, "fanuc").path for t in (text, result.text))
+    owner = np.array([result.source_map[line] for line in told.source])
+    worst, arcs = 0.0, np.flatnonzero(told.is_arc)
+    for row in arcs:
+        of = np.flatnonzero(source.source == owner[row])[-1]
+        share = np.linspace(0.0, 1.0, STEPS)
+        words = np.zeros((STEPS, 5))
+        words[:, :3] = gx.points_on_arcs(told, np.full(STEPS, row), share)
+        words[:, 3:] = told.end[row, [told.axes.index(letter) for letter in letters[3:]]]
+        assert words[0, 3] == 35.0
+        tip = exact(model, chain, words)
+        centre = source.centre[of, :2]
+        radius = np.linalg.norm(source.start[of, :2] - centre)
+        off = np.hypot(np.linalg.norm(tip[:, :2] - centre, axis=1) - radius, tip[:, 2])
+        worst = max(worst, float(off.max()))
+    assert 2 <= len(arcs) < 30
+    assert worst <= tolerance + ROUNDED + SECOND_ORDER
+
+
 def test_a_work_offset_turns_the_head_as_well(tmp_path):
     """With B30 in the work offset, B0 of the program is the head at 30 degrees."""
     chain = chain_of_kind("c-table-b-head", 12)

@@ -119,6 +119,8 @@ class ErrorModel(ABC):
         R x t is what a way t (mm) from the gauge point to the tip adds to the error. The bounds
         hold for a number of `cells` beyond the table; they are 0 where no tool is needed.
         """
+        if self.needs_tool:
+            raise NotImplementedError(f"{type(self).__name__} has no bounds of its turns")
         return 0.0, 0.0
 
     @property

@@ -131,7 +131,7 @@ class Volumetric(gx.Pass):
 
         One is for commands, which may be a little beyond where their targets are not.
         """
-        return max(1.0, self.max_extrapolation) if self.outside is gx.Outside.EXTRAPOLATE else 1.0
+        return 1.0 + self.max_extrapolation * (self.outside is gx.Outside.EXTRAPOLATE)
 
     def begin(self, context: gx.PassContext) -> None:
         """Refuse a model that cannot be inverted, and a run without origin."""
