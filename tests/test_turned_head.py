@@ -151,6 +151,27 @@ def test_where_only_the_head_bends_the_error(tmp_path, inverse):
         assert fewest <= count <= 3 * fewest
 
 
+@pytest.mark.parametrize("seed", [87, 162, 206])
+def test_turns_alone_share_their_time_by_angles(tmp_path, seed):
+    """Where the linear axes are only corrected, what they go says nothing of the time."""
+    chain = chain_of_kind("nutating-head", 12)
+    letters = ("X", "Y", "Z", *chain.letters)
+    model = rigid(seed, size=0.004, angle=300e-6)
+    options = "tolerance = 0.0003\nmax-correction = 2.0"
+    steps = steps_of(tmp_path, "nutating-head", model, options, decimals=4)
+    text = program(walk(seed, 4, turned=170.0) * [0, 0, 0, 1, 1], letters, "F5.")
+    result = steps.run(text, "full")
+    paces = {}
+    new = positions(result.text, letters)
+    for row, line in enumerate(result.source_map[:-1]):
+        if line >= 4:
+            feed = float(result.text.decode().splitlines()[row].rsplit("F", 1)[1])
+            angle = np.linalg.norm(new[row, 3:] - new[row - 1, 3:])
+            paces.setdefault(line, []).append(angle * feed)
+    assert len(paces) == 3
+    assert all(np.ptp(pace) <= 0.01 * max(pace) for pace in paces.values())
+
+
 @pytest.mark.parametrize("tolerance", [0.001, 0.01])
 def test_arcs_under_a_head_that_stands_turned(tmp_path, tolerance):
     """Circles with the head at an angle stay arcs, and the exact tip stays on them."""
