@@ -90,14 +90,14 @@ class FeedProof:
 
         The time of the whole says nothing of one short piece, whose feed might be any. The way is
         that of the text, or what the machine makes of it: a tip goes evenly while axes do not. Of
-        axes that turn alone it may be their angle.
+        axes that turn alone it is their angle.
         """
         off = self._uneven(lengths(self.trace.written))
         if off.any() and self.trace.after is not self.trace.written:
             off &= self._uneven(self._gone())
-        if off.any():
-            turns = lengths(self.trace.before).turns[self.trace.written_owner]
-            off &= ~turns | self._uneven(self._turned())
+        turns = lengths(self.trace.before).turns[self.trace.written_owner]
+        if turns.any():
+            off = np.where(turns, self._uneven(self._turned()), off)
         if off.any():
             row = int(self.trace.written.source[np.argmax(off)])
             message = "a piece of a move is faster or slower than it"

@@ -19,10 +19,13 @@ from rtcp_kit import GAUGE, LENGTH, ZERO, chain_of_kind, machine_text, positions
 from test_rigid import lattice, rigid, scalar
 
 import gcxform as gx
+from gcxform.emit.emitter import Emitted
 from gcxform.machine.functions import AxisFunction
 from gcxform.machine.modeltext import to_toml
 from gcxform.machine.rigid import RigidBody
 from gcxform.machine.sums import Sum
+from gcxform.run import Output, Run
+from gcxform.source import Source
 
 HEADS = ["cb-fork", "c-table-b-head", "nutating-head"]
 HELD = np.array([0.0, 0.0, -LENGTH])
@@ -170,6 +173,29 @@ def test_turns_alone_share_their_time_by_angles(tmp_path, seed):
             paces.setdefault(line, []).append(angle * feed)
     assert len(paces) == 3
     assert all(np.ptp(pace) <= 0.01 * max(pace) for pace in paces.values())
+    with pytest.raises(gx.VerificationError, match="faster or slower"):
+        with_two_feeds_changed(steps, text)
+
+
+def with_two_feeds_changed(steps, text):
+    """Run a pipeline whose emitter takes half the time of a piece, and gives it to the next."""
+    job = Run(steps, Source.of_bytes(text), "full")
+    emit = job.emitter.emit
+
+    def lying(*task):
+        emitted = emit(*task)
+        lines = emitted.text.splitlines(keepends=True)
+        sources = emitted.source.tolist()
+        at = next(k for k, line in enumerate(sources) if line == 4)
+        assert sources[at + 1] == 4
+        times = [1.0 / float(line.rsplit(b"F", 1)[1]) for line in lines[at : at + 2]]
+        for k, time in enumerate((0.5 * times[0], times[1] + 0.5 * times[0])):
+            words = lines[at + k].rsplit(b"F", 1)[0]
+            lines[at + k] = words + b"F%.4f\n" % (1.0 / time)
+        return Emitted(b"".join(lines), emitted.source, np.zeros(len(sources), np.int64))
+
+    job.emitter.emit = lying
+    job.over(Output(lambda text: None, None), lambda _: None, 1 << 19)
 
 
 @pytest.mark.parametrize("tolerance", [0.001, 0.01])

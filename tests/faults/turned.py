@@ -112,6 +112,13 @@ MUTATIONS = (
         BOUND,
     ),
     _fault(
+        "turns alone take any time",
+        "gcxform/feedproof.py",
+        "off = np.where(turns, self._uneven(self._turned()), off)",
+        "pass",
+        f"{TURNED}::test_turns_alone_share_their_time_by_angles",
+    ),
+    _fault(
         "tips are taken for axes",
         f"{PASSES}/volumetric.py",
         "requires = frozenset({gx.NOMINAL, gx.AXIS_POSITIONS})",
