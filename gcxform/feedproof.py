@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.dialect import LINEAR
 from gcxform.distinct import distinct
 from gcxform.modal.interpreter import Interpreted
 from gcxform.toolpath.path import FeedMode, Kind
@@ -88,11 +89,15 @@ class FeedProof:
         """Check that the pieces of a move share its time as they share its way.
 
         The time of the whole says nothing of one short piece, whose feed might be any. The way is
-        that of the text, or what the machine makes of it: a tip goes evenly while axes do not.
+        that of the text, or what the machine makes of it: a tip goes evenly while axes do not. Of
+        axes that turn alone it is their angle.
         """
         off = self._uneven(lengths(self.trace.written))
         if off.any() and self.trace.after is not self.trace.written:
             off &= self._uneven(self._gone())
+        turns = lengths(self.trace.before).turns[self.trace.written_owner]
+        if turns.any():
+            off = np.where(turns, self._uneven(self._turned()), off)
         if off.any():
             row = int(self.trace.written.source[np.argmax(off)])
             message = "a piece of a move is faster or slower than it"
@@ -109,6 +114,18 @@ class FeedProof:
         )
         turns = np.bincount(row, way.turns, count) == np.bincount(row, minlength=count)
         return Lengths(least, most, turns)
+
+    def _turned(self) -> Lengths:
+        """Return how far rotary axes turn in each written move.
+
+        Where they turn alone in the source, it is they that share the time, although a correction
+        of what they do to the tip moves linear axes as well.
+        """
+        written = self.trace.written
+        rotary = [k for k, axis in enumerate(written.axes) if axis not in LINEAR]
+        way = np.nan_to_num(written.end - written.start)[:, rotary]
+        angle = np.sqrt((way**2).sum(axis=1))
+        return Lengths(angle, angle, np.ones(len(written), np.bool_))
 
     def _uneven(self, way: Lengths) -> NDArray[np.bool_]:
         """Return which written moves do not take the share of the time that is their way's."""

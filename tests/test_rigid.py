@@ -181,6 +181,32 @@ def test_chords_inside_a_cell_sag_by_less_than_the_bound(model, reach):
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda m: f"{m.kind}-{getattr(m, 'order', '')}")
+@pytest.mark.parametrize("cells", [0.0, 1.0, 2.5])
+def test_no_turn_is_above_its_bound(model, cells):
+    """What a lever adds, and how that changes, found by differences of the error alone."""
+    rng = np.random.default_rng(17)
+    low, high = np.transpose([np.clip(model.extended(k, cells), -900, 900) for k in range(3)])
+    points = np.where(rng.random((400, 3)) < 0.3, low, rng.uniform(low, high, (400, 3)))
+    lever = rng.normal(size=(400, 3))
+    lever /= np.linalg.norm(lever, axis=1, keepdims=True)
+    near = points + rng.normal(size=(400, 3)) * 0.01
+
+    def turned(places):
+        added = model.error(places, Outside.EXTRAPOLATE, lever)
+        return added - model.error(places, Outside.EXTRAPOLATE, np.zeros(3))
+
+    angle, slope = model.turning(cells)
+    largest = np.linalg.norm(turned(points), axis=1).max()
+    change = np.linalg.norm(turned(near) - turned(points), axis=1)
+    steepest = (change / np.linalg.norm(near - points, axis=1)).max()
+    if not model.needs_tool:
+        assert (angle, slope) == (0.0, 0.0)
+        return
+    assert 0.1 * angle < largest <= angle * (1 + 1e-9)
+    assert 0.02 * slope < steepest <= slope * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda m: f"{m.kind}-{getattr(m, 'order', '')}")
 def test_the_command_brings_the_tip_to_its_target(model):
     targets = np.random.default_rng(5).uniform(-100, 100, (50, 3))
     tools = np.random.default_rng(6).uniform(-100, 100, (50, 3))

@@ -6,7 +6,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rtcp_kit import LENGTH, ROUNDED, ZERO, chain_of_kind, machine_text, pipeline, positions, tips
+from kinematics_kit import matrices
+from rtcp_kit import (
+    GAUGE,
+    LENGTH,
+    ROUNDED,
+    ZERO,
+    chain_of_kind,
+    machine_text,
+    pipeline,
+    positions,
+    tips,
+)
 from test_rtcp_repost import leaning_poses, measured, measured_text, posted
 
 import gcxform as gx
@@ -27,12 +38,22 @@ def volumetric(model):
     )
 
 
-def actual(model, words, origin):
+def levers(chain, angles):
+    """Return the ways (n, 3) from the gauge point to the tip, by the matrices of scipy."""
+    head = np.tile(np.eye(4), (len(angles), 1, 1))
+    for k, axis in enumerate(chain.head, len(chain.table)):
+        head = head @ matrices(axis, angles[:, k])
+    return (head @ np.array([*chain.tip, 1.0]))[:, :3] - GAUGE
+
+
+def actual(model, words, origin, chain):
     """Return where axes stand (n, 5), as words, when they are commanded to words."""
     found = words.copy()
     tool = np.array([0.0, 0.0, LENGTH])
     machine = words[:, :3] + tool + ZERO
-    found[:, :3] += model.error(machine - origin, gx.Outside.EXTRAPOLATE, -tool)
+    found[:, :3] += model.error(
+        machine - origin, gx.Outside.EXTRAPOLATE, levers(chain, words[:, 3:])
+    )
     return found
 
 
@@ -42,6 +63,20 @@ def chained(folder, kind, nominal, real, model, **options):
     given = {"tolerance": TOLERANCE, "after": volumetric(model)} | options
     machine = measured_text(kind, real) if "direction" not in options else None
     return pipeline(folder, machine or machine_text(kind, nominal), **given)
+
+
+@pytest.mark.parametrize("direction", ["to-tip", "retarget"])
+def test_positions_that_are_not_those_of_the_machine_are_refused(tmp_path, direction):
+    """After `to-tip` they are tips, and after `retarget` of axes that the machine file has not."""
+    nominal = chain_of_kind("cb-fork", 12)
+    (tmp_path / "target.toml").write_text(machine_text("cb-fork", nominal))
+    options = {"direction": direction, "tolerance": TOLERANCE}
+    if direction == "retarget":
+        options |= {"target": "target.toml", "rapids": "ends", "before": ""}
+    text = machine_text("cb-fork", nominal)
+    assert pipeline(tmp_path, text, **options)
+    with pytest.raises(gx.UsageError, match="volumetric, requires AXIS_POSITIONS"):
+        pipeline(tmp_path, text, after=volumetric(RIGID), **options)
 
 
 def beside(points, line):
@@ -71,10 +106,6 @@ def test_errors_of_linear_and_rotary_axes_in_one_budget(tmp_path, kind, model, d
     text = posted(short_walk(nominal, 3), letters)
     options = {"direction": direction, "calibrated": "real.toml"} if direction == "repost" else {}
     steps = chained(tmp_path, kind, nominal, real, model, **options)
-    if model == RIGID and nominal.head:
-        with pytest.raises(gx.InputError, match="the head is turned"):
-            steps.run(text)
-        return
     result = steps.run(text, "full")
     errors = gx.ModelFile.load(model).model
     old, new = positions(text, letters), positions(result.text, letters)
@@ -85,12 +116,12 @@ def test_errors_of_linear_and_rotary_axes_in_one_budget(tmp_path, kind, model, d
         along = np.linspace(0.0, 1.0, 401)[:, None]
         posed = old[line - 1] + along * (old[line] - old[line - 1])
         wanted = tips(nominal, posed) if direction == "repost" else posed[:, :3]
-        uncorrected = tips(real, actual(errors, posed, ORIGINS[model])) - wanted
+        uncorrected = tips(real, actual(errors, posed, ORIGINS[model], real)) - wanted
         without = max(without, float(np.linalg.norm(uncorrected, axis=1).max()))
         for row in rows:
             part = np.linspace(0.0, 1.0, 33)[:, None]
             commands = new[row - 1] + part * (new[row] - new[row - 1])
-            found = tips(real, actual(errors, commands, ORIGINS[model]))
+            found = tips(real, actual(errors, commands, ORIGINS[model], real))
             worst = max(worst, float(beside(found, wanted).max()))
     assert worst <= 2 * TOLERANCE + 2 * ROUNDED
     assert without > 4.0 * worst

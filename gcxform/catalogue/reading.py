@@ -263,13 +263,21 @@ CODES: dict[str, tuple[str, str]] = {
         "The program changes its work offset and the pass was told only one origin, or the "
         "machine file lacks the offset. The error depends on where the part is in the machine. "
         "Give a machine file with [work-offset.G54] and the others that are used, in place of "
-        "part-origin.",
+        "part-origin. With a turned head, an error model with angular errors depends on where the "
+        "tip is on it as well: on the points of the rotary axes, their angles and the tool.",
     ),
     "GX315": (
         "The tolerance needs shorter pieces than allowed",
         "A move has to be cut so that the machine stays within the tolerance, and some piece would "
         "be shorter than `min-length`. Neither is given up silently. Give a larger tolerance, or "
         "a smaller `min-length`.",
+    ),
+    "GX316": (
+        "A turn of the head whose feed a correction would change",
+        "With angular errors the tip is moved while the head turns, and the correction makes the "
+        "linear axes move, by micrometres. A control that measures the feed along them would then "
+        "turn the head in no time. Write such moves in inverse time (G93): `rtcp` does, and the "
+        "pass `feed` before this one.",
     ),
     "GX320": (
         "A feed that cannot be converted",

@@ -113,6 +113,16 @@ class ErrorModel(ABC):
     def largest(self, reach: float = 0.0) -> float:
         """Return an upper bound of |E| in mm inside the table."""
 
+    def turning(self, cells: float = 1.0) -> tuple[float, float]:
+        """Return bounds of the angular error |R| (rad) and of its slope |dR/dc| (rad/mm).
+
+        R x t is what a way t (mm) from the gauge point to the tip adds to the error. The bounds
+        hold for a number of `cells` beyond the table; they are 0 where no tool is needed.
+        """
+        if self.needs_tool:
+            raise NotImplementedError(f"{type(self).__name__} has no bounds of its turns")
+        return 0.0, 0.0
+
     @property
     def tool(self) -> FloatArray | None:
         """The way (3,) in mm from the gauge point to where the errors were measured.

@@ -113,6 +113,13 @@ class Lattice(Tabled):
         """Return bounds (3, 3) of |d2E/dci dcj| (mm/mm2), from the faces of all cells."""
         return self._twists[0] + reach * self._twists[1]
 
+    def turning(self, cells: float = 1.0) -> tuple[float, float]:
+        """Return bounds of the turns, which are largest at nodes: see `ErrorModel.turning`."""
+        if self.turns is None:
+            return 0.0, 0.0
+        grid, turns = self._wider(self.turns, cells)
+        return float(np.sqrt((turns**2).sum(axis=-1)).max()), _steepest(grid, turns)
+
     @cached_property
     def _steepness(self) -> tuple[float, float]:
         values, turns = self._fields()
@@ -136,19 +143,22 @@ class Lattice(Tabled):
             found += reach * float(np.sqrt((self.turns**2).sum(axis=-1)).max())
         return found
 
-    def _wider(self, values: FloatArray) -> Field:
-        """Return the grid and values with one extrapolated cell on every side."""
+    def _wider(self, values: FloatArray, cells: float = 1.0) -> Field:
+        """Return the grid and values with a number of extrapolated cells on every side."""
         grid = list(self.grid)
         for axis in range(3):
             nodes = grid[axis]
-            if len(nodes) > 1:
-                grid[axis] = np.concatenate(
-                    [[2 * nodes[0] - nodes[1]], nodes, [2 * nodes[-1] - nodes[-2]]]
-                )
+            if len(nodes) > 1 and cells:
                 v = np.moveaxis(values, axis, 0)
-                v = np.concatenate([2 * v[:1] - v[1:2], v, 2 * v[-1:] - v[-2:-1]])
+                grid[axis], v = _beyond(nodes, cells), _beyond(v, cells)
                 values = np.moveaxis(v, 0, axis)
         return grid, values
+
+
+def _beyond(rows: FloatArray, cells: float) -> FloatArray:
+    """Return rows with one more at both ends, as far beyond them as a number of steps."""
+    before = rows[:1] + cells * (rows[:1] - rows[1:2])
+    return np.concatenate([before, rows, rows[-1:] + cells * (rows[-1:] - rows[-2:-1])])
 
 
 def _steepest(grid: list[FloatArray], values: FloatArray) -> float:

@@ -53,6 +53,10 @@ class Mean(ErrorModel):
         """Return the bounds of the model."""
         return self.model.curvature(reach)
 
+    def turning(self, cells: float = 1.0) -> tuple[float, float]:
+        """Return the bounds of the model."""
+        return self.model.turning(cells)
+
     def largest(self, reach: float = 0.0) -> float:
         """Return the bound of the model."""
         return self.model.largest(reach)

@@ -137,6 +137,15 @@ class RigidBody(Tabled):
                 found[k, j] = found[j, k] = float(np.sqrt((slope**2).sum(axis=1)).max())
         return found
 
+    def turning(self, cells: float = 1.0) -> tuple[float, float]:
+        """Return bounds of the turns of all axes together: see `ErrorModel.turning`."""
+        angle = 0.0
+        for function in self.axes:
+            if function is not None:
+                turn = _extended(function, cells)[:, 3:]
+                angle += float(np.sqrt((turn**2).sum(axis=1)).max())
+        return angle, float(np.sqrt((self._turns**2).sum()))
+
     @cached_property
     def _slopes(self) -> FloatArray:
         """Bounds (3,) of the columns of dE/dc with the tool of the measurement."""
@@ -191,7 +200,8 @@ def _reached(function: AxisFunction | None, cells: float) -> FloatArray:
     return np.array([nodes[0] - cells * first, nodes[-1] + cells * last])
 
 
-def _extended(function: AxisFunction) -> FloatArray:
-    """Return the values at the nodes and one cell beyond them."""
+def _extended(function: AxisFunction, cells: float = 1.0) -> FloatArray:
+    """Return the values at the nodes and a number of cells beyond them."""
     values = function.values
-    return np.vstack([2 * values[0] - values[1], values, 2 * values[-1] - values[-2]])
+    before = values[0] + cells * (values[0] - values[1])
+    return np.vstack([before, values, values[-1] + cells * (values[-1] - values[-2])])

@@ -82,6 +82,11 @@ class Sum(ErrorModel):
         """Return the sum of the bounds."""
         return np.asarray(np.sum([model.curvature(reach) for model in self.models], axis=0))
 
+    def turning(self, cells: float = 1.0) -> tuple[float, float]:
+        """Return the sums of the bounds."""
+        angle, slope = np.sum([model.turning(cells) for model in self.models], axis=0).tolist()
+        return angle, slope
+
     def largest(self, reach: float = 0.0) -> float:
         """Return the sum of the bounds."""
         return sum(model.largest(reach) for model in self.models)

@@ -25,6 +25,7 @@ from faults import (
     tables,
     thermal,
     tied,
+    turned,
     writing,
 )
 from faults.mutation import Mutation
@@ -43,6 +44,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     *splines.MUTATIONS,
     *thermal.MUTATIONS,
     *tied.MUTATIONS,
+    *turned.MUTATIONS,
     *tables.MUTATIONS,
     *proof.MUTATIONS,
     *running.MUTATIONS,

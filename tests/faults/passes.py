@@ -167,8 +167,8 @@ MUTATIONS = (
     Mutation(
         "undo of the inverse: curved pieces are not divided",
         f"{PASSES}/retracing.py",
-        "np.ceil(np.sqrt(sag / BEND_SLACK))",
-        "np.ceil(np.sqrt(0.01 * sag / BEND_SLACK))",
+        "np.ceil(np.sqrt(np.nan_to_num(sag) / BEND_SLACK))",
+        "np.ceil(np.sqrt(0.01 * np.nan_to_num(sag) / BEND_SLACK))",
         INVERSE,
     ),
     Mutation(

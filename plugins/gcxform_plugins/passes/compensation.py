@@ -16,6 +16,7 @@ from gcxform_plugins.passes.fitting import ArcFitter
 from gcxform_plugins.passes.placing import Place
 from gcxform_plugins.passes.ranges import check_inside
 from gcxform_plugins.passes.splitting import cuts_of_lines
+from gcxform_plugins.passes.swinging import Swing
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.volumetric import Volumetric
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+PACE = 0.1  # of a way; by so much more or less of it, at most, a turn of the head may be faster
 SAME = 1e-9  # mm; an axis that moves by less stays where it is
 
 
@@ -48,7 +50,8 @@ class Compensation:
         self.start = path.start[:, :3] + self.offset
         self.end = path.end[:, :3] + self.offset
         model = step.model.model
-        reach = gx.reach_of(model, place.tool)
+        self.swing = None if place.lever is None else Swing(step, place.lever)
+        reach = gx.reach_of(model, place.tool) if self.swing is None else self.swing.reach
         self.lipschitz, self.curvature = model.lipschitz(reach), model.curvature(reach)
         steep = self.lipschitz / (1 - min(self.lipschitz, 0.5))
         self.undone = steep if step.inverse else self.lipschitz  # of what the undo moves, mm/mm
@@ -58,9 +61,12 @@ class Compensation:
         """Return table position minus program position of rows."""
         return self.place.offset_of(rows)
 
-    def command(self, target: Floats, rows: Ints) -> Floats:
-        """Return the commands (n, 3) for targets in the table (n, 3) on rows, mm."""
-        return self.step.command(target, self.place.tool_of(rows))
+    def command(self, target: Floats, rows: Ints, part: Floats | None = None) -> Floats:
+        """Return the commands (n, 3) for targets in the table (n, 3) at parts of rows, mm.
+
+        Without parts the rows are at their ends, or their heads do not turn.
+        """
+        return self.step.command(target, self.place.tool_of(rows, part))
 
     def correction(self, rows: Ints, part: Floats) -> Floats:
         """Return command minus target (n, 3) at parts of the way of arcs."""
@@ -76,6 +82,7 @@ class Compensation:
         if self.step.rapids == "skip" and self.path.after_rapid:
             self.entry_command = self.start[0]
         commands = self._commands()
+        self._check_paces(commands)
         rows, part = self._cuts(commands)
         if len(rows):
             return self._cut(rows, part, commands)
@@ -150,6 +157,24 @@ class Compensation:
             "give a larger tolerance, or a smaller min-length",
         )
 
+    def _check_paces(self, commands: Floats) -> None:
+        """Refuse feeds per minute where the correction is much of what the linear axes go.
+
+        The control would measure the feed along a few micrometres, and turn the head in no time.
+        """
+        if self.swing is None:
+            return
+        path = self.path
+        before = np.vstack([self.entry_command, commands[:-1]])
+        way = np.sqrt(((self.end - self.start) ** 2).sum(axis=1))
+        moved = np.sqrt(((commands - self.end - (before - self.start)) ** 2).sum(axis=1))
+        wrong = self.swing.turning & (moved > PACE * way) & ~self.left
+        wrong &= (path.kind != gx.Kind.RAPID) & (path.feed_mode != gx.FeedMode.INVERSE_TIME)
+        if wrong.any():
+            message = "the head turns and the linear axes hardly move, but for the correction"
+            hint = "write it in inverse time (G93), whose feed does not depend on how far they go"
+            raise path.refuse("GX316", np.flatnonzero(wrong)[:1], message, hint)
+
     def _check_size(self, command: Floats, target: Floats, rows: Ints) -> None:
         size = np.sqrt(((command - target) ** 2).sum(axis=1))
         size[self.left[rows]] = 0.0
@@ -185,7 +210,7 @@ class Compensation:
         target = self.end[row]
         target[inner] = self._between(row[inner], part[inner])
         command = commands[row]
-        command[inner] = self.command(target[inner], row[inner])
+        command[inner] = self.command(target[inner], row[inner], part[inner])
         self._check_size(command, target, row)
         end = self._with_others(commands - self.offset)[row]
         end[:, :3] = np.where(inner[:, None], command - self.offset_of(row), end[:, :3])

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
-from gcxform_plugins.passes.undoing import BEND_SLACK, UNDO_SLACK, Machine
+from gcxform_plugins.passes.undoing import BEND_SLACK, UNDO_SLACK, Arm, Machine
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -55,9 +55,10 @@ class Commands(Machine):
         which is so little that this adds less than the chord itself.
         """
         slack = 2.0 * UNDO_SLACK if self.path.has_arcs else 0.0
-        if self.curvature.any():
+        if self.curved:
             slack += self.stretch * BEND_SLACK + slack
-        return slack + 2.0 * self.lipschitz * self.beyond
+        bulge = BEND_SLACK if self.arm is not None else 0.0
+        return slack + 2.0 * self.lipschitz * (self.beyond + self.stretch * bulge)
 
     def _crossings(self) -> Cuts:
         path = self.path
@@ -69,6 +70,9 @@ class Commands(Machine):
             nowhere = (np.empty(0), np.empty(0), np.empty(0))
             steep = self.lipschitz * self.stretch
             cuts = gx.arc_cuts(path, self.offset, nowhere, steep, bend, UNDO_SLACK)
+        if self.arm is not None:
+            cuts = self._swung(self.arm, np.flatnonzero(lines), *cuts)
+            return self._at_nodes(np.flatnonzero(lines | path.is_arc), *cuts)
         cuts = self._at_nodes(np.flatnonzero(lines | path.is_arc), *cuts)
         return self._straight(lines, *cuts) if self.curvature.any() else cuts
 
@@ -103,11 +107,24 @@ class Commands(Machine):
         of, begin, stop = _pieces(np.flatnonzero(lines), row[mine], part[mine])
         way = np.abs(self._command(of, stop) - self._command(of, begin))
         sag = np.einsum("ni,ij,nj->n", way, self.curvature, way) / 8.0
-        count = np.maximum(np.ceil(np.sqrt(sag / BEND_SLACK)), 1.0).astype(np.int64)
-        every = np.repeat(np.arange(len(of)), count - 1)
-        nth = np.arange(len(every)) - np.repeat(np.cumsum(count - 1) - (count - 1), count - 1) + 1
-        more = begin[every] + (stop - begin)[every] * nth / count[every]
-        return np.append(row, of[every]), np.append(part, more)
+        of, more = _divided(of, begin, stop, sag)
+        return np.append(row, of), np.append(part, more)
+
+    def _swung(self, arm: Arm, lines: Ints, row: Ints, part: Floats) -> Cuts:
+        """Return the cuts, and more of lines so that commands are straight between two of them.
+
+        The command c for a point q is c = q - E(c, t), and so, with L of the error and a way T r of
+        the tip, |c'| (1 - L) <= |q'| + a T r, and c is bent by what bends E along it, stretched.
+        Commands of a piece then leave its chord by little, and its cell by no more than that.
+        """
+        way = np.abs(self.end[lines] - self.start[lines])
+        swung = arm.angle * arm.turn[lines] * arm.long[lines]
+        fast = (np.sqrt((way**2).sum(axis=1)) + swung) * self.stretch
+        ways = way + (self.lipschitz * fast + swung)[:, None]
+        sag = np.einsum("ni,ij,nj->n", ways, self.curvature, ways) / 8.0
+        sag += arm.sag(lines, fast, np.ones(len(lines)))
+        of, more = _divided(lines, np.zeros(len(lines)), np.ones(len(lines)), sag)
+        return np.append(row, of), np.append(part, more)
 
     def _command(self, rows: Ints, part: Floats) -> Floats:
         """Return the commands (n, 3), in the table, for points of rows."""
@@ -118,7 +135,15 @@ class Commands(Machine):
         if arcs.any():
             point[arcs] = gx.points_on_arcs(path, rows[arcs], part[arcs])
         table = point + self.place.offset_of(rows)
-        return table + self.moved(table, self.place.tool_of(rows))
+        return table + self.moved(table, self.place.tool_of(rows, part))
+
+
+def _divided(rows: Ints, begin: Floats, stop: Floats, sag: Floats) -> Cuts:
+    """Return where pieces of rows, off their chords by `sag` (mm), are divided to be straight."""
+    count = np.maximum(np.ceil(np.sqrt(np.nan_to_num(sag) / BEND_SLACK)), 1.0).astype(np.int64)
+    every = np.repeat(np.arange(len(rows)), count - 1)
+    nth = np.arange(len(every)) - np.repeat(np.cumsum(count - 1) - (count - 1), count - 1) + 1
+    return rows[every], begin[every] + (stop - begin)[every] * nth / count[every]
 
 
 def _pieces(moves: Ints, row: Ints, part: Floats) -> tuple[Ints, Floats, Floats]:

@@ -114,6 +114,9 @@ class Rtcp(gx.Pass):
             object.__setattr__(self, "requires", self.requires - {gx.LINEAR_ONLY})
             object.__setattr__(self, "resolves", True)
             object.__setattr__(self, "whole_cuts", self.direction == "retarget")
+        if self.direction == "retarget":  # its axes are those of another machine than [machine]
+            object.__setattr__(self, "ensures", frozenset())
+            object.__setattr__(self, "clears", frozenset({gx.AXIS_POSITIONS}))
         if self.direction == "to-tip":
             object.__setattr__(self, "requires", PLAIN | self.ensures)
             object.__setattr__(self, "ensures", self.clears)

@@ -39,7 +39,7 @@ def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
     exact = step.tolerance is None or step.split == "nodes"
     residual = NEGLIGIBLE if exact else step.limit
     most = step.limit
-    if work.curvature.any():
+    if work.curvature.any() or work.swing is not None:
         between = CURVED if exact else CURVED_SHARE * step.limit
         row, part = _divided(work, row, part, lines, between)
         residual -= 0.0 if exact else between
@@ -58,7 +58,7 @@ def _at_nodes(work: Compensation, points: Floats, lines: Flags) -> tuple[Ints, F
     start, way = work.start[row], work.end[row] - work.start[row]
     index = np.arange(len(row))
     for _ in range(0 if step.inverse else REFINEMENTS):
-        command = work.command(start + part[:, None] * way, row)
+        command = work.command(start + part[:, None] * way, row, part)
         with np.errstate(divide="ignore", invalid="ignore"):
             shift = (plane - command[index, axis]) / way[index, axis]
         part = part + np.where(np.isfinite(shift) & (np.abs(shift) < 0.5), shift, 0.0)
@@ -77,6 +77,8 @@ def _divided(
     before = np.where(np.append(True, row[1:] != row[:-1]), 0.0, np.append(0.0, part[:-1]))
     way = np.abs(work.end[row] - work.start[row]) * (part - before)[:, None]
     bend = np.einsum("ni,ij,nj->n", way, work.curvature, way) / 8 * (1 + 4 * work.lipschitz)
+    if work.swing is not None:
+        bend += work.swing.bend(row, way, part - before) * (1 + 4 * work.lipschitz)
     pieces = np.ceil(np.sqrt(bend / between)).astype(np.int64)
     long = np.flatnonzero(pieces > 1)
     which = np.repeat(long, pieces[long] - 1)
@@ -103,7 +105,7 @@ def _needed(
     """
     limit, most = (residual * (1 - 1e-6) / (1 + work.undone) for residual in residuals)
     start, way = work.start[row], work.end[row] - work.start[row]
-    exact = work.command(start + part[:, None] * way, row)
+    exact = work.command(start + part[:, None] * way, row, part)
     straight = points[row] + part[:, None] * (points[row + 1] - points[row])
     off = np.sqrt(((exact - straight) ** 2).sum(axis=1))
     begins = np.flatnonzero(np.append(True, row[1:] != row[:-1]))

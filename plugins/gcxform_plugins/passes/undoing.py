@@ -5,12 +5,14 @@ The forward model alone: nothing here is shared with the search for commands.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform_plugins.passes.levers import Lever
 from gcxform_plugins.passes.placing import Place
 from gcxform_plugins.passes.ranges import check_inside
 
@@ -26,6 +28,36 @@ UNDO_SLACK = 2e-6  # mm; how far pieces of an undone arc are from the curve they
 BEND_SLACK = 1e-5  # mm; the same for pieces of a line, and what the bending adds to an arc
 
 
+class Arm:
+    """How far the error may be from its chord because the head turns, by lengths alone.
+
+    A tip at most r from the points of all axes of the head, which turn by T in all, goes T r and
+    bends by T^2 r at most. With bounds a of the angular error and s of its slope, the error along a
+    way w is bent by 2 s w T r + a T^2 r, and a piece is off its chord by an eighth of that.
+
+    turn  (n,) rad, T of each row
+    long  (n,) mm, r
+    reach mm, how far the tip is at most from where the errors were measured
+    """
+
+    def __init__(self, step: Volumetric, lever: Lever) -> None:
+        model = step.model.model
+        self.angle, self.slope = model.turning(step.cells)
+        self.turn = np.abs(np.radians(lever.stop - lever.begin)).sum(axis=1)
+        points = [np.array(axis.point) for axis in lever.head]
+        between = sum(float(np.linalg.norm(b - a)) for a, b in pairwise(points))
+        tips = np.linalg.norm(lever.held + lever.gauge - points[-1], axis=1)
+        self.long = tips + between
+        nearest = gx.reach_of(model, np.vstack([lever.starts, lever.ends]))
+        self.reach = nearest + float((self.turn * self.long).max(initial=0.0)) / 2.0
+
+    def sag(self, rows: Ints, length: Floats, share: Floats) -> Floats:
+        """Return how far (n,) mm shares of rows, `length` (n,) mm long, are off their chords."""
+        turn, long = self.turn[rows] * share, self.long[rows]
+        bent = 2.0 * self.slope * length * turn * long + self.angle * turn**2 * long
+        return np.asarray(bent / 8.0)
+
+
 class Machine:
     """Where the machine goes with commands: the forward model alone."""
 
@@ -35,7 +67,8 @@ class Machine:
         self.place = place
         offset = self.offset = place.offset
         model = step.model.model
-        reach = gx.reach_of(model, place.tool)
+        self.arm = None if place.lever is None else Arm(step, place.lever)
+        reach = gx.reach_of(model, place.tool) if self.arm is None else self.arm.reach
         self.lipschitz, self.curvature = model.lipschitz(reach), model.curvature(reach)
         self.start = path.start[:, :3] + offset
         self.end = path.end[:, :3] + offset
@@ -58,7 +91,7 @@ class Machine:
             counts = np.bincount(every, minlength=len(path))
         point = self._points(every, at)
         offset = self.place.offset_of(every)
-        actual = point + self.moved(point + offset, self.place.tool_of(every))
+        actual = point + self.moved(point + offset, self.place.tool_of(every, at))
         if self.step.rapids == "skip":
             rapid = path.kind[every] == gx.Kind.RAPID
             actual[rapid] = point[rapid]
@@ -91,6 +124,11 @@ class Machine:
     def moved(self, table: Floats, tool: Floats | None) -> Floats:
         """Return by how much (n, 3) points in the table (n, 3) are moved: the error, mm."""
         return self.step.error(table, tool)
+
+    @property
+    def curved(self) -> bool:
+        """Whether the error is more than straight between its nodes."""
+        return self.arm is not None or bool(self.curvature.any())
 
     def _crossings(self) -> tuple[Ints, Floats]:
         """Return where lines and arcs are cut: at nodes, and arcs also where they turn far."""
@@ -125,7 +163,7 @@ class Machine:
 
     def _curves(self, lines: Ints, row: Ints, part: Floats) -> tuple[Ints, Floats]:
         """Return the cuts, and more where between two of them the error is no straight line."""
-        if not self.curvature.any():
+        if not self.curved:
             return row, part
         rows = np.concatenate([row, lines])
         stop = np.append(part, np.ones(len(lines)))
@@ -134,6 +172,9 @@ class Machine:
         begin = np.where(np.append(True, rows[1:] != rows[:-1]), 0.0, np.append(0.0, stop[:-1]))
         way = np.abs(self.end[rows] - self.start[rows]) * (stop - begin)[:, None]
         sag = np.nan_to_num(np.einsum("ni,ij,nj->n", way, self.curvature, way)) / 8.0
+        if self.arm is not None:
+            length = np.sqrt((np.nan_to_num(way) ** 2).sum(axis=1))
+            sag += self.arm.sag(rows, length, stop - begin)
         pieces = np.maximum(np.ceil(np.sqrt(sag / BEND_SLACK)), 1.0).astype(np.int64)
         every = np.repeat(np.arange(len(rows)), pieces)
         nth = np.arange(len(every)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
@@ -179,7 +220,7 @@ class Machine:
     def slack(self) -> float:
         """Return how far (mm) the pieces are from the curves they stand for."""
         slack = UNDO_SLACK if self.path.has_arcs else 0.0
-        return slack + ((BEND_SLACK + slack) if self.curvature.any() else 0.0)
+        return slack + ((BEND_SLACK + slack) if self.curved else 0.0)
 
     def _points_between(self, rows: Ints, part: Floats) -> Floats:
         """Return how far the middle of pieces of arcs is moved (n, 3); 0 for other rows."""

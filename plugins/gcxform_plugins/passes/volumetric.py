@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform_plugins.passes.compensation import Compensation
+from gcxform_plugins.passes.levers import UNKNOWN, lever_of
 from gcxform_plugins.passes.placing import Place
 from gcxform_plugins.passes.retracing import Commands
 from gcxform_plugins.passes.undoing import Machine
@@ -40,7 +41,7 @@ class Volumetric(gx.Pass):
     """
 
     name = "volumetric"
-    requires = frozenset({gx.NOMINAL})
+    requires = frozenset({gx.NOMINAL, gx.AXIS_POSITIONS})
     ensures = frozenset({gx.COMPENSATED})
     clears = frozenset({gx.NOMINAL})
 
@@ -107,7 +108,8 @@ class Volumetric(gx.Pass):
         if self.inverse and self.iterations:
             raise ValueError("inverse writes where the machine goes, which takes no iterations")
         if self.inverse:
-            turned = {"requires": self.ensures, "ensures": self.requires, "clears": self.ensures}
+            asked = self.ensures | {gx.AXIS_POSITIONS}
+            turned = {"requires": asked, "ensures": self.requires, "clears": self.ensures}
             for name, facts in turned.items():
                 object.__setattr__(self, name, facts)
 
@@ -122,6 +124,14 @@ class Volumetric(gx.Pass):
     def limit(self) -> float:
         """The residual (mm) that arcs are held to."""
         return ARC_TOLERANCE if self.tolerance is None else self.tolerance
+
+    @property
+    def cells(self) -> float:
+        """By how many cells beyond the tables bounds of the error have to hold.
+
+        One is for commands, which may be a little beyond where their targets are not.
+        """
+        return 1.0 + self.max_extrapolation * (self.outside is gx.Outside.EXTRAPOLATE)
 
     def begin(self, context: gx.PassContext) -> None:
         """Refuse a model that cannot be inverted, and a run without origin."""
@@ -170,6 +180,7 @@ class Volumetric(gx.Pass):
         origin = np.array(self.table_origin)
         tools = np.nan_to_num(np.array([frame.tool for frame in path.frames]))
         if self.part_origin is not None:
+            self._check_head(path, context)
             self._check_frames(path, "a second work offset, but only one part-origin", False)
             offset = np.array(self.part_origin) - origin - tools
             return Place(offset if len(offset) == 1 else offset[path.frame])
@@ -180,20 +191,27 @@ class Volumetric(gx.Pass):
             message = f"the machine file has no work offset {path.first}"
             raise path.refuse("GX314", np.array([0]), message, "add it there")
         zero = [table[path.first].get(axis, 0.0) for axis in "XYZ"]
-        tip = None
-        if self.model.model.needs_tool:
-            self._check_head(path, context.machine.head)
-            tip = -tools
-            tip = tip[0] if len(tip) == 1 else tip[path.frame]
-        return Place(np.array([zero]) - origin, tip)
+        offset = np.array([zero]) - origin
+        if not self.model.model.needs_tool:
+            return Place(offset)
+        tip = -tools
+        lever = None
+        if context.machine.head:
+            lever = lever_of(path, context, tip[path.frame])
+        if lever is not None:
+            return Place(offset, lever.ends, lever)
+        return Place(offset, tip[0] if len(tip) == 1 else tip[path.frame])
 
-    def _check_head(self, path: gx.Toolpath, head: tuple[str, ...]) -> None:
-        """Refuse angular errors where the head is turned, and with it the way to the tip."""
-        columns = [path.axes.index(letter) for letter in head if letter in path.axes]
+    def _check_head(self, path: gx.Toolpath, context: gx.PassContext) -> None:
+        """Refuse angular errors where the head is turned, and only the origin of the tip known."""
+        machine = context.machine
+        if machine is None or not self.model.model.needs_tool:
+            return
+        columns = [path.axes.index(letter) for letter in machine.head if letter in path.axes]
         turned = (np.nan_to_num(path.end[:, columns]) != 0.0).any(axis=1)
         if turned.any():
-            message = "the head is turned, and the model has errors that depend on where the tip is"
-            hint = "a model without roll, pitch and yaw is compensated for turned heads too"
+            message = f"{UNKNOWN}part-origin says nothing of the axes"
+            hint = "give a machine file with [work-offset.*] and [tool.*] instead of part-origin"
             raise path.refuse("GX314", np.flatnonzero(turned)[:1], message, hint)
 
     def _check_frames(self, path: gx.Toolpath, message: str, tools: bool) -> None:
