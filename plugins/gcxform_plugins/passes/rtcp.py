@@ -189,10 +189,8 @@ class Rtcp(gx.Pass):
         if self.calibrated is None:
             return
         measured = gx.chain_of(self.calibrated.machine)
-        alike = ("letters", "tip"), tuple(len(side) for side in (posted.table, posted.head))
-        names, sides = alike
-        same = all(getattr(posted, name) == getattr(measured, name) for name in names)
-        if not same or sides != (len(measured.table), len(measured.head)):
+        one, other = ((chain.letters, chain.tip, len(chain.table)) for chain in (posted, measured))
+        if one != other:
             message = "the calibrated machine has other rotary axes, or another gauge point"
             hint = "take the machine file that `gcxform calibrate` has made of the one of [machine]"
             raise gx.UsageError.one("GX743", message, hint=hint)
@@ -245,11 +243,8 @@ class Rtcp(gx.Pass):
         """Whether the calibrated machine is where the one posted for is."""
         if self.calibrated is None or context.machine is None:
             return False
-        pairs = zip(
-            gx.chain_of(context.machine).axes,
-            gx.chain_of(self.calibrated.machine).axes,
-            strict=True,
-        )
+        posted, measured = gx.chain_of(context.machine), gx.chain_of(self.calibrated.machine)
+        pairs = zip(posted.axes, measured.axes, strict=True)
         return all(
             (one.direction, one.point, one.sign) == (other.direction, other.point, other.sign)
             for one, other in pairs
