@@ -23,7 +23,7 @@ from gcxform.emit.emitter import Emitter
 from gcxform.modal.interpreter import Interpreter
 from gcxform.testing.cases import outcome, run_case
 from gcxform.verify import Verifier
-from gcxform.worker import DIED, Here, Process, ahead, worker
+from gcxform.worker import DIED, Here, Process, _may_copy, ahead, worker
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="no processes here")
 
@@ -244,6 +244,7 @@ SOME = [case for case in CASES[::15] if not case.xfail]
 @pytest.mark.parametrize("case", SOME, ids=lambda case: name(case.path))
 def test_processes_make_no_difference(case, tmp_path, monkeypatch):
     monkeypatch.setattr("gcxform.source.WINDOW", 1)
+    assert _may_copy()
     (tmp_path / "lines").mkdir()
     found = outcome(case, tmp_path / "lines", PLACES)
     if case.diagnostics:
