@@ -209,6 +209,11 @@ CODES: dict[str, tuple[str, str]] = {
         "`rtcp` finds the angles of machines with two rotary axes that count on, and it writes "
         "for the tools that the program was read with. Mend the file of the target machine.",
     ),
+    "GX745": (
+        "The dialect has no tool vectors",
+        'With `tip-codes = "vectors"` `rtcp` reads programs that say the tool axis by I, J and K. '
+        "Which code announces them is known of few dialects: G43.5 of `fanuc`.",
+    ),
     "GX801": (
         "Two plugins offer the same name",
         "Which one a pipeline means would depend on the order of installation. Uninstall one of "

@@ -22,13 +22,17 @@ import numpy as np
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_circling import Circling
 from gcxform_plugins.passes.rtcp_cutting import STILL, Cutting
-from gcxform_plugins.passes.rtcp_driven import Driven, Led
+from gcxform_plugins.passes.rtcp_driven import Driven, Led, Pointed
+from gcxform_plugins.passes.rtcp_machines import check_machines
 from gcxform_plugins.passes.rtcp_moving import Correcting, Moving
 from gcxform_plugins.passes.rtcp_place import Place, turned_at
+from gcxform_plugins.passes.rtcp_pointed import PointedProof
+from gcxform_plugins.passes.rtcp_pointing import InProportion, Pointing
 from gcxform_plugins.passes.rtcp_proof import Proof
 from gcxform_plugins.passes.rtcp_retracted import Retracted
 from gcxform_plugins.passes.rtcp_switches import Switches
 from gcxform_plugins.passes.rtcp_undoing import Undoing
+from gcxform_plugins.passes.rtcp_vectors import without_left
 from gcxform_plugins.passes.rtcp_ways import Between, Corrected
 
 PLAIN = frozenset({gx.ABSOLUTE, gx.LINEAR_ONLY, gx.NOMINAL})
@@ -58,10 +62,11 @@ class Rtcp(gx.Pass):
         ),
     ] = "to-machine"
     tip_codes: Annotated[
-        Literal["refuse", "read"],
+        Literal["refuse", "read", "vectors"],
         gx.Option(
             "to-machine: programs that let the control follow the tip (G43.4, G234, tip-on of the "
-            "machine file): read them as what it is without, for a control that does not"
+            "machine file): read them as what it is without, for a control that does not; vectors: "
+            "those that say the tool axis by I, J, K (G43.5)"
         ),
     ] = "refuse"
     rapids: Annotated[
@@ -129,8 +134,10 @@ class Rtcp(gx.Pass):
             raise ValueError("retarget takes target, the file of the machine to write for")
         if self.direction != "repost" and self.orientation != "keep":
             raise ValueError("orientation is an option of repost")
-        if self.direction != "to-machine" and self.tip_codes == "read":
+        if self.direction != "to-machine" and self.tip_codes != "refuse":
             raise ValueError("tip-codes is an option of to-machine: the others would do it twice")
+        if self.reads_vectors and self.rapids == "refuse":
+            raise ValueError('vectors turn axes in rapids: say rapids = "ends" if all is clear')
         if self.direction != "to-machine" and self.orientation_path != "angles":
             raise ValueError("orientation-path is an option of to-machine")
         if (self.retract is None) != (self.retract_feed is None):
@@ -147,12 +154,18 @@ class Rtcp(gx.Pass):
             self.direction == "retarget"
             or self.orientation != "keep"
             or self.orientation_path == "great-circle"
+            or self.reads_vectors
         )
 
     @property
     def reads_tip_codes(self) -> bool:  # type: ignore[override]
         """Whether it does what the control was asked for."""
         return self.tip_codes == "read"
+
+    @property
+    def reads_vectors(self) -> bool:  # type: ignore[override]
+        """Whether it makes angles of tool vectors."""
+        return self.tip_codes == "vectors"
 
     @property
     def letters(self) -> str:
@@ -181,45 +194,7 @@ class Rtcp(gx.Pass):
             message = "rtcp needs a machine with rotary axes"
             hint = "[machine] file = ..., with `kinematics`, or `table` and `head`"
             raise gx.UsageError.one("GX742", message, hint=hint)
-        self._check_calibrated(gx.chain_of(machine))
-        self._check_target(context)
-
-    def _check_calibrated(self, posted: gx.Chain) -> None:
-        """Refuse a calibrated machine that is another one."""
-        if self.calibrated is None:
-            return
-        measured = gx.chain_of(self.calibrated.machine)
-        one, other = ((chain.letters, chain.tip, len(chain.table)) for chain in (posted, measured))
-        if one != other:
-            message = "the calibrated machine has other rotary axes, or another gauge point"
-            hint = "take the machine file that `gcxform calibrate` has made of the one of [machine]"
-            raise gx.UsageError.one("GX743", message, hint=hint)
-
-    def _check_target(self, context: gx.PassContext) -> None:
-        """Refuse a target whose angles are not found, and one with other tools."""
-        machine = context.machine
-        assert machine is not None
-        files = [file.machine for file in (self.calibrated, self.target) if file is not None]
-        for other in (files or [machine]) if self.turns_anew else ():
-            chain = gx.chain_of(other)
-            gx.attitudes(chain, np.array([[0.0, 0.0, 1.0]]))
-            wrapped = [axis.letter for axis in chain.axes if axis.wrap is not None and files]
-            if len(chain.axes) != 2 or wrapped:
-                self._refuse_target(wrapped)
-        for number, tool in self.target.machine.tools.items() if self.target else ():
-            if machine.tools.get(number, tool) != tool:
-                message = f"tool {number} is another one in the file of the target"
-                hint = "give both machine files the tools that the program is for"
-                raise gx.UsageError.one("GX744", message, hint=hint)
-
-    @staticmethod
-    def _refuse_target(wrapped: list[str]) -> None:
-        message = "angles are found for machines with two rotary axes"
-        hint = ""
-        if wrapped:
-            message = f"which way {wrapped[0]} turns is not known: the machine file gives it a wrap"
-            hint = "leave wrap out, and give limits, if the control counts full turns"
-        raise gx.UsageError.one("GX744", message, hint=hint)
+        check_machines(self, context)
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path of the axes for one of tips; if asked the reverse, or one corrected."""
@@ -279,6 +254,8 @@ class Rtcp(gx.Pass):
     def _moving(self) -> type[Moving]:
         if self.target is not None:
             return Moving
+        if self.reads_vectors:
+            return InProportion if self.orientation_path == "angles" else Pointing
         return Circling if self.calibrated is None else Correcting
 
     def prove(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> None:
@@ -291,6 +268,9 @@ class Rtcp(gx.Pass):
         source, _ = self._machines(before, context)
         _, target = self._machines(after, context)
         driven = Driven(self, after, target)
+        if self.reads_vectors:
+            pointed = Pointed(without_left(before), source)
+            return PointedProof(self, context, pointed, driven, np.isinf(before.end))
         if self.direction == "to-machine":
             return Proof(self, context, Led(before, source), driven)
         return Proof(self, context, Driven(self, before, source), driven)
@@ -332,6 +312,7 @@ class Rtcp(gx.Pass):
         self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
     ) -> dict[str, float]:
         """Return how much longer a piece takes than its feed says, if any does."""
+        before = without_left(before)
         owner = np.searchsorted(before.source, after.source)
         cut = (after.kind != gx.Kind.RAPID) & (after.feed_mode != before.feed_mode[owner])
         rows = np.flatnonzero(cut)

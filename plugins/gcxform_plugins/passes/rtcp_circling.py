@@ -17,13 +17,53 @@ SOON_LESS = 0.02  # of a leap within the block
 TRIED = 64  # places of a block that are looked at for leaps
 
 
-class Circling(Moving):
-    """Of tips the axes of the same machine, the tool axis on great circles between blocks.
-
-    Angles at the ends of blocks are those of the program.
-    """
+class OnCircles(Moving):
+    """Of tips the axes of the same machine, the tool axis on great circles between blocks."""
 
     _drives = False
+
+    def _vectors(self, row: Ints) -> tuple[Floats, Floats]:
+        """Return the tool axes (n, 3) before rows and at their ends."""
+        chain = self.place.chain
+        one, other = (
+            chain.tool_axis(self.place.angles(side[row])) for side in (self.start, self.end)
+        )
+        return one, other
+
+    def _tips(self, positions: Floats, row: Ints) -> Floats:
+        return positions[:, :3]
+
+    def _axis(self, positions: Floats, row: Ints, part: Floats) -> Floats:
+        one, other = self._vectors(row)
+        lines = self.cuts[row] & np.isfinite(one).all(axis=1)
+        return np.where(lines[:, None], on_circle(one, other, part), other)
+
+    def _far(self, source: tuple[Floats, ...], target: tuple[Floats, ...], row: Ints) -> Floats:
+        """Return how far (n,) mm the tip leaves its line, and in proportion the tool axis."""
+        far = np.zeros(len(row))
+        sides = [self.target.angles(side) for side in target]
+        for chain, here in self.target.chains(row):
+            one, other = (self.target.on_workpiece(side[here, :3], chain) for side in source)
+            far[here] = leaving(chain, (one, other), (sides[0][here], sides[1][here]))
+        share = np.degrees(self._aside(sides[1] - sides[0])) / self.step.axis_tolerance
+        return np.asarray(np.maximum(far, share * self.step.tolerance))
+
+    def _aside(self, step: Floats) -> Floats:
+        """Return how far (n,) rad the tool axis leaves its circle while axes turn by steps (n, m).
+
+        It is an eighth of the second derivative aside: of the product of both turns, and of the
+        turn about the tool itself; and a little more, as circles bend. The proof has the last word.
+        """
+        chain = self.target.chain
+        first = max(len(chain.table) - 1, 0)
+        other = chain.axes[1 - first]
+        one, two = (np.abs(np.radians(step[:, k])) for k in (first, 1 - first))
+        spin = one + two * abs(other.direction[2])
+        return np.asarray(1.05 * (one * two + spin * (one + two)) / 8.0)
+
+
+class Circling(OnCircles):
+    """The same, where the program says the angles at the ends of blocks."""
 
     def _entered(self, entry: Floats) -> Floats:
         return self.written(self.place.angles(entry))
@@ -48,44 +88,10 @@ class Circling(Moving):
     def _guess(self, positions: Floats, row: Ints, part: Floats, after: bool = False) -> Floats:
         return self.place.angles(positions)
 
-    def _tips(self, positions: Floats, row: Ints) -> Floats:
-        return positions[:, :3]
-
-    def _axis(self, positions: Floats, row: Ints, part: Floats) -> Floats:
-        chain = self.place.chain
-        one, other = (
-            chain.tool_axis(self.place.angles(side[row])) for side in (self.start, self.end)
-        )
-        lines = self.cuts[row] & np.isfinite(one).all(axis=1)
-        return np.where(lines[:, None], on_circle(one, other, part), other)
-
     def _mixed(self, angles: Floats, positions: Floats, row: Ints) -> Floats:
         """Return the angles; where the program says them, they are its own to the last bit."""
         said = self.place.angles(positions)
         return np.where(np.abs(angles - said) < STILL, said, angles)
-
-    def _far(self, source: tuple[Floats, ...], target: tuple[Floats, ...], row: Ints) -> Floats:
-        """Return how far (n,) mm the tip leaves its line, and in proportion the tool axis."""
-        far = np.zeros(len(row))
-        sides = [self.target.angles(side) for side in target]
-        for chain, here in self.target.chains(row):
-            one, other = (self.target.on_workpiece(side[here, :3], chain) for side in source)
-            far[here] = leaving(chain, (one, other), (sides[0][here], sides[1][here]))
-        share = np.degrees(self._aside(sides[1] - sides[0])) / self.step.axis_tolerance
-        return np.asarray(np.maximum(far, share * self.step.tolerance))
-
-    def _aside(self, step: Floats) -> Floats:
-        """Return how far (n,) rad the tool axis leaves its circle while axes turn by steps (n, m).
-
-        It is an eighth of the second derivative aside: of the product of both turns, and of the
-        turn about the tool itself; and a little more, as circles bend. The proof has the last word.
-        """
-        chain = self.target.chain
-        first = max(len(chain.table) - 1, 0)
-        other = chain.axes[1 - first]
-        one, two = (np.abs(np.radians(step[:, k])) for k in (first, 1 - first))
-        spin = one + two * abs(other.direction[2])
-        return np.asarray(1.05 * (one * two + spin * (one + two)) / 8.0)
 
 
 def on_circle(one: Floats, other: Floats, part: Floats) -> Floats:
