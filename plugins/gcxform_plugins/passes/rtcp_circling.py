@@ -61,17 +61,9 @@ class OnCircles(Moving):
         spin = one + two * abs(other.direction[2])
         return np.asarray(1.05 * (one * two + spin * (one + two)) / 8.0)
 
-
-class Circling(OnCircles):
-    """The same, where the program says the angles at the ends of blocks."""
-
-    def _entered(self, entry: Floats) -> Floats:
-        return self.written(self.place.angles(entry))
-
-    def _choose(self) -> None:
-        """Refuse circles that do not lead from angle to angle."""
-        turned = np.abs(self.place.angles(self.end - self.start)).max(axis=1) > 0.0
-        rows = np.flatnonzero(self.cuts & self.known & turned)
+    def _refuse_leaps(self, rows: Ints) -> None:
+        """Refuse rows of cuts along whose circles an axis would have to leap."""
+        rows = rows[self.known[rows]]
         part = np.append(np.arange(TRIED) / TRIED, [1.0 - SOON, 1.0])
         part = np.insert(part, 1, SOON)
         row, along = np.repeat(rows, len(part)), np.tile(part, len(rows))[:, None]
@@ -84,6 +76,17 @@ class Circling(OnCircles):
         message = "on a great circle the tool axis would have to leap"
         hint = "program points on the way, or turn the axes in proportion"
         self._refuse("GX333", far, message, hint)
+
+
+class Circling(OnCircles):
+    """The same, where the program says the angles at the ends of blocks."""
+
+    def _entered(self, entry: Floats) -> Floats:
+        return self.written(self.place.angles(entry))
+
+    def _choose(self) -> None:
+        """Refuse circles that do not lead from angle to angle."""
+        self._refuse_leaps(self._turning())
 
     def _guess(self, positions: Floats, row: Ints, part: Floats, after: bool = False) -> Floats:
         return self.place.angles(positions)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_bound import leaving
+from gcxform_plugins.passes.rtcp_choice import TURN
 from gcxform_plugins.passes.rtcp_circling import OnCircles
 from gcxform_plugins.passes.rtcp_moving import STILL
 from gcxform_plugins.passes.rtcp_place import Place
@@ -86,7 +87,7 @@ class Pointing(OnCircles):
         yield "GX330", cut, message, "write G43.5 with the tool length before"
         form = ~on & ~np.isin(path.form, OWN)
         yield "GX330", form, "this is no plain move", "leave it out of the program"
-        inside = np.isnan(self.vectors.start).any(axis=1)
+        inside = np.asarray(np.isnan(self.vectors.start).any(axis=1))
         message = "a window ends within G43.5"
         yield "GX330", inside, message, "write G49 in a block of its own"
 
@@ -101,8 +102,17 @@ class Pointing(OnCircles):
 
     # --- which angles ---
 
+    def _choose(self) -> None:
+        super()._choose()
+        if self.step.orientation_path == "great-circle":
+            self._refuse_leaps(self._turning())
+
     def _turn(self, rows: Ints) -> Floats:
-        return self.turns[rows]
+        """Return by how much (n,) degrees the tool turns in rows, or an axis if that is more."""
+        ends = np.concatenate([self.vectors.start[rows[:1]], self.vectors.end[rows]])
+        angle = gx.attitudes(self.target.chain, ends).angle[:, 0]
+        way = np.abs(np.remainder(np.diff(angle, axis=0) + TURN / 2, TURN) - TURN / 2)
+        return np.asarray(np.maximum(self.turns[rows], way.max(axis=1)))
 
     def _holds(self, rows: Ints) -> Flags:
         """Return in which rows no axis may leap: in cuts, and in rapids that turn nothing."""
