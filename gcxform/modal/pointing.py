@@ -77,8 +77,6 @@ class Pointing:
         lines, modes, named = self.lines, self.modes, self.named
         moves = (lines.flag("moves") | named) & self.on
         nowhere = modes.motion == NUMBER["G80"]
-        hint = "write G0 or G1 in this block"
-        yield named & nowhere, "GX209", "a tool vector, but no motion code is in force", hint
         hint = "let the CAM write lines in this part"
         other = ~nowhere & (modes.motion != Kind.RAPID) & (modes.motion != Kind.LINE)
         other |= modes.cycle != CYCLE_OFF

@@ -350,6 +350,7 @@ class Rtcp(gx.Pass):
         proof = self._proof(before, after, context)
         proof.run()
         found = {"tip off, mm": proof.tip, "tool axis off, degrees": proof.lean}
+        found |= proof.measured()
         return (
             found
             if self.calibrated is None

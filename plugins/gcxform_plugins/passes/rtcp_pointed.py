@@ -33,8 +33,8 @@ class PointedProof(Proof):
     """The proof of one window; `left` (n, axes) are axes that the control leaves where they are.
 
     `lean` counts the ends of blocks too, `ends` (degrees) these alone. With angles in proportion
-    `lean` is that of the ends, and `round` how much farther the tool axis is from the great circle
-    between them than these are apart.
+    `lean` is that of the ends, `beside` how far the tool axis is from the great circle between
+    them, and `round` how much farther it is than these are apart.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class PointedProof(Proof):
         self.vectors = source.vectors
         self.circles = step.orientation_path == "great-circle"
         self.turned = np.degrees(source.vectors.turn())
-        self.ends, self.round = 0.0, 0.0
+        self.ends, self.beside, self.round = 0.0, 0.0, 0.0
         super().__init__(step, context, source, target)
 
     def _known(self) -> Flags:
@@ -64,13 +64,18 @@ class PointedProof(Proof):
             return
         self.lean = self.ends
         cut = self.before.kind[rows] != gx.Kind.RAPID
-        beside = degrees + np.degrees(slack) - self.turned[rows]
-        self.round = max(self.round, float(beside[cut].max(initial=0.0)))
+        beside = (degrees + np.degrees(slack))[cut]
+        self.beside = max(self.beside, float(beside.max(initial=0.0)))
+        self.round = max(self.round, float((beside - self.turned[rows[cut]]).max(initial=0.0)))
 
     def _steps(self) -> Floats:
         """Return the last decimals (m,) of the angles, degrees."""
         letters = self.target.place.chain.letters
         return np.array([10.0 ** -self.context.decimals_of_angle(a) for a in letters])
+
+    def measured(self) -> dict[str, float]:
+        """Return what the certificate says besides."""
+        return {} if self.circles else {"tool axis beside its great circle, degrees": self.beside}
 
     # --- the verdict ---
 

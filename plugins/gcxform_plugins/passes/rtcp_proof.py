@@ -120,6 +120,10 @@ class Proof:
         if self.source.place.columns == self.target.place.columns:
             self.turn = max(self.turn, float(np.abs(found[0][2] - found[1][2]).max()))
 
+    def measured(self) -> dict[str, float]:
+        """Return what the certificate says besides tips, tool axes and angles."""
+        return {}
+
     def _note_lean(self, lean: Floats, slack: Floats, rows: Ints, part: Floats) -> None:
         """Note how far (n,) rad tool axes are apart at parts of rows of the source."""
         self.lean = max(self.lean, float(np.degrees((lean + slack).max())))
