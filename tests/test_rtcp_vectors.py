@@ -16,7 +16,9 @@ from hypothesis import strategies as st
 from kinematics_kit import leaning, tool
 from rtcp_kit import (
     KINDS,
+    LENGTH,
     ROUNDED,
+    axes,
     between,
     chain_of_kind,
     machine_text,
@@ -430,13 +432,67 @@ def test_the_proof_sees_ways_round_about(tmp_path, monkeypatch, factor, by):
         proved(tmp_path, as_it_is)
 
 
-def test_the_proof_sees_a_missing_turn(tmp_path):
-    def change(path):
-        lines = np.flatnonzero(path.kind == gx.Kind.LINE)
-        return path.take(np.delete(np.arange(len(path)), lines[-1]))
+def test_the_proof_sees_what_is_out_of_proportion(tmp_path):
+    """The tip is where it was, the tool axis nearly so."""
+    chain = chain_of_kind("ac-trunnion", 3)
+    tipped = [0, 1, 2, 3, 4]
 
-    with pytest.raises(gx.VerificationError):
+    def change(path):
+        row = int(np.flatnonzero(path.kind == gx.Kind.LINE)[2])
+        end = path.end.copy()
+        length = np.array([0.0, 0.0, LENGTH, 0.0, 0.0])
+        words = end[row : row + 1, tipped] - length
+        moved = words + np.array([0.0, 0.0, 0.0, 0.0, 0.001])
+        moved[:, :3] = axes(chain, np.hstack([tips(chain, words), moved[:, 3:]]))
+        end[row, tipped] = moved[0] + length
+        return path.replace(end=end)
+
+    with pytest.raises(gx.VerificationError, match="proportion"):
         proved(tmp_path, change)
+
+
+def test_the_proof_sees_an_axis_that_should_have_stayed(tmp_path):
+    """After G49 C is where it was: a turn of it is none of the source."""
+
+    def change(path):
+        first = int(np.flatnonzero(path.form == gx.Form.MACHINE)[0])
+        return turned(4, first, 1.0)(path)
+
+    with pytest.raises(gx.VerificationError, match="outside"):
+        proved(tmp_path, change)
+
+
+def test_the_proof_sees_a_missing_turn(tmp_path):
+    """In G93 the last block may turn the tool about its tip; without it nothing else changes."""
+    chain = chain_of_kind("ac-trunnion", 3)
+    blocks = ["G0 X0. Y0. Z0. J-1. K1.", "G1 I1. J0. K1. F9."]
+    text = whole(blocks, chain, "G93").replace(b"G43.5", b"G43")
+    step = pointed(tmp_path, "ac-trunnion", chain)
+    rtcp = next(one for one in step.path_passes if one.name == "rtcp")
+    source = gx.Program(text, with_vectors(step.source), step.machine_reading).path
+    after = rtcp.apply(source, step.context)
+    rtcp.prove(source, after, step.context)
+    kept = np.flatnonzero(after.kind != gx.Kind.LINE)
+    end = after.end[kept].copy()
+    end[3, :2] = end[2, :2]  # after G49 they stay where they are then
+    with pytest.raises(gx.VerificationError, match="missing"):
+        rtcp.prove(source, after.take(kept).replace(end=end), step.context)
+
+
+def test_small_vectors_beside_the_pole(tmp_path):
+    """Vectors that turn by little beside the pole, in many blocks: long turns of C, and no leap."""
+    chain = chain_of_kind("ac-trunnion", 3)
+    around = np.linspace(0.0, 300.0, 31)
+    axes = leaning(np.full(31, 0.4), around)
+    spots = np.column_stack([np.linspace(0.0, 60.0, 31), np.zeros(31), np.zeros(31)])
+    codes = ["G0 ", "G1 F600. ", *[""] * 29]
+    blocks = [block(p, k, c) for p, k, c in zip(spots, axes, codes, strict=True)]
+    text = whole(blocks, chain)
+    for mode in MODES:
+        result = pointed(tmp_path, "ac-trunnion", chain, mode).run(text, "full")
+        check(text, result, chain, mode)
+        turns = positions(result.text, "XYZAC")[3:-4, 4]
+        assert np.ptp(turns) == pytest.approx(300.0, abs=0.1)
 
 
 # --- what stays as it is ---

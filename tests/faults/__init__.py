@@ -26,6 +26,7 @@ from faults import (
     thermal,
     tied,
     turned,
+    vectors,
     writing,
 )
 from faults.mutation import Mutation
@@ -49,6 +50,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     *proof.MUTATIONS,
     *running.MUTATIONS,
     *rtcp.MUTATIONS,
+    *vectors.MUTATIONS,
     *ballbar.MUTATIONS,
     *calibrating.MUTATIONS,
     *simulating.MUTATIONS,
