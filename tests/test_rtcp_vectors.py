@@ -295,6 +295,46 @@ def test_a_tool_that_is_drawn_back_keeps_its_attitude(tmp_path, kind):
     assert np.abs(new[cut, 3:]).max() > 30.0
 
 
+def test_axes_unwind_where_the_tool_turns(tmp_path):
+    """Drawing the tool back turns nothing, though unwinding there would be as short."""
+    chain = chain_of_kind("ac-trunnion", 3)
+    first = leaning(np.full(20, 40.0), np.linspace(0.0, 190.0, 20))
+    second = leaning(np.full(30, 40.0), np.linspace(165.0, 455.0, 30))
+    spots = np.linspace([0.0, 0.0, 0.0], [40.0, 0.0, 0.0], 30)
+    codes = ["G0 ", "G1 F600. ", *[""] * 28]
+    cuts = [
+        [block(p, k, c) for p, k, c in zip(spots, axes, codes, strict=False)]
+        for axes in (first, second)
+    ]
+    text = whole([*cuts[0], "G0 Z90.", *cuts[1]], chain)
+    limits = {"A": (0.0, 110.0), "C": (-110.0, 285.0)}
+    result = pointed(tmp_path, "ac-trunnion", chain, limits=limits).run(text, "full")
+    new, owner = positions(result.text, "XYZAC"), np.array(result.source_map)
+    cut, back, turns = (np.flatnonzero(owner == 22 + n)[-1] for n in range(3))
+    assert (new[cut, 3:] == new[back, 3:]).all()
+    assert abs(new[turns, 4] - new[back, 4]) > 180.0
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_rounded_angles_are_made_good(tmp_path, mode):
+    """Angles with one decimal: X, Y and Z are those that suit them."""
+    chain = chain_of_kind("ac-trunnion", 3)
+    text = whole(winding(0.5, count=9), chain)
+    said = {"axis_tolerance": 0.5, "decimals": "{ A = 1, C = 1 }"}
+    result = pointed(tmp_path, "ac-trunnion", chain, mode, **said).run(text, "full")
+    new, owner = positions(result.text, "XYZAC"), np.array(result.source_map)
+    spots, _ = read(text)
+    worst = 0.0
+    for line in range(4, 12):
+        rows = np.flatnonzero(owner == line)
+        for nth, row in enumerate(rows):
+            part = (nth + np.linspace(0.0, 1.0, 9)[:, None]) / len(rows)
+            wanted = spots[line - 1] + part * (spots[line] - spots[line - 1])
+            found = tips(chain, between(new[row - 1], new[row], 9))
+            worst = max(worst, float(np.linalg.norm(found - wanted, axis=1).max()))
+    assert worst <= TOLERANCE + ROUNDED + ROOM
+
+
 def several(chain, cuts=3):
     """Return a program of several sections, with what is between them."""
     zeros = " ".join(f"{letter}0." for letter in chain.letters)

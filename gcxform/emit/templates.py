@@ -197,8 +197,6 @@ class TemplateWriter:
         elif self.key.thread:
             return False
         elif word.address in "IJKR":
-            if not self.key.arc:
-                self._axes(lead)  # angles stand where the tool vector stood
             self._centre(lead)
         else:
             spline = self.meaning.groups.get("motion") in ("G5", "G5.1")

@@ -86,7 +86,7 @@ MUTATIONS = (
         "gcxform/emit/copying.py",
         "self.lines &= ~self._pointed()",
         "self.lines |= self._pointed() & False",
-        f"{CORPUS}[rtcp/vectors-steps]",
+        f"{CORPUS}[rtcp/vectors-read]",
     ),
     Mutation(
         "vectors: a section is divided",
@@ -114,7 +114,7 @@ MUTATIONS = (
         POINTING,
         "super()._holds(rows) | (self.turns[rows] <= STILL)",
         "super()._holds(rows) | (self.turns[rows] < -STILL)",
-        f"{TESTS}::test_a_tool_that_is_drawn_back_keeps_its_attitude",
+        f"{TESTS}::test_axes_unwind_where_the_tool_turns",
     ),
     Mutation(
         "vectors: every cut is a group of its own",
@@ -163,7 +163,7 @@ MUTATIONS = (
         POINTING,
         "self.written(one + part * (other - one))",
         "one + part * (other - one)",
-        ANY,
+        f"{TESTS}::test_rounded_angles_are_made_good",
     ),
     Mutation(
         "vectors: angles in proportion need no pieces",
