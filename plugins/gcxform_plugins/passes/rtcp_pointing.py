@@ -148,19 +148,21 @@ class Pointing(OnCircles):
 class InProportion(Pointing):
     """The same, with angles that change in proportion between the ends of blocks."""
 
+    said: Floats | None = None
+    """The angles (n, m) at the ends of the rows, once they are chosen."""
+
     def _choose(self) -> None:
         """Choose angles along the vectors; those at the ends of blocks are taken."""
         super()._choose()
-        self.said = np.zeros((len(self.path), len(self.target.chain.axes)))
+        said = np.zeros((len(self.path), len(self.target.chain.axes)))
         rows = np.flatnonzero(self.known)
-        whole = np.ones(len(rows))
-        self.said[rows] = super()._angles(self.end[rows], rows, whole)
-        self.said_before = np.concatenate([np.zeros((1, self.said.shape[1])), self.said[:-1]])
+        said[rows] = super()._angles(self.end[rows], rows, np.ones(len(rows)))
+        self.said = said
 
     def _angles(self, positions: Floats, row: Ints, part: Floats, after: bool = False) -> Floats:
-        if not hasattr(self, "said"):
+        if self.said is None:
             return super()._angles(positions, row, part, after)
-        one, other = self.said_before[row], self.said[row]
+        one, other = np.where(row[:, None] > 0, self.said[row - 1], 0.0), self.said[row]
         part = np.where(self.cuts[row], part, 1.0)[:, None]
         return np.where(part == 1.0, other, self.written(one + part * (other - one)))
 
