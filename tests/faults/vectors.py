@@ -5,6 +5,7 @@ from __future__ import annotations
 from faults.mutation import PASSES, Mutation
 
 TESTS = "tests/test_rtcp_vectors.py"
+PROVED = "tests/test_rtcp_vectors_proof.py"
 READING = "gcxform/modal/pointing.py"
 POINTING = f"{PASSES}/rtcp_pointing.py"
 POINTED = f"{PASSES}/rtcp_pointed.py"
@@ -13,8 +14,8 @@ DRIVEN = f"{PASSES}/rtcp_driven.py"
 ANY = f"{TESTS}::test_any_vectors"
 ANGLES = f"{TESTS}::test_it_does_what_angles_do"
 LIMITS = f"{TESTS}::test_turns_go_on_and_limits_hold"
-SEEN = f"{TESTS}::test_the_proof_sees_it"
-ROUND = f"{TESTS}::test_the_proof_sees_ways_round_about"
+SEEN = f"{PROVED}::test_the_proof_sees_it"
+ROUND = f"{PROVED}::test_the_proof_sees_ways_round_about"
 CORPUS = "tests/test_corpus.py::test_case"
 
 MUTATIONS = (
@@ -191,7 +192,7 @@ MUTATIONS = (
         POINTED,
         "wrong = ~(off <= 0.5 * self._steps() + ROOM).all(axis=1)",
         "wrong = ~(off <= 90.0).all(axis=1)",
-        f"{TESTS}::test_the_proof_sees_what_is_out_of_proportion",
+        f"{PROVED}::test_the_proof_sees_what_is_out_of_proportion",
     ),
     Mutation(
         "vectors: the proof does not look outside of sections",
@@ -205,14 +206,14 @@ MUTATIONS = (
         POINTED,
         "said = np.where(self.left[lone], stays, said)",
         "said = np.where(self.left[lone], found, said)",
-        f"{TESTS}::test_the_proof_sees_an_axis_that_should_have_stayed",
+        f"{PROVED}::test_the_proof_sees_an_axis_that_should_have_stayed",
     ),
     Mutation(
         "vectors: a turn of the tool may be missing",
         POINTED,
         "(self.vectors.on & (self.count == 0) & (self.turned > STILL)).any()",
         "(self.vectors.on & (self.count == 0) & (self.turned < 0.0)).any()",
-        f"{TESTS}::test_the_proof_sees_a_missing_turn",
+        f"{PROVED}::test_the_proof_sees_a_missing_turn",
     ),
     Mutation(
         "vectors: the proof follows the wrong side of the circle",
