@@ -155,8 +155,8 @@ MUTATIONS = (
     Mutation(
         "vectors: circles may leap",
         POINTING,
-        "self._refuse_leaps(self._turning())",
-        "self._refuse_leaps(self._turning()[:0])",
+        "self._refuse_leaps(rows[self._turn(rows) > LEAST])",
+        "self._refuse_leaps(rows[self._turn(rows) > 400.0 * LEAST])",
         f"{CORPUS}[rtcp/vectors-circle-leaps]",
     ),
     Mutation(

@@ -30,6 +30,7 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 MOST = 179.0  # degrees that the tool turns in a block: of half a turn nobody knows the way
+LEAST = 0.5  # degrees; where no axis turns by as much in a block, none leaps in it
 PLAIN = (gx.Form.PLAIN,)
 OWN = (gx.Form.PLAIN, gx.Form.HOME, gx.Form.MACHINE)
 TO_ZERO = "turn them to 0 before G43.5, or say where they are: start = { A = 0.0, ... } in [input]"
@@ -105,13 +106,14 @@ class Pointing(OnCircles):
     def _choose(self) -> None:
         super()._choose()
         if self.step.orientation_path == "great-circle":
-            self._refuse_leaps(self._turning())
+            rows = self._turning()
+            self._refuse_leaps(rows[self._turn(rows) > LEAST])
 
     def _turn(self, rows: Ints) -> Floats:
         """Return by how much (n,) degrees the tool turns in rows, or an axis if that is more."""
-        ends = np.concatenate([self.vectors.start[rows[:1]], self.vectors.end[rows]])
-        angle = gx.attitudes(self.target.chain, ends).angle[:, 0]
-        way = np.abs(np.remainder(np.diff(angle, axis=0) + TURN / 2, TURN) - TURN / 2)
+        chain = self.target.chain
+        one, other = (gx.attitudes(chain, side).angle[:, 0] for side in self._vectors(rows))
+        way = np.abs(np.remainder(other - one + TURN / 2, TURN) - TURN / 2)
         return np.asarray(np.maximum(self.turns[rows], way.max(axis=1)))
 
     def _holds(self, rows: Ints) -> Flags:
