@@ -19,7 +19,7 @@ Flags = NDArray[np.bool_]
 FEWEST, MOST = 8, 256  # points at which a piece is looked at
 AT_ONCE = 200_000  # points looked at together
 HALVINGS = 24
-REFINEMENTS = 3  # a piece is an eighth shorter than it could be, at most
+REFINEMENTS = 6  # a piece is a sixty-fourth shorter than it could be, at most
 EVEN_TRIES = 8  # numbers of equal pieces that are tried, where others would be too short
 FLAT = 0.1  # mm; with less between arc and chord, three points say little about the centre
 MARGIN = 0.9  # of the tolerance: what looking at points, and not along the curve, may miss
@@ -33,7 +33,7 @@ class ArcFitter:
         self.work = work
         self.path = work.path
         self.step = work.step
-        self.limit = MARGIN * self.step.limit
+        self.limit = min(MARGIN * self.step.limit, work.room)
         self.reach = work.undone
         rotary = np.nan_to_num(self.path.end - self.path.start)[:, 3:]
         self._turning = (rotary != 0).any(axis=1)
