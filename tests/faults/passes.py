@@ -117,6 +117,13 @@ MUTATIONS = (
         CUTTING,
     ),
     Mutation(
+        "volumetric: centres of short pieces of arcs are as far off as they were",
+        f"{PASSES}/fitting.py",
+        "_as_far(moved, *points[::2])",
+        "moved",
+        RIGID_PASS,
+    ),
+    Mutation(
         "volumetric: a rotary axis may be ahead",
         f"{PASSES}/splitting.py",
         "(length > 0) & ~turning[row] &",
