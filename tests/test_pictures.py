@@ -255,6 +255,20 @@ def test_a_machine_of_21_parameters_fills_the_grid(here):
     assert "none" not in text
 
 
+def test_both_directions_of_a_pitch_table_are_drawn(here):
+    table = "position = [0, 100, 200]\nforward = [0, 0.01, 0.02]"
+    (here / "pitch.toml").write_text(
+        f'format = 1\nkind = "pitch"\nvalues = "error"\n[X]\n{table}\n'
+        f"reverse = [-0.004, 0.007, 0.015]\n[Y]\n{table}\n"
+    )
+    assert call("show", "pitch.toml", "-o", "pitch.svg").exit_code == 0
+    groups, text = drawn("pitch.svg")
+    assert corners(groups["EXX"]) == corners(groups["EXX reverse"]) == 3
+    assert "reverse" in text
+    assert "EYY" in groups
+    assert "EYY reverse" not in groups
+
+
 class Lattice(gx.ErrorModel):
     """A model that is no function of one axis at a time."""
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gcxform.machine.errors import AXES, ErrorModel, FloatArray, Outside
+from gcxform.machine.pitch import PitchTables
 from gcxform.machine.thermal import ThermalScrew
 from gcxform.plot.canvas import AFTER, BEFORE, GREY, empty, figure, isometric, nice, styled, triad
 from gcxform.simulate.virtual import ranges
@@ -22,6 +23,8 @@ PLACES = 5  # of the errors shown, along each axis
 FINE = 41  # points of a line of the distorted volume
 SHOWN = 0.06  # part of the volume's diagonal that the largest error is drawn as
 
+REVERSE = " reverse"  # behind the name of a function after travel in the negative direction
+
 Curves = dict[str, tuple[FloatArray, FloatArray]]
 """Functions by ISO 230-1 name: position in mm, value in mm or rad."""
 
@@ -34,6 +37,8 @@ def curves(model: ErrorModel) -> Curves:
     found: Curves = {}
     if isinstance(model, ThermalScrew):
         return _stretches(model)
+    if isinstance(model, PitchTables):
+        return _pitches(model)
     for axis, function in zip(AXES, getattr(model, "axes", ()), strict=False):
         if function is None:
             continue
@@ -51,6 +56,17 @@ def _stretches(model: ThermalScrew) -> Curves:
         if stretch is not None:
             position = np.linspace(stretch.position[0], stretch.position[-1], FINE)
             found[f"E{axis}{axis}"] = position, stretch.at(position)
+    return found
+
+
+def _pitches(model: PitchTables) -> Curves:
+    """Return the positioning errors of axes, those of both directions where there is backlash."""
+    found: Curves = {}
+    for axis, table in zip(AXES, model.axes, strict=True):
+        if table is not None:
+            found[f"E{axis}{axis}"] = table.position, table.forward
+        if table is not None and table.backlash:
+            found[f"E{axis}{axis}{REVERSE}"] = table.position, table.reverse
     return found
 
 
@@ -103,6 +119,10 @@ def _function(axes: Axes, name: str, found: Curves) -> None:
         color=BEFORE if name[1] in AXES else AFTER,
         gid=name,
     )
+    if name + REVERSE in found:
+        position, value = found[name + REVERSE]
+        axes.plot(position, UM * value, color=AFTER, gid=name + REVERSE)
+        axes.legend(["forward", "reverse"])
     axes.set_title(f"{name}, {'um' if name[1] in AXES else 'urad'}")
     axes.set_xlabel(f"{name[2]}, mm")
 
