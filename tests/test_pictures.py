@@ -99,7 +99,12 @@ def test_data_are_those_of_the_table(here):
         assert f"{1000 * pair['after'] + 0.0:.3f}" == after
     reading = data["readings"]["before"]["X"]
     assert np.shape(reading["up"]) == np.shape(reading["down"]) == (4, 2)
-    assert reading["target"][0] == 0.0
+    assert 1.0 <= reading["target"][0] <= 3.0  # positions of the axis, and there its errors
+    places = np.array([[x, 165.0, 225.0] for x in reading["target"]])
+    quiet = json.loads(call(*LINES, "--json", "-").stdout)["readings"]["before"]["X"]
+    assert quiet["target"] == reading["target"]
+    truth = load_model(EXAMPLE).error(places)[:, 0]
+    assert np.array(quiet["up"])[:, 0] == pytest.approx(truth, abs=1e-12)
     alone = call(*LINES, "--noise", "0.5 um", "--json", "-")
     assert json.loads(alone.stdout) == data
     assert json.loads(call(*LINES, "--runs", "1", "--json", "-").stdout)["figures"]["X"]["A"] == {
@@ -128,7 +133,11 @@ def test_programs_are_written(here):
 @pytest.mark.parametrize(
     ("words", "named", "written"),
     [
-        (BALLBAR, ["XY before cw", "XY after ccw"], ["XY before, 5 um/div", "G(b) 3.65"]),
+        (
+            BALLBAR,
+            ["XY before cw", "XY after ccw"],
+            ["XY before, 5 um/div", "G(b) 3.65", "+X", "-Y"],
+        ),
         (LINES, ["X before mean up", "Z after low down"], ["deviation, um", "X before"]),
         ((*DIAGONAL, "body"), ["PPP before", "PPN after"], ["body diagonals before", "PPP  E 12"]),
     ],
@@ -253,6 +262,24 @@ def test_a_machine_of_21_parameters_fills_the_grid(here):
     assert [name for name in names if name not in groups] == []
     assert all(f"{name}, {'um' if name[1] in 'XYZ' else 'urad'}" in text for name in names)
     assert "none" not in text
+
+
+def test_a_long_title_stays_in_a_narrow_picture(here):
+    assert call(*LINES, "--axes", "x", "--plot", "narrow.svg").exit_code == 0
+    lines = drawn("narrow.svg")[1].splitlines()
+    assert [line for line in lines if "proved" in line]
+    assert max(map(len, lines)) < 60
+
+
+def test_a_model_without_limits_is_drawn_over_a_volume(here):
+    """B0Z of 200 urad is 20 um in X and C0Y of 100 urad 10 um, at 100 mm: 30 um where both add."""
+    (here / "skew.toml").write_text(
+        'format = 1\nkind = "skew"\n[squareness]\nC0Y = 1e-4\nB0Z = 2e-4\n'
+    )
+    assert call("show", "skew.toml", "-o", "skew.svg").exit_code == 0
+    groups, text = drawn("skew.svg")
+    assert "largest 30.00 um" in text
+    assert corners(groups["actual"]) > 100
 
 
 def test_both_directions_of_a_pitch_table_are_drawn(here):

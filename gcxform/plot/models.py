@@ -21,6 +21,7 @@ UM = 1000.0  # per mm
 TURNS = "ABC"
 PLACES = 5  # of the errors shown, along each axis
 FINE = 41  # points of a line of the distorted volume
+ENDLESS = 100.0  # mm to each side of 0 of a model that has no limits
 SHOWN = 0.06  # part of the volume's diagonal that the largest error is drawn as
 
 REVERSE = " reverse"  # behind the name of a function after travel in the negative direction
@@ -140,7 +141,7 @@ def _volume(axes: Axes, shown: ErrorModel) -> None:
     """Draw the volume as it is and, magnified, as the machine has it, with errors as arrows."""
     from matplotlib.collections import LineCollection
 
-    box = ranges(shown)
+    box = _shown_box(shown)
     places = [np.linspace(low, high, PLACES if high > low else 1) for low, high in box.tolist()]
     points = np.stack(np.meshgrid(*places, indexing="ij"), axis=-1).reshape(-1, 3)
     error = shown.error(points, Outside.CLAMP)
@@ -162,6 +163,12 @@ def _volume(axes: Axes, shown: ErrorModel) -> None:
     axes.margins(0.05)
     axes.set_axis_off()
     axes.set_title(f"errors x {factor:g}, largest {UM * largest:.2f} um at the places shown")
+
+
+def _shown_box(shown: ErrorModel) -> FloatArray:
+    """Return the volume (3, 2) in mm that is drawn: that of the model, or one if it has no end."""
+    box = ranges(shown)
+    return box if (box[:, 1] > box[:, 0]).any() else np.tile([-ENDLESS, ENDLESS], (3, 1))
 
 
 def _lines(places: list[FloatArray]) -> Iterator[FloatArray]:
