@@ -10,6 +10,7 @@ import pytest
 from format_kit import apart, nine, pitch, rigid
 from hypothesis import given
 from hypothesis import strategies as st
+from thermal_kit import warm
 
 import gcxform as gx
 from gcxform.diagnostics import UsageError
@@ -26,6 +27,16 @@ SEEDS = st.integers(0, 10_000)
 def inside(model, seed, count=200):
     low, high = np.transpose([np.clip(model.range_of(k), -1e3, 1e3) for k in range(3)])
     return np.random.default_rng(seed).uniform(low, high, (count, 3))
+
+
+def test_t4_what_a_table_leaves_of_a_warm_screw_between_its_nodes():
+    """Straight between the sensors it is off by up to alpha |rise of temperature| h / 8."""
+    screw = warm(3)
+    fit = to_pitch(screw)
+    points = inside(screw, 4, 20_000)
+    apart = np.linalg.norm(fit.model.error(points) - screw.error(points), axis=1).max()
+    assert apart > 1e-4
+    assert apart <= fit.largest < 1.05 * apart
 
 
 # --- pitch tables ---

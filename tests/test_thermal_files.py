@@ -86,7 +86,7 @@ def test_t2_the_limit(tmp_path):
     hot = COLD + 1.33 * (WARM - COLD)
     path = written(tmp_path, text(), csv(row("2026-03-04T10:00:00", hot)))
     (found,) = refused(path)
-    assert found.code == "GX425"
+    assert place(found) == ("model.toml", 7, 1, "GX425")  # [X], as the limit is not written
     worst = 1.33 * 1000 * (growth(720.0) - growth(200.0))
     assert worst > 200
     assert f"{worst:.1f} um at 2026-03-04T10:00:00" in found.message

@@ -173,7 +173,7 @@ class _Work:
                     "GX425",
                     f"{state.axis} is off by up to {state.largest / UM:.1f} um at {state.time}, "
                     f"the limit is {self.file.limit / UM:g} um",
-                    self.document.where("limit"),
+                    self.document.where("limit" if "limit" in self.document.values else state.axis),
                     "let the machine cool down, or look for a wrong sensor; limit = raises it",
                 )
 
