@@ -340,6 +340,29 @@ def test_the_error_along_a_program_before_and_after(here):
     assert_png(here / "heat.png")
 
 
+def test_what_is_refused_in_a_program_has_its_place(here):
+    """A call is executed: the place is that in the file."""
+    text = "G21 G90 G17\nG0 X0 Y0 Z5\no1 repeat [3]\nG91 G1 X200. F100\no1 endrepeat\nM2\n"
+    (here / "row.ngc").write_text(text)
+    found = call("show", "-f", "linuxcnc", *SHOW[3:], "-o", "row.svg", "row.ngc")
+    assert found.exit_code == 3
+    assert found.stderr.startswith("row.ngc:4:1: error[GX310]: X 600.000"), found.stderr
+    assert not Path("row.svg").exists()
+
+
+def test_backlash_and_large_corrections_are_drawn_if_asked(here):
+    (here / "bed.toml").write_text(
+        'format = 1\nkind = "height-map"\nX = [0, 100]\nY = [0, 100]\n'
+        "height = [[0, 0.5], [0, 0.5]]\n"
+    )
+    (here / "part.nc").write_text("G21 G90 G17 G94\nG1 X0. Y0. Z0. F100.\nX90.\nM30\n")
+    words = ("show", "-f", "grbl", "--model", "bed.toml", "--part-origin", "0,0,0", "-o", "bed.svg")
+    found = call(*words, "part.nc")
+    assert (found.exit_code, "part.nc:3:1: error[GX313]" in found.stderr) == (3, True)
+    assert call(*words, "--max-correction", "1 mm", "part.nc").exit_code == 0
+    assert "before: at most 450.00 um" in drawn("bed.svg")[1]
+
+
 def pipeline(dialect, chain="", machine=None, **options):
     kind, registry = default_registry().dialect(dialect), default_registry()
     first = gx.Pipeline.parse(f"absolute {chain}", dialect).passes
