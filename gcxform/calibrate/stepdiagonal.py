@@ -330,7 +330,7 @@ def _reject_signs(found: Identified) -> None:
 def _reject_scales(found: Identified) -> None:
     """Refuse linear tests whose scales are not those that the diagonals tell."""
     gain, limit = scale_gain(found)
-    if gain > limit:
+    if limit < gain:
         raise InputError.one(
             "GX475",
             f"the scales of the linear tests contradict those of the diagonals: free scales take "
