@@ -21,9 +21,15 @@ NOISE = "Standard deviation of a coordinate of a centre."
 
 @contextmanager
 def about(file: str) -> Iterator[None]:
-    """Let what is wrong with measurements as a whole name their file."""
+    """Let what is wrong with measurements as a whole name their file.
+
+    Numbers beyond all measure are refused by what becomes of them, without a warning of numpy.
+    """
+    import numpy as np
+
     try:
-        yield
+        with np.errstate(all="ignore"):
+            yield
     except GcxformError as error:
         found = (d if d.where else d.at(Location(file)) for d in error.diagnostics)
         raise type(error)(tuple(found)) from None
