@@ -193,6 +193,17 @@ def test_models_that_contradict_themselves(tmp_path, old, new, expected):
     assert refused(written(tmp_path, model.replace(old, new)))[0].code == expected
 
 
+def test_where_it_is_said_which_file_is_not_there(tmp_path):
+    found = refused(written(tmp_path, text().replace("readings.csv", "none.csv")))
+    assert [place(f) for f in found] == [("model.toml", 3, 1, "GX401")]
+    assert "'none.csv'" in found[0].message
+    both = tmp_path / "both.toml"
+    both.write_text('format = 1\nkind = "sum"\nmodels = ["model.toml",\n  "geometry.toml"]\n')
+    (tmp_path / "model.toml").write_text(text())
+    (found,) = refused(both)
+    assert (place(found), "geometry.toml" in found.message) == (("both.toml", 4, 3, "GX401"), True)
+
+
 def test_a_held_screw_needs_its_temperature_from_bearing_to_bearing(tmp_path):
     ends = "\n[X.screw.held]\nkA = 200.0\nkB = inf\nEA = 2.6e8\nlength = 1300.0\n"
     path = written(tmp_path, text(f"[X.screw]\n{SCREW}{ends}"))
