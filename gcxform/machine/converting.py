@@ -141,7 +141,14 @@ def _and_middles(grid: list[FloatArray], *models: ErrorModel) -> list[FloatArray
 
 
 def _nodes(*models: ErrorModel) -> list[FloatArray]:
-    return [reduce(np.union1d, (model.nodes[axis] for model in models)) for axis in range(3)]
+    """Return the nodes of models on each axis, each within the range of its own model."""
+    return [reduce(np.union1d, (_inner(model, axis) for model in models)) for axis in range(3)]
+
+
+def _inner(model: ErrorModel, axis: int) -> FloatArray:
+    """Return the nodes (n,) of a model within its range, which in a sum is that of all parts."""
+    nodes, (low, high) = model.nodes[axis], model.range_of(axis)
+    return nodes[(nodes >= low) & (nodes <= high)]
 
 
 def grid_of(model: ErrorModel) -> Grid:
