@@ -271,6 +271,23 @@ def test_a_long_title_stays_in_a_narrow_picture(here):
     assert max(map(len, lines)) < 60
 
 
+def test_of_a_sum_the_sums_of_the_functions_are_drawn(here):
+    """A warm screw and its geometry: each function is the error along its axis, from zero on."""
+    folder = EXAMPLES / "warm-screw"
+    whole, parts = load_model(folder / "machine.toml"), curves(load_model(folder / "machine.toml"))
+    assert call("show", str(folder / "machine.toml"), "-o", "sum.svg").exit_code == 0
+    groups, _ = drawn("sum.svg")
+    assert set(parts) <= set(groups)
+    for name, (position, value) in parts.items():
+        axis, into = "XYZ".index(name[2]), "XYZ".index(name[1])
+        points = np.zeros((len(position), 3))
+        points[:, axis] = position
+        expected = whole.error(points)[:, into] - whole.error(np.zeros((1, 3)))[0, into]
+        low = float(np.interp(0.0, position, value))
+        assert value - low == pytest.approx(expected, abs=5e-5), name
+    assert "EXX" in parts
+
+
 def test_a_model_without_limits_is_drawn_over_a_volume(here):
     """B0Z of 200 urad is 20 um in X and C0Y of 100 urad 10 um, at 100 mm: 30 um where both add."""
     (here / "skew.toml").write_text(

@@ -9,6 +9,7 @@ import numpy as np
 
 from gcxform.machine.errors import AXES, ErrorModel, FloatArray, Outside
 from gcxform.machine.pitch import PitchTables
+from gcxform.machine.sums import Sum
 from gcxform.machine.thermal import ThermalScrew
 from gcxform.plot.canvas import AFTER, BEFORE, GREY, empty, figure, isometric, nice, styled, triad
 from gcxform.simulate.virtual import ranges
@@ -40,6 +41,8 @@ def curves(model: ErrorModel) -> Curves:
         return _stretches(model)
     if isinstance(model, PitchTables):
         return _pitches(model)
+    if isinstance(model, Sum):
+        return _added(model)
     for axis, function in zip(AXES, getattr(model, "axes", ()), strict=False):
         if function is None:
             continue
@@ -68,6 +71,21 @@ def _pitches(model: PitchTables) -> Curves:
             found[f"E{axis}{axis}"] = table.position, table.forward
         if table is not None and table.backlash:
             found[f"E{axis}{axis}{REVERSE}"] = table.position, table.reverse
+    return found
+
+
+def _added(model: Sum) -> Curves:
+    """Return the sums of the functions of all parts, where all have functions; else none."""
+    parts = [curves(part) for part in model.models]
+    found: Curves = {}
+    for name in dict.fromkeys(name for part in parts for name in part) if all(parts) else ():
+        plain = name.removesuffix(REVERSE)
+        own = [part.get(name, part.get(plain)) for part in parts]
+        there = [curve for curve in own if curve is not None]
+        low, high = model.range_of(AXES.index(plain[2]))
+        position = np.unique(np.concatenate([curve[0] for curve in there]))
+        position = position[(position >= low) & (position <= high)]
+        found[name] = position, np.sum([np.interp(position, *curve) for curve in there], axis=0)
     return found
 
 
