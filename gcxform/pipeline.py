@@ -230,10 +230,13 @@ class Pipeline:
 
     # --- runs ---
 
-    def run(self, program: bytes | str | Path, verify: str = "on") -> Result:
-        """Run on a program: its bytes, or a path. Raises GcxformError; writes no file."""
+    def run(self, program: bytes | str | Path, verify: str = "on", name: str = "-") -> Result:
+        """Run on a program: its bytes, or a path. Raises GcxformError; writes no file.
+
+        `name` is what messages call a program that is given as bytes.
+        """
         if isinstance(program, bytes):
-            source = Source.of_bytes(program)
+            source = Source.of_bytes(program, name)
         else:
             source = Source.open(Path(program))
         parts: list[bytes] = []
