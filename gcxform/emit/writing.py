@@ -38,7 +38,7 @@ from gcxform.modal.arcs import TURN
 from gcxform.modal.limits import without_blanks
 from gcxform.modal.tables import MeaningTable
 from gcxform.syntax.scan import Window
-from gcxform.toolpath.path import Kind
+from gcxform.toolpath.path import Given, Kind
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -179,8 +179,10 @@ class Writing:
             raise InputError.one("GX501", error.message, where) from None
 
     def _event_text(self, piece: int) -> tuple[Field, ...]:
-        """Return the block of something that a canned cycle does between its moves."""
+        """Return the block of what a canned cycle does between its moves, or one that is given."""
         event, target = self.pieces.events[int(self.pieces.event[piece])], self.task.manner.target
+        if isinstance(event, Given):
+            return (Literal(event.text.encode()),)
         line = int(self.pieces.line[piece])
         text = event_text(event, target, self.style.gap or b"")
         if text is None:
