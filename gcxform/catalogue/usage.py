@@ -211,10 +211,10 @@ CODES: dict[str, tuple[str, str]] = {
     ),
     "GX745": (
         "A line for where the tool is drawn back is not taken",
-        "What stands in `retract-lines` and `return-lines` is written between the moves that `rtcp` "
-        "adds, so it has to be proved like them: comments, dwells, coolant, M codes that both "
-        "machine files call inert, and rapids of X, Y and Z to places of the machine, one of these "
-        "in a line. Leave out what else there is.",
+        "What stands in `retract-lines` and `return-lines` is written between the moves that "
+        "`rtcp` adds, so it has to be proved like them: comments, dwells, coolant, M codes that "
+        "both machine files call inert, and rapids of X, Y and Z to places of the machine, each in "
+        "a line of its own. Leave out what else there is.",
     ),
     "GX801": (
         "Two plugins offer the same name",
