@@ -61,8 +61,13 @@ def tips_at(chain, poses, zero):
 
 
 def once(kind):
-    """Return a program in which the tool is drawn back once on this kind of machines."""
-    return round_about(0.8 if kind == "bc-trunnion" else 1.6, 25.0)
+    """Return a program in which the tool is drawn back once on this kind of machines.
+
+    It says G1 once, so that behind G53 G0 this has to be said again.
+    """
+    text = round_about(0.8 if kind == "bc-trunnion" else 1.6, 25.0)
+    head, _, rest = text.partition(b"G1 ")
+    return head + b"G1 " + rest.replace(b"G1 ", b"")
 
 
 def converted(folder, kind, **options):
@@ -363,6 +368,17 @@ def test_the_proof_follows_every_move(drawn):
             form = after.form.copy()
             form[row] = gx.Form.PLAIN
             refused(drawn, after.replace(form=form))
+
+
+def test_the_tool_goes_in_from_over_the_cut(drawn):
+    """From a hundredth aside or above, in the time that this takes, is from elsewhere."""
+    _, _, _, after = drawn
+    row = after.given[-1].row + 3  # behind that, Y, X and Z have come back
+    for column in range(3):
+        end, feed = after.end.copy(), after.feed.copy()
+        end[row, column] += 0.01
+        feed[row] = FEED / np.linalg.norm((end[row] - end[row - 1])[:3])
+        refused(drawn, after.replace(end=end, feed=feed))
 
 
 def test_axes_come_back_in_their_order(drawn):

@@ -91,7 +91,7 @@ class Retracted:
         return range(first, last + 1)
 
     def _moved(self, row: int, lines: tuple[Line, ...]) -> int:
-        """Return the row behind those in which the user's lines move; the last one if they do not.
+        """Return the row behind those in which the user's lines move; the end of all if not.
 
         An axis that a line does not name stays, and the others are where it says.
         """
