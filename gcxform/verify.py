@@ -281,7 +281,8 @@ class Verifier:
         """Check that the blocks that the user gives stand in the text, once each and in order."""
         for line in sorted({given.line for given in path.given}):
             wanted = [given.text.encode() for given in path.given if given.line == line]
-            here = [text.line(at) for at in np.flatnonzero(source == line).tolist()]
+            places = np.flatnonzero(source == line).tolist()
+            here = [text.line(at).lstrip(b"/ ") for at in places]  # as the block they stand in
             if [each for each in here if each in wanted] != wanted:
                 self._raise("a block that is given is missing, doubled or elsewhere", line, 0)
 

@@ -152,7 +152,8 @@ def _check_code(letter: str, value: str, dialect: type[gx.Dialect], inert: Codes
     code = dialect.m_codes.get(number)
     group = code.group if code is not None else ""
     why = NOT_HERE.get(group, f"what {name} does is not known to {dialect.name}")
-    _check(group == "coolant" or (code is None and number in inert), f"{name}: {why}")
+    own = code is None or group == "user"
+    _check(group == "coolant" or (own and number in inert), f"{name}: {why}")
 
 
 def _as_read(text: str, dialect: type[gx.Dialect], inert: Codes) -> Line:
