@@ -147,6 +147,40 @@ def test_lines_stand_where_they_should_and_the_tool_comes_back(tmp_path, kind, n
     assert any(f"{count} lines of retracts" in said for said in result.certificate.not_checked)
 
 
+def some_lines(rng, taken):
+    """Return up to four lines, none twice: places of the machine, and what else there is."""
+    found = []
+    for _ in range(int(rng.integers(0, 5))):
+        axes = rng.permutation([*"XYZ"])[: rng.integers(1, 4)]
+        place = "".join(f" {axis}{rng.uniform(-300.0, 300.0):.3f}" for axis in axes)
+        words = rng.permutation(["G53", "G0", "G90"][: rng.integers(2, 4)])
+        others = ["M7", "M8", "M9", f"G4 P{rng.integers(1, 900)}", f"(say {rng.integers(9)})"]
+        move = " ".join(words) + place
+        line = move if rng.random() < 0.5 else str(rng.choice(others))
+        found += [line] if line not in [*taken, *found] else []
+    return found
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_any_lines_that_are_taken_are_followed(tmp_path, seed):
+    """In which order axes come back is asked of the lines from the last to the first."""
+    rng = np.random.default_rng(seed)
+    before = some_lines(rng, [])
+    lines = {"retract_lines": before, "return_lines": some_lines(rng, before)}
+    kind = sorted(LIMITS)[seed % len(LIMITS)]
+    if not lines["return_lines"]:
+        lines["return_lines"] = ["(it has turned)"]
+    result, chain, _ = converted(tmp_path, kind, **lines)
+    order, _ = check_drawn(result.text, chain, lines)
+    moves = [line for said in lines.values() for line in said if "G53" in line]
+    named = [{k for k, axis in enumerate("XYZ") if axis in line} for line in moves]
+    wanted = [{0, 1, 2}.difference(*named)] if named else []
+    for axes in reversed(named):
+        wanted.append(axes.difference(*wanted))
+    assert [set(axes) for axes in order] == [axes for axes in wanted if [*sorted(axes)] in order]
+    assert len(order) <= len(moves) + 1
+
+
 @pytest.mark.parametrize("kind", ["bc-trunnion", "nutating-head"])
 def test_the_work_offset_is_that_of_the_target(tmp_path, kind):
     """G53 counts from the machine that is written for, whatever the other has."""

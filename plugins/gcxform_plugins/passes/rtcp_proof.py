@@ -57,7 +57,8 @@ class Proof:
             found = Retracted(self.step, self.target, lines)
             for rows in found.found:
                 drawn[rows.start : rows.stop] = True
-            self.events = tuple(e for e in self.events if not any(e is i for i in found.inside))
+            inside = {id(event) for event in found.inside}
+            self.events = tuple(event for event in self.events if id(event) not in inside)
             self.given = [g for g in self.given if g not in found.given]
         return drawn
 

@@ -55,6 +55,7 @@ class Retracted:
         timed = (path.kind == gx.Kind.LINE) & (path.form == gx.Form.PLAIN)
         self.timed = timed & (path.feed_mode == gx.FeedMode.INVERSE_TIME)
         self.still = (self.turn == 0.0).all(axis=1)
+        self.ends = np.append(np.flatnonzero(self.still), len(path))
         rapid = (path.kind == gx.Kind.RAPID) & (path.form == gx.Form.MACHINE)
         self.in_machine = rapid & self.still
         self.step = np.nan_to_num((target.end - target.start)[:, :3], nan=np.inf)
@@ -78,11 +79,9 @@ class Retracted:
     def _rows_from(self, first: int) -> range | None:
         """Return the rows of what begins with a row, None if it is not as is said above."""
         turning = self._moved(first + 1, self.lines.retract)
-        behind = turning
-        while behind < len(self.path) and not self.still[behind]:
-            behind += 1
+        behind = int(self.ends[np.searchsorted(self.ends, turning)])
         going = self._moved(behind, self.lines.back)
-        last = going + self._going(first, going)
+        last = going + (self._going(first, going) if self.lines.move else 0)
         if turning == behind or last >= len(self.path):
             return None
         parts = first, np.arange(turning, behind), np.arange(going, last), last
@@ -112,7 +111,7 @@ class Retracted:
         """Return how many rows go back to over the cut: each along other axes, in their order."""
         count, last = 0, len(self.path) - 1
         over, _, _ = self.target.at(np.array([first]), np.array([1.0]))
-        for axes in self.lines.groups() if self.lines.move else ():
+        for axes in self.lines.groups():
             at = min(row + count, last)
             tip, _, _ = self.target.at(np.array([at]), np.array([0.0]))
             if np.linalg.norm(tip - over) <= SAME:
