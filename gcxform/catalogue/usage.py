@@ -209,6 +209,13 @@ CODES: dict[str, tuple[str, str]] = {
         "`rtcp` finds the angles of machines with two rotary axes that count on, and it writes "
         "for the tools that the program was read with. Mend the file of the target machine.",
     ),
+    "GX745": (
+        "A line for where the tool is drawn back is not taken",
+        "What stands in `retract-lines` and `return-lines` is written between the moves that "
+        "`rtcp` adds, so it has to be proved like them: comments, dwells, coolant, M codes that "
+        "both machine files call inert, and rapids of X, Y and Z to places of the machine, each in "
+        "a line of its own. Leave out what else there is.",
+    ),
     "GX801": (
         "Two plugins offer the same name",
         "Which one a pipeline means would depend on the order of installation. Uninstall one of "

@@ -26,6 +26,7 @@ from faults import (
     thermal,
     tied,
     turned,
+    userlines,
     writing,
 )
 from faults.mutation import Mutation
@@ -49,6 +50,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     *proof.MUTATIONS,
     *running.MUTATIONS,
     *rtcp.MUTATIONS,
+    *userlines.MUTATIONS,
     *ballbar.MUTATIONS,
     *calibrating.MUTATIONS,
     *simulating.MUTATIONS,

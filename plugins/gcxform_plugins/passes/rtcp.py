@@ -23,7 +23,9 @@ import gcxform as gx
 from gcxform_plugins.passes.rtcp_circling import Circling
 from gcxform_plugins.passes.rtcp_cutting import STILL, Cutting
 from gcxform_plugins.passes.rtcp_driven import Driven, Led
+from gcxform_plugins.passes.rtcp_lines import UserLines
 from gcxform_plugins.passes.rtcp_moving import Correcting, Moving
+from gcxform_plugins.passes.rtcp_options import check_calibrated, check_options, check_target
 from gcxform_plugins.passes.rtcp_place import Place, turned_at
 from gcxform_plugins.passes.rtcp_proof import Proof
 from gcxform_plugins.passes.rtcp_retracted import Retracted
@@ -95,6 +97,16 @@ class Rtcp(gx.Pass):
         float | None,
         gx.Option("feed of that: mm/min of the tip, degrees/min while axes turn", above=0.0),
     ] = None
+    retract_lines: Annotated[
+        gx.Lines | None,
+        gx.Option(
+            'retract: written once the tool is drawn back, before axes turn: ["M9", "G53 G0 Z0."]'
+        ),
+    ] = None
+    return_lines: Annotated[
+        gx.Lines | None,
+        gx.Option("retract: written once axes have turned, before the tool comes back"),
+    ] = None
     orientation_path: Annotated[
         Literal["angles", "great-circle"],
         gx.Option("to-machine: between blocks angles change in proportion, or the tool axis does"),
@@ -106,7 +118,7 @@ class Rtcp(gx.Pass):
 
     def __post_init__(self) -> None:
         """Turn the facts round for the reverse. Raises ValueError for options that do not fit."""
-        self._check_options()
+        check_options(self)
         if self.direction in ("repost", "retarget"):
             object.__setattr__(self, "requires", PLAIN | self.ensures)
             object.__setattr__(self, "clears", frozenset())
@@ -122,24 +134,6 @@ class Rtcp(gx.Pass):
             object.__setattr__(self, "ensures", self.clears)
             object.__setattr__(self, "clears", frozenset({gx.AXIS_POSITIONS}))
 
-    def _check_options(self) -> None:
-        if (self.direction == "repost") != (self.calibrated is not None):
-            raise ValueError("repost takes calibrated, the file of the measured machine")
-        if (self.direction == "retarget") != (self.target is not None):
-            raise ValueError("retarget takes target, the file of the machine to write for")
-        if self.direction != "repost" and self.orientation != "keep":
-            raise ValueError("orientation is an option of repost")
-        if self.direction != "to-machine" and self.tip_codes == "read":
-            raise ValueError("tip-codes is an option of to-machine: the others would do it twice")
-        if self.direction != "to-machine" and self.orientation_path != "angles":
-            raise ValueError("orientation-path is an option of to-machine")
-        if (self.retract is None) != (self.retract_feed is None):
-            raise ValueError("retract and retract-feed go together")
-        if self.direction != "retarget" and self.retract is not None:
-            raise ValueError("retract is an option of retarget")
-        if self.direction == "retarget" and self.rapids == "refuse":
-            raise ValueError('retarget turns axes in rapids: say rapids = "ends" if all is clear')
-
     @property
     def turns_anew(self) -> bool:
         """Whether other angles are written than the program has, in proportion."""
@@ -153,6 +147,11 @@ class Rtcp(gx.Pass):
     def reads_tip_codes(self) -> bool:  # type: ignore[override]
         """Whether it does what the control was asked for."""
         return self.tip_codes == "read"
+
+    @property
+    def written_for(self) -> gx.KinematicsFile | None:
+        """The machine of the target."""
+        return self.target
 
     @property
     def letters(self) -> str:
@@ -181,45 +180,9 @@ class Rtcp(gx.Pass):
             message = "rtcp needs a machine with rotary axes"
             hint = "[machine] file = ..., with `kinematics`, or `table` and `head`"
             raise gx.UsageError.one("GX742", message, hint=hint)
-        self._check_calibrated(gx.chain_of(machine))
-        self._check_target(context)
-
-    def _check_calibrated(self, posted: gx.Chain) -> None:
-        """Refuse a calibrated machine that is another one."""
-        if self.calibrated is None:
-            return
-        measured = gx.chain_of(self.calibrated.machine)
-        one, other = ((chain.letters, chain.tip, len(chain.table)) for chain in (posted, measured))
-        if one != other:
-            message = "the calibrated machine has other rotary axes, or another gauge point"
-            hint = "take the machine file that `gcxform calibrate` has made of the one of [machine]"
-            raise gx.UsageError.one("GX743", message, hint=hint)
-
-    def _check_target(self, context: gx.PassContext) -> None:
-        """Refuse a target whose angles are not found, and one with other tools."""
-        machine = context.machine
-        assert machine is not None
-        files = [file.machine for file in (self.calibrated, self.target) if file is not None]
-        for other in (files or [machine]) if self.turns_anew else ():
-            chain = gx.chain_of(other)
-            gx.attitudes(chain, np.array([[0.0, 0.0, 1.0]]))
-            wrapped = [axis.letter for axis in chain.axes if axis.wrap is not None and files]
-            if len(chain.axes) != 2 or wrapped:
-                self._refuse_target(wrapped)
-        for number, tool in self.target.machine.tools.items() if self.target else ():
-            if machine.tools.get(number, tool) != tool:
-                message = f"tool {number} is another one in the file of the target"
-                hint = "give both machine files the tools that the program is for"
-                raise gx.UsageError.one("GX744", message, hint=hint)
-
-    @staticmethod
-    def _refuse_target(wrapped: list[str]) -> None:
-        message = "angles are found for machines with two rotary axes"
-        hint = ""
-        if wrapped:
-            message = f"which way {wrapped[0]} turns is not known: the machine file gives it a wrap"
-            hint = "leave wrap out, and give limits, if the control counts full turns"
-        raise gx.UsageError.one("GX744", message, hint=hint)
+        UserLines.of(self, context)
+        check_calibrated(self, gx.chain_of(machine))
+        check_target(self, context)
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path of the axes for one of tips; if asked the reverse, or one corrected."""
@@ -302,11 +265,10 @@ class Rtcp(gx.Pass):
         if self.retract is None or not len(after):
             return {}
         _, target = self._machines(after, context)
-        drawn = Retracted(self, Driven(self, after, target)).found
-        return {
-            "retracts": len(drawn),
-            "moves of retracts": sum(len(rows) for rows in drawn),
-        }
+        lines = UserLines.of(self, context)
+        drawn = Retracted(self, Driven(self, after, target), lines)
+        found = {"retracts": len(drawn.found), "moves of retracts": drawn.moves}
+        return found | ({"lines of retracts": len(drawn.given)} if drawn.given else {})
 
     def _leans(self) -> tuple[float, float]:
         """Return by how much (degrees) the tool axis may lean, and angles may differ."""
