@@ -123,6 +123,6 @@ class PointedProof(Proof):
         part = (nth / self.count[owner])[:, None]
         off = np.abs(angles(self.target.end[rows]) - begin - part * way)
         wrong = ~(off <= 0.5 * self._steps() + ROOM).all(axis=1)
-        wrong |= ~(np.abs(way) <= HALF_A_TURN + ROOM).all(axis=1)
+        wrong |= ~(np.abs(way) <= HALF_A_TURN + self._steps() + ROOM).all(axis=1)
         if wrong.any():
             self._fail("angles do not change in proportion", int(owner[np.argmax(wrong)]))
