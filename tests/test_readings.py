@@ -137,6 +137,7 @@ def test_the_seed_decides(files):
         (["balls", "--axis", "B", "turn.csv"], "GX707", 2),
         (["balls", "-o", "plan.csv", "plan.csv"], "GX727", 2),
         (["balls", "--noise", "much", "plan.csv"], "GX708", 2),
+        (["balls", "--noise", "-2um", "plan.csv"], "GX706", 2),
         (["balls", "turn.csv"], "GX470", 3),
         (["ballbar-rtcp", "-m", "other.toml", "--ball", "1,2,3"], "GX707", 2),
         (["ballbar-rtcp", "-m", "set.toml", "--ball", "1,2"], "GX708", 2),
@@ -147,6 +148,14 @@ def test_what_does_not_fit_is_refused(files, words, code, exit_code):
     Path("other.toml").write_text(other[0] + "[axis.C]" + other[1].split("[axis.C]")[1])
     done = call("simulate", words[0], "--true", "true.toml", *words[1:])
     assert (done.exit_code, code in done.stderr) == (exit_code, True), done.output
+
+
+def test_a_ballbar_needs_an_axis_in_the_table(files):
+    head = Path("set.toml").read_text().replace("table", "head")
+    Path("head.toml").write_text(head)
+    words = ("--true", "head.toml", "-m", "head.toml", "--ball", "1,2,3")
+    done = call("simulate", "ballbar-rtcp", *words)
+    assert (done.exit_code, "GX707" in done.stderr) == (2, True), done.output
 
 
 def test_balls_beyond_the_error_model_are_refused(files):
