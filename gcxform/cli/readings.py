@@ -54,7 +54,7 @@ def _read_options(command: Command) -> Command:
 @click.command("balls", epilog=_PLAN, short_help="Balls at poses, for `calibrate rotary|bundle`.")
 @_read_options
 @click.option("--axis", metavar="A", type=click.Choice([*"ABC"]), help="The one axis that turns.")
-@click.option("--tool", metavar="N", type=int, help="The probe, if an axis turns the head.")
+@click.option("--tool", metavar="N", type=int, help="The probe: X, Y, Z are then of the axes.")
 @click.argument("plan", metavar="PLAN")
 def balls(
     plan: str, true: str, noise: str, seed: int, output: str, axis: str | None, tool: int | None
