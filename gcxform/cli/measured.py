@@ -112,6 +112,14 @@ def length_of(text: str, option: str) -> float:
     return length
 
 
+def scatter_of(text: str, option: str) -> float:
+    """Return a standard deviation in mm, 0 for none. Raises UsageError."""
+    length = any_length(text, option)
+    if not length >= 0:
+        raise UsageError.one("GX706", f"{text} is below 0 mm", Location(option))
+    return length
+
+
 def any_length(text: str, option: str) -> float:
     """Return a length in mm. Raises UsageError."""
     from gcxform.machine.quantities import LENGTH
