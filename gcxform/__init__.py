@@ -78,6 +78,7 @@ if TYPE_CHECKING:
     from gcxform.options import Angle as Angle
     from gcxform.options import KinematicsFile as KinematicsFile
     from gcxform.options import Length as Length
+    from gcxform.options import Lines as Lines
     from gcxform.options import ModelFile as ModelFile
     from gcxform.options import Option as Option
     from gcxform.options import Vector as Vector
@@ -119,6 +120,7 @@ if TYPE_CHECKING:
     from gcxform.toolpath.path import Event as Event
     from gcxform.toolpath.path import FeedMode as FeedMode
     from gcxform.toolpath.path import Form as Form
+    from gcxform.toolpath.path import Given as Given
     from gcxform.toolpath.path import Kind as Kind
     from gcxform.toolpath.path import Plane as Plane
     from gcxform.toolpath.path import Toolpath as Toolpath
@@ -152,7 +154,7 @@ _HOMES = {
     "tomltext": "did_you_mean read_text",
     "machine.formats": "ErrorFormat cannot_hold head_of",
     "modal.codes": "Code CutterComp MCode",
-    "options": "Angle KinematicsFile Length ModelFile Option Vector",
+    "options": "Angle KinematicsFile Length Lines ModelFile Option Vector",
     "pipeline": "Pipeline Result",
     "registry": "Registry",
     "syntax.tree": "Block Comment Number Word",
@@ -164,7 +166,7 @@ _HOMES = {
     "NO_CUTTER_COMP NO_CYCLES NOMINAL TIP_POSITIONS WORKPIECE_FRAME XY_ARCS Fact "
     "inseparable_cycles",
     "toolpath.frames": "Frame",
-    "toolpath.path": "Blocks Event FREE FeedMode Form Kind OWN_DISTANCES Plane Toolpath "
+    "toolpath.path": "Blocks Event FREE FeedMode Form Given Kind OWN_DISTANCES Plane Toolpath "
     "column_major",
     "toolpath.splines": "points_on_splines spline_chords splines_as_lines",
 }

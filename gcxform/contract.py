@@ -26,6 +26,7 @@ from gcxform.toolpath.path import FeedMode, Toolpath
 
 if TYPE_CHECKING:
     from gcxform.machine.machine import Machine
+    from gcxform.optionkinds import KinematicsFile
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,11 @@ class Pass:
     def letters(self) -> str:
         """The letters of axes that its output may have, whether the program names them or not."""
         return ""
+
+    @property
+    def written_for(self) -> KinematicsFile | None:
+        """The machine that its output is for, if it is not the one of the pipeline."""
+        return None
 
     @property
     def promise(self) -> float:

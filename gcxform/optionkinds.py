@@ -17,7 +17,7 @@ from typing import Annotated, Any, NamedTuple
 
 import msgspec
 
-from gcxform.diagnostics import UsageError
+from gcxform.diagnostics import Location, UsageError
 from gcxform.machine import modelfile
 from gcxform.machine.errors import ErrorModel
 from gcxform.machine.formats import ErrorFormat
@@ -84,6 +84,14 @@ class KinematicsFile:
         return cls(path, machine, hashlib.sha256(path.read_bytes()).hexdigest())
 
 
+@dataclass(frozen=True)
+class Lines:
+    """Lines of a program, as a user gives them, and the place of the option that has them."""
+
+    texts: tuple[str, ...]
+    where: Location | None = field(default=None, compare=False, repr=False)
+
+
 class RefusedError(Exception):
     """A value which is not what its option takes: the code, a sentence and a hint."""
 
@@ -95,12 +103,14 @@ class RefusedError(Exception):
 class Around(NamedTuple):
     """What surrounds the values: the directory for relative paths, and what plugins know.
 
-    That is the formats of error models, and the kinds of kinematics.
+    That is the formats of error models, and the kinds of kinematics. `where` is the place of the
+    option.
     """
 
     base: Path
     formats: tuple[type[ErrorFormat], ...] = ()
     kinematics: Known = NONE
+    where: Location | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,6 +209,16 @@ def _read_parameters(raw: object, around: Around) -> dict[str, float]:
     return {key: _read_plain(float, "a number", value, around) for key, value in raw.items()}
 
 
+def _read_lines(raw: object, around: Around) -> Lines:
+    given = raw.split(",") if isinstance(raw, Argument) else raw
+    if not isinstance(given, list) or not all(isinstance(text, str) for text in given):
+        raise _expected('a list of lines, such as ["M9", "G53 G0 Z0."]', raw)
+    texts = tuple(text.strip(" ") for text in given)
+    if not all(text.isascii() and text.isprintable() and text for text in texts):
+        raise RefusedError("GX702", "expected lines of plain characters, none of them empty")
+    return Lines(texts, around.where)
+
+
 def choice_kind(choices: tuple[Any, ...]) -> Kind:
     """Return the kind of a value which is one of a few, strings or numbers."""
     texts = {str(choice): choice for choice in choices}
@@ -227,6 +247,7 @@ PLAIN: dict[type, Kind] = {
     str: Kind("text", partial(_read_plain, str, "a text")),
     Path: Kind("file name", _read_path, lambda path: str(path.absolute())),
     ModelFile: Kind("error model", _read_model, lambda f: str(f.path.absolute())),
+    Lines: Kind("list of lines", _read_lines, lambda lines: list(lines.texts)),
     KinematicsFile: Kind("machine file", _read_machine, lambda f: str(f.path.absolute())),
 }
 """The types that are known by themselves; all others stand in an annotation."""

@@ -8,7 +8,7 @@ help and the way back to TOML are derived from them.
         limit: Annotated[Length, Option(help="the longest shift", above=0)] = 1.0
 
 A field is a `Length` (mm), `Angle` (degrees), `Vector` (mm), `Coordinates`, int, float, bool, str,
-`Path`, `ModelFile`, `KinematicsFile`, a `Literal` or a `StrEnum`; `T | None`; or
+`Path`, `ModelFile`, `KinematicsFile`, `Lines`, a `Literal` or a `StrEnum`; `T | None`; or
 `T | dict[str, T]`, one value for all or one for each address letter.
 """
 
@@ -34,6 +34,7 @@ from gcxform.optionkinds import Argument as Argument
 from gcxform.optionkinds import Coordinates as Coordinates
 from gcxform.optionkinds import KinematicsFile as KinematicsFile
 from gcxform.optionkinds import Length as Length
+from gcxform.optionkinds import Lines as Lines
 from gcxform.optionkinds import ModelFile as ModelFile
 from gcxform.optionkinds import ParameterValues as ParameterValues
 from gcxform.optionkinds import Vector as Vector
@@ -138,7 +139,7 @@ def build(
     for spec in specs:
         try:
             if spec.key in raw:
-                values[spec.name] = spec.read(raw[spec.key], around)
+                values[spec.name] = spec.read(raw[spec.key], around._replace(where=where(spec.key)))
             elif spec.default is MISSING:
                 raise RefusedError("GX705", f"{owner} needs {spec.key!r}", spec.option.help)
         except RefusedError as refusal:

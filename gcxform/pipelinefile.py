@@ -318,6 +318,7 @@ _JSON_TYPES: Final[Mapping[str, str | list[str]]] = {
     "angle": ["number", "string"],
     "three lengths": ["array", "string", "object"],
     "coordinates by axis letter": "object",
+    "list of lines": "array",
     "numbers by parameter": "object",
     "true or false": "boolean",
     "whole number": "integer",

@@ -107,7 +107,7 @@ class Run:
             self.verifier = Verifier(
                 self._unresolved(),
                 pipeline.context,
-                replace(reading, units=_first_units(pipeline)),
+                self._reading_of_output(reading),
                 axes,
                 (pipeline.limit(False), pipeline.limit(True)),
                 pipeline.angle_limit(),
@@ -115,6 +115,13 @@ class Run:
                 any(step.folds for step in self.steps),
                 self._switches(),
             )
+
+    def _reading_of_output(self, reading: Reading) -> Reading:
+        """Return what is known of the text written, which may be for another machine."""
+        for file in filter(None, (step.written_for for step in self.steps)):
+            offsets, homes = file.machine.work_offsets, file.machine.homes
+            reading = replace(reading, work_offsets=offsets, homes=homes)
+        return replace(reading, units=_first_units(self.pipeline))
 
     def _switches(self) -> frozenset[str]:
         """Return the M codes that a pass takes over from the control."""

@@ -22,7 +22,7 @@ from dataclasses import replace
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect import Dialect
 from gcxform.machine.machine import SWITCHES
-from gcxform.modal.codes import MCode, barrier
+from gcxform.modal.codes import FOLLOWING, MCode, barrier
 from gcxform.source import Source, lines_in
 
 OTHERWISE = "it is another tool length in a program with tool vectors"
@@ -78,6 +78,18 @@ def with_switches(dialect: type[Dialect], control: Mapping[str, str | float]) ->
     if not codes:
         return dialect
     return type(dialect.__name__, (dialect,), {"m_codes": {**dialect.m_codes, **codes}})
+
+
+def with_refusal(dialect: type[Dialect], control: Mapping[str, str | float]) -> type[Dialect]:
+    """Return the dialect that does not resolve the code from which on a control follows the tip.
+
+    A dialect may take other M codes of the machine's own for what moves nothing.
+    """
+    codes = [code for code, act in switches_of(control).items() if act == "tip-on"]
+    if not codes:
+        return dialect
+    refused = {int(code[1:]): MCode("tip", barrier=FOLLOWING) for code in codes}
+    return type(dialect.__name__, (dialect,), {"m_codes": {**dialect.m_codes, **refused}})
 
 
 def with_vectors(dialect: type[Dialect]) -> type[Dialect]:

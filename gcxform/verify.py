@@ -24,6 +24,7 @@ from gcxform.modal.reader import WindowReader
 from gcxform.modal.sorting import only_for_cycles
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import PROBES
+from gcxform.syntax.scan import Window
 from gcxform.toolpath.facts import IN_AIR, between_taps
 from gcxform.toolpath.path import WHOLE, Event, Kind, Toolpath
 from gcxform.toolpath.runs import Runs, deviation_of_runs
@@ -121,6 +122,7 @@ class Verifier:
             for wrong in self._proof(trace).left_behind(read, back):
                 self._raise(*wrong)
         self._events(self._without_switches(read.path), self._told(back.path), trace)
+        self._given(read.path, again, source)
         return self.findings
 
     def _count(self, read: Interpreted, lines: range, trace: Trace) -> None:
@@ -274,6 +276,15 @@ class Verifier:
             rest = old[len(new) :] or new[len(old) :]
             line = rest[0].line if len(old) > len(new) else trace.line_of(rest[0].line)
             self._raise(f"{rest[0].what} is missing or too many", line, 0)
+
+    def _given(self, path: Toolpath, text: Window, source: Ints) -> None:
+        """Check that the blocks that the user gives stand in the text, once each and in order."""
+        for line in sorted({given.line for given in path.given}):
+            wanted = [given.text.encode() for given in path.given if given.line == line]
+            places = np.flatnonzero(source == line).tolist()
+            here = [text.line(at).lstrip(b"/ ") for at in places]  # as the block they stand in
+            if [each for each in here if each in wanted] != wanted:
+                self._raise("a block that is given is missing, doubled or elsewhere", line, 0)
 
     def _fail(self, message: str, trace: Trace, row: int) -> None:
         output = int(trace.after.source[row])

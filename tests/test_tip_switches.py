@@ -116,6 +116,7 @@ def anyhow(rng):
     The model knows one thing at a time: what is on, and whether an axis is turned.
     """
     lines, state, turned, wrong = [*HEAD, "G1 F500."], None, False, []
+    whole = last = 0
     for _ in range(int(rng.integers(3, 12))):
         kind = rng.choice(["on", "off", "turn", "back", "move"], p=[0.25, 0.1, 0.2, 0.35, 0.1])
         before = turned
@@ -125,9 +126,11 @@ def anyhow(rng):
             wrong += [len(lines)] * turned
             continue
         turned = {"turn": True, "back": False}.get(str(kind), turned)
-        angles = {"turn": f" A{rng.integers(1, 40)}. C7.", "back": " A0 C0"}.get(str(kind), "")
-        lines.append(f"X{rng.uniform(-9.0, 9.0):.3f}{angles}")
-        wrong += [len(lines)] * ((before or turned) and state != "on")
+        whole = 360 * int(rng.integers(-1, 2)) if kind == "back" else whole
+        there = {"turn": f" A{rng.integers(1, 40)}. C7.", "back": f" A0 C{whole}"}
+        lines.append(f"X{rng.uniform(-9.0, 9.0):.3f}{there.get(str(kind), '')}")
+        turns = before or turned or whole != last
+        wrong, last = wrong + [len(lines)] * (turns and state != "on"), whole
     return [*lines, "M2"], wrong
 
 
@@ -165,6 +168,8 @@ REFUSED = {
     "no longer": (with_line(8, "G1 C5. F100."), 9, "does not follow the tip"),
     "where axes stand is not known": (["G21 G90 G94 G17 G54", "M428", *WHOLE[1:]], 2, "known"),
     "beside a move": ([*WHOLE[:3], "M428 G1 X10. Y5. F600.", *WHOLE[5:]], 4, "beside a move"),
+    "a whole turn without": (with_line(8, "G1 C360. F100."), 9, "does not follow the tip"),
+    "there for no cut": (with_line(7, "G53 G1 X1. C360. F9."), 8, "in machine coordinates"),
     "another length": (with_line(6, "G43.1 Z5."), 8, "the tool length changes"),
     "behind the last move": ([*WHOLE[:6], "M429", "M2"], 7, "M429 where not all"),
 }
@@ -179,6 +184,24 @@ def test_it_is_refused_by_name(tmp_path, name, size):
         run.over(Output(len, None), abs, size)
     found = error.value.diagnostics[0]
     assert (found.code, found.where.line) == ("GX330", line)
+
+
+@pytest.mark.parametrize("angle", [360.0, -720.0, 540.0, 359.999, 0.001])
+@pytest.mark.parametrize("size", [1, 0])
+def test_whole_turns_are_as_none(tmp_path, angle, size):
+    """There it may switch, be off, and go to a place of the machine; nowhere else."""
+    turned = [f"G1 X10. C{angle} F600.", "M429", "X11.", "G53 G0 Z5.", "M428", "G1 C0. F600."]
+    run = Run(linuxcnc(tmp_path), Source.of_bytes(text_of(with_line(7, *turned))), "on")
+    parts = []
+    if angle % 360.0:
+        with pytest.raises(gx.InputError, match="M429 where not all"):
+            run.over(Output(len, None), abs, size)
+        return
+    run.over(Output(parts.append, None), abs, size)
+    text = b"".join(parts).split(b"\n")
+    at = text.index(b"G53 G0 Z5.")
+    assert text[at - 1].startswith((b"X11.", b"G1 X11."))  # as the axes are without turns
+    assert b"Y" not in text[at - 1]
 
 
 def test_a_position_that_is_lost_is_not_known(tmp_path):

@@ -210,6 +210,13 @@ CODES: dict[str, tuple[str, str]] = {
         "for the tools that the program was read with. Mend the file of the target machine.",
     ),
     "GX745": (
+        "A line for where the tool is drawn back is not taken",
+        "What stands in `retract-lines` and `return-lines` is written between the moves that "
+        "`rtcp` adds, so it has to be proved like them: comments, dwells, coolant, M codes that "
+        "both machine files call inert, and rapids of X, Y and Z to places of the machine, each in "
+        "a line of its own. Leave out what else there is.",
+    ),
+    "GX746": (
         "The dialect has no tool vectors",
         'With `tip-codes = "vectors"` `rtcp` reads programs that say the tool axis by I, J and K. '
         "Which code announces them is known of few dialects: G43.5 of `fanuc`.",

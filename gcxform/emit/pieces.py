@@ -6,6 +6,8 @@ the piece needs with what the control believes before it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,7 +19,7 @@ from gcxform.modal.lines import fill
 from gcxform.modal.moves import turns_only
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.modal.tables import GROUPS, NUMBER, TAP, THREAD
-from gcxform.toolpath.path import Event, FeedMode, Form, Kind
+from gcxform.toolpath.path import Event, FeedMode, Form, Given, Kind
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -43,7 +45,7 @@ class Pieces:
     feed      (pieces,) `Feed`; `feed_value` is the number to write
     special   (pieces,) whether it stands for all moves of a block that is written as it stands
     event     (pieces,) index into `events`, one of each kind, -1 for none: what a cycle does
-              between its moves
+              between its moves, and blocks that the user gives, of which some are moves
     repaired  (pieces,) whether something is stated that the source line did not state
     """
 
@@ -71,13 +73,19 @@ class Pieces:
         path, live = self.task.path, self.task.read.live
         self.count = np.bincount(path.block, minlength=live)
         special = np.zeros(live, np.bool_)
-        special[path.block[~path.is_free]] = True
+        moves = np.array([given.row for given in path.given if given.moves], np.int64)
+        own = ~path.is_free
+        own[moves] = False
+        special[path.block[own]] = True
         special &= ~self.taps.lines
         drilling = self.task.read.modes.cycle != CYCLE_OFF
         self.expanded_line = drilling & ~special & ~self.taps.lines & self.task.manner.expands
         first, expanded = path.blocks.first, self.expanded_line.tolist()
         inner = [e for e in path.events if e.within and expanded[e.line - first]]
-        self.events = list({(e.what, e.values): e for e in reversed(inner)}.values())
+        between: list[Event | Given] = [*inner, *(given for given in path.given if not given.moves)]
+        said = [*between, *(given for given in path.given if given.moves)]
+        self.events = list({_said(each): each for each in reversed(said)}.values())
+        number = {_said(each): n for n, each in enumerate(self.events)}
         pieces = np.where(special, 1, np.maximum(self.count, 1))
         pieces = np.where(self.taps.lines, self.taps.count, pieces)
         self.line = np.repeat(np.arange(live), pieces)
@@ -85,25 +93,25 @@ class Pieces:
         self.row = (np.cumsum(self.count) - self.count)[self.line] + nth
         self.row[self.taps.lines[self.line]] = self.taps.rows
         self.event = np.full(len(self.line), -1)
-        if inner:
-            self._put_events_between(inner)
+        if between:
+            self._put_between(between, [number[_said(each)] for each in between])
         self.has_row = (self.count[self.line] > 0) & (self.event < 0)
+        for given in (given for given in path.given if given.moves):
+            self.event[self.has_row & (self.row == given.row)] = number[_said(given)]
         self.shape = self.task.shape[self.line]
         self._moving = np.flatnonzero(self.has_row)
         self._rows = self.row[self._moving]
         self._give_roles(special)
 
-    def _put_events_between(self, inner: list[Event]) -> None:
-        """Give what cycles do between their moves pieces of their own."""
-        number = {(e.what, e.values): n for n, e in enumerate(self.events)}
-        which = np.array([number[e.what, e.values] for e in inner], np.int64)
+    def _put_between(self, inner: Sequence[Event | Given], which: list[int]) -> None:
+        """Give what is done between the moves of a block pieces of their own."""
         line = np.array([e.line - self.task.path.blocks.first for e in inner], np.int64)
         before = np.array([2 * e.row for e in inner], np.int64)
         all_lines = np.concatenate([self.line, line])
         order = np.lexsort((np.concatenate([2 * self.row + 1, before]), all_lines))
         nothing = np.zeros(len(line), np.int64)
         self.line, self.row = all_lines[order], np.concatenate([self.row, nothing])[order]
-        self.event = np.concatenate([self.event, which])[order]
+        self.event = np.concatenate([self.event, np.array(which, np.int64)])[order]
 
     def _give_roles(self, special: Flags) -> None:
         self.leads = np.append(True, self.line[1:] != self.line[:-1])[: len(self.line)]
@@ -269,6 +277,11 @@ class Pieces:
         if not self.task.manner.target.feed_before_units:
             return np.asarray(after)
         return np.append(self.believed.inch == 1, after[:-1])[: len(after)]
+
+
+def _said(each: Event | Given) -> tuple[object, ...]:
+    """Return what is written for something between the moves."""
+    return (each.text,) if isinstance(each, Given) else (each.what, each.values)
 
 
 def _close(a: Floats, b: Floats) -> Flags:

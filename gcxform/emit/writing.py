@@ -38,7 +38,7 @@ from gcxform.modal.arcs import TURN
 from gcxform.modal.limits import without_blanks
 from gcxform.modal.tables import MeaningTable
 from gcxform.syntax.scan import Window
-from gcxform.toolpath.path import Kind
+from gcxform.toolpath.path import Given, Kind
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -179,16 +179,18 @@ class Writing:
             raise InputError.one("GX501", error.message, where) from None
 
     def _event_text(self, piece: int) -> tuple[Field, ...]:
-        """Return the block of something that a canned cycle does between its moves."""
+        """Return the block of what a canned cycle does between its moves, or one that is given."""
         event, target = self.pieces.events[int(self.pieces.event[piece])], self.task.manner.target
         line = int(self.pieces.line[piece])
+        slash = slash_of(self.task.table.shapes.shapes[int(self.task.shape[line])])
+        if isinstance(event, Given):
+            return (Literal(slash + event.text.encode()),)
         text = event_text(event, target, self.style.gap or b"")
         if text is None:
             where = self.task.location(line)
             message = f"{target.name} cannot say the {event.what} of this cycle"
             raise InputError.one("GX501", message, where)
-        shape = self.task.table.shapes.shapes[int(self.task.shape[line])]
-        return (Literal(slash_of(shape) + text),)
+        return (Literal(slash + text),)
 
     def _field(self, field: Field, members: Ints, renderer: Renderer) -> None:
         """Render one field of the pieces of a template."""

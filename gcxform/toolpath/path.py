@@ -131,6 +131,20 @@ class Event:
         return Event(row, self.what, self.values, self.line, self.within)
 
 
+@dataclass(frozen=True, slots=True)
+class Given:
+    """A block that the user gives, to be written as it stands before the move `row`.
+
+    `line` is the source line, from 0, of whose block it becomes a part: it stands between pieces of
+    that. `moves`: it is the block of the move `row` itself.
+    """
+
+    row: int
+    text: str
+    line: int
+    moves: bool = False
+
+
 COLUMNS = (
     "kind",
     "end",
@@ -179,6 +193,7 @@ class Toolpath:
     frames          the frames of the rows
     blocks          how the blocks the rows came from are to be written
     events          what happens between the moves
+    given           blocks that stand as the user gives them; what they do is in rows and events
     slack           mm; how far a row may be from the curve it stands for
     first           the work offset from whose zero positions count
     folded          whether frames are folded into the words: codes that set them are not written
@@ -210,6 +225,7 @@ class Toolpath:
     frames: tuple[Frame, ...]
     blocks: Blocks
     events: tuple[Event, ...] = ()
+    given: tuple[Given, ...] = ()
     slack: float = 0.0
     first: str = "G54"
     folded: bool = False
@@ -340,17 +356,18 @@ class Toolpath:
     def with_rows(self, counts: Ints, **columns: Any) -> Toolpath:
         """Return the path with row i standing `counts[i]` times, and some columns new.
 
-        Events move along with the row they stand before. Of the rows that stand for one, only the
-        first can start where the position was lost.
+        Events and blocks that are given move along with the row they stand before. Of the rows that
+        stand for one, only the first can start where the position was lost.
         """
         first = np.append(0, np.cumsum(counts))
-        begin = first.tolist() if self.events else []
+        begin = first.tolist() if self.events or self.given else []
         events = tuple(event.at(begin[event.row]) for event in self.events)
+        given = tuple(dataclass_replace(g, row=begin[g.row]) for g in self.given)
         row = np.repeat(np.arange(len(self)), counts)
         kept = {n: _picked(getattr(self, n), row) for n in COLUMNS if n not in columns}
         if kept["lost"].any():
             kept["lost"] = np.where(np.arange(len(row)) == first[row], kept["lost"], 0)
-        return self.replace(**kept, **columns, events=events)
+        return self.replace(**kept, **columns, events=events, given=given)
 
 
 def _picked(column: NDArray[Any], rows: Ints | Flags) -> NDArray[Any]:

@@ -26,6 +26,7 @@ from faults import (
     thermal,
     tied,
     turned,
+    userlines,
     vectors,
     writing,
 )
@@ -50,6 +51,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     *proof.MUTATIONS,
     *running.MUTATIONS,
     *rtcp.MUTATIONS,
+    *userlines.MUTATIONS,
     *vectors.MUTATIONS,
     *ballbar.MUTATIONS,
     *calibrating.MUTATIONS,

@@ -23,8 +23,9 @@ import gcxform as gx
 from gcxform_plugins.passes.rtcp_circling import Circling
 from gcxform_plugins.passes.rtcp_cutting import STILL, Cutting
 from gcxform_plugins.passes.rtcp_driven import Driven, Led, Pointed
-from gcxform_plugins.passes.rtcp_machines import check_machines
+from gcxform_plugins.passes.rtcp_lines import UserLines
 from gcxform_plugins.passes.rtcp_moving import Correcting, Moving
+from gcxform_plugins.passes.rtcp_options import check_machines, check_options
 from gcxform_plugins.passes.rtcp_place import Place, turned_at
 from gcxform_plugins.passes.rtcp_pointed import PointedProof
 from gcxform_plugins.passes.rtcp_pointing import InProportion, Pointing
@@ -100,6 +101,16 @@ class Rtcp(gx.Pass):
         float | None,
         gx.Option("feed of that: mm/min of the tip, degrees/min while axes turn", above=0.0),
     ] = None
+    retract_lines: Annotated[
+        gx.Lines | None,
+        gx.Option(
+            'retract: written once the tool is drawn back, before axes turn: ["M9", "G53 G0 Z0."]'
+        ),
+    ] = None
+    return_lines: Annotated[
+        gx.Lines | None,
+        gx.Option("retract: written once axes have turned, before the tool comes back"),
+    ] = None
     orientation_path: Annotated[
         Literal["angles", "great-circle"],
         gx.Option("to-machine: between blocks angles change in proportion, or the tool axis does"),
@@ -111,7 +122,7 @@ class Rtcp(gx.Pass):
 
     def __post_init__(self) -> None:
         """Turn the facts round for the reverse. Raises ValueError for options that do not fit."""
-        self._check_options()
+        check_options(self)
         if self.direction in ("repost", "retarget"):
             object.__setattr__(self, "requires", PLAIN | self.ensures)
             object.__setattr__(self, "clears", frozenset())
@@ -127,26 +138,6 @@ class Rtcp(gx.Pass):
             object.__setattr__(self, "ensures", self.clears)
             object.__setattr__(self, "clears", frozenset({gx.AXIS_POSITIONS}))
 
-    def _check_options(self) -> None:
-        if (self.direction == "repost") != (self.calibrated is not None):
-            raise ValueError("repost takes calibrated, the file of the measured machine")
-        if (self.direction == "retarget") != (self.target is not None):
-            raise ValueError("retarget takes target, the file of the machine to write for")
-        if self.direction != "repost" and self.orientation != "keep":
-            raise ValueError("orientation is an option of repost")
-        if self.direction != "to-machine" and self.tip_codes != "refuse":
-            raise ValueError("tip-codes is an option of to-machine: the others would do it twice")
-        if self.reads_vectors and self.rapids == "refuse":
-            raise ValueError('vectors turn axes in rapids: say rapids = "ends" if all is clear')
-        if self.direction != "to-machine" and self.orientation_path != "angles":
-            raise ValueError("orientation-path is an option of to-machine")
-        if (self.retract is None) != (self.retract_feed is None):
-            raise ValueError("retract and retract-feed go together")
-        if self.direction != "retarget" and self.retract is not None:
-            raise ValueError("retract is an option of retarget")
-        if self.direction == "retarget" and self.rapids == "refuse":
-            raise ValueError('retarget turns axes in rapids: say rapids = "ends" if all is clear')
-
     @property
     def turns_anew(self) -> bool:
         """Whether other angles are written than the program has, in proportion."""
@@ -161,6 +152,11 @@ class Rtcp(gx.Pass):
     def reads_tip_codes(self) -> bool:  # type: ignore[override]
         """Whether it does what the control was asked for."""
         return self.tip_codes == "read"
+
+    @property
+    def written_for(self) -> gx.KinematicsFile | None:
+        """The machine of the target."""
+        return self.target
 
     @property
     def reads_vectors(self) -> bool:  # type: ignore[override]
@@ -194,6 +190,7 @@ class Rtcp(gx.Pass):
             message = "rtcp needs a machine with rotary axes"
             hint = "[machine] file = ..., with `kinematics`, or `table` and `head`"
             raise gx.UsageError.one("GX742", message, hint=hint)
+        UserLines.of(self, context)
         check_machines(self, context)
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
@@ -282,11 +279,10 @@ class Rtcp(gx.Pass):
         if self.retract is None or not len(after):
             return {}
         _, target = self._machines(after, context)
-        drawn = Retracted(self, Driven(self, after, target)).found
-        return {
-            "retracts": len(drawn),
-            "moves of retracts": sum(len(rows) for rows in drawn),
-        }
+        lines = UserLines.of(self, context)
+        drawn = Retracted(self, Driven(self, after, target), lines)
+        found = {"retracts": len(drawn.found), "moves of retracts": drawn.moves}
+        return found | ({"lines of retracts": len(drawn.given)} if drawn.given else {})
 
     def _leans(self) -> tuple[float, float]:
         """Return by how much (degrees) the tool axis may lean, and angles may differ."""

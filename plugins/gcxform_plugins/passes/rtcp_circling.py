@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+import gcxform as gx
 from gcxform_plugins.passes.rtcp_bound import leaving
 from gcxform_plugins.passes.rtcp_choice import LEAP
 from gcxform_plugins.passes.rtcp_moving import STILL, Moving
@@ -68,6 +69,7 @@ class OnCircles(Moving):
         part = np.insert(part, 1, SOON)
         row, along = np.repeat(rows, len(part)), np.tile(part, len(rows))[:, None]
         places = (1.0 - along) * self.start[row] + along * self.end[row]
+        self._check_reached(places, row, along[:, 0])
         angles = self._angles(places, row, along[:, 0]).reshape(len(rows), len(part), 2)
         most = np.where(np.diff(part) <= SOON, LEAP * SOON_LESS, LEAP)[:, None]
         leaps = (np.abs(np.diff(angles, axis=1)) > most).any(axis=(1, 2))
@@ -76,6 +78,18 @@ class OnCircles(Moving):
         message = "on a great circle the tool axis would have to leap"
         hint = "program points on the way, or turn the axes in proportion"
         self._refuse("GX333", far, message, hint)
+
+    def _check_reached(self, places: Floats, row: Ints, part: Floats) -> None:
+        """Refuse circles that lead through tool axes which no angles give.
+
+        They are seen where the nearest attitude is farther than half of what it may be.
+        """
+        miss = gx.attitudes(self.target.chain, self._axis(places, row, part)).miss
+        far = np.zeros(len(self.path), np.bool_)
+        far[row[miss > self.step.axis_tolerance / 2.0]] = True
+        message = "no angles give the tool axes of the great circle"
+        hint = "program points on the way, or turn the axes in proportion"
+        self._refuse("GX332", far, message, hint)
 
 
 class Circling(OnCircles):

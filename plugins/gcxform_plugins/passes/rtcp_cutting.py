@@ -175,6 +175,7 @@ class Cutting:
         moved |= (np.isnan(before) & ~np.isnan(angles)).any(axis=1)
         turned = self.turned | self.turned_before
         self._check_known(turned, moved)
+        turned |= moved & (self.path.kind != gx.Kind.RAPID)  # a whole turn
         self._check_forms(turned)
         if self.step.direction == "repost":
             self._check_decimals()
@@ -195,7 +196,7 @@ class Cutting:
 
     def _check_forms(self, turned: Flags) -> None:
         """Refuse what is no plain move, and moves to the machine's own points while turned."""
-        path, hint = self.path, "turn the axes back to 0 before"
+        path, hint = self.path, "turn the axes back to 0, or to whole turns, before"
         message = "a move in machine coordinates, where axes are turned"
         self._refuse("GX330", self.own & turned, message, hint)
         message = "cutter compensation is in force"
@@ -209,7 +210,7 @@ class Cutting:
     def _check_rapids(self, moved: Flags) -> None:
         """Refuse rapids that turn axes, but from an unknown angle to 0, as a program begins."""
         unknown = np.isnan(self.place.angles(self.start)).any(axis=1)
-        rapid = (self.path.kind == gx.Kind.RAPID) & ~self.own & ~(unknown & ~self.turned)
+        rapid = (self.path.kind == gx.Kind.RAPID) & ~(unknown & ~self.turned)
         message = "where the tip goes in a rapid that turns axes is not known"
         hint = 'move at a feed, or say rapids = "ends" if the tool is clear on any way'
         self._refuse("GX330", rapid & moved, message, hint)
@@ -232,12 +233,21 @@ class Cutting:
                 self._refuse("GX330", far, message, f"{hint} the shorter way")
 
     def _check_tools(self, turned: Flags) -> None:
-        """Refuse another tool length while the tool is turned, and none on a head that is."""
+        """Refuse another tool length while the tool is turned, and none on a head that is.
+
+        A control that is switched by codes keeps the coordinates as they are, and lets the axes
+        leap to what they mean with the new length; where a rapid ends is known nevertheless.
+        """
         which = self.place.which
-        changed = which != self.place.which_before
+        changed = (which != self.place.which_before) & self.turned_before
         hint = "call the tool length while the rotary axes are at 0"
+        if self.step.reads_tip_codes:
+            changed &= (self.path.kind != gx.Kind.RAPID) | (self.step.rapids == "refuse")
+            hint += (
+                ', or let a rapid follow and say rapids = "ends" if the tool is clear on any way'
+            )
         message = "the tool length changes where the axes are turned"
-        self._refuse("GX330", changed & self.turned_before, message, hint)
+        self._refuse("GX330", changed, message, hint)
         if self.place.chain.head:
             none = (self.place.tools == 0.0).all(axis=1)[which]
             message = "no tool length is in force, and the head is turned"

@@ -17,8 +17,9 @@ import gcxform as gx
 from gcxform_plugins.passes.rtcp_bound import leaving
 from gcxform_plugins.passes.rtcp_choice import WHY, Choice, NoWayError, Trouble, nearest
 from gcxform_plugins.passes.rtcp_cutting import Cutting
+from gcxform_plugins.passes.rtcp_lines import UserLines
 from gcxform_plugins.passes.rtcp_place import Place
-from gcxform_plugins.passes.rtcp_retracting import Retract, inserted
+from gcxform_plugins.passes.rtcp_retracting import Retract, inserted, with_lines
 from gcxform_plugins.passes.rtcp_small import bend_of_correction
 from gcxform_plugins.passes.rtcp_ways import Between
 
@@ -46,6 +47,7 @@ class Moving(Cutting):
         self.known = np.isfinite(self.end[:, [0, 1, 2, *source.columns]]).all(axis=1) & ~self.own
         self.starts_known = np.isfinite(self.start[:, [0, 1, 2, *source.columns]]).all(axis=1)
         self.retracts = np.zeros(0)
+        self.lines = UserLines.of(step, context)
         self.blocks_may = (path.feed_mode == gx.FeedMode.INVERSE_TIME) & self.cuts
         self.blocks_may &= ~path.blocks.leaves[path.block]
 
@@ -61,6 +63,7 @@ class Moving(Cutting):
         end = np.asfortranarray(self._moved(source, row, part))
         entry = self._entry()
         feeds = self._feeds(pieces, row, np.concatenate([entry[None, :], end]))
+        feeds |= {"kind": path.kind[row], "form": path.form[row]}
         retracts = self._retracts(source, row, part, end)
         for name, column in feeds.items():
             feeds[name] = inserted(column, retracts, name)
@@ -71,6 +74,7 @@ class Moving(Cutting):
         self._check_reach(end, row, drawn)
         nth = path.nth[row] + np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
         new = path.with_rows(pieces, end=np.asfortranarray(end), nth=nth, **feeds)
+        new = with_lines(new, retracts)
         others = "".join(a for a in self.place.chain.letters if a not in self.target.chain.letters)
         return new.replace(entry=entry, left_out=path.left_out + others)
 
@@ -268,6 +272,11 @@ class Moving(Cutting):
     def _retracts(self, source: Floats, row: Ints, part: Floats, end: Floats) -> list[Retract]:
         """Return the moves that draw the tool back, of pieces from whose ends they begin."""
         found = []
+        inch = self.path.blocks.inch[self.path.block]
+        message = "retract-lines and return-lines are in mm, and this block is in inches"
+        where = np.isin(np.arange(len(inch)), np.floor(self.retracts - NEAR)) & inch
+        if self.lines.in_mm:
+            self._refuse("GX330", where, message, 'put the pass "metric" before')
         for at in np.searchsorted(row + part, self.retracts - NEAR).tolist():
             here = slice(at, at + 1)
             leaves = self._moved(source[here], row[here], part[here], after=True)[0]
@@ -316,6 +325,18 @@ class Moving(Cutting):
         some = ~self.known & ~self.own & (self.path.kind != gx.Kind.RAPID)
         message = "where the axes stand is not known here"
         self._refuse("GX311", some, message, "program all axes before")
+        if self._has_other_places():
+            message = "this goes to a place of the machine, and that is elsewhere on the target"
+            hint = "give both machine files one work offset, and the same homes"
+            self._refuse("GX330", self.own, message, hint)
+
+    def _has_other_places(self) -> bool:
+        """Whether places of the machine are others, as the work offset counts them."""
+        machine, file = self.context.machine, self.step.target
+        if machine is None or file is None:
+            return False
+        homes = machine.homes != file.machine.homes
+        return homes or bool((self.place.zero != self.target.zero).any())
 
     def _check_reach(self, result: Floats, row: Ints, drawn: Flags) -> None:
         """Refuse positions that the target does not reach."""

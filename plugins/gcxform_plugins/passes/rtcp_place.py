@@ -15,12 +15,22 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 SAME = 1e-9  # mm; two tools that differ by less are one
+TURN = 360.0
 ENOUGH = "rtcp converts programs in one work offset, with known tool lengths and nothing turned"
 
 
 def turned_at(angles: Floats) -> Flags:
-    """Return where (n,) all angles (n, m) are known and some axis is not at 0."""
-    return np.asarray((angles != 0.0).any(axis=1) & np.isfinite(angles).all(axis=1))
+    """Return where (n,) all angles (n, m) are known and some axis is not at 0, or whole turns."""
+    known = np.isfinite(angles).all(axis=1)
+    return np.asarray(off_zero(angles).any(axis=1) & known)
+
+
+def off_zero(angles: Floats) -> Flags:
+    """Return which angles are known, and neither 0 nor whole turns, at which all is as at 0."""
+    off = np.isfinite(angles) & (angles != 0.0)
+    far = off & (np.abs(angles) >= TURN)
+    off[far] = np.mod(angles[far], TURN) != 0.0
+    return np.asarray(off)
 
 
 class Place:
@@ -111,8 +121,10 @@ class Place:
         axes turned, a parameter says whether X, Y and Z turn with the table.
         """
         bare = np.asarray(~self.tools.any(axis=1))
-        without = bare[self.which] & turned_at(self.angles(self.path.end))
-        begins = (self.which != self.which_before) & turned_at(self.angles(self.path.start))
+        start, end = (self.angles(side) for side in (self.path.start, self.path.end))
+        cuts = (np.nan_to_num(end - start) != 0.0).any(axis=1) & (self.path.kind != gx.Kind.RAPID)
+        without = bare[self.which] & (turned_at(end) | cuts)
+        begins = (self.which != self.which_before) & turned_at(start)
         for rows, what in (
             (without, "axes are turned while the control does not follow the tip"),
             (begins, "the control begins or ends to follow the tip while axes are turned"),

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_driven import Driven, Leading
+from gcxform_plugins.passes.rtcp_lines import UserLines
 from gcxform_plugins.passes.rtcp_retracted import Retracted
 from gcxform_plugins.passes.rtcp_undoing import SHARE
 
@@ -40,6 +41,7 @@ class Proof:
         self.step, self.context = step, context
         self.source, self.target = source, target
         self.before, self.after = source.path, target.path
+        self.events, self.given = self.after.events, list(self.after.given)
         self.drawn = self._drawn()
         self.owner = self._owners()
         self.kept = np.flatnonzero(~self.drawn)
@@ -51,8 +53,13 @@ class Proof:
         """Return which rows (n,) draw the tool back."""
         drawn = np.zeros(len(self.after), np.bool_)
         if self.step.retract is not None:
-            for rows in Retracted(self.step, self.target).found:
+            lines = UserLines.of(self.step, self.context)
+            found = Retracted(self.step, self.target, lines)
+            for rows in found.found:
                 drawn[rows.start : rows.stop] = True
+            inside = {id(event) for event in found.inside}
+            self.events = tuple(event for event in self.events if id(event) not in inside)
+            self.given = [g for g in self.given if g not in found.given]
         return drawn
 
     def _owners(self) -> Ints:
@@ -140,6 +147,18 @@ class Proof:
         if not self.turn <= turn:
             self._fail(f"an axis has turned by {self.turn:.5f} degrees", self.worst)
         self._check_times()
+        self._check_events()
+
+    def _check_events(self) -> None:
+        """Check that nothing happens but what does in the source, and where the tool is drawn back.
+
+        What happens in the source stands before the moves that its row became.
+        """
+        begins = np.searchsorted(self.owner, [e.row for e in self.before.events]).tolist()
+        events = zip(self.before.events, begins, strict=True)
+        wanted = [(row, e.what, e.values, e.line) for e, row in events]
+        if self.given or [(e.row, e.what, e.values, e.line) for e in self.events] != wanted:
+            self._fail("something happens that the source does not have, or elsewhere", 0)
 
     def _check_times(self) -> None:
         """Check that moves are as many and as fast: feeds the same, inverse times in sum."""
@@ -147,7 +166,7 @@ class Proof:
         rapid = after.kind == gx.Kind.RAPID
         timed = (after.feed_mode == gx.FeedMode.INVERSE_TIME) & ~rapid
         same = (before.source[self.owner] == after.source) & (np.diff(self.owner, prepend=0) >= 0)
-        same &= before.kind[self.owner] == after.kind
+        same &= self.drawn | (before.kind[self.owner] == after.kind)
         same &= timed | rapid | (after.feed == before.feed[self.owner])
         same &= timed | (before.feed_mode[self.owner] == after.feed_mode) | rapid
         gone = self.count == 0

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform_plugins.passes.rtcp_place import off_zero
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -71,16 +72,18 @@ class Switches:
 
     def _wrong(self) -> Iterator[tuple[int, str, str]]:
         """Yield lines of what is refused, with messages and hints."""
-        rest = (self.angles == 0.0).all(axis=1)  # not where an angle is not known
+        turned = off_zero(self.angles)
+        rest = np.asarray((np.isfinite(self.angles) & ~turned).all(axis=1))
         for event in self.path.events:
             if event.what in self.codes and not rest[event.row]:
                 message = f"{event.what} where not all rotary axes are known to be at 0"
                 yield event.line, message, TURN_BACK
         changed = (self.state != self.before) & ~rest[:-1]
         yield from self._rows(changed, "the control was switched where axes may be turned")
-        turned = np.isfinite(self.angles) & (self.angles != 0.0)
-        turns = turned.any(axis=1)
+        turns = np.asarray(turned.any(axis=1))
+        step = np.nan_to_num(np.diff(self.angles, axis=0))
         moves = turns[1:] | turns[:-1]
+        moves |= (step != 0.0).any(axis=1) & (self.path.kind != gx.Kind.RAPID)
         message = "axes are turned while the control does not follow the tip"
         yield from self._rows((self.state == OFF) & moves, message)
         message = "axes are turned, and whether the control follows the tip is not known"

@@ -1,4 +1,4 @@
-"""Which machines `rtcp` takes: those whose angles are found, with the tools of the program."""
+"""Which options and machines `rtcp` does not take."""
 
 from __future__ import annotations
 
@@ -12,12 +12,40 @@ if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp import Rtcp
 
 
+def check_options(step: Rtcp) -> None:
+    """Refuse options that do not go together. Raises ValueError."""
+    if (step.direction == "repost") != (step.calibrated is not None):
+        raise ValueError("repost takes calibrated, the file of the measured machine")
+    if (step.direction == "retarget") != (step.target is not None):
+        raise ValueError("retarget takes target, the file of the machine to write for")
+    if step.direction != "repost" and step.orientation != "keep":
+        raise ValueError("orientation is an option of repost")
+    if step.direction != "to-machine" and step.tip_codes != "refuse":
+        raise ValueError("tip-codes is an option of to-machine: the others would do it twice")
+    if step.reads_vectors and step.rapids == "refuse":
+        raise ValueError('vectors turn axes in rapids: say rapids = "ends" if all is clear')
+    if step.direction != "to-machine" and step.orientation_path != "angles":
+        raise ValueError("orientation-path is an option of to-machine")
+    _check_retract(step)
+    if step.direction == "retarget" and step.rapids == "refuse":
+        raise ValueError('retarget turns axes in rapids: say rapids = "ends" if all is clear')
+
+
+def _check_retract(step: Rtcp) -> None:
+    if (step.retract is None) != (step.retract_feed is None):
+        raise ValueError("retract and retract-feed go together")
+    if step.retract is None and (step.retract_lines or step.return_lines):
+        raise ValueError("retract-lines and return-lines go with retract")
+    if step.direction != "retarget" and step.retract is not None:
+        raise ValueError("retract is an option of retarget")
+
+
 def check_machines(step: Rtcp, context: gx.PassContext) -> None:
     """Raise UsageError for machines of options, or a control, with which a step cannot work."""
     assert context.machine is not None
     if step.reads_vectors and not context.source.vector_codes:
         message = f"{context.source.name} has no code for tool vectors"
-        raise gx.UsageError.one("GX745", message, hint='leave tip-codes out, or say "read"')
+        raise gx.UsageError.one("GX746", message, hint='leave tip-codes out, or say "read"')
     _check_calibrated(step, gx.chain_of(context.machine))
     _check_target(step, context)
 
