@@ -264,6 +264,14 @@ def test_a_machine_of_21_parameters_fills_the_grid(here):
     assert "none" not in text
 
 
+def test_what_show_refuses_is_named_as_it_was_given(here):
+    found = call("show", "none.toml", "-o", "model.svg")
+    assert found.exit_code == 2
+    assert found.stderr.startswith("none.toml: error[GX709]")
+    found = call("show", str(EXAMPLE), "-o", "model.pdf")
+    assert found.stderr.startswith("-o: error[GX737]")
+
+
 def test_a_long_title_stays_in_a_narrow_picture(here):
     assert call(*LINES, "--axes", "x", "--plot", "narrow.svg").exit_code == 0
     lines = drawn("narrow.svg")[1].splitlines()
