@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from cli_kit import call, workplace
 from format_kit import apart, nine, pitch, rigid
+from gcxform_plugins.formats.isg_csv import IsgCsv
 from gcxform_plugins.formats.xyz import Xyz
 
 from gcxform.machine.errors import ErrorModel
@@ -133,6 +134,22 @@ def test_what_does_not_read_back_is_not_written(folder, monkeypatch):
     assert (done.exit_code, "GX605" in done.stderr) == (4, True)
     assert "differ by 1 um" in done.stderr
     assert not Path("map.xyz").exists()
+
+
+def test_angular_errors_that_act_on_another_tool_alone_are_proved_too(folder, monkeypatch):
+    """Those of the axis next to the tool: the measured point has no lever on it."""
+    (folder / "rigid.toml").write_text(to_toml(rigid(3)))
+    to = "isg-csv values=error order=XYZ tool=10,0,-120"
+    words = ("table", "convert", "rigid.toml", "r.csv", "--to", to)
+    done = call(*words)
+    assert done.exit_code == 0, done.stderr
+    right = IsgCsv.write
+    swapped = lambda form, model: {"": right(form, model)[""].replace("EAZ EBZ", "EBZ EAZ")}  # noqa: E731
+    monkeypatch.setattr(IsgCsv, "write", swapped)
+    Path("r.csv").unlink()
+    done = call(*words)
+    assert (done.exit_code, "GX605" in done.stderr) == (4, True)
+    assert not Path("r.csv").exists()
 
 
 def test_show(folder):

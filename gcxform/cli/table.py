@@ -15,7 +15,7 @@ from gcxform.cli.failures import say
 from gcxform.cli.outputs import STDOUT, check_places, destination
 from gcxform.diagnostics import Location, UsageError, VerificationError
 from gcxform.machine import converting
-from gcxform.machine.errors import AXES, ErrorModel, check_contraction
+from gcxform.machine.errors import AXES, ErrorModel, FloatArray, check_contraction
 from gcxform.machine.formats import ErrorFormat, chosen_format
 from gcxform.machine.modelfile import SUFFIX, load_model
 from gcxform.machine.modeltext import to_toml
@@ -24,6 +24,7 @@ from gcxform.registry import default_registry
 from gcxform.tomltext import did_you_mean
 
 NATIVE = "toml"
+TOOL = 100.0  # mm: by so much another tool differs, where angular errors are compared
 SAME = 1e-6  # mm: what the rounding of written numbers may change
 UM = 1e3
 FORMAT = "NAME OPTION=VALUE ..."
@@ -190,11 +191,19 @@ def _prove(model: ErrorModel, files: Mapping[str, str], form: ErrorFormat | None
             file.parent.mkdir(exist_ok=True)
             file.write_text(text, encoding="utf-8", newline="")
         again = load_model(place) if form is None else form.read(place)
-    apart = max(float(converting.difference(model, again, sense).max()) for sense in (-1, 0, 1))
+    apart = max(float(converting.difference(model, again, *how).max()) for how in _ways(model))
     if not apart <= SAME:
         message = f"the table reads back as errors that differ by {apart * UM:.3g} um"
         hint = "nothing was written; this is a bug of the format: report it to its author"
         raise VerificationError.one("GX605", message, hint=hint)
+
+
+def _ways(model: ErrorModel) -> Iterator[tuple[float, FloatArray | None]]:
+    """Yield the directions of travel and the tools with which two models are compared."""
+    for sense in (-1.0, 0.0, 1.0):
+        yield sense, None
+    if model.needs_tool:
+        yield from ((0.0, away) for away in TOOL * np.eye(3))
 
 
 def _write(target: str, files: Mapping[str, str]) -> None:
