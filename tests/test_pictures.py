@@ -130,6 +130,15 @@ def test_programs_are_written(here):
     assert (here / "before.nc").read_text().startswith("G21 G90 G17 G94 F1000.\nG1 X")
 
 
+def test_programs_in_whole_millimetres(here):
+    """X100 is not X1."""
+    words = ("--axes", "X", "--at", "200,100,200", "--scatter", "0", "--decimals", "0")
+    found = call(*LINES, *words, "--program", "before.nc")
+    assert found.exit_code == 0, found.stderr
+    assert "\nG1 X160. Y100. Z200.\n" in (here / "before.nc").read_text()
+    assert figures(found.stdout)["X E"][0] != "0.000"
+
+
 @pytest.mark.parametrize(
     ("words", "named", "written"),
     [
