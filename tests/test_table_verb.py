@@ -152,6 +152,24 @@ def test_angular_errors_that_act_on_another_tool_alone_are_proved_too(folder, mo
     assert not Path("r.csv").exists()
 
 
+def test_the_mean_of_both_directions(folder):
+    """EEC has one value for both: 20 and 10 um are 15 um."""
+    (folder / "back.toml").write_text(
+        'format = 1\nkind = "pitch"\nvalues = "error"\n[X]\nposition = [0, 100]\n'
+        "forward = [0, 0.02]\nreverse = [0, 0.01]\n"
+    )
+    words = ("table", "convert", "back.toml", "mean.ini", "--to", "siemens-eec units=mm")
+    assert "--backlash mean" in call(*words).stderr
+    done = call(*words, "--backlash", "mean")
+    assert done.exit_code == 0, done.stderr
+    assert "$AA_ENC_COMP[0,1,X1]=0.015\n" in Path("mean.ini").read_text()
+    done = call("table", "convert", "back.toml", "f.toml", "--kind", "functions")
+    assert (done.exit_code, "--backlash mean" in done.stderr) == (2, True)
+    words = ("table", "convert", "back.toml", "f.toml", "--kind", "functions", "--backlash", "mean")
+    assert call(*words).exit_code == 0
+    assert "EXX = [0.0, 0.015]" in Path("f.toml").read_text()
+
+
 def test_show(folder):
     (folder / "pitch.toml").write_text(to_toml(pitch(2, "Y")))
     done = call("table", "show", "pitch.toml")

@@ -17,8 +17,10 @@ from gcxform.diagnostics import Location, UsageError, VerificationError
 from gcxform.machine import converting
 from gcxform.machine.errors import AXES, ErrorModel, FloatArray, check_contraction
 from gcxform.machine.formats import ErrorFormat, chosen_format
+from gcxform.machine.mean import Mean
 from gcxform.machine.modelfile import SUFFIX, load_model
 from gcxform.machine.modeltext import to_toml
+from gcxform.machine.pitch import PitchTables
 from gcxform.options import Argument, build, describe
 from gcxform.registry import default_registry
 from gcxform.tomltext import did_you_mean
@@ -44,6 +46,13 @@ def command() -> None:
 @click.option(
     "--kind", type=click.Choice(list(converting.KINDS)), help="Fit a model of this kind first."
 )
+@click.option(
+    "--backlash",
+    type=click.Choice(["keep", "mean"]),
+    default="keep",
+    show_default=True,
+    help="Of a table with backlash: keep it, or take the mean of both directions.",
+)
 @click.option("--order", default=AXES, show_default=True, help="Axes from workpiece to tool.")
 def convert(
     source: str,
@@ -52,6 +61,7 @@ def convert(
     wanted: str | None,
     axis: str | None,
     kind: str | None,
+    backlash: str,
     order: str,
 ) -> None:
     """Write the errors in A to B.
@@ -64,6 +74,9 @@ def convert(
     model = _read(Path(source), reading)
     if sorted(order) != sorted(AXES):
         raise UsageError.one("GX421", f"order = {order!r} is not X, Y and Z, each once")
+    if backlash == "mean" and model.backlash.any():
+        kind = kind or PitchTables.kind
+        model = Mean(model)
     if kind:
         fit = converting.KINDS[kind](model, order)
         bent = " and half way between them" if model.curvature().diagonal().any() else ""

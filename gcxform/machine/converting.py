@@ -43,7 +43,9 @@ def to_lattice(model: ErrorModel, order: str = AXES) -> Lattice:
         return model
     if model.backlash.any():
         message = f"a lattice cannot hold the backlash of {_letters(model.backlash)}"
-        raise UsageError.one("GX481", message, hint="take the mean: forward and reverse alike")
+        raise UsageError.one(
+            "GX481", message, hint="take the mean of both directions: --backlash mean"
+        )
     grid = grid_of(model)
     points = points_of(grid)
     values = model.error(points)
