@@ -130,6 +130,15 @@ def test_programs_are_written(here):
     assert (here / "before.nc").read_text().startswith("G21 G90 G17 G94 F1000.\nG1 X")
 
 
+def test_programs_in_whole_millimetres(here):
+    """X100 is not X1."""
+    words = ("--axes", "X", "--at", "200,100,200", "--scatter", "0", "--decimals", "0")
+    found = call(*LINES, *words, "--program", "before.nc")
+    assert found.exit_code == 0, found.stderr
+    assert "\nG1 X160. Y100. Z200.\n" in (here / "before.nc").read_text()
+    assert figures(found.stdout)["X E"][0] != "0.000"
+
+
 @pytest.mark.parametrize(
     ("words", "named", "written"),
     [
@@ -262,6 +271,14 @@ def test_a_machine_of_21_parameters_fills_the_grid(here):
     assert [name for name in names if name not in groups] == []
     assert all(f"{name}, {'um' if name[1] in 'XYZ' else 'urad'}" in text for name in names)
     assert "none" not in text
+
+
+def test_what_show_refuses_is_named_as_it_was_given(here):
+    found = call("show", "none.toml", "-o", "model.svg")
+    assert found.exit_code == 2
+    assert found.stderr.startswith("none.toml: error[GX709]")
+    found = call("show", str(EXAMPLE), "-o", "model.pdf")
+    assert found.stderr.startswith("-o: error[GX737]")
 
 
 def test_a_long_title_stays_in_a_narrow_picture(here):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from cli_kit import call, workplace
 from format_kit import apart, nine, pitch, rigid
+from gcxform_plugins.formats.isg_csv import IsgCsv
 from gcxform_plugins.formats.xyz import Xyz
 
 from gcxform.machine.errors import ErrorModel
@@ -133,6 +134,40 @@ def test_what_does_not_read_back_is_not_written(folder, monkeypatch):
     assert (done.exit_code, "GX605" in done.stderr) == (4, True)
     assert "differ by 1 um" in done.stderr
     assert not Path("map.xyz").exists()
+
+
+def test_angular_errors_that_act_on_another_tool_alone_are_proved_too(folder, monkeypatch):
+    """Those of the axis next to the tool: the measured point has no lever on it."""
+    (folder / "rigid.toml").write_text(to_toml(rigid(3)))
+    to = "isg-csv values=error order=XYZ tool=10,0,-120"
+    words = ("table", "convert", "rigid.toml", "r.csv", "--to", to)
+    done = call(*words)
+    assert done.exit_code == 0, done.stderr
+    right = IsgCsv.write
+    swapped = lambda form, model: {"": right(form, model)[""].replace("EAZ EBZ", "EBZ EAZ")}  # noqa: E731
+    monkeypatch.setattr(IsgCsv, "write", swapped)
+    Path("r.csv").unlink()
+    done = call(*words)
+    assert (done.exit_code, "GX605" in done.stderr) == (4, True)
+    assert not Path("r.csv").exists()
+
+
+def test_the_mean_of_both_directions(folder):
+    """EEC has one value for both: 20 and 10 um are 15 um."""
+    (folder / "back.toml").write_text(
+        'format = 1\nkind = "pitch"\nvalues = "error"\n[X]\nposition = [0, 100]\n'
+        "forward = [0, 0.02]\nreverse = [0, 0.01]\n"
+    )
+    words = ("table", "convert", "back.toml", "mean.ini", "--to", "siemens-eec units=mm")
+    assert "--backlash mean" in call(*words).stderr
+    done = call(*words, "--backlash", "mean")
+    assert done.exit_code == 0, done.stderr
+    assert "$AA_ENC_COMP[0,1,X1]=0.015\n" in Path("mean.ini").read_text()
+    done = call("table", "convert", "back.toml", "f.toml", "--kind", "functions")
+    assert (done.exit_code, "--backlash mean" in done.stderr) == (2, True)
+    words = ("table", "convert", "back.toml", "f.toml", "--kind", "functions", "--backlash", "mean")
+    assert call(*words).exit_code == 0
+    assert "EXX = [0.0, 0.015]" in Path("f.toml").read_text()
 
 
 def test_show(folder):

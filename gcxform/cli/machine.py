@@ -62,7 +62,7 @@ def jog(machine: str, tool: int | None, start: str | None, step: float) -> None:
 @_MACHINE
 def draw(machine: str, tool: int | None, output: str) -> None:
     """Draw the rotary axes of a machine, all at 0, with the senses of +."""
-    plot.check(output)
+    plot.check(output, "-o")
     check_places({"-o": output}, [machine])
     chain, loaded = _chain(Asked(machine=machine), tool)
     with destination(output) as put:

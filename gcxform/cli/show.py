@@ -15,6 +15,7 @@ from gcxform.cli.asked import Asked, needed_dialect
 from gcxform.cli.described import built, options_of
 from gcxform.cli.outputs import check_places, destination
 from gcxform.cli.programs import opened
+from gcxform.diagnostics import Location, UsageError
 from gcxform.dialect import Dialect
 from gcxform.machine.errors import Outside
 from gcxform.options import Length, ModelFile, Option, Vector
@@ -61,7 +62,7 @@ class ModelOptions:
 @options.FILE
 def command(file: str, output: str, dialect: str | None, chain: str, **given: Any) -> None:
     """Draw FILE: an error model, or with --model a program."""
-    plot.check(output)
+    plot.check(output, "-o")
     asked = Asked(**{field.name: given.pop(field.name, None) for field in fields(Asked)})
     check_places({"-o": output}, [file, given["model"], asked.machine])
     told = built(ModelOptions, given, "show")
@@ -76,6 +77,8 @@ def command(file: str, output: str, dialect: str | None, chain: str, **given: An
 
 def _model(file: str, time: str | None) -> Any:
     """Return the picture of an error model, at a time if one is given."""
+    if not Path(file).exists():
+        raise UsageError.one("GX709", f"the error model {file!r} does not exist", Location(file))
     shown = built(ModelOptions, {"model": file}, "show").model
     assert shown is not None
     shown = shown if time is None else shown.at_time(time)

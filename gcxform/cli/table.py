@@ -15,15 +15,18 @@ from gcxform.cli.failures import say
 from gcxform.cli.outputs import STDOUT, check_places, destination
 from gcxform.diagnostics import Location, UsageError, VerificationError
 from gcxform.machine import converting
-from gcxform.machine.errors import AXES, ErrorModel, check_contraction
+from gcxform.machine.errors import AXES, ErrorModel, FloatArray, check_contraction
 from gcxform.machine.formats import ErrorFormat, chosen_format
+from gcxform.machine.mean import Mean
 from gcxform.machine.modelfile import SUFFIX, load_model
 from gcxform.machine.modeltext import to_toml
+from gcxform.machine.pitch import PitchTables
 from gcxform.options import Argument, build, describe
 from gcxform.registry import default_registry
 from gcxform.tomltext import did_you_mean
 
 NATIVE = "toml"
+TOOL = 100.0  # mm: by so much another tool differs, where angular errors are compared
 SAME = 1e-6  # mm: what the rounding of written numbers may change
 UM = 1e3
 FORMAT = "NAME OPTION=VALUE ..."
@@ -43,6 +46,13 @@ def command() -> None:
 @click.option(
     "--kind", type=click.Choice(list(converting.KINDS)), help="Fit a model of this kind first."
 )
+@click.option(
+    "--backlash",
+    type=click.Choice(["keep", "mean"]),
+    default="keep",
+    show_default=True,
+    help="Of a table with backlash: keep it, or take the mean of both directions.",
+)
 @click.option("--order", default=AXES, show_default=True, help="Axes from workpiece to tool.")
 def convert(
     source: str,
@@ -51,6 +61,7 @@ def convert(
     wanted: str | None,
     axis: str | None,
     kind: str | None,
+    backlash: str,
     order: str,
 ) -> None:
     """Write the errors in A to B.
@@ -63,6 +74,9 @@ def convert(
     model = _read(Path(source), reading)
     if sorted(order) != sorted(AXES):
         raise UsageError.one("GX421", f"order = {order!r} is not X, Y and Z, each once")
+    if backlash == "mean" and model.backlash.any():
+        kind = kind or PitchTables.kind
+        model = Mean(model)
     if kind:
         fit = converting.KINDS[kind](model, order)
         bent = " and half way between them" if model.curvature().diagonal().any() else ""
@@ -190,11 +204,19 @@ def _prove(model: ErrorModel, files: Mapping[str, str], form: ErrorFormat | None
             file.parent.mkdir(exist_ok=True)
             file.write_text(text, encoding="utf-8", newline="")
         again = load_model(place) if form is None else form.read(place)
-    apart = max(float(converting.difference(model, again, sense).max()) for sense in (-1, 0, 1))
+    apart = max(float(converting.difference(model, again, *how).max()) for how in _ways(model))
     if not apart <= SAME:
         message = f"the table reads back as errors that differ by {apart * UM:.3g} um"
         hint = "nothing was written; this is a bug of the format: report it to its author"
         raise VerificationError.one("GX605", message, hint=hint)
+
+
+def _ways(model: ErrorModel) -> Iterator[tuple[float, FloatArray | None]]:
+    """Yield the directions of travel and the tools with which two models are compared."""
+    for sense in (-1.0, 0.0, 1.0):
+        yield sense, None
+    if model.needs_tool:
+        yield from ((0.0, away) for away in TOOL * np.eye(3))
 
 
 def _write(target: str, files: Mapping[str, str]) -> None:

@@ -43,7 +43,9 @@ def to_lattice(model: ErrorModel, order: str = AXES) -> Lattice:
         return model
     if model.backlash.any():
         message = f"a lattice cannot hold the backlash of {_letters(model.backlash)}"
-        raise UsageError.one("GX481", message, hint="take the mean: forward and reverse alike")
+        raise UsageError.one(
+            "GX481", message, hint="take the mean of both directions: --backlash mean"
+        )
     grid = grid_of(model)
     points = points_of(grid)
     values = model.error(points)
@@ -115,9 +117,12 @@ KINDS: dict[str, Callable[[ErrorModel, str], Fit]] = {
 """What a model can become, by the name of its kind."""
 
 
-def difference(one: ErrorModel, other: ErrorModel, sense: float = 0.0) -> FloatArray:
-    """Return by how much (n,) in mm two models differ at all nodes of both, with their own tool.
+def difference(
+    one: ErrorModel, other: ErrorModel, sense: float = 0.0, away: FloatArray | None = None
+) -> FloatArray:
+    """Return by how much (n,) in mm two models differ at all nodes of both.
 
+    They are compared with the tool of their measurement, or that and the way `away` (3,) in mm.
     Of a model that is curved along an axis they are compared half way between its nodes as well.
     Models that are linear without limits are compared from -`LEVER` to `LEVER`.
     """
@@ -127,8 +132,12 @@ def difference(one: ErrorModel, other: ErrorModel, sense: float = 0.0) -> FloatA
     )
     points = points_of((x, y, z))
     senses = np.full(points.shape, sense)
-    apart = other.error(points, sense=senses) - one.error(points, sense=senses)
-    return np.asarray(np.linalg.norm(apart, axis=1))
+    tools = (None if away is None or m.tool is None else m.tool + away for m in (one, other))
+    found = [
+        model.error(points, tool=tool, sense=senses)
+        for model, tool in zip((one, other), tools, strict=True)
+    ]
+    return np.asarray(np.linalg.norm(found[1] - found[0], axis=1))
 
 
 def _and_middles(grid: list[FloatArray], *models: ErrorModel) -> list[FloatArray]:

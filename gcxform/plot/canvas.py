@@ -41,11 +41,11 @@ STYLE: Any = {
 }
 
 
-def check(file: str) -> None:
-    """Raise UsageError if a picture of this name cannot be drawn here."""
+def check(file: str, option: str = "--plot") -> None:
+    """Raise UsageError if a picture of this name, given with an option, cannot be drawn here."""
     if Path(file).suffix.lower() not in KINDS:
         message = f"{file!r} ends neither in .svg nor in .png"
-        raise UsageError.one("GX737", message, Location("--plot"))
+        raise UsageError.one("GX737", message, Location(option))
     if find_spec("matplotlib") is None:
         raise UsageError.one(
             "GX736",

@@ -47,7 +47,8 @@ class _Writer:
 
     def number(self, value: float) -> str:
         """Return a length with its point and without trailing zeros."""
-        return f"{round(value, self.decimals) + 0.0:.{self.decimals}f}".rstrip("0")
+        text = f"{round(value, self.decimals) + 0.0:.{self.decimals}f}"
+        return text.rstrip("0") if self.decimals else f"{text}."
 
     def words(self, letters: str, values: Sequence[float] | FloatArray) -> str:
         return " ".join(f"{a}{self.number(float(v))}" for a, v in zip(letters, values, strict=True))

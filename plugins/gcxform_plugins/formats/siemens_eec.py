@@ -76,7 +76,7 @@ class SiemensEec(siemens.Compensation):
         lines = ["%_N_AX_EEC_INI", "CHANDATA(1)"]
         for axis, table in pitch_tables(self.name, model).items():
             if table.backlash:
-                hint = "write siemens-cec, which has tables for each direction"
+                hint = "--backlash mean, and MD32450; or siemens-cec has tables for each direction"
                 raise gx.cannot_hold(self.name, f"the backlash of {axis}", hint)
             lines += self._lines(names[axis], axis, table)
         return {"": "\n".join([*lines, "M17"]) + "\n"}
