@@ -212,14 +212,26 @@ class FeedProof:
         The other pieces have no more than their share of the time.
         """
         free, before = mine & ~full, self.trace.before
-        rest, whole = self._sums(free, new.most), self._sums(mine, new.most)
+        rest = self._sums(free, new.most)
+        share = (1 + UNEVEN) * old.most * self._part(free, mine, new)
         with np.errstate(divide="ignore", invalid="ignore"):
-            share = (1 + UNEVEN) * old.most * np.nan_to_num(rest / whole)
             time = self._sums(free, ways / self.trace.written.feed) * before.feed
         slack = self._sums(free, np.ones(len(free)))
         slack *= np.where(old.turns, self.angle_budget, self.budget)
         most = np.maximum(share, rest) * (1 + TIME_ERROR) + slack
         return np.asarray((self._sums(full, new.most) > 0.0) & ~(time > most))
+
+    def _part(self, free: NDArray[np.bool_], mine: NDArray[np.bool_], new: Lengths) -> Floats:
+        """Return how much of the way of each row of the source is that of some written rows.
+
+        It is the largest by what is written, by what the machine makes of it, and by angles.
+        """
+        ways = [new, self._turned()]
+        if self.trace.after is not self.trace.written:
+            ways.append(self._gone())
+        with np.errstate(divide="ignore", invalid="ignore"):
+            parts = [self._sums(free, way.most) / self._sums(mine, way.most) for way in ways]
+        return np.asarray(np.nan_to_num(parts).max(axis=0))
 
     def _sums(self, mine: NDArray[np.bool_], values: Floats) -> Floats:
         """Return the sums of values over the written rows `mine` of each row of the source."""

@@ -336,3 +336,45 @@ def test_a_late_move_has_to_have_a_reason(tmp_path, factor, good):
         return
     with pytest.raises(gx.VerificationError):
         wrong.run(text)
+
+
+FAST_Y = """format = 1
+kinematics = "c-table-a-head"
+gauge-point = [-16.392, 1.422, -2.649]
+[axis.X]
+max-speed = 2470.4
+[axis.Y]
+max-speed = 1959.4
+[axis.Z]
+max-speed = 3024.8
+[axis.C]
+point = [-41.519, 93.241, -0.741]
+direction = [-0.0144, -0.0131, 1.003]
+max-speed = 4543.3
+[axis.A]
+point = [-99.958, 75.36, -99.572]
+direction = [0.9915, -0.0053, -0.0016]
+max-speed = 6215.4
+[tool.1]
+length = 42.0
+[work-offset.G54]
+X = -32.757
+Y = 7.677
+Z = 22.632
+"""
+
+
+def test_a_move_may_be_late_in_a_part_of_its_pieces(tmp_path):
+    """The others have their share of the time by the way of the tip, by that of the axes more."""
+    text = b"""G21 G90 G94 G17 G54
+G0 C0 A0
+G0 X0 Y0
+G43 H1 Z100.
+G1 X66.798 Y23.011 Z-28.499 C-160.819 A36.725 F1700.8
+X51.381 Y62.770 Z35.050 C-166.709 A-1.283 F2525.9
+M30
+"""
+    result = pipeline(tmp_path, FAST_Y, tolerance=0.02).run(text)
+    assert result.certificate.verified
+    times = [1.0 / float(f) for f in re.findall(r"A-?[\d.]+ F([\d.]+)", result.text.decode())]
+    assert sum(times[-result.source_map.count(5) :]) > 1.1 * 76.53 / 2525.9
