@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gcxform.diagnostics import InputError
+from gcxform.diagnostics import InputError, Location
 from gcxform.dialect import Dialect
 from gcxform.files import write_atomically
 from gcxform.flow.written_out import located, written_out
@@ -67,6 +67,20 @@ class Program:
     def line_of(self, line: int) -> int:
         """Return the line of the text, from 1, of an executed line; 0 stands for none."""
         return self._executed.line_of(line)
+
+    def located(self, error: InputError) -> InputError:
+        """Return an error about executed lines as one about those of the text, which it shows."""
+        texts, found = self.executed.split(b"\n"), []
+        for diagnostic in error.diagnostics:
+            where = diagnostic.where
+            if where is not None and where.line and where.file in ("", self.name):
+                text = texts[where.line - 1].decode("latin-1").rstrip("\r")
+                start = len(text) - len(text.lstrip()) + 1
+                bare = Location("", 0, start, text, max(1, len(text.strip())))
+                place = replace(where if where.text else bare, file=self.name)
+                diagnostic = diagnostic.at(replace(place, line=self.line_of(where.line)))
+            found.append(diagnostic)
+        return InputError(tuple(found))
 
     def _read(self, source: Source) -> Toolpath:
         axes = source.axes(self.dialect.axes)

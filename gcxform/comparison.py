@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from gcxform.api import Program
 from gcxform.contract import Pass, PassContext
+from gcxform.diagnostics import InputError
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.machine.machine import Machine
 from gcxform.modal.codes import Effect
@@ -87,9 +88,8 @@ def compare(
     """
     path_a, path_b = _same_axes(a.path, b.path)
     if through is not None:
-        context = PassContext(a.dialect, b.dialect, b.dialect.numbers, machine)
-        through.begin(context)
-        path_b = through.undo(path_b, context)
+        numbers = b.dialect.numbers
+        path_b = _undone(b, path_b, through, PassContext(a.dialect, b.dialect, numbers, machine))
     path_a, path_b = (straightened(path, STRAIGHT) for path in (path_a, path_b))
     matching = match(path_a, path_b, tolerance, max(REACH, tolerance))
     found = measure(path_a, path_b, matching)
@@ -107,6 +107,15 @@ def compare(
         tuple(_events((path_a, a.dialect), (path_b, b.dialect), matching, tolerance)),
     )
     return _in_lines_of(a, b, compared)
+
+
+def _undone(b: Program, path: Toolpath, through: Pass, context: PassContext) -> Toolpath:
+    """Return what the machine does with a program, whose path is given. Raises GcxformError."""
+    through.begin(context)
+    try:
+        return through.undo(path, context)
+    except InputError as error:
+        raise b.located(error) from None
 
 
 def _in_lines_of(a: Program, b: Program, found: Comparison) -> Comparison:

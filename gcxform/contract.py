@@ -71,6 +71,8 @@ class Pass:
     No window ends where cutter compensation is in force for such a pass."""
     reads_tip_codes: ClassVar[bool] = False
     """It does what codes for following the tip ask for, so they are read as plain tool lengths."""
+    reads_vectors: ClassVar[bool] = False
+    """It makes angles of the tool vectors that such codes announce."""
     whole_cuts: ClassVar[bool] = False
     """Whether it has to see every cut as a whole: a window then ends where a rapid follows one."""
 

@@ -1,11 +1,16 @@
-"""Programs in windows that divide no cut: a cut is what is between two rapids."""
+"""Programs in windows that divide no cut, and no section with tool vectors.
+
+A cut is what is between two rapids, a section what is between a tool length and the next G49.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from itertools import pairwise
 
 MOTION = re.compile(rb"[Gg][ \t]*0*([0123])(?![0-9.])")
+LENGTH = re.compile(rb"[Gg][ \t]*0*4([39])(?:\.0*)?(?![0-9.])")
 COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
 
 
@@ -14,19 +19,37 @@ def whole_cuts(texts: Iterator[bytes]) -> Iterator[bytes]:
 
     What is looked for are the letters; a text that begins otherwise is refused by the pass.
     """
+    return _divided(texts, _last_rapid)
+
+
+def whole_sections(texts: Iterator[bytes]) -> Iterator[bytes]:
+    """Yield texts of whole lines which begin, but for the first, with G43 after a G49."""
+    return _divided(texts, _last_section)
+
+
+def _divided(texts: Iterator[bytes], place: Callable[[bytes], int]) -> Iterator[bytes]:
     waiting = b""
     for text in texts:
         waiting += text
-        if at := _last_rapid(waiting):
+        if at := place(COMMENT.sub(lambda found: b" " * len(found[0]), waiting)):
             yield waiting[:at]
             waiting = waiting[at:]
     if waiting:
         yield waiting
 
 
-def _last_rapid(text: bytes) -> int:
+def _last_section(blank: bytes) -> int:
+    """Return where the last line begins that has G43 after G49; 0 if there is none."""
+    lengths = [*LENGTH.finditer(blank)]
+    for one, other in reversed([*pairwise(lengths)]):
+        if (one[1], other[1]) == (b"9", b"3"):
+            line = _line_of(blank, other.start())
+            return line if line > one.start() else 0
+    return 0
+
+
+def _last_rapid(blank: bytes) -> int:
     """Return where the last line begins that changes from feeds to rapids; 0 if there is none."""
-    blank = COMMENT.sub(lambda found: b" " * len(found[0]), text)
     end, rapid = len(blank), -1
     for found in reversed([*MOTION.finditer(blank)]):
         if found[1] == b"0":
@@ -36,4 +59,8 @@ def _last_rapid(text: bytes) -> int:
             break
     else:
         return 0
+    return _line_of(blank, end)
+
+
+def _line_of(blank: bytes, end: int) -> int:
     return max(blank.rfind(b"\n", 0, end), blank.rfind(b"\r", 0, end)) + 1

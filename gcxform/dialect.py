@@ -193,6 +193,10 @@ class Dialect:
     tip_codes: ClassVar[Mapping[str, str]] = {}
     """Codes from which on the control follows the tip, each with the one that only takes the tool
     length into account."""
+    vector_codes: ClassVar[Mapping[str, str]] = {}
+    """The same of codes with which I, J and K of lines are the tool axis, from tip to holder."""
+    takes_vectors: ClassVar[bool] = False
+    """Whether what is left of such codes is in the program: see `gcxform/tipcodes.py`."""
     calls_own_lines: ClassVar[bool] = False
     """M97 calls lines of the same program, up to M99."""
     numbers: ClassVar[NumberFormat] = NumberFormat()

@@ -27,7 +27,7 @@ from gcxform.pipelinefile import PipelineSpec, load, parse_chain
 from gcxform.registry import Registry, default_registry
 from gcxform.run import Output, Progress, Run, Sink
 from gcxform.source import Source
-from gcxform.tipcodes import with_switches
+from gcxform.tipcodes import with_refusal, with_switches, with_vectors, without_tip_codes
 from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY, NO_CYCLES
 
 ARC_ROUNDING = 2.0  # of the last decimal: what rounding ends and centre can add along an arc
@@ -154,9 +154,19 @@ class Pipeline:
     @property
     def read_as(self) -> type[Dialect]:
         """The dialect in which programs are read: with what a pass does instead of the control."""
-        if not any(step.reads_tip_codes for step in self.path_passes):
-            return self.source
-        return with_switches(self.source, self.machine_reading.control)
+        reads = any(step.reads_tip_codes for step in self.path_passes)
+        read = with_switches if reads else with_refusal
+        return read(self.source, self.machine_reading.control)
+
+    def without_tip_codes(self, source: Source) -> tuple[Source, type[Dialect]]:
+        """Return a program without what a pass does instead of the control, and its dialect."""
+        dialect = self.read_as
+        if any(step.reads_vectors for step in self.path_passes):
+            plain = without_tip_codes(source, self.source.vector_codes)
+            return plain, dialect if plain is source else with_vectors(dialect)
+        if any(step.reads_tip_codes for step in self.path_passes):
+            source = without_tip_codes(source, self.source.tip_codes)
+        return source, dialect
 
     @property
     def machine_reading(self) -> Reading:
@@ -230,10 +240,13 @@ class Pipeline:
 
     # --- runs ---
 
-    def run(self, program: bytes | str | Path, verify: str = "on") -> Result:
-        """Run on a program: its bytes, or a path. Raises GcxformError; writes no file."""
+    def run(self, program: bytes | str | Path, verify: str = "on", name: str = "-") -> Result:
+        """Run on a program: its bytes, or a path. Raises GcxformError; writes no file.
+
+        `name` is what messages call a program that is given as bytes.
+        """
         if isinstance(program, bytes):
-            source = Source.of_bytes(program)
+            source = Source.of_bytes(program, name)
         else:
             source = Source.open(Path(program))
         parts: list[bytes] = []

@@ -11,7 +11,7 @@ import numpy as np
 
 from gcxform.compensated import check_compensated, whole_stretches
 from gcxform.contract import Pass
-from gcxform.cuts import whole_cuts
+from gcxform.cuts import whole_cuts, whole_sections
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.emit.emitter import Emitted, Emitter
@@ -24,7 +24,7 @@ from gcxform.modal.tables import MeaningTable
 from gcxform.source import Source, lines_in
 from gcxform.syntax.scan import Window
 from gcxform.textpasses import TextRun
-from gcxform.tipcodes import switches_of, without_tip_codes
+from gcxform.tipcodes import switches_of
 from gcxform.toolpath.path import Toolpath
 from gcxform.verify import Findings, Verifier
 from gcxform.worker import Worker, ahead, worker
@@ -78,12 +78,10 @@ class Run:
         self.verify = verify
         self.steps = pipeline.path_passes
         self.text = TextRun(pipeline.text_passes, pipeline.target, source.name)
-        self.dialect = pipeline.read_as
         if not pipeline.copies:
-            self.source = written_out(source, self.dialect, pipeline.machine_reading)
+            self.source = written_out(source, pipeline.read_as, pipeline.machine_reading)
         self.executes = self.source is not source
-        if any(step.reads_tip_codes for step in self.steps):
-            self.source = without_tip_codes(self.source, pipeline.source)
+        self.source, self.dialect = pipeline.without_tip_codes(self.source)
         self.given = source
         self.reader = WindowReader(self.dialect)
         self.measured: dict[str, float] = {}
@@ -127,7 +125,7 @@ class Run:
 
     def _switches(self) -> frozenset[str]:
         """Return the M codes that a pass takes over from the control."""
-        if self.dialect is self.pipeline.source:
+        if self.pipeline.read_as is self.pipeline.source:
             return frozenset()
         return frozenset(switches_of(self.pipeline.machine_reading.control))
 
@@ -161,7 +159,9 @@ class Run:
             return
         if any(step.resolves for step in self.steps):
             texts = whole_stretches(texts)
-        if any(step.whole_cuts for step in self.steps):
+        if any(step.reads_vectors for step in self.steps):
+            texts = whole_sections(texts)
+        elif any(step.whole_cuts for step in self.steps):
             texts = whole_cuts(texts)
         read = WindowReader(self.dialect).read_apart
         long = self.source.is_long(size)

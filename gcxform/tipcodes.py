@@ -8,19 +8,24 @@ Other controls are switched by M codes of the machine's own, which mean opposite
 machines: LinuxCNC's M428 and M429. The machine file says which is which. They are read as codes of
 the dialect, their acts are those of the frame (`following`), and they are not written: the control
 stays as it is without them. What reads the output does not know them.
+
+`G43.5 H1` says in addition that I, J and K of lines are the tool axis. It is read as `G43 H1` too,
+in a dialect in which that means so, up to the next G49 (`gcxform/modal/pointing.py`).
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect import Dialect
 from gcxform.machine.machine import SWITCHES
-from gcxform.modal.codes import MCode
+from gcxform.modal.codes import FOLLOWING, MCode, barrier
 from gcxform.source import Source, lines_in
 
+OTHERWISE = "it is another tool length in a program with tool vectors"
 COMMENT = rb"\([^()\r\n]*\)"
 
 
@@ -75,17 +80,41 @@ def with_switches(dialect: type[Dialect], control: Mapping[str, str | float]) ->
     return type(dialect.__name__, (dialect,), {"m_codes": {**dialect.m_codes, **codes}})
 
 
-def without_tip_codes(source: Source, dialect: type[Dialect]) -> Source:
-    """Return a source without codes that follow the tip; itself if it has none of them."""
-    if not dialect.tip_codes:
+def with_refusal(dialect: type[Dialect], control: Mapping[str, str | float]) -> type[Dialect]:
+    """Return the dialect that does not resolve the code from which on a control follows the tip.
+
+    A dialect may take other M codes of the machine's own for what moves nothing.
+    """
+    codes = [code for code, act in switches_of(control).items() if act == "tip-on"]
+    if not codes:
+        return dialect
+    refused = {int(code[1:]): MCode("tip", barrier=FOLLOWING) for code in codes}
+    return type(dialect.__name__, (dialect,), {"m_codes": {**dialect.m_codes, **refused}})
+
+
+def with_vectors(dialect: type[Dialect]) -> type[Dialect]:
+    """Return the dialect in which what is left of codes for tool vectors is read as what it was."""
+    begins, codes = {*dialect.vector_codes.values()}, dict(dialect.codes)
+    for name, code in dialect.codes.items():
+        if name in begins:
+            codes[name] = replace(code, act="vectors")
+        elif code.act == "no-length":
+            codes[name] = replace(code, act="no-vectors")
+        elif code.group == "tool-length":
+            codes[name] = barrier(code.group, OTHERWISE, code.takes)
+    return type(dialect.__name__, (dialect,), {"codes": codes, "takes_vectors": True})
+
+
+def without_tip_codes(source: Source, codes: Mapping[str, str]) -> Source:
+    """Return a source with others for codes that follow the tip; itself if it has none of them."""
+    if not codes:
         return source
     pattern = re.compile(
-        b"|".join([COMMENT, *(_spelled(code.encode()) for code in dialect.tip_codes)]),
-        re.IGNORECASE,
+        b"|".join([COMMENT, *(_spelled(code.encode()) for code in codes)]), re.IGNORECASE
     )
     for text in source.windows():
         if any(not found[0].startswith(b"(") for found in pattern.finditer(text)):
-            return WithoutTipCodes(source, dialect.tip_codes)
+            return WithoutTipCodes(source, codes)
     return source
 
 

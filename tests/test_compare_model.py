@@ -94,3 +94,42 @@ def test_without_an_origin_it_is_refused(here: Path) -> None:
     found = call(*words)
     assert found.exit_code == 2
     assert "GX721" in found.stderr
+
+
+PITCH = """\
+format = 1
+kind = "pitch"
+values = "error"
+[X]
+position = [0.0, 100.0]
+forward = [0.0, 0.01]
+"""
+LINE = b"G21 G90 G17 G94\nG1 X0. Y0. Z0. F100.\nG1 X%s.\nM2\n"
+
+
+def run_and_compare(tmp_path, chain, *words):
+    (tmp_path / "table.toml").write_text(PITCH + ("reverse = [0.002, 0.006]\n" * ("mean" in words)))
+    run = call(
+        "run", "-f", "grbl", "-x", f"volumetric model=table.toml {chain}", "-o", "o.nc", "l.nc"
+    )
+    assert run.exit_code == 0, run.stderr
+    start = ("compare", "-f", "grbl", "--model", "table.toml", "--part-origin", "0,0,0")
+    return call(*start, *words, "l.nc", "o.nc")
+
+
+def test_backlash_is_compared_as_it_was_compensated(here, tmp_path):
+    (tmp_path / "l.nc").write_bytes(LINE % b"80")
+    found = run_and_compare(tmp_path, "part-origin=0,0,0 backlash=mean", "--backlash", "mean")
+    assert (found.exit_code, "SAME" in found.stdout) == (0, True)
+
+
+def test_far_beyond_the_table_is_compared_as_it_was_compensated(here, tmp_path):
+    (tmp_path / "l.nc").write_bytes(LINE % b"240")
+    chain = "part-origin=0,0,0 outside=extrapolate max-extrapolation=2"
+    words = ("--outside", "extrapolate")
+    found = run_and_compare(tmp_path, chain, *words, "--max-extrapolation", "2")
+    assert (found.exit_code, "SAME" in found.stdout) == (0, True)
+    found = run_and_compare(tmp_path, chain, *words)
+    assert found.exit_code == 3
+    assert found.stderr.startswith("o.nc:3:1: error[GX310]")
+    assert "3 | G1 X239.976" in found.stderr

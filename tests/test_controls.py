@@ -185,6 +185,8 @@ def test_all_of_an_axis_reads_back(tmp_path):
         ("TRUE", "1\nsetp xyzac-trt-kins.tool-offset 5", 8, "tool-offset is the length of a tool"),
         ("TRUE", "1\nsetp 5axiskins.pivot-length 5", 0, "here is 5axiskins and xyzac-trt-kins"),
         (HAL, "loadrt trivkins\n", 0, "here is none"),
+        (HAL, "loadrt 5axiskins\n", 0, "5axiskins.pivot-length is not set"),
+        (HAL, "[KINS]\nKINEMATICS = maxkins\n", 0, "maxkins.pivot-length is not set"),
     ],
 )
 def test_a_hal_file_that_is_refused(tmp_path, old, new, line, message):
@@ -239,6 +241,14 @@ def test_two_tables(tmp_path):
     assert machine.axes["C"] == Axis(direction=(0, 0, 1.0), point=(5.0, -20.0, -60.0), sign=-1)
 
 
+def test_a_list_as_the_control_punches_it(tmp_path):
+    """Each with its path; and parameters of axes, of other numbers, are passed over."""
+    punched = TABLES.replace(" P", "Q1L1P").replace("%\n", "%\nN01320Q1A1P9.0A2P-9.0\n", 1)
+    assert "N19700Q1L1P5.0\n" in punched
+    more = "N19697Q1L1P3\nN19696Q1L1P00100000\nN19703P0\n"
+    assert fanuc(tmp_path, punched + more) == fanuc(tmp_path, TABLES)
+
+
 HEADS = """N19680P2
 N19682P3
 N19687P1
@@ -278,6 +288,11 @@ def test_one_axis_each_the_first_in_the_head(tmp_path):
         ("%\n", "%\nN19685 P45.0\n", 0, "19685 is not 0"),
         ("%\n", "%\nN19680 P12\n", 3, "stands twice"),
         ("%\n", "%\nN19680 A1\n", 2, "not one parameter and its value"),
+        ("N19700 P5.0", "N19700Q1L1P5.0L2P1.0", 7, "not one parameter and its value"),
+        ("N19700 P5.0", "N19700 P5000", 7, "without a decimal point"),
+        ("%\n", "%\nN19697 P1\n", 0, "19697 is not 3 (+Z)"),
+        ("%\n", "%\nN19698 P30.0\n", 0, "19698 is not 0"),
+        ("%\n", "%\nN19696 P00100001\n", 0, "19696 has an axis that is not controlled"),
     ],
 )
 def test_fanuc_parameters_that_are_refused(tmp_path, old, new, line, message):

@@ -10,6 +10,7 @@ import pytest
 from format_kit import apart, nine, pitch, rigid
 from hypothesis import given
 from hypothesis import strategies as st
+from thermal_kit import warm
 
 import gcxform as gx
 from gcxform.diagnostics import UsageError
@@ -19,6 +20,8 @@ from gcxform.machine.lattice import Lattice
 from gcxform.machine.linear import Linear
 from gcxform.machine.modelfile import load_model
 from gcxform.machine.modeltext import to_toml
+from gcxform.machine.pitch import PitchTable, PitchTables
+from gcxform.machine.sums import Sum
 
 SEEDS = st.integers(0, 10_000)
 
@@ -26,6 +29,32 @@ SEEDS = st.integers(0, 10_000)
 def inside(model, seed, count=200):
     low, high = np.transpose([np.clip(model.range_of(k), -1e3, 1e3) for k in range(3)])
     return np.random.default_rng(seed).uniform(low, high, (count, 3))
+
+
+def test_t4_what_a_table_leaves_of_a_warm_screw_between_its_nodes():
+    """Straight between the sensors it is off by up to alpha |rise of temperature| h / 8."""
+    screw = warm(3)
+    fit = to_pitch(screw)
+    points = inside(screw, 4, 20_000)
+    apart = np.linalg.norm(fit.model.error(points) - screw.error(points), axis=1).max()
+    assert apart > 1e-4
+    assert apart <= fit.largest < 1.05 * apart
+
+
+@pytest.mark.parametrize("convert", [to_lattice, lambda m: to_functions(m).model])
+def test_a_sum_becomes_no_larger_than_what_its_parts_have_in_common(convert):
+    """What is beyond one of them was not measured, and no table may say that it was."""
+    wide = rigid(1)
+    low, high = wide.range_of(0)
+    position = np.array([low + 1.0, (low + high) / 2.0, high - 1.0])
+    narrow = PitchTable(position, *2 * [np.array([0.0, 0.01, -0.01])])
+    both = Sum((wide, PitchTables((narrow, None, None))))
+    made = convert(both)
+    assert both.range_of(0) == (low + 1.0, high - 1.0)
+    for axis in range(3):
+        assert made.range_of(axis) == both.range_of(axis)
+    points = inside(both, 5)
+    assert made.error(points) == pytest.approx(both.error(points), abs=1e-12)
 
 
 # --- pitch tables ---

@@ -122,6 +122,14 @@ def test_points_in_any_order_and_not_quite_on_the_grid(tmp_path):
     assert at(Xyz("mm").read(path), 10.0, 20.0)[2] == pytest.approx(-0.3, abs=1e-6)
 
 
+def test_how_bcnc_probes_the_next_time_in_inches(tmp_path):
+    """Depth and feed are lengths as everywhere, mm and mm/min, and the file is in inches."""
+    (tmp_path / "map.xyz").write_text(XYZ)
+    model = Xyz("mm").read(tmp_path / "map.xyz")
+    text = BcncProbe("in", -2.54, 5.08, 101.6).write(model)[""]
+    assert text.splitlines()[2] == "-0.1 0.2 4"
+
+
 def test_what_they_cannot_hold():
     form = Xyz("mm")
     assert "'axis-functions'" in cannot(form, nine(1))

@@ -137,6 +137,7 @@ def test_an_axis_that_is_off_its_coordinate_says_so() -> None:
         (("--tool", "2"), "GX707"),
         (("--start", "B=4"), "GX707"),
         (("--start", "A"), "GX702"),
+        (("--step", "nan"), "GX706"),
     ],
 )
 def test_what_cannot_be_jogged(here: Path, words: tuple[str, ...], code: str) -> None:

@@ -99,7 +99,12 @@ def test_data_are_those_of_the_table(here):
         assert f"{1000 * pair['after'] + 0.0:.3f}" == after
     reading = data["readings"]["before"]["X"]
     assert np.shape(reading["up"]) == np.shape(reading["down"]) == (4, 2)
-    assert reading["target"][0] == 0.0
+    assert 1.0 <= reading["target"][0] <= 3.0  # positions of the axis, and there its errors
+    places = np.array([[x, 165.0, 225.0] for x in reading["target"]])
+    quiet = json.loads(call(*LINES, "--json", "-").stdout)["readings"]["before"]["X"]
+    assert quiet["target"] == reading["target"]
+    truth = load_model(EXAMPLE).error(places)[:, 0]
+    assert np.array(quiet["up"])[:, 0] == pytest.approx(truth, abs=1e-12)
     alone = call(*LINES, "--noise", "0.5 um", "--json", "-")
     assert json.loads(alone.stdout) == data
     assert json.loads(call(*LINES, "--runs", "1", "--json", "-").stdout)["figures"]["X"]["A"] == {
@@ -128,7 +133,11 @@ def test_programs_are_written(here):
 @pytest.mark.parametrize(
     ("words", "named", "written"),
     [
-        (BALLBAR, ["XY before cw", "XY after ccw"], ["XY before, 5 um/div", "G(b) 3.65"]),
+        (
+            BALLBAR,
+            ["XY before cw", "XY after ccw"],
+            ["XY before, 5 um/div", "G(b) 3.65", "+X", "-Y"],
+        ),
         (LINES, ["X before mean up", "Z after low down"], ["deviation, um", "X before"]),
         ((*DIAGONAL, "body"), ["PPP before", "PPN after"], ["body diagonals before", "PPP  E 12"]),
     ],
@@ -255,6 +264,55 @@ def test_a_machine_of_21_parameters_fills_the_grid(here):
     assert "none" not in text
 
 
+def test_a_long_title_stays_in_a_narrow_picture(here):
+    assert call(*LINES, "--axes", "x", "--plot", "narrow.svg").exit_code == 0
+    lines = drawn("narrow.svg")[1].splitlines()
+    assert [line for line in lines if "proved" in line]
+    assert max(map(len, lines)) < 60
+
+
+def test_of_a_sum_the_sums_of_the_functions_are_drawn(here):
+    """A warm screw and its geometry: each function is the error along its axis, from zero on."""
+    folder = EXAMPLES / "warm-screw"
+    whole, parts = load_model(folder / "machine.toml"), curves(load_model(folder / "machine.toml"))
+    assert call("show", str(folder / "machine.toml"), "-o", "sum.svg").exit_code == 0
+    groups, _ = drawn("sum.svg")
+    assert set(parts) <= set(groups)
+    for name, (position, value) in parts.items():
+        axis, into = "XYZ".index(name[2]), "XYZ".index(name[1])
+        points = np.zeros((len(position), 3))
+        points[:, axis] = position
+        expected = whole.error(points)[:, into] - whole.error(np.zeros((1, 3)))[0, into]
+        low = float(np.interp(0.0, position, value))
+        assert value - low == pytest.approx(expected, abs=5e-5), name
+    assert "EXX" in parts
+
+
+def test_a_model_without_limits_is_drawn_over_a_volume(here):
+    """B0Z of 200 urad is 20 um in X and C0Y of 100 urad 10 um, at 100 mm: 30 um where both add."""
+    (here / "skew.toml").write_text(
+        'format = 1\nkind = "skew"\n[squareness]\nC0Y = 1e-4\nB0Z = 2e-4\n'
+    )
+    assert call("show", "skew.toml", "-o", "skew.svg").exit_code == 0
+    groups, text = drawn("skew.svg")
+    assert "largest 30.00 um" in text
+    assert corners(groups["actual"]) > 100
+
+
+def test_both_directions_of_a_pitch_table_are_drawn(here):
+    table = "position = [0, 100, 200]\nforward = [0, 0.01, 0.02]"
+    (here / "pitch.toml").write_text(
+        f'format = 1\nkind = "pitch"\nvalues = "error"\n[X]\n{table}\n'
+        f"reverse = [-0.004, 0.007, 0.015]\n[Y]\n{table}\n"
+    )
+    assert call("show", "pitch.toml", "-o", "pitch.svg").exit_code == 0
+    groups, text = drawn("pitch.svg")
+    assert corners(groups["EXX"]) == corners(groups["EXX reverse"]) == 3
+    assert "reverse" in text
+    assert "EYY" in groups
+    assert "EYY reverse" not in groups
+
+
 class Lattice(gx.ErrorModel):
     """A model that is no function of one axis at a time."""
 
@@ -297,6 +355,29 @@ def test_the_error_along_a_program_before_and_after(here):
     assert len(colours) > 50
     assert call(*SHOW, "-o", "heat.png", PROGRAM).exit_code == 0
     assert_png(here / "heat.png")
+
+
+def test_what_is_refused_in_a_program_has_its_place(here):
+    """A call is executed: the place is that in the file."""
+    text = "G21 G90 G17\nG0 X0 Y0 Z5\no1 repeat [3]\nG91 G1 X200. F100\no1 endrepeat\nM2\n"
+    (here / "row.ngc").write_text(text)
+    found = call("show", "-f", "linuxcnc", *SHOW[3:], "-o", "row.svg", "row.ngc")
+    assert found.exit_code == 3
+    assert found.stderr.startswith("row.ngc:4:1: error[GX310]: X 600.000"), found.stderr
+    assert not Path("row.svg").exists()
+
+
+def test_backlash_and_large_corrections_are_drawn_if_asked(here):
+    (here / "bed.toml").write_text(
+        'format = 1\nkind = "height-map"\nX = [0, 100]\nY = [0, 100]\n'
+        "height = [[0, 0.5], [0, 0.5]]\n"
+    )
+    (here / "part.nc").write_text("G21 G90 G17 G94\nG1 X0. Y0. Z0. F100.\nX90.\nM30\n")
+    words = ("show", "-f", "grbl", "--model", "bed.toml", "--part-origin", "0,0,0", "-o", "bed.svg")
+    found = call(*words, "part.nc")
+    assert (found.exit_code, "part.nc:3:1: error[GX313]" in found.stderr) == (3, True)
+    assert call(*words, "--max-correction", "1 mm", "part.nc").exit_code == 0
+    assert "before: at most 450.00 um" in drawn("bed.svg")[1]
 
 
 def pipeline(dialect, chain="", machine=None, **options):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +32,7 @@ sign = -1
 """
 SET = {"a": [1.0, 0.0, 0.0], "pa": [5.0, -32.0, -95.0], "c": [0.0, 0.0, 1.0]}
 TRUE = {"a": [1.0, 1.3e-4, 1.1e-4], "pa": [5.0, -31.966, -95.046], "c": [-5e-5, -8e-5, 1.0]}
+GAUGE = "gauge-point = [3.0, 4.0, 50.0]"
 SQUARE = 'format = 1\nkind = "skew"\nscale = [0.0, 2e-5, 0.0]\n[squareness]\nC0Y = 3e-5\n'
 
 
@@ -137,6 +139,7 @@ def test_the_seed_decides(files):
         (["balls", "--axis", "B", "turn.csv"], "GX707", 2),
         (["balls", "-o", "plan.csv", "plan.csv"], "GX727", 2),
         (["balls", "--noise", "much", "plan.csv"], "GX708", 2),
+        (["balls", "--noise", "-2um", "plan.csv"], "GX706", 2),
         (["balls", "turn.csv"], "GX470", 3),
         (["ballbar-rtcp", "-m", "other.toml", "--ball", "1,2,3"], "GX707", 2),
         (["ballbar-rtcp", "-m", "set.toml", "--ball", "1,2"], "GX708", 2),
@@ -147,6 +150,35 @@ def test_what_does_not_fit_is_refused(files, words, code, exit_code):
     Path("other.toml").write_text(other[0] + "[axis.C]" + other[1].split("[axis.C]")[1])
     done = call("simulate", words[0], "--true", "true.toml", *words[1:])
     assert (done.exit_code, code in done.stderr) == (exit_code, True), done.output
+
+
+@pytest.mark.parametrize("tool", [(), ("--tool", "1")])
+def test_a_probe_that_is_named_is_named_to_all(files, tool):
+    """Plan, readings, one axis or all: X, Y and Z are of the tip, or with --tool of the axes."""
+    machine = Path("set.toml").read_text().replace("format = 1", "format = 1\n" + GAUGE)
+    Path("g.toml").write_text(machine + "[tool.1]\nlength = 87.5\n")
+    plan = ("calibrate", "plan", "-m", "g.toml", *tool, "--ball", "40,120,-30")
+    for axis, verb in ((("--axis", "A"), "rotary"), ((), "bundle")):
+        call(*plan, *axis, "--ball=-60,90,30" if not axis else "--poses=7", "-o", "gp.csv")
+        simulated("balls", "--true", "g.toml", *tool, *axis, "-o", "gr.csv", "gp.csv")
+        words = ("-m", "g.toml", *axis, "--report", "r.json", "-o", "gf.toml", "gr.csv")
+        done = call("calibrate", verb, *tool, *words)
+        assert done.exit_code == 0, done.output
+        assert "from where the machine file has it" not in done.stdout
+        found = load_machine(Path("gf.toml")).axes["A"]
+        off = np.cross(np.subtract(found.point, [0.0, -32.0, -95.0]), found.direction)
+        assert np.linalg.norm(off) < 1e-3
+        if tool:
+            done = call("calibrate", verb, *words)
+            assert re.search("axis A is 37.71 mm from where the machine file", done.stdout)
+
+
+def test_a_ballbar_needs_an_axis_in_the_table(files):
+    head = Path("set.toml").read_text().replace("table", "head")
+    Path("head.toml").write_text(head)
+    words = ("--true", "head.toml", "-m", "head.toml", "--ball", "1,2,3")
+    done = call("simulate", "ballbar-rtcp", *words)
+    assert (done.exit_code, "GX707" in done.stderr) == (2, True), done.output
 
 
 def test_balls_beyond_the_error_model_are_refused(files):

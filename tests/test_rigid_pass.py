@@ -142,6 +142,18 @@ def test_a_lattice_is_compensated_and_proved(tmp_path, tolerance):
     assert result.certificate.largest["deviation"] <= (tolerance or 0.001) + 1e-4
 
 
+def test_pieces_of_an_arc_are_as_far_from_their_centre_at_both_ends(tmp_path):
+    """Also short ones, of which three points say little about the centre."""
+    model = rigid(1, size=0.02, angle=100e-6)
+    program = b"G21 G17 G90 G94 G54\nT1 M6\nG43 H1\nG0 X0 Y0 Z0\nF500\nG2 X0 Y0 I40\nM2\n"
+    result = pipeline(tmp_path, model, "tolerance = 0.0002").run(program)
+    path = gx.read(result.text, "linuxcnc").path
+    rows = np.flatnonzero(path.is_arc)
+    first, last, _ = gx.radius_and_angle(path, rows)
+    assert (first * (1 - np.cos(path.sweep[rows] / 2)) < 0.1).any()
+    assert np.abs(last - first).max() < 3e-5
+
+
 def test_what_is_written_reads_back(tmp_path):
     for model in (rigid(3, "ZXY", AT, (1.0, 2.0, -90.0)), lattice(2)):
         path = tmp_path / "model.toml"

@@ -107,3 +107,5 @@ def test_arcs_are_turns_less_the_largest_gap():
     assert arc(around(4)) == 360.0
     assert arc(around(11, 150.0) - 60.0) == pytest.approx(150.0)
     assert arc(np.array((350.0, 10.0, 40.0))) == pytest.approx(50.0)
+    assert arc(np.array((-90.0, 0.0, 90.0))) == pytest.approx(180.0)
+    assert arc(np.array((25.0,))) == 0.0

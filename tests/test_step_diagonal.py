@@ -354,6 +354,42 @@ def test_linear_tests_that_contradict_the_diagonals_are_refused():
         identify(readings(), tests, ALIGNED)
 
 
+@pytest.mark.parametrize("axes", [(0, 1), (0, 1, 2)])
+def test_a_linear_test_of_the_other_sign_is_named(axes):
+    """With free beams its scale contradicts nothing, or little; its shape does."""
+    tests = linear(*axes)
+    tests[1].deviation[:] *= -1.0
+    with pytest.raises(InputError, match=r"GX475.*linear test of Y.*opposite sign"):
+        identify(readings(1e-4), tests, Assumed(linear_noise=0.0005))
+
+
+def test_a_linear_test_at_another_temperature_is_refused():
+    """3 K of steel are 34.5 um/m: the scales of three axes are told by four readings then."""
+    tests = linear(0, 1, 2)
+    tests[0].deviation[:] += 34.5e-6 * tests[0].position
+    with pytest.raises(InputError, match=r"GX475.*scales of the linear tests"):
+        identify(readings(1e-4), tests, Assumed(0.0003))
+    identify(readings(1e-4), tests[:2], Assumed(0.0003))  # nothing else tells these scales
+
+
+def test_good_readings_are_hardly_ever_refused():
+    """A false alarm in a thousand of each test, also where the noise is twice the stated one."""
+    rng = np.random.default_rng(11)
+    for scatter in (0.001, 0.002):
+        refused = 0
+        for _ in range(15):
+            legs, tests = list(readings(1e-4, steps=4).legs), linear(0, 1, 2)
+            for leg in legs:
+                leg.deviation[:] += np.cumsum(scatter * rng.standard_normal(13))
+            for test in tests:
+                test.deviation[:] += scatter * rng.standard_normal(11)
+            try:
+                identify(step_diagonals(legs), tests)
+            except InputError:
+                refused += 1
+        assert refused <= 1
+
+
 def test_one_step_with_free_beams_has_nothing_to_test_it(tmp_path):
     found = identify(readings(steps=1), linear(0, 1))
     assert found.solution.rank == found.layout.size - 3

@@ -86,7 +86,7 @@ def test_t2_the_limit(tmp_path):
     hot = COLD + 1.33 * (WARM - COLD)
     path = written(tmp_path, text(), csv(row("2026-03-04T10:00:00", hot)))
     (found,) = refused(path)
-    assert found.code == "GX425"
+    assert place(found) == ("model.toml", 7, 1, "GX425")  # [X], as the limit is not written
     worst = 1.33 * 1000 * (growth(720.0) - growth(200.0))
     assert worst > 200
     assert f"{worst:.1f} um at 2026-03-04T10:00:00" in found.message
@@ -149,6 +149,8 @@ def test_t5_every_sensor_is_named_and_a_reference_is_checked_too(tmp_path):
         (csv(row("2026-03-04T10:00:00"), names=["T0"] * 12), (1, 16, "GX417")),
         (csv(row("yesterday")), (2, 1, "GX419")),
         (csv("2026-03-04T10:00:00,31"), (2, 23, "GX418")),
+        # 33,5 with a comma: all behind it would be the temperature of the sensor before
+        (csv(row("2026-03-04T10:00:00").replace("33.5", "33,5")), (2, 56, "GX418")),
         (csv(row("2026-03-04T10:00:00"), row("2026-03-04T10:00:00")), (3, 1, "GX409")),
         (csv(row("2026-03-04T10:00:00"), row("2026-03-04T09:00:00")), (3, 1, "GX408")),
         (csv(row("2026-03-04T10:00:00"), row("2026-03-04T11:00:00Z")), (3, 1, "GX426")),
@@ -189,6 +191,17 @@ def test_models_that_contradict_themselves(tmp_path, old, new, expected):
     model = text()
     assert old in model
     assert refused(written(tmp_path, model.replace(old, new)))[0].code == expected
+
+
+def test_where_it_is_said_which_file_is_not_there(tmp_path):
+    found = refused(written(tmp_path, text().replace("readings.csv", "none.csv")))
+    assert [place(f) for f in found] == [("model.toml", 3, 1, "GX401")]
+    assert "'none.csv'" in found[0].message
+    both = tmp_path / "both.toml"
+    both.write_text('format = 1\nkind = "sum"\nmodels = ["model.toml",\n  "geometry.toml"]\n')
+    (tmp_path / "model.toml").write_text(text())
+    (found,) = refused(both)
+    assert (place(found), "geometry.toml" in found.message) == (("both.toml", 4, 3, "GX401"), True)
 
 
 def test_a_held_screw_needs_its_temperature_from_bearing_to_bearing(tmp_path):

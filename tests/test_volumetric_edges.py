@@ -150,3 +150,22 @@ def test_pieces_reach_as_far_as_the_limit_lets_them(seed, count, limit):
 def test_a_place_that_is_not_known_is_no_bug():
     path = undone(volumetric(bent(angle=2e-5)), "G21 G90 G17 G94 G0 X10. Y10.\nG1 X100. F500.\n")
     assert np.isnan(path.end[:, 2]).all()
+
+
+@pytest.mark.parametrize("policy", ["extrapolate", "clamp"])
+def test_v7_how_far_the_program_goes_beyond_the_tables_is_told(policy):
+    """The table ends at 200 mm; an arc reaches to X -215, where none of its ends is."""
+    step = volumetric(bent(), outside=policy)
+    program = HEAD + "G1 X-170. F500.\nG3 X-170. Y-90. I0. J-45.\nG1 X0. Y0. Z230.5\nM2\n"
+    pipeline = gx.Pipeline.parse("absolute", "linuxcnc")
+    pipeline = gx.Pipeline(pipeline.source, pipeline.target, (*pipeline.passes, step))
+    told = pipeline.run(program.encode()).certificate.measured
+    assert told == pytest.approx(
+        {
+            f"X beyond the error table ({policy}), mm": 15.0,
+            f"Z beyond the error table ({policy}), mm": 30.5,
+        },
+        abs=1e-6,
+    )
+    inside = pipeline.run((HEAD + "G1 X-170. F500.\nM2\n").encode())
+    assert inside.certificate.measured == {}

@@ -7,6 +7,7 @@ but for unknowns as a bundle has them: two shifts and two tilts across the axis.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,9 @@ from gcxform.calibrate.rotary import crossing
 from gcxform.calibrate.rotarycheck import dial
 from gcxform.machine.chain import Rotary, turned
 from gcxform.machine.errors import FloatArray
+from gcxform.machine.machine import Axis
+
+FAR = 1.0  # mm; an axis is not adjusted so badly
 
 
 class Check(NamedTuple):
@@ -53,6 +57,22 @@ def effects(axis: Rotary) -> tuple[FloatArray, FloatArray]:
     """Return what the unknowns of an axis are in X, Y and Z: shifts (3, 2), and turns (3, 2)."""
     basis = across(axis)
     return basis.T, np.cross(axis.direction, basis).T
+
+
+def astray(letter: str, before: Rotary | Axis | None, point: FloatArray) -> Iterator[str]:
+    """Yield how far a point (3,) mm is from the axis as it was, if that is no error of a machine.
+
+    Such is a probe whose length is in the readings and was not told, or told and not in them.
+    """
+    if before is None or before.point is None or before.direction is None:
+        return
+    away = float(np.linalg.norm(np.cross(point - np.array(before.point), before.direction)))
+    if away > FAR:
+        yield (
+            f"the axis {letter} is {away:.4g} mm from where the machine file has it; if it is not, "
+            "look at the units, at the zero of X, Y and Z, and whether they are those of the tip "
+            "or, with --tool, of the axes"
+        )
 
 
 def worded(check: Check, letter: str) -> str:

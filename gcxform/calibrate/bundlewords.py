@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gcxform.calibrate.axischeck import Check, predicted, worded
+from gcxform.calibrate.axischeck import Check, astray, predicted, worded
 from gcxform.calibrate.bundle import LINEAR, Bundled, across
 from gcxform.calibrate.rotary import ILL
 from gcxform.calibrate.rotarycheck import two_digits
@@ -36,7 +36,14 @@ def lines(found: Bundled) -> list[str]:
         said += [f"axis {letter}: {line}" for line in _axis(found, letter)]
     said += _linear(found)
     said += [worded(check(found, letter), letter) for letter in found.chain.letters]
-    return said + [f"warning: {line}" for line in _outliers(found)]
+    return said + [f"warning: {line}" for line in _warnings(found)]
+
+
+def _warnings(found: Bundled) -> list[str]:
+    before = found.layout.chain.axes
+    axes = zip(found.chain.letters, before, found.chain.axes, strict=True)
+    said = [line for a, was, own in axes for line in astray(a, was, np.array(own.point))]
+    return said + _outliers(found)
 
 
 def check(found: Bundled, letter: str) -> Check:
@@ -165,6 +172,6 @@ def report(found: Bundled, file: str, conditions: Mapping[str, Any]) -> dict[str
         "rms": found.rms if math.isfinite(found.rms) else None,
         "residuals": found.residuals.tolist(),
         "used": found.kept.tolist(),
-        "warnings": _outliers(found),
+        "warnings": _warnings(found),
         "conditions": dict(conditions),
     }

@@ -39,6 +39,7 @@ OUTLYING: Final = 4.0
 REJECTED: Final = 3.0
 """Residuals above this many times the stated noise contradict each other."""
 CAUCHY: Final = 2.385  # half of the weight is lost here; 95 % efficient on one normal variable
+EVEN: Final = 1.4  # times the gap of even positions: three at 180 degrees are not around a turn
 Kept = npt.NDArray[np.bool_]
 
 
@@ -280,7 +281,8 @@ def arc(degrees: FloatArray) -> float:
     """Return the arc that positions cover, degrees: a turn less the largest gap, 360 if even."""
     around = np.sort(np.mod(degrees, 360.0))
     gaps = np.diff(np.append(around, around[0] + 360.0))
-    return 360.0 if gaps.max() <= 1.5 * 360.0 / len(gaps) else float(360.0 - gaps.max())
+    even = len(gaps) > 2 and gaps.max() < EVEN * 360.0 / len(gaps)
+    return 360.0 if even else float(360.0 - gaps.max())
 
 
 # --- the fit ---

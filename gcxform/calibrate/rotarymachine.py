@@ -37,7 +37,9 @@ def located(
     if letter not in machine.table + machine.head:
         message = f"{machine.name} has no rotary axis {letter}"
         raise UsageError.one("GX707", message, Location("--axis"))
-    tip = _tip(machine, tool) if letter in machine.head else None
+    tip = _tip(machine, tool) if letter in machine.head or tool is not None else None
+    if tip is not None and letter in machine.table:
+        centres, tip = replace(centres, points=centres.points + np.array(tip)), None
     found = locate(centres, noise, tip)
     _check(found, letter, machine)
     return found, machine.axes[letter]
@@ -83,9 +85,13 @@ def with_found(found: Placed, letter: str, machine: Machine | None, comments: li
 
 
 def probing(machine: Machine, tool: int | None) -> Chain:
-    """Return the chain of a machine with its probe. Raises UsageError."""
+    """Return the chain of a machine with its probe. Raises UsageError.
+
+    Without one X, Y and Z are those of the tip: a head can then not be followed.
+    """
     chain = turning(machine)
-    return replace(chain, tip=_tip(machine, tool)) if chain.head or tool is not None else chain
+    named = chain.head or tool is not None
+    return replace(chain, tip=_tip(machine, tool) if named else (0.0, 0.0, 0.0))
 
 
 def turning(machine: Machine) -> Chain:

@@ -13,6 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from gcxform.calibrate.axischeck import astray
 from gcxform.calibrate.circle import spread
 from gcxform.calibrate.rotary import OUTLYING, Placed, arc, without_each
 from gcxform.calibrate.rotarycheck import (
@@ -50,6 +51,7 @@ def lines(found: Placed, letter: str, before: Axis | None = None) -> list[str]:
         f"circle without the angles: centre {_um(free.centre - found.figure.centre)} um away, "
         f"radius {1e3 * (float(free.radius) - found.figure.radius):+.3g} um",
         _check(found, letter, before),
+        *(f"warning: {warning}" for warning in astray(letter, before, found.point)),
         *(f"warning: {warning}" for warning in warnings(found)),
         *(f"next: {line}" for line in advice(found, before.limits if before else None)),
     ]
@@ -160,7 +162,7 @@ def report(
         "centres": _centres(found, point, direction),
         "harmonics": harmonics(found),
         "check": {"angles": angles.tolist(), "sd": dial_spread(found, angles).tolist()},
-        "warnings": [*warnings(found)],
+        "warnings": [*astray(letter, before, found.point), *warnings(found)],
         "advice": [*advice(found, before.limits if before else None)],
         "conditions": dict(conditions),
     }

@@ -216,7 +216,8 @@ def identify(
 
     They do if the residuals of the diagonals, or what linear tests add to them, show more than
     `REJECTED` times the stated noise; or if beams are assumed to be aligned and misalignments
-    explain the residuals far better (chi square, 0.1 %).
+    explain the residuals far better (chi square, 0.1 %); or if other signs or scales of the linear
+    tests do.
     """
     assumed = assumed or Assumed()
     alone = found = solved(diagonals, (), assumed)
@@ -226,6 +227,9 @@ def identify(
         _reject_linear(found, alone)
     if not assumed.free_beams:
         _reject_aligned(found)
+    if linear:
+        _reject_signs(found)
+        _reject_scales(found)
     return found
 
 
@@ -303,6 +307,57 @@ def _reject_aligned(found: Identified) -> None:
             f"{_um(found.assumed.noise)} um",
             hint="the scales would be wrong; use --misalignment free with linear tests of two axes",
         )
+
+
+def _reject_signs(found: Identified) -> None:
+    """Refuse linear tests that fit far better if their deviations are taken with the other sign."""
+    for axis in sorted({test.axis for test in found.linear}):
+        turned = [
+            replace(test, deviation=-test.deviation) if test.axis == axis else test
+            for test in found.linear
+        ]
+        other = solved(found.diagonals, turned, found.assumed).solution
+        gain = found.solution.chi_square - other.chi_square
+        if gain > plausible(1) * max(1.0, other.ratio**2):
+            raise InputError.one(
+                "GX475",
+                f"the linear test of {AXES[axis]} fits the diagonals far better with the opposite "
+                f"sign: chi square is {gain:.1f} less then",
+                hint="a deviation is the actual minus the nominal position",
+            )
+
+
+def _reject_scales(found: Identified) -> None:
+    """Refuse linear tests whose scales are not those that the diagonals tell."""
+    gain, limit = scale_gain(found)
+    if limit < gain:
+        raise InputError.one(
+            "GX475",
+            f"the scales of the linear tests contradict those of the diagonals: free scales take "
+            f"{gain:.1f} off the chi square of the residuals, where {limit:.1f} is plausible",
+            hint="look at the temperatures and at the compensation of the laser for them; or state "
+            "the noise that there is (--noise, --linear-noise)",
+        )
+
+
+def scale_gain(found: Identified) -> tuple[float, float]:
+    """Return by how much free scales of the linear tests lower chi square; what is plausible.
+
+    There is nothing to gain where the tests and the diagonals tell no scale twice.
+    """
+    assumed, diagonals = found.assumed, found.diagonals
+    every = equations(diagonals, found.linear, assumed.noise, assumed.of_linear, assumed.free_beams)
+    slopes = np.zeros((len(every.observed), 3))
+    first = 3 * found.layout.steps * len(diagonals.lines)
+    for test in found.linear:
+        rows = slice(first, first + len(test.position))
+        slopes[rows, test.axis] = test.position - diagonals.volume.low[test.axis]
+        first = rows.stop
+    freed = solve(np.hstack([every.matrix, slopes]), every.observed, every.deviation)
+    gained = found.solution.redundancy - freed.redundancy
+    scatter = max(1.0, freed.ratio**2) if freed.redundancy > 0 else 1.0
+    gain = found.solution.chi_square - freed.chi_square if gained > 0 else 0.0
+    return gain, plausible(max(gained, 1)) * scatter
 
 
 def misalignment_gain(found: Identified) -> tuple[float, float]:

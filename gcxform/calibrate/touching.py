@@ -5,8 +5,9 @@ each other, half way between where its post may be when table or head are tilted
 touches comes the centre along their line, whatever the radius; from the one along the probe, which
 need not be over the middle, its height by the radius of ball and stylus together. Where the spindle
 is upright that is from above; a head that turns takes all of it along. Positions are those of the
-axes: no tool length, and a work offset of 0, so that nothing has to be known to read the touches;
-a probe that is turned does not move while it touches, so X, Y and Z move as its tip does.
+axes: no tool length, and a work offset of 0, so that nothing has to be known to read the touches.
+Where no probe is named they are those of the tip, and the work offset has to make them so. A probe
+that is turned does not move while it touches, so X, Y and Z move as its tip does.
 """
 
 from __future__ import annotations
@@ -26,6 +27,10 @@ from gcxform.machine.errors import AXES, FloatArray
 TOUCHES: Final = 5
 ANGLE: Final = 0.01  # degrees; a log that says others belongs to other poses
 ORDER: Final = "XYZABC"  # of the columns of a log
+OF_AXES: Final = "(POSITIONS OF THE AXES: G54 HAS TO BE 0, NO TOOL LENGTH AND NO RTCP IN FORCE)"
+OF_TIP: Final = (
+    "(POSITIONS OF THE TIP: G54 HAS TO HAVE THE LENGTH OF THE PROBE, NO TOOL LENGTH AND NO RTCP)"
+)
 FEEDS: Final = {"way": 1000.0, "probe": 100.0}  # mm/min
 
 
@@ -65,7 +70,7 @@ def probing_program(
     blocks.lines += ["%", "O1"] if dialect == "fanuc" else []
     blocks.lines += [
         f"(BALLS AT {len(poses.points)} POSES, {TOUCHES} TOUCHES EACH)",
-        "(POSITIONS OF THE AXES: G54 HAS TO BE 0, NO TOOL LENGTH AND NO RTCP IN FORCE)",
+        OF_AXES if any(chain.tip) else OF_TIP,
         "(MOVES BETWEEN THE TOUCHES ARE NOT GUARDED: TRY THEM WITH CARE)",
         *(["(THE HEAD TURNS: START WITH ALL ROTARY AXES AT 0)"] if chain.head else []),
         *([] if over else ["(THE TABLE LIFTS BALLS ABOVE THE TIP WHILE IT TURNS: MIND THEIR WAY)"]),

@@ -87,8 +87,8 @@ CODES: dict[str, tuple[str, str]] = {
         "offset in the control, a subprogram. A pass that needs positions would work on wrong "
         "ones. Let the CAM system write plain moves, end the mode before the part that is "
         "transformed, or leave such programs to pipelines that change text only. Of a code with "
-        "which the control follows the tip (G43.4, G43.5, G234) `rtcp` does the work: have the "
-        "CAM write G43 for tips; for positions of axes there is nothing to follow.",
+        "which the control follows the tip (G43.4, G43.5, G234) `rtcp` does the work, if "
+        "`tip-codes` says so; for positions of axes there is nothing to follow.",
     ),
     "GX211": (
         "Block delete depends on a switch",
@@ -327,6 +327,13 @@ CODES: dict[str, tuple[str, str]] = {
         "begins with. Lift the tool off where it is said, and begin another cut there; or "
         "turn the part on the table; or let `rtcp` draw the tool back there and turn the axes "
         "(`retract`).",
+    ),
+    "GX336": (
+        "A tool vector that is not read",
+        "Under G43.5 I, J and K of a line in G0 or G1 are the tool axis at its end, from the tip "
+        "to the holder, on the workpiece with all rotary axes at 0. A vector needs a length; arcs, "
+        "cycles, cutter compensation, words of rotary axes and moves to the machine's own points "
+        "have no place beside it. The block of G43.5 itself only adds the tool length.",
     ),
     "GX350": (
         "A contour that the tool cannot follow",

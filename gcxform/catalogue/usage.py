@@ -216,6 +216,11 @@ CODES: dict[str, tuple[str, str]] = {
         "both machine files call inert, and rapids of X, Y and Z to places of the machine, each in "
         "a line of its own. Leave out what else there is.",
     ),
+    "GX746": (
+        "The dialect has no tool vectors",
+        'With `tip-codes = "vectors"` `rtcp` reads programs that say the tool axis by I, J and K. '
+        "Which code announces them is known of few dialects: G43.5 of `fanuc`.",
+    ),
     "GX801": (
         "Two plugins offer the same name",
         "Which one a pipeline means would depend on the order of installation. Uninstall one of "

@@ -30,8 +30,9 @@ DATA is a table with a row for each position of the axis, all other rotary axes 
 
 X, Y, Z: the centre of the ball in machine coordinates, with the probe in the spindle and the ball
 on the table. Where the axis turns the head the ball is fixed, X, Y and Z are those of the machine
-with the tip at its centre, and --tool names the probe. Units: deg, rad; mm, um, nm, m, in.
-Three centres are the least and test nothing; five and more around the whole turn are good.
+with the tip at its centre, and --tool names the probe; with --tool they are so of a table too.
+Units: deg, rad; mm, um, nm, m, in. Three centres are the least and test nothing; five and more
+around the whole turn are good.
 
 An axis V and -V with the other sign are the same, and written the same way. The shift of the point
 along the axis is free: it is in the plane of the circle. A machine file keeps all but direction,
@@ -44,7 +45,7 @@ point and sign of the axis.
 )
 @click.option("--axis", metavar="A", type=click.Choice([*"ABC"]), required=True, help="A, B or C.")
 @click.option("-m", "--machine", metavar="FILE", help="The machine as it is believed to be.")
-@click.option("--tool", metavar="N", type=int, help="The probe, if the axis turns the head.")
+@click.option("--tool", metavar="N", type=int, help="The probe: X, Y, Z are then of the axes.")
 @found_options(NOISE, "2 um")
 def rotary(
     data: str,
@@ -85,16 +86,18 @@ DATA is a table with a row for each pose, and a column for each rotary axis of t
     1,    -30,     45,      82.7912, 40.1623, -35.9984
 
 ball tells balls apart, and may be absent where there is one. 2 balls at 30 poses each, with all
-axes turned in combination, are a good measurement. The direction and point of every rotary axis are
-found together with the places of the balls and, unless --linear none, with what is seen of the
-linear axes: differences of scale and squareness. These are reported and belong into the error
-model. The absolute scale is never seen; --linear absolute asks for it and shows why not.
+axes turned in combination, are a good measurement. X, Y and Z are the centre of the ball in machine
+coordinates; with --tool, which a head needs, the axes with the tip there. The direction and point
+of every rotary axis are found together with the places of the balls and, unless --linear none, with
+what is seen of the linear axes: differences of scale and squareness. These are reported and belong
+into the error model. The absolute scale is never seen; --linear absolute asks for it and shows why
+not.
 """
 
 
 @click.command("bundle", epilog=_POSES, short_help="Balls at any poses: all rotary axes at once.")
 @click.option("-m", "--machine", metavar="FILE", required=True, help="The machine as believed.")
-@click.option("--tool", metavar="N", type=int, help="The probe, if an axis turns the head.")
+@click.option("--tool", metavar="N", type=int, help="The probe: X, Y, Z are then of the axes.")
 @click.option(
     "--linear",
     type=click.Choice(["differences", "none", "absolute"]),

@@ -11,7 +11,7 @@ import click
 
 from gcxform.cli import VERBS
 from gcxform.cli.axes import ballbar, bundle, rotary
-from gcxform.cli.measured import length_of, path_of, write
+from gcxform.cli.measured import about, length_of, path_of, write
 from gcxform.cli.outputs import STDOUT, check_places
 from gcxform.cli.plan import centres, plan
 from gcxform.diagnostics import UsageError
@@ -98,7 +98,8 @@ def diagonal(
 
     Steps of one axis at a time along the diagonals (vector method) give the nine functions with
     their covariance. Readings that contradict each other are refused: more than 3 times the noise
-    over all, or beams off their diagonals where --misalignment none says that they are not.
+    over all, or beams off their diagonals where --misalignment none says that they are not, or
+    linear tests of another sign or scale.
     """
     check_places({"-o": output, "--report": report}, [data, *linear])
     sigma = length_of(noise, "--noise")
@@ -107,11 +108,12 @@ def diagonal(
         raise UsageError.one("GX728", "--plain and --linear exclude each other")
     if output is None and report is None:
         output = STDOUT
-    if plain:
-        model, found = _plain(data, sigma, output is not None)
-    else:
-        free = misalignment == "free"
-        model, found = _steps(data, linear, (sigma, reading, free), output is not None)
+    with about(data):
+        if plain:
+            model, found = _plain(data, sigma, output is not None)
+        else:
+            free = misalignment == "free"
+            model, found = _steps(data, linear, (sigma, reading, free), output is not None)
     if output is not None:
         write(output, model)
     if report is not None:

@@ -128,10 +128,11 @@ def reading_findings(pipeline: Pipeline, source: Source) -> Iterator[Diagnostic]
     only those findings count that are about a block by itself.
     """
     axes = source.axes(pipeline.source.axes)
-    interpreter = Interpreter(pipeline.read_as, pipeline.machine_reading, axes, source.name)
+    source, dialect = pipeline.without_tip_codes(source)
+    interpreter = Interpreter(dialect, pipeline.machine_reading, axes, source.name)
     ending = Ending(pipeline.source, source.name)
     refused = False
-    for window, reader in windows_of(source, pipeline.read_as):
+    for window, reader in windows_of(source, dialect):
         try:
             interpreter.interpret(window, reader.table)
         except InputError as error:

@@ -37,6 +37,8 @@ SHOWN = 10
 @click.option("--table-origin", metavar="X,Y,Z", help="Origin of the measurement.")
 @click.option("--outside", metavar="POLICY", help="What the error is beyond the table.")
 @click.option("--time", metavar="TIME", help="Time (ISO 8601) whose temperatures hold.")
+@click.option("--backlash", metavar="WHAT", help="Of a model with backlash: mean takes the mean.")
+@click.option("--max-extrapolation", metavar="N", help="Cells beyond the table.  [default: 1]")
 @options.reading_options
 @click.argument("a", metavar="A")
 @click.argument("b", metavar="B")
@@ -51,14 +53,17 @@ def command(
     table_origin: str | None,
     outside: str | None,
     time: str | None,
+    backlash: str | None,
+    max_extrapolation: str | None,
     **asked: Any,
 ) -> int:
     """Compare two programs; exit 1 if path, feeds or events differ."""
     if a == b == STDOUT:
         raise excluding("stdin as A and stdin as B")
     limit = _length(tolerance)
-    origins = {"part-origin": part_origin, "table-origin": table_origin}
-    through = _model({"model": model, **origins, "outside": outside, "time": time})
+    told = {"model": model, "part-origin": part_origin, "table-origin": table_origin}
+    told |= {"outside": outside, "time": time, "backlash": backlash}
+    through = _model({**told, "max-extrapolation": max_extrapolation})
     what = Asked(**asked)
     first = _program(a, needed_dialect(dialect), what)
     second = _program(b, to or needed_dialect(dialect), what)

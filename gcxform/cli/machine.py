@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import click
@@ -45,6 +46,8 @@ def jog(machine: str, tool: int | None, start: str | None, step: float) -> None:
     chain, loaded = _chain(asked, tool)
     if not chain.axes:
         raise UsageError.one("GX452", "this machine has no rotary axis", Location(machine))
+    if not math.isfinite(step):
+        raise UsageError.one("GX706", f"{step} is not finite", Location("--step"))
     position = asked.input().start
     for letter in position:
         if letter not in (*"XYZ", *chain.letters):

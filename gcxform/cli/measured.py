@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -12,10 +13,26 @@ import click
 
 from gcxform import plot
 from gcxform.cli.outputs import STDOUT, check_places, destination
-from gcxform.diagnostics import Location, UsageError
+from gcxform.diagnostics import GcxformError, Location, UsageError
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 NOISE = "Standard deviation of a coordinate of a centre."
+
+
+@contextmanager
+def about(file: str) -> Iterator[None]:
+    """Let what is wrong with measurements as a whole name their file.
+
+    Numbers beyond all measure are refused by what becomes of them, without a warning of numpy.
+    """
+    import numpy as np
+
+    try:
+        with np.errstate(all="ignore"):
+            yield
+    except GcxformError as error:
+        found = (d if d.where else d.at(Location(file)) for d in error.diagnostics)
+        raise type(error)(tuple(found)) from None
 
 
 class Found(NamedTuple):
@@ -92,6 +109,14 @@ def length_of(text: str, option: str) -> float:
     length = any_length(text, option)
     if not length > 0:
         raise UsageError.one("GX706", f"{text} is not above 0 mm", Location(option))
+    return length
+
+
+def scatter_of(text: str, option: str) -> float:
+    """Return a standard deviation in mm, 0 for none. Raises UsageError."""
+    length = any_length(text, option)
+    if not length >= 0:
+        raise UsageError.one("GX706", f"{text} is below 0 mm", Location(option))
     return length
 
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from gcxform.cli.asked import Asked
 from gcxform.cli.measured import (
-    any_length,
     check_axis,
     path_of,
+    scatter_of,
     three_lengths,
     two_lengths,
     write,
@@ -54,7 +54,7 @@ def _read_options(command: Command) -> Command:
 @click.command("balls", epilog=_PLAN, short_help="Balls at poses, for `calibrate rotary|bundle`.")
 @_read_options
 @click.option("--axis", metavar="A", type=click.Choice([*"ABC"]), help="The one axis that turns.")
-@click.option("--tool", metavar="N", type=int, help="The probe, if an axis turns the head.")
+@click.option("--tool", metavar="N", type=int, help="The probe: X, Y, Z are then of the axes.")
 @click.argument("plan", metavar="PLAN")
 def balls(
     plan: str, true: str, noise: str, seed: int, output: str, axis: str | None, tool: int | None
@@ -70,7 +70,7 @@ def balls(
     check_places({"-o": output}, [plan, true])
     machine = _machine(true)
     chain, model = probing(machine, tool), _errors(machine)
-    sigma, generator = any_length(noise, "--noise"), np.random.default_rng(seed)
+    sigma, generator = scatter_of(noise, "--noise"), np.random.default_rng(seed)
     check_axis(axis, chain.letters, machine.name)
     poses = read_plan(path_of(plan), chain.letters, axis)
     read = simulate_poses(chain, poses, model, noise=sigma, generator=generator)
@@ -119,9 +119,12 @@ def ballbar_rtcp(
     if control.letters != actual.letters:
         message = f"{machine} and {true} have other axes"
         raise UsageError.one("GX707", message, Location("--true"))
+    if not control.table:
+        message = f"no rotary axis of {machine} turns a table"
+        raise UsageError.one("GX707", message, Location("--machine"))
     tests = standard_setups(control, three_lengths(ball, "--ball"))
     spindle = two_lengths(spindle_ball, "--spindle-ball")
-    sigma = any_length(noise, "--noise")
+    sigma = scatter_of(noise, "--noise")
     traces = simulate_tests(control, actual, tests, samples, spindle, noise=sigma, seed=seed)
     write(output, circles_csv(traces))
 

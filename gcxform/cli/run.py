@@ -72,7 +72,7 @@ def summary(pipeline: Pipeline, done: Done) -> str:
     steps = " | ".join(step.name for step in pipeline.passes) or "no passes"
     head = f"{found.source['name']}: {pipeline.source.name} -> {pipeline.target.name}"
     first = f"{head}   {counts}   {steps}   {done.seconds:.2f} s"
-    return "\n  ".join([first, *_states(found), _proof(found)])
+    return "\n  ".join([first, *_states(found), *_measured(found), _proof(found)])
 
 
 def _states(found: Certificate) -> Iterator[str]:
@@ -87,6 +87,12 @@ def _states(found: Certificate) -> Iterator[str]:
                 f"{1000 * state['largest']:.1f} um; drift {1000 * state['drift']:.2f} um per K "
                 f"over {travel:g} mm"
             )
+
+
+def _measured(found: Certificate) -> Iterator[str]:
+    """Yield what passes tell of their own work."""
+    if found.measured:
+        yield "; ".join(f"{what}: {most:.4g}" for what, most in found.measured.items())
 
 
 def _proof(found: Certificate) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import click
 
@@ -37,6 +37,12 @@ class ModelOptions:
     table_origin: Annotated[Vector, Option("origin of the measurement")] = (0.0, 0.0, 0.0)
     outside: Annotated[Outside, Option("what the error is beyond the tables")] = Outside.ERROR
     tolerance: Annotated[Length, Option("tolerance of the compensation", above=0.0)] = 0.001
+    max_correction: Annotated[Length, Option("largest correction", above=0.0)] = 0.2
+    max_extrapolation: Annotated[float, Option("cells beyond the tables", above=0.0)] = 1.0
+    backlash: Annotated[
+        Literal["refuse", "mean"], Option("of a model with backlash: refuse it, or take the mean")
+    ] = "refuse"
+    time: Annotated[str | None, Option("time (ISO 8601) whose temperatures hold")] = None
 
 
 @click.command("show", help=VERBS["show"], short_help=VERBS["show"])
@@ -60,7 +66,7 @@ def command(file: str, output: str, dialect: str | None, chain: str, **given: An
     check_places({"-o": output}, [file, given["model"], asked.machine])
     told = built(ModelOptions, given, "show")
     if told.model is None:
-        drawn = _model(file)
+        drawn = _model(file, told.time)
     else:
         kind = default_registry().dialect(needed_dialect(dialect))
         drawn = _program(file, kind, chain, asked, told)
@@ -68,10 +74,11 @@ def command(file: str, output: str, dialect: str | None, chain: str, **given: An
         put(plot.rendered(drawn, output))
 
 
-def _model(file: str) -> Any:
-    """Return the picture of an error model."""
+def _model(file: str, time: str | None) -> Any:
+    """Return the picture of an error model, at a time if one is given."""
     shown = built(ModelOptions, {"model": file}, "show").model
     assert shown is not None
+    shown = shown if time is None else shown.at_time(time)
     return plot.model(shown.model, f"{shown.path.name}: {shown.model.kind}")
 
 

@@ -6,7 +6,7 @@ import json
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, TypeVar
 
 import click
@@ -53,6 +53,7 @@ class Common(ABC):
     feed: Annotated[float, Option("feed in mm/min", above=0.0)] = 1000.0
     noise: Annotated[Length, Option("standard deviation of a reading", at_least=0.0)] = 0.0
     seed: Annotated[int, Option("seed of the noise", at_least=0)] = 0
+    time: Annotated[str | None, Option("time (ISO 8601) whose temperatures hold")] = None
 
     def chain(self, dialect: str) -> Chain:
         """Return how the standard program is compensated."""
@@ -274,6 +275,8 @@ def _simulate(name: str, kind: type[Any], telling: Telling, dialect: str, **give
     """Run a test before and after compensation, and hand out what it gives."""
     files = _checked(given)
     asked = built(kind, given, f"simulate {name}")
+    if asked.time is not None:
+        asked = replace(asked, model=asked.model.at_time(asked.time))
     outcome = asked.test().run(asked.chain(dialect))
     _hand_out(files, _title(asked, outcome), outcome, telling)
 

@@ -56,7 +56,7 @@ def convert(
     """Write the errors in A to B.
 
     Formats are found by the files and their names; what a file does not say of itself is said with
-    the format: --from 'linuxcnc axis=X type=1 units=mm'. `gcxform list formats` shows them all.
+    the format: --from 'linuxcnc-comp axis=X type=1 units=mm'. `gcxform list formats` shows all.
     """
     check_places({"B": target}, [source])
     reading, writing = _reading(source, given, axis), _writing(target, wanted, axis)
@@ -65,9 +65,10 @@ def convert(
         raise UsageError.one("GX421", f"order = {order!r} is not X, Y and Z, each once")
     if kind:
         fit = converting.KINDS[kind](model, order)
+        bent = " and half way between them" if model.curvature().diagonal().any() else ""
         say(
             f"{kind}: leaves {fit.rms * UM:.3g} um rms, {fit.largest * UM:.3g} um at most, "
-            "over all nodes"
+            f"over all nodes{bent}"
         )
         model = fit.model
     files = {"": _native_text(model)} if writing is None else dict(writing.write(model))

@@ -69,6 +69,7 @@ class Copying:
         if self.path.folded:
             self.lines[self.task.table.flag("framing", self.task.shape)] = False
         self.lines &= ~self.task.table.flag("switches", self.task.shape)
+        self.lines &= ~self._pointed()
         if self.path.blocks.uncompensated:
             self.lines &= ~self.task.table.flag("compensates", self.task.shape)
         self.lines[pieces.line[pieces.repaired]] = False
@@ -183,6 +184,15 @@ class Copying:
         empty = np.array([not shape.block.items for shape in shapes], np.bool_)
         return np.asarray(empty[self.task.shape])
 
+    def _pointed(self) -> Flags:
+        """Return the lines whose I, J, K are the tool axis: a pass has made angles of them."""
+        pointed = np.zeros(len(self.task.shape), np.bool_)
+        rows = np.isfinite(self.original.tool[:, 0])
+        if rows.any():
+            pointed[self.original.block[rows]] = True
+            pointed &= self.task.table.flag("has_centre", self.task.shape)
+        return pointed
+
     def _same_units(self) -> Flags:
         return np.asarray(self.path.blocks.inch == self.original.blocks.inch)
 
@@ -270,8 +280,9 @@ class Copying:
         They end where those of the source end, or go as far where distances are programmed; an axis
         that stands still may stand elsewhere.
         """
-        end, old = self.path.end[rows], self.original.end[others]
-        way, old_way = end - self.path.start[rows], old - self.original.start[others]
+        end, start = self.path.end[rows], self.path.start[rows]
+        old = _where_left(self.original.end[others], end)
+        way, old_way = end - start, old - _where_left(self.original.start[others], start)
         unknown = np.isnan(end) & np.isnan(old)
         same = (np.abs(end - old) <= EXACT) | unknown
         incremental = self.path.blocks.incremental[self.path.block[rows]][:, None]
@@ -352,6 +363,11 @@ class Copying:
         same_centre = ((centre == old) | np.isnan(old)).all(axis=1)
         same_sweep = self.path.sweep[rows] == self.original.sweep[others]
         return np.asarray(alike & same_centre & same_sweep)
+
+
+def _where_left(old: Floats, now: Floats) -> Floats:
+    """Return positions of the source; those that only a pass knows (inf) are as it has them."""
+    return np.where(np.isinf(old), now, old)
 
 
 def _take(column: NDArray[Any], rows: Ints) -> NDArray[Any]:

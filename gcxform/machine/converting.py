@@ -26,7 +26,7 @@ Grid = tuple[FloatArray, FloatArray, FloatArray]
 
 
 class Fit(NamedTuple):
-    """A model made of another, and what it leaves at the nodes of both: rms and largest, mm."""
+    """A model made of another, and what it leaves where they are compared: rms and largest, mm."""
 
     model: ErrorModel
     rms: float
@@ -118,10 +118,12 @@ KINDS: dict[str, Callable[[ErrorModel, str], Fit]] = {
 def difference(one: ErrorModel, other: ErrorModel, sense: float = 0.0) -> FloatArray:
     """Return by how much (n,) in mm two models differ at all nodes of both, with their own tool.
 
+    Of a model that is curved along an axis they are compared half way between its nodes as well.
     Models that are linear without limits are compared from -`LEVER` to `LEVER`.
     """
     x, y, z = (
-        nodes if len(nodes) else LEVER * np.array([-1.0, 0.0, 1.0]) for nodes in _nodes(one, other)
+        nodes if len(nodes) else LEVER * np.array([-1.0, 0.0, 1.0])
+        for nodes in _and_middles(_nodes(one, other), one, other)
     )
     points = points_of((x, y, z))
     senses = np.full(points.shape, sense)
@@ -129,8 +131,24 @@ def difference(one: ErrorModel, other: ErrorModel, sense: float = 0.0) -> FloatA
     return np.asarray(np.linalg.norm(apart, axis=1))
 
 
+def _and_middles(grid: list[FloatArray], *models: ErrorModel) -> list[FloatArray]:
+    """Return the nodes, and the middles between them on axes along which a model is curved."""
+    curved = np.any([model.curvature().diagonal() for model in models], axis=0)
+    return [
+        np.union1d(nodes, (nodes[1:] + nodes[:-1]) / 2.0) if bent else nodes
+        for nodes, bent in zip(grid, curved, strict=True)
+    ]
+
+
 def _nodes(*models: ErrorModel) -> list[FloatArray]:
-    return [reduce(np.union1d, (model.nodes[axis] for model in models)) for axis in range(3)]
+    """Return the nodes of models on each axis, each within the range of its own model."""
+    return [reduce(np.union1d, (_inner(model, axis) for model in models)) for axis in range(3)]
+
+
+def _inner(model: ErrorModel, axis: int) -> FloatArray:
+    """Return the nodes (n,) of a model within its range, which in a sum is that of all parts."""
+    nodes, (low, high) = model.nodes[axis], model.range_of(axis)
+    return nodes[(nodes >= low) & (nodes <= high)]
 
 
 def grid_of(model: ErrorModel) -> Grid:

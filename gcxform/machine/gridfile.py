@@ -75,7 +75,7 @@ def lattice(document: TomlText) -> Lattice:
     file = convert(document, LatticeFile)
     names = ["EX", "EY", "EZ"]
     turns = [name for name in ("EA", "EB", "EC") if getattr(file, name) is not None]
-    names += ["EA", "EB", "EC"] if turns else []
+    names += turns
     sizes = [len(file.X), len(file.Y), len(file.Z)]
     found = [*_positions(document, file, AXES), *_turn_findings(document, file, turns)]
     for name in names:

@@ -9,7 +9,8 @@
 
 The tables of the trt modules turn right-handed, against ISO 841, unless `conventional-directions`
 is set. Checked against the forward functions of the modules as installed, but for maxkins, whose
-forward function is wrong where C is not 0: against its inverse. A pin that is not set is 0.
+forward function is wrong where C is not 0: against its inverse. A pin that is not set is 0, but for
+the pivot length, of which the modules have lengths of their own: it has to be set.
 """
 
 from __future__ import annotations
@@ -26,12 +27,13 @@ from gcxform.machine.quantities import LENGTH
 UNITS = ("mm", "in")
 TOOL = "tool-offset"
 CONVENTIONAL = "conventional-directions"
+PIVOT = "pivot-length"
 _ROT = ("x-rot-point", "y-rot-point", "z-rot-point")
 PINS = {
     "xyzac-trt-kins": (*_ROT, "x-offset", "y-offset", "z-offset", TOOL, CONVENTIONAL),
     "xyzbc-trt-kins": (*_ROT, "x-offset", "y-offset", "z-offset", TOOL, CONVENTIONAL),
-    "5axiskins": ("pivot-length",),
-    "maxkins": ("pivot-length",),
+    "5axiskins": (PIVOT,),
+    "maxkins": (PIVOT,),
 }
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 TRUTHS = {"true": 1.0, "yes": 1.0, "on": 1.0, "false": 0.0, "no": 0.0, "off": 0.0}
@@ -96,9 +98,18 @@ class _Hal:
             some = " and ".join(sorted(self.modules)) or "none"
             message = f"a machine has one kind of kinematics, here is {some}"
             self._find(message, Location(str(self.path)), f"known: {', '.join(PINS)}")
+        for module in self.modules:
+            self._check_pivot(module)
         if self.findings:
             raise UsageError(tuple(self.findings))
         return self.modules.pop(), pins
+
+    def _check_pivot(self, module: str) -> None:
+        """Add a finding if a module that has a pivot is left with a length of its own."""
+        pin = f"{module}.{PIVOT}"
+        if PIVOT in PINS[module] and pin not in self.values and pin not in self.nets:
+            message = f"{pin} is not set, and then {module} takes a length of its own"
+            self._find(message, Location(str(self.path)), f"write setp {pin} 250.0")
 
     def _value(self, name: str, text: str, where: Location) -> float:
         """Return the value of a pin; add a finding if it has none that can be taken over."""
@@ -140,7 +151,7 @@ def _axes(module: str, pins: dict[str, float], unit: str) -> Iterator[tuple[str,
     at = {pin: LENGTH.parse(f"{value!r} {unit}") for pin, value in pins.items()}
     if module in ("5axiskins", "maxkins"):
         yield "C", Axis(direction=Z, point=(0.0, 0.0, 0.0), sign=1 if module[0] == "5" else -1)
-        yield "B", Axis(direction=Y, point=(0.0, 0.0, at.get("pivot-length", 0.0)), sign=-1)
+        yield "B", Axis(direction=Y, point=(0.0, 0.0, at[PIVOT]), sign=-1)
         return
     sign = -1 if pins.get(CONVENTIONAL) else 1
     x, y, z = (at.get(pin, 0.0) for pin in _ROT)

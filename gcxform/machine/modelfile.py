@@ -109,6 +109,9 @@ def _sum(document: TomlText, path: Path, formats: Formats, above: tuple[Path, ..
         if part.resolve() in above:
             message = f"the sum {name} is a part of itself"
             raise UsageError.one("GX424", message, document.where("models", k))
+        if not part.exists():
+            message = f"there is no file {name}"
+            raise UsageError.one("GX401", message, document.where("models", k))
         models.append(_load(part, formats, above))
     return checked_sum(document, models)
 

@@ -88,6 +88,10 @@ class Readings:
             message = f"the row has {len(cells)} of {len(self.sensors) + 1} cells"
             end = len(row.text.rstrip()) + 1
             raise UsageError.one("GX418", message, self._place(row, Cell("", end)))
+        if more := [cell for cell in cells[len(self.sensors) + 1 :] if cell.text]:
+            message = f"the row has {len(cells)} cells, and {len(self.sensors) + 1} have a name"
+            hint = "decimals are set off by a point" if self.separator == "," else ""
+            raise UsageError.one("GX418", message, self._place(row, more[0]), hint)
         found, faults = [], []
         for name in names:
             column, offset = self.sensors[name]

@@ -114,7 +114,8 @@ class RigidBody(Tabled):
         The column of an axis is its own slope with the longest lever, and what the turns of the
         axes before it make of its travel; the norm of a matrix is at most that of its columns.
         """
-        columns = self._slopes + reach * self._turns
+        with np.errstate(over="ignore", invalid="ignore"):
+            columns = self._slopes + reach * self._turns
         return float(np.sqrt((columns**2).sum())) if np.isfinite(columns).all() else math.inf
 
     def largest(self, reach: float = 0.0) -> float:
@@ -164,12 +165,13 @@ class RigidBody(Tabled):
     @cached_property
     def _turns(self) -> FloatArray:
         """The largest slopes (3,) in rad/mm of the turns of each axis."""
-        return np.array(
-            [
-                0.0 if f is None else float(np.sqrt((f.slope[:, 3:] ** 2).sum(axis=1)).max())
-                for f in self.axes
-            ]
-        )
+        with np.errstate(over="ignore"):
+            return np.array(
+                [
+                    0.0 if f is None else float(np.sqrt((f.slope[:, 3:] ** 2).sum(axis=1)).max())
+                    for f in self.axes
+                ]
+            )
 
     def _longest(self, axis: int, rows: FloatArray, cells: float) -> float:
         """Return the largest |d + e x lever| of rows (n, 6), over all levers of an axis.

@@ -107,7 +107,7 @@ def thermal_screw(document: TomlText) -> ThermalScrew:
     file = convert(document, ThermalScrewFile)
     if found := [*_general_findings(document, file), *_axis_findings(document, file)]:
         raise UsageError(tuple(found))
-    readings = read_readings(Path(document.file).parent / file.readings)
+    readings = read_readings(_readings_of(document, file))
     for axis, name in zip(AXES, file.axes, strict=True):
         for k, sensor in enumerate(name.sensors if name else ()):
             if sensor not in readings.sensors:
@@ -115,6 +115,15 @@ def thermal_screw(document: TomlText) -> ThermalScrew:
     work = _Work(document, file, readings)
     row = readings.at(file.time, file.max_age, document.where("time"))
     return work.model(row)
+
+
+def _readings_of(document: TomlText, file: ThermalScrewFile) -> Path:
+    """Return the place of the readings. Raises UsageError, where it is said, if none are there."""
+    place = Path(document.file).parent / file.readings
+    if "\0" in file.readings or place.is_dir() or not place.exists():
+        message = f"there is no file {file.readings!r}"
+        raise UsageError.one("GX401", message, document.where("readings"))
+    return place
 
 
 class _Work:
@@ -173,7 +182,7 @@ class _Work:
                     "GX425",
                     f"{state.axis} is off by up to {state.largest / UM:.1f} um at {state.time}, "
                     f"the limit is {self.file.limit / UM:g} um",
-                    self.document.where("limit"),
+                    self.document.where("limit" if "limit" in self.document.values else state.axis),
                     "let the machine cool down, or look for a wrong sensor; limit = raises it",
                 )
 

@@ -18,6 +18,8 @@ ACTS: Mapping[str, Act] = {
     "length-vector": lengths.length_vector,
     "length-add": lengths.length_add,
     "no-length": lengths.no_length,
+    "vectors": lengths.vectors,
+    "no-vectors": lengths.no_vectors,
     "work": offsets.work,
     "diameter": turns.diameter,
     "polar": turns.polar,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gcxform.modal.meaning import OWN_MOVES, Act
 from gcxform.modal.rows import Rows
 from gcxform.modal.tied import probe
-from gcxform.modal.track import Track
+from gcxform.modal.track import LEFT, Track
 from gcxform.toolpath.path import Form, Kind, Plane
 
 Floats = NDArray[np.float64]
@@ -102,7 +102,11 @@ def _reached(track: Track, line: int, words: dict[str, float]) -> Floats:
     place = track.frame.words(track.state.position[None, :])[0].copy()
     for axis, value in words.items():
         k = track.axes.index(axis)
-        place[k] = place[k] + value if track.modes.incremental[line] else value
+        steps = bool(track.modes.incremental[line])
+        if steps and value and place[k] == LEFT:
+            message = f"{axis} is incremental, but where {axis} stands is not known"
+            track.findings.add(line, "GX207", message, axis, f"begin with an absolute {axis}")
+        place[k] = place[k] + value if steps else value
     return np.array(track.frame.positions(place[None, :])[0])
 
 

@@ -95,6 +95,7 @@ class Interpreter:
         retract = int(rule is None or rule.initial_level)
         spindle = 0 if self.dialect.spindle_stands else UNKNOWN_SPINDLE
         state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": spindle, "behind": 0}
+        state.memory["tool-length"] = NUMBER["G49"]
         return state
 
     def _given(self) -> dict[Key, float]:

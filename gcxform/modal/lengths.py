@@ -109,3 +109,13 @@ def length_vector(state: FrameState, asked: Asked) -> FrameState:
 def no_length(state: FrameState, asked: Asked) -> FrameState:
     """G49: no tool length."""
     return state.with_tool(NO_TOOL, "")
+
+
+def vectors(state: FrameState, asked: Asked) -> FrameState:
+    """G43.5 H: the length of a tool, and the control turns the tool along I, J, K and follows."""
+    return replace(length(state, asked), following=True)
+
+
+def no_vectors(state: FrameState, asked: Asked) -> FrameState:
+    """G49 after it: the axes stay where the control has turned them."""
+    return replace(no_length(state, asked), following=False)

@@ -248,8 +248,8 @@ class Lines:
             feed_unit,
             self._tool(),
             self._cycle(groups["motion"]),
-            self._remembered("retract"),
-            self._remembered("spindle"),
+            self.remembered("retract"),
+            self.remembered("spindle"),
         )
 
     def _without_splines(self, motion: Small) -> Small:
@@ -262,8 +262,8 @@ class Lines:
         over = of_splines(motion) & ~self.stated("motion")
         return np.where(over, np.int8(NUMBER["G80"]), motion) if over.any() else motion
 
-    def _remembered(self, name: str) -> Small:
-        """Return the number in force of a group that matters to cycles alone."""
+    def remembered(self, name: str) -> Small:
+        """Return the number in force of a group that matters to cycles or tool vectors alone."""
         values = self._group(name)
         if name == "spindle" and self.flag("ends").any():
             values = np.where(self.flag("ends"), 0, values).astype(np.int8)

@@ -63,6 +63,8 @@ ACT_ORDER = (
     "length-vector",
     "length-add",
     "no-length",
+    "vectors",
+    "no-vectors",
     "work",
     "polar",
     "no-polar",

@@ -22,6 +22,7 @@ from gcxform.modal.events import events_of
 from gcxform.modal.findings import Findings
 from gcxform.modal.home import own_moves
 from gcxform.modal.lines import Lines
+from gcxform.modal.pointing import Pointing
 from gcxform.modal.rows import Rows
 from gcxform.modal.shifted import Shifted
 from gcxform.modal.splines import read_splines, with_splines
@@ -54,6 +55,7 @@ class Moves:
         self.tied = Tied(self.track)
         self.shifted: Shifted | None = None
         self.side, self.radius = compensation(lines, modes)
+        self.pointing = Pointing(lines, modes, axes) if self.dialect.takes_vectors else None
         self.splines = of_splines(modes.motion)
         self.bends = bool(self.splines.any())
         self._new_units: list[int] = []  # lines that change it, where that spoils tool lengths
@@ -108,6 +110,10 @@ class Moves:
         drilling = self.modes.cycle != CYCLE_OFF
         moves &= ~drilling
         centre = self.lines.flag("has_centre") & ~drilling
+        if self.pointing is not None:
+            self.pointing.check()
+            moves |= self.pointing.named & ~own & ~drilling
+            centre &= ~self.pointing.named
         stray = self.lines.flag("drill_words") & ~drilling
         stray &= ~self.splines
         for line in np.flatnonzero(stray)[: Findings.enough].tolist():
@@ -292,6 +298,7 @@ class Moves:
             _at(self.radius, line),
             self._lost_before(line, rows.nth),
             np.broadcast_to(np.nan, (count, 2, 3)),
+            self._tools(line),
             self.track.entry,
             tuple(self.track.frames),
             Blocks(
@@ -307,6 +314,12 @@ class Moves:
             first=self.state.frames.first,
             after_rapid=self.state.rapid,
         )
+
+    def _tools(self, line: Ints) -> Floats:
+        """Return the tool axis at the ends of rows, nan where the program does not say it."""
+        if self.pointing is None:
+            return np.broadcast_to(np.nan, (len(line), 3))
+        return self.pointing.vectors()[line]
 
     def _refuse_mirrored(self, path: Toolpath) -> None:
         """Refuse cutter compensation in a mirror: controls differ in the side it is then on."""

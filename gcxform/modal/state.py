@@ -80,6 +80,7 @@ class State:
                   `cancelled`: G40 has been in force since
     selected      the T word; `tool`: the tool in the spindle; `stored`: the D word; nan: not known
     pull   P and Q of the last move if that was a G5, in units of the program
+    vector the tool axis that G43.5 has led to, nan where it is not in force
     """
 
     groups: dict[str, int]
@@ -106,6 +107,7 @@ class State:
     parameters: dict[int | str, float] = field(default_factory=dict)
     cycles: Cycles | None = None
     pull: tuple[float, float] | None = None
+    vector: tuple[float, float, float] = (np.nan, np.nan, np.nan)
     memory: dict[str, int] = field(default_factory=dict)
 
 

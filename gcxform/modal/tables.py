@@ -21,8 +21,8 @@ GROUPS = (
     "frame",
     "cutter-comp",
 )
-MEMORY = ("cycle", "retract", "spindle")
-"""Groups that matter to canned cycles alone."""
+MEMORY = ("cycle", "retract", "spindle", "tool-length")
+"""Groups that matter to canned cycles alone, and to tool vectors."""
 COLUMNS = (*GROUPS, *MEMORY)
 THREAD, TAP = 33, 34
 """The numbers of G33 and G33.1, whose moves are tied to the spindle."""
@@ -59,6 +59,8 @@ NUMBER = {
     "G42": 2,
     "G41.1": 3,
     "G42.1": 4,
+    "G49": 0,
+    "G43": 1,
 }
 """The number that stands for a code within its group."""
 FAMILIES = {

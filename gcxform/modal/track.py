@@ -30,7 +30,18 @@ Flags = NDArray[np.bool_]
 
 LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar", "no-polar"})
 FRAMELESS = frozenset({"change-tool", "set-tool", "user-code", "store-home"})
-LENGTHENED = frozenset({"length", "length-negative", "length-vector", "length-add", "no-length"})
+LENGTHENED = frozenset(
+    {
+        *("length", "length-negative", "length-vector", "length-add", "no-length"),
+        *("vectors", "no-vectors"),
+    }
+)
+
+LEFT = np.inf
+"""The position of an axis that is where a control has left it that turns the tool along vectors.
+
+No word has this value. A pass that chooses the angles instead of the control knows where it is.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +112,8 @@ class Track:
             return
         if act.name == "work" and not before.known:
             self._lose(line, (1 << len(self.axes)) - 1)
+        if act.name == "no-vectors" and before.following:
+            self.state.position[:] = LEFT  # the angles are the control's own choice
         if act.name in LENGTHENED and self.dialect.length_may_move and frames.frame() != old:
             self._lose(line, 4)
         if act.name == "polar":
@@ -243,7 +256,7 @@ class Track:
         if not incremental.any():
             return fill(value, placed, before)
         position = _with_increments(value, placed, incremental, before)
-        self._refuse_steps(incremental & np.isnan(position), axis, here.start)
+        self._refuse_steps(incremental & ~np.isfinite(position), axis, here.start)
         return position
 
     def _refuse_steps(self, which: Flags, axis: str, first: int) -> None:

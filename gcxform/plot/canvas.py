@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import io
 import math
+import textwrap
 from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
@@ -23,6 +24,7 @@ Draw = TypeVar("Draw", bound=Callable[..., Any])
 
 KINDS = (".svg", ".png")
 DOTS = 150  # per inch, of PNG
+LETTERS = 13  # per inch, of a title
 DIVISIONS = 4  # between the centre of a polar diagram and the nominal circle
 BEFORE, AFTER, MEAN, GREY = "#b03a2e", "#1f618d", "#1e8449", "#909497"
 STYLE: Any = {
@@ -70,7 +72,7 @@ def figure(width: float, height: float, title: str) -> Figure:
     from matplotlib.figure import Figure
 
     made = Figure(figsize=(width, height), layout="constrained")
-    made.suptitle(title)
+    made.suptitle(textwrap.fill(title, int(width * LETTERS)))
     return made
 
 

@@ -52,7 +52,14 @@ def _polar(axes: Any, found: Circles, name: str) -> None:
         "  ".join(f"{s} {figures[s]:.2f}" for s in ("Fmax(CCW)", "Fmin(CCW)")) + " um",
     ]
     axes.set_title("\n".join(lines))
+    axes.set_xticks(np.radians(range(0, 360, 45)), _around_labels(name))
     axes.legend(loc="lower left", bbox_to_anchor=(-0.1, -0.1))
+
+
+def _around_labels(plane: str) -> list[str]:
+    """Return what stands around a circle: its axes, the first of the plane at 0, and degrees."""
+    ways = {0: f"+{plane[0]}", 90: f"+{plane[1]}", 180: f"-{plane[0]}", 270: f"-{plane[1]}"}
+    return [ways.get(angle, f"{angle}°") for angle in range(0, 360, 45)]
 
 
 def _around(path: FloatArray, value: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -96,7 +103,7 @@ def _positions(axes: Axes, found: Positioning, name: str) -> None:
             axes.plot(found.target, high, gid=f"{name} high {way}", **band)
     figures = "  ".join(_figure(found.figures, s) for s in ("A", "R", "E", "M", "B"))
     axes.set_title(f"{name}\n{figures} um")
-    axes.set_xlabel("target, mm from the first")
+    axes.set_xlabel("target, mm")
     axes.set_ylabel("deviation, um")
     axes.legend(loc="best")
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gcxform.machine.errors import AXES, ErrorModel, FloatArray, Outside
+from gcxform.machine.pitch import PitchTables
+from gcxform.machine.sums import Sum
 from gcxform.machine.thermal import ThermalScrew
 from gcxform.plot.canvas import AFTER, BEFORE, GREY, empty, figure, isometric, nice, styled, triad
 from gcxform.simulate.virtual import ranges
@@ -20,7 +22,10 @@ UM = 1000.0  # per mm
 TURNS = "ABC"
 PLACES = 5  # of the errors shown, along each axis
 FINE = 41  # points of a line of the distorted volume
+ENDLESS = 100.0  # mm to each side of 0 of a model that has no limits
 SHOWN = 0.06  # part of the volume's diagonal that the largest error is drawn as
+
+REVERSE = " reverse"  # behind the name of a function after travel in the negative direction
 
 Curves = dict[str, tuple[FloatArray, FloatArray]]
 """Functions by ISO 230-1 name: position in mm, value in mm or rad."""
@@ -34,6 +39,10 @@ def curves(model: ErrorModel) -> Curves:
     found: Curves = {}
     if isinstance(model, ThermalScrew):
         return _stretches(model)
+    if isinstance(model, PitchTables):
+        return _pitches(model)
+    if isinstance(model, Sum):
+        return _added(model)
     for axis, function in zip(AXES, getattr(model, "axes", ()), strict=False):
         if function is None:
             continue
@@ -51,6 +60,32 @@ def _stretches(model: ThermalScrew) -> Curves:
         if stretch is not None:
             position = np.linspace(stretch.position[0], stretch.position[-1], FINE)
             found[f"E{axis}{axis}"] = position, stretch.at(position)
+    return found
+
+
+def _pitches(model: PitchTables) -> Curves:
+    """Return the positioning errors of axes, those of both directions where there is backlash."""
+    found: Curves = {}
+    for axis, table in zip(AXES, model.axes, strict=True):
+        if table is not None:
+            found[f"E{axis}{axis}"] = table.position, table.forward
+        if table is not None and table.backlash:
+            found[f"E{axis}{axis}{REVERSE}"] = table.position, table.reverse
+    return found
+
+
+def _added(model: Sum) -> Curves:
+    """Return the sums of the functions of all parts, where all have functions; else none."""
+    parts = [curves(part) for part in model.models]
+    found: Curves = {}
+    for name in dict.fromkeys(name for part in parts for name in part) if all(parts) else ():
+        plain = name.removesuffix(REVERSE)
+        own = [part.get(name, part.get(plain)) for part in parts]
+        there = [curve for curve in own if curve is not None]
+        low, high = model.range_of(AXES.index(plain[2]))
+        position = np.unique(np.concatenate([curve[0] for curve in there]))
+        position = position[(position >= low) & (position <= high)]
+        found[name] = position, np.sum([np.interp(position, *curve) for curve in there], axis=0)
     return found
 
 
@@ -103,6 +138,10 @@ def _function(axes: Axes, name: str, found: Curves) -> None:
         color=BEFORE if name[1] in AXES else AFTER,
         gid=name,
     )
+    if name + REVERSE in found:
+        position, value = found[name + REVERSE]
+        axes.plot(position, UM * value, color=AFTER, gid=name + REVERSE)
+        axes.legend(["forward", "reverse"])
     axes.set_title(f"{name}, {'um' if name[1] in AXES else 'urad'}")
     axes.set_xlabel(f"{name[2]}, mm")
 
@@ -120,7 +159,7 @@ def _volume(axes: Axes, shown: ErrorModel) -> None:
     """Draw the volume as it is and, magnified, as the machine has it, with errors as arrows."""
     from matplotlib.collections import LineCollection
 
-    box = ranges(shown)
+    box = _shown_box(shown)
     places = [np.linspace(low, high, PLACES if high > low else 1) for low, high in box.tolist()]
     points = np.stack(np.meshgrid(*places, indexing="ij"), axis=-1).reshape(-1, 3)
     error = shown.error(points, Outside.CLAMP)
@@ -142,6 +181,12 @@ def _volume(axes: Axes, shown: ErrorModel) -> None:
     axes.margins(0.05)
     axes.set_axis_off()
     axes.set_title(f"errors x {factor:g}, largest {UM * largest:.2f} um at the places shown")
+
+
+def _shown_box(shown: ErrorModel) -> FloatArray:
+    """Return the volume (3, 2) in mm that is drawn: that of the model, or one if it has no end."""
+    box = ranges(shown)
+    return box if (box[:, 1] > box[:, 0]).any() else np.tile([-ENDLESS, ENDLESS], (3, 1))
 
 
 def _lines(places: list[FloatArray]) -> Iterator[FloatArray]:

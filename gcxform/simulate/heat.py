@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.api import Program
-from gcxform.diagnostics import UsageError
+from gcxform.diagnostics import InputError, UsageError
 from gcxform.machine.errors import FloatArray
 from gcxform.pipeline import Pipeline, Result
 from gcxform.simulate.positions import parts_of
@@ -57,18 +57,25 @@ def before_and_after(program: Program, pipeline: Pipeline) -> tuple[Heat, Heat, 
     if any(step.joins for step in pipeline.path_passes):
         message = "moves that were joined cannot be compared one by one"
         raise UsageError.one("GX713", message, hint="leave out the pass that joins moves")
-    result = pipeline.run(program.executed)
     nominal, context = program.path, pipeline.context
-    bare = nominal
-    for step in pipeline.path_passes[:-1]:
-        bare = step.apply(bare, context)
-    bare = pipeline.path_passes[-1].undo(bare, context)
+    try:
+        result = pipeline.run(program.executed, name=program.name)
+        bare = _bare(nominal, pipeline)
+    except InputError as error:
+        raise program.located(error) from None
     written = Program(result.text, pipeline.target, program.reading, program.name).path
     line = np.array(result.source_map, dtype=np.int64)
     for step in reversed(pipeline.path_passes):
         written = step.undo(written, context)
     before = deviations(nominal, bare, _same_moves(nominal, bare))
     return before, deviations(nominal, written, owners(nominal, written, line)), result
+
+
+def _bare(path: Toolpath, pipeline: Pipeline) -> Toolpath:
+    """Return what the machine does with a path that its last step does not compensate."""
+    for step in pipeline.path_passes[:-1]:
+        path = step.apply(path, pipeline.context)
+    return pipeline.path_passes[-1].undo(path, pipeline.context)
 
 
 def deviations(nominal: Toolpath, actual: Toolpath, owner: Ints) -> Heat:

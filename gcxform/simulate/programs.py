@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from gcxform.dialect import Dialect
 from gcxform.machine.errors import AXES, FloatArray
 from gcxform.toolpath.path import Plane
@@ -130,9 +132,9 @@ class Line:
 
     @property
     def along(self) -> FloatArray:
-        """The targets (m,) in mm, counted along the line from the first one."""
-        found: FloatArray = (self.targets - self.targets[0]) @ self.direction
-        return found
+        """The targets (m,) in mm: positions of an axis, or distances from the first target."""
+        found: FloatArray = self.targets @ self.direction
+        return found if np.count_nonzero(self.direction) == 1 else found - found[0]
 
 
 def linear_cycles(

@@ -161,6 +161,7 @@ COLUMNS = (
     "radius",
     "lost",
     "control",
+    "tool",
 )
 
 
@@ -186,6 +187,8 @@ class Toolpath:
                     example: bit k stands for axis k
     control         (n, 2, 3) mm, the inner control points of splines; nan for other moves. The
                     outer ones are where the row starts and where it ends
+    tool            (n, 3) unit vectors of the workpiece, from the tip to the holder at the end of
+                    the move, where the program says them (G43.5); nan elsewhere
     entry           (axes,) position before the first row
     frames          the frames of the rows
     blocks          how the blocks the rows came from are to be written
@@ -217,6 +220,7 @@ class Toolpath:
     radius: Floats
     lost: Ints
     control: Floats
+    tool: Floats
     entry: Floats
     frames: tuple[Frame, ...]
     blocks: Blocks

@@ -27,6 +27,7 @@ from faults import (
     tied,
     turned,
     userlines,
+    vectors,
     writing,
 )
 from faults.mutation import Mutation
@@ -51,6 +52,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     *running.MUTATIONS,
     *rtcp.MUTATIONS,
     *userlines.MUTATIONS,
+    *vectors.MUTATIONS,
     *ballbar.MUTATIONS,
     *calibrating.MUTATIONS,
     *simulating.MUTATIONS,

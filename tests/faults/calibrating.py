@@ -147,6 +147,15 @@ MUTATIONS = (
         "stepdiagonal", "aligned beams are not questioned", "    if gain > limit:", "    if False:"
     ),
     _calibrate(
+        "stepdiagonal", "scales are not questioned", "    if limit < gain:", "    if False:"
+    ),
+    _calibrate(
+        "stepdiagonal",
+        "signs are not questioned",
+        "if gain > plausible(1) * max(1.0, other.ratio**2):",
+        "if gain > 1e9:",
+    ),
+    _calibrate(
         "stepdiagonal",
         "linear tests are not questioned",
         "gain > REJECTED**2 * added",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 PASSES = "plugins/gcxform_plugins/passes"
 VERIFY = "tests/test_verify.py"
+CUTTING = "tests/test_cutting.py"
 FIGURES = "tests/test_volumetric.py"
 MIN_LENGTH = "tests/test_min_length.py"
 INVERSE = "tests/test_inverse.py"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from faults.mutation import (
     CORPUS,
+    CUTTING,
     FIGURES,
     INVERSE,
     KIT,
@@ -100,6 +101,48 @@ MUTATIONS = (
         "np.ceil(np.sqrt(bend / between))",
         "np.ceil(np.sqrt(0.01 * bend / between))",
         RIGID_PASS,
+    ),
+    Mutation(
+        "volumetric: what bends between the cuts is not counted",
+        f"{PASSES}/splitting.py",
+        "        most -= left\n",
+        "",
+        RIGID_PASS,
+    ),
+    Mutation(
+        "volumetric: what the proof adds is not counted",
+        f"{PASSES}/compensation.py",
+        "step.limit - min(PROOF, PROOF_SHARE * step.limit)",
+        "step.limit",
+        CUTTING,
+    ),
+    Mutation(
+        "volumetric: centres of short pieces of arcs are as far off as they were",
+        f"{PASSES}/fitting.py",
+        "_as_far(moved, *points[::2])",
+        "moved",
+        RIGID_PASS,
+    ),
+    Mutation(
+        "volumetric: a rotary axis may be ahead",
+        f"{PASSES}/splitting.py",
+        "(length > 0) & ~turning[row] &",
+        "(length > 0) &",
+        CUTTING,
+    ),
+    Mutation(
+        "volumetric: what is ahead is never aside",
+        f"{PASSES}/splitting.py",
+        "kept = min(BEHIND * work.undone, 1.0)",
+        "kept = 0.0",
+        CUTTING,
+    ),
+    Mutation(
+        "volumetric: lines may be ahead without a tolerance",
+        f"{PASSES}/splitting.py",
+        "~turning[row] & (work.step.tolerance is not None)",
+        "~turning[row]",
+        CUTTING,
     ),
     Mutation(
         "volumetric: the first node is skipped",

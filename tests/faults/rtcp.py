@@ -161,8 +161,8 @@ MUTATIONS = (
     Mutation(
         "rtcp: the proof does not look at the tool axis",
         PROOF,
-        "self.lean = max(self.lean, float(np.degrees(lean.max())))",
-        "self.lean = max(self.lean, 0.0 * float(np.degrees(lean.max())))",
+        "self.lean = max(self.lean, float(np.degrees((lean + slack).max())))",
+        "self.lean = max(self.lean, 0.0 * float(np.degrees((lean + slack).max())))",
         f"{RETARGET}::test_a_program_for_another_machine",
     ),
     Mutation(

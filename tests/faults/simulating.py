@@ -111,8 +111,8 @@ MUTATIONS = (
     Mutation(
         "show: the path as commanded, without the machine's error",
         f"{FOLDER}/heat.py",
-        "bare = pipeline.path_passes[-1].undo(bare, context)",
-        "bare = bare",
+        "return pipeline.path_passes[-1].undo(path, pipeline.context)",
+        "return path",
         PICTURES,
     ),
 )

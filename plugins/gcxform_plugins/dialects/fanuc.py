@@ -24,6 +24,8 @@
 | M29 | the tap that follows is in step with the spindle: it moves nothing itself |
 | G96 | changes the speed of the spindle and no path |
 | G30 | as G28, to the point that `[home."G30 P2"]` names, or to one that is not known |
+| G43.5 with I J K | the tool axis at the end of a line, on the table (19696#5 is 0, or PS5459) |
+| some of its I J K left out | they are 0; all left out: the tool keeps its direction |
 | G31 | ends at its target at the latest; the axes named then stand nowhere known |
 | G36, G37 | measure a tool and write its offset: refused |
 | G33, G34, G63 | threads and taps with a feed whose meaning changes: refused |
@@ -167,3 +169,4 @@ class Fanuc(gx.Dialect):
     arithmetic = v.MACRO_B
     flow = "macro-b"
     tip_codes: ClassVar[Mapping[str, str]] = {"G43.4": "G43"}
+    vector_codes: ClassVar[Mapping[str, str]] = {"G43.5": "G43"}

@@ -23,7 +23,7 @@ class BcncProbe(gx.ErrorFormat):
     units: Annotated[Literal["mm", "in"], gx.Option("units of the numbers")]
     z_min: Annotated[gx.Length | None, gx.Option("to write: lowest Z when probing")] = None
     z_max: Annotated[gx.Length | None, gx.Option("to write: Z to probe from")] = None
-    feed: Annotated[float | None, gx.Option("to write: feed of probing", above=0.0)] = None
+    feed: Annotated[float | None, gx.Option("to write: feed of probing, mm/min", above=0.0)] = None
 
     name: ClassVar[str] = "bcnc-probe"
     suffixes: ClassVar[tuple[str, ...]] = (".probe",)
@@ -61,7 +61,7 @@ class BcncProbe(gx.ErrorFormat):
         heightpoints.even(self.name, "Y", y)
         head = [
             *(f"{_text(n[0])} {_text(n[-1])} {len(n)}" for n in (x, y)),
-            f"{_text(self.z_min / mm)} {_text(self.z_max / mm)} {self.feed:g}",
+            f"{_text(self.z_min / mm)} {_text(self.z_max / mm)} {self.feed / mm:g}",
         ]
         lines = [line for row in heightpoints.points(x, y, height) for line in ("", *row)]
         return {"": "\n".join([*head, *lines]) + "\n"}

@@ -90,7 +90,7 @@ class LinuxCncComp(gx.ErrorFormat):
         100.005, type 1 says -0.005, and LinuxCNC commands 99.995.
         """
         error = column - position if self.type == "0" else -column
-        return np.round(error, 12)  # what a difference of decimals adds
+        return error.round(12) if np.abs(error).max() < 1e6 else error  # what differences add
 
     @property
     def _mm(self) -> float:

@@ -16,6 +16,7 @@ from gcxform_plugins.tables.positioning import UNITS, Reading
 SECTION = re.compile(r"([A-Z][A-Z -]*)::")
 TARGETS = "TARGET DATA"
 USER = "USER-TEXT"
+RUNS = "RUNS"
 DEVIATIONS = "DEVIATIONS"
 Sections = dict[str, list[gx.TextRow]]
 
@@ -51,6 +52,7 @@ class RenishawRtl(gx.ErrorFormat):
         axis = self._axis(sections.get(USER, []), path)
         targets, both = _targets(sections[TARGETS])
         readings = list(_readings(sections[DEVIATIONS], targets, both, UNITS[self.deviations]))
+        _check_runs(sections.get(RUNS, []), readings)
         return pitches.tables_of({axis: positioning.table(axis, readings)})
 
     def _axis(self, rows: list[gx.TextRow], path: Path) -> str:
@@ -133,6 +135,15 @@ def _readings(
             raise row.refuse("GX483", f"there is no target {at}", 1)
         sense = rising if run % 2 or not both else -rising
         yield Reading(targets[at - 1], sense, str(run), _number(row, 2) * unit, row)
+
+
+def _check_runs(rows: list[gx.TextRow], readings: list[Reading]) -> None:
+    """Refuse a file that has not as many runs as it says."""
+    runs = len({reading.run for reading in readings})
+    for row in rows[1:]:
+        key, _, count = row.text.partition(":")
+        if key.strip().lower() == "run-count" and count.strip() != str(runs):
+            raise row.refuse("GX483", f"there are {runs} runs, not {count.strip()}", 0)
 
 
 def _count(row: gx.TextRow, column: int) -> int:

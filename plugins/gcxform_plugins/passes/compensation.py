@@ -25,6 +25,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 PACE = 0.1  # of a way; by so much more or less of it, at most, a turn of the head may be faster
+PROOF = 1.5e-5  # mm; what the proof may add to what is off, for what it does not follow
+PROOF_SHARE = 0.25  # of a tolerance, at most
 SAME = 1e-9  # mm; an axis that moves by less stays where it is
 
 
@@ -56,6 +58,7 @@ class Compensation:
         steep = self.lipschitz / (1 - min(self.lipschitz, 0.5))
         self.undone = steep if step.inverse else self.lipschitz  # of what the undo moves, mm/mm
         self.left = left_alone(path)
+        self.room = step.limit - min(PROOF, PROOF_SHARE * step.limit)
 
     def offset_of(self, rows: Ints) -> Floats:
         """Return table position minus program position of rows."""

@@ -19,9 +19,10 @@ Flags = NDArray[np.bool_]
 FEWEST, MOST = 8, 256  # points at which a piece is looked at
 AT_ONCE = 200_000  # points looked at together
 HALVINGS = 24
-REFINEMENTS = 3  # a piece is an eighth shorter than it could be, at most
+REFINEMENTS = 6  # a piece is a sixty-fourth shorter than it could be, at most
 EVEN_TRIES = 8  # numbers of equal pieces that are tried, where others would be too short
 FLAT = 0.1  # mm; with less between arc and chord, three points say little about the centre
+NO_CHORD = 1e-6  # mm
 MARGIN = 0.9  # of the tolerance: what looking at points, and not along the curve, may miss
 LONGEST = 1.9 * np.pi  # rad; rounded, the ends of a longer piece may change places
 
@@ -33,7 +34,7 @@ class ArcFitter:
         self.work = work
         self.path = work.path
         self.step = work.step
-        self.limit = MARGIN * self.step.limit
+        self.limit = min(MARGIN * self.step.limit, work.room)
         self.reach = work.undone
         rotary = np.nan_to_num(self.path.end - self.path.start)[:, 3:]
         self._turning = (rotary != 0).any(axis=1)
@@ -151,18 +152,21 @@ class ArcFitter:
         first = self._command(row, low)
         second = self._command(row, low + (high - low) * share)
         third = self._command(row, np.where(share < 0.5, low + (high - low) * 2 / 3, high))
-        for plane in gx.Plane:
-            here = np.flatnonzero(self.path.plane[row] == plane)
-            a, b, normal = plane.axes
-            centre[np.ix_(here, np.array([a, b]))] = gx.circle_through(
-                *(point[here][:, [a, b]] for point in (first, second, third))
-            )
-            centre[here, normal] = first[here, normal]
         shift = (self.work.correction(row, low) + self.work.correction(row, high)) / 2
         size, _, _ = gx.radius_and_angle(self.path, row)
         sag = size * (1 - np.cos((high - low) * self.path.sweep[row] / 2))
-        flat = ~np.isfinite(centre).all(axis=1) | (sag < FLAT)
-        return np.where(flat[:, None], self.path.centre[row] + shift, centre)
+        for plane in gx.Plane:
+            here = np.flatnonzero(self.path.plane[row] == plane)
+            axes, normal = np.array(plane.axes[:2]), plane.axes[2]
+            points = [point[np.ix_(here, axes)] for point in (first, second, third)]
+            fitted = gx.circle_through(*points)
+            moved = (self.path.centre[row] + shift)[np.ix_(here, axes)]
+            cut = ((share == 0.5) & (high - low < 1.0))[here, None]
+            moved = np.where(cut, _as_far(moved, *points[::2]), moved)
+            flat = ~np.isfinite(fitted).all(axis=1) | (sag[here] < FLAT)
+            centre[np.ix_(here, axes)] = np.where(flat[:, None], moved, fitted)
+            centre[here, normal] = first[here, normal]
+        return centre
 
     def _command(self, row: Ints, part: Floats) -> Floats:
         """Return commands (n, 3), in the program's coordinates, for points of arcs."""
@@ -238,3 +242,11 @@ class ArcFitter:
         sweep[1::2] *= high - low
         path = path.replace(end=end, sweep=sweep, centre=np.repeat(centre, 2, axis=0))
         return path.replace(sweep=gx.swept_anew(path))
+
+
+def _as_far(centre: Floats, start: Floats, end: Floats) -> Floats:
+    """Return the points next to centres (n, 2) that are as far from starts as from ends."""
+    chord = end - start
+    square = np.maximum((chord**2).sum(axis=1), NO_CHORD**2)
+    beside = ((start + end) / 2 - centre) * chord
+    return np.asarray(centre + (beside.sum(axis=1) / square)[:, None] * chord)

@@ -40,6 +40,21 @@ def check_inside(
         _refuse(step, path, int(rows[first]), points[first], cells, allowed)
 
 
+def beyond(step: Volumetric, path: gx.Toolpath, offset: Floats, rows: Ints) -> dict[str, float]:
+    """Return by how much (mm) rows go beyond the tables at most, by what the certificate calls it.
+
+    `offset` is as in `check_inside`.
+    """
+    points, _ = _points(path, offset, rows)
+    found = {}
+    for axis, letter in enumerate("XYZ"):
+        low, high = step.model.model.range_of(axis)
+        off = np.nan_to_num(np.maximum(low - points[:, axis], points[:, axis] - high))
+        if (most := float(off.max(initial=0.0))) > BORDER:
+            found[f"{letter} beyond the error table ({step.outside}), mm"] = most
+    return found
+
+
 def _cells(step: Volumetric) -> float:
     """Return by how many cells the tables may be extrapolated."""
     if step.outside is gx.Outside.ERROR:

@@ -22,15 +22,18 @@ import numpy as np
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_circling import Circling
 from gcxform_plugins.passes.rtcp_cutting import STILL, Cutting
-from gcxform_plugins.passes.rtcp_driven import Driven, Led
+from gcxform_plugins.passes.rtcp_driven import Driven, Led, Pointed
 from gcxform_plugins.passes.rtcp_lines import UserLines
 from gcxform_plugins.passes.rtcp_moving import Correcting, Moving
-from gcxform_plugins.passes.rtcp_options import check_calibrated, check_options, check_target
+from gcxform_plugins.passes.rtcp_options import check_machines, check_options
 from gcxform_plugins.passes.rtcp_place import Place, turned_at
+from gcxform_plugins.passes.rtcp_pointed import PointedProof
+from gcxform_plugins.passes.rtcp_pointing import InProportion, Pointing
 from gcxform_plugins.passes.rtcp_proof import Proof
 from gcxform_plugins.passes.rtcp_retracted import Retracted
 from gcxform_plugins.passes.rtcp_switches import Switches
 from gcxform_plugins.passes.rtcp_undoing import Undoing
+from gcxform_plugins.passes.rtcp_vectors import without_left
 from gcxform_plugins.passes.rtcp_ways import Between, Corrected
 
 PLAIN = frozenset({gx.ABSOLUTE, gx.LINEAR_ONLY, gx.NOMINAL})
@@ -60,10 +63,11 @@ class Rtcp(gx.Pass):
         ),
     ] = "to-machine"
     tip_codes: Annotated[
-        Literal["refuse", "read"],
+        Literal["refuse", "read", "vectors"],
         gx.Option(
             "to-machine: programs that let the control follow the tip (G43.4, G234, tip-on of the "
-            "machine file): read them as what it is without, for a control that does not"
+            "machine file): read them as what it is without, for a control that does not; vectors: "
+            "those that say the tool axis by I, J, K (G43.5)"
         ),
     ] = "refuse"
     rapids: Annotated[
@@ -141,6 +145,7 @@ class Rtcp(gx.Pass):
             self.direction == "retarget"
             or self.orientation != "keep"
             or self.orientation_path == "great-circle"
+            or self.reads_vectors
         )
 
     @property
@@ -152,6 +157,11 @@ class Rtcp(gx.Pass):
     def written_for(self) -> gx.KinematicsFile | None:
         """The machine of the target."""
         return self.target
+
+    @property
+    def reads_vectors(self) -> bool:  # type: ignore[override]
+        """Whether it makes angles of tool vectors."""
+        return self.tip_codes == "vectors"
 
     @property
     def letters(self) -> str:
@@ -181,8 +191,7 @@ class Rtcp(gx.Pass):
             hint = "[machine] file = ..., with `kinematics`, or `table` and `head`"
             raise gx.UsageError.one("GX742", message, hint=hint)
         UserLines.of(self, context)
-        check_calibrated(self, gx.chain_of(machine))
-        check_target(self, context)
+        check_machines(self, context)
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path of the axes for one of tips; if asked the reverse, or one corrected."""
@@ -242,6 +251,8 @@ class Rtcp(gx.Pass):
     def _moving(self) -> type[Moving]:
         if self.target is not None:
             return Moving
+        if self.reads_vectors:
+            return InProportion if self.orientation_path == "angles" else Pointing
         return Circling if self.calibrated is None else Correcting
 
     def prove(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> None:
@@ -254,6 +265,9 @@ class Rtcp(gx.Pass):
         source, _ = self._machines(before, context)
         _, target = self._machines(after, context)
         driven = Driven(self, after, target)
+        if self.reads_vectors:
+            pointed = Pointed(without_left(before), source)
+            return PointedProof(self, context, pointed, driven, np.isinf(before.end))
         if self.direction == "to-machine":
             return Proof(self, context, Led(before, source), driven)
         return Proof(self, context, Driven(self, before, source), driven)
@@ -294,6 +308,7 @@ class Rtcp(gx.Pass):
         self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
     ) -> dict[str, float]:
         """Return how much longer a piece takes than its feed says, if any does."""
+        before = without_left(before)
         owner = np.searchsorted(before.source, after.source)
         cut = (after.kind != gx.Kind.RAPID) & (after.feed_mode != before.feed_mode[owner])
         rows = np.flatnonzero(cut)
@@ -331,6 +346,7 @@ class Rtcp(gx.Pass):
         proof = self._proof(before, after, context)
         proof.run()
         found = {"tip off, mm": proof.tip, "tool axis off, degrees": proof.lean}
+        found |= proof.measured()
         return (
             found
             if self.calibrated is None

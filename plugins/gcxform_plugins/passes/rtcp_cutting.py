@@ -94,8 +94,7 @@ class Cutting:
         """Return into how many pieces each row is cut, so that the tip stays on its line."""
         pieces = self.least.copy()
         limit = (1.0 - SHARE) * self.step.tolerance
-        way = np.abs(self.place.angles(self.end - self.start)).max(axis=1, initial=0.0)
-        rows = np.flatnonzero(self.cuts & (way > 0.0))
+        rows = self._turning()
         while len(rows):
             worst = self._worst(rows, pieces[rows])
             over = worst > limit
@@ -108,6 +107,11 @@ class Cutting:
                 message = f"this block would become more than {MOST} pieces"
                 raise self.path.refuse("GX330", np.array([row]), message, "raise the tolerance")
         return pieces
+
+    def _turning(self) -> Ints:
+        """Return the rows that cut while axes turn."""
+        way = np.abs(self.place.angles(self.end - self.start)).max(axis=1, initial=0.0)
+        return np.flatnonzero(self.cuts & (way > 0.0))
 
     def _worst(self, rows: Ints, count: Ints) -> Floats:
         """Return how far (mm) the tip can leave its line in any piece of rows."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +10,32 @@ from numpy.typing import NDArray
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_place import Place
 from gcxform_plugins.passes.rtcp_undoing import Undoing
+from gcxform_plugins.passes.rtcp_vectors import Vectors
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp import Rtcp
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+
+class Leading(Protocol):
+    """A path and where it leads the tool.
+
+    Between two of n places in a row the tip is at most bends / n^2 (mm) from its chord, and the
+    tool axis leans / n^2 (rad).
+    """
+
+    path: gx.Toolpath
+    place: Place
+    start: Floats
+    end: Floats
+    bends: Floats
+    leans: Floats
+
+    def at(self, rows: Ints, part: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return tips, tool axes and angles at parts (n,) of rows."""
+        ...
 
 
 class Driven:
@@ -56,13 +76,33 @@ class Led:
         one, other = (
             chain.tool_axis(self.place.angles(side[rows])) for side in (self.start, self.end)
         )
-        across = np.cross(one, other)
-        size = np.linalg.norm(across, axis=1)
-        angle = np.arctan2(size, np.einsum("ij,ij->i", one, other)) * part
-        pole = across / np.where(size > 0.0, size, 1.0)[:, None]
-        axis = np.cos(angle)[:, None] * one + np.sin(angle)[:, None] * np.cross(pole, one)
-        last = (part == 1.0)[:, None]
-        return here[:, :3], np.where(last, other, axis), self.place.angles(here)
+        return here[:, :3], _on_circle(one, other, part), self.place.angles(here)
+
+
+class Pointed:
+    """The same of a path that says the tool axis as a vector (G43.5)."""
+
+    def __init__(self, path: gx.Toolpath, place: Place) -> None:
+        self.path, self.place = path, place
+        self.start, self.end = path.start, path.end
+        self.vectors = Vectors.of(path)
+        self.bends = np.zeros(len(path))
+        self.leans = np.nan_to_num(self.vectors.turn()) ** 2 / 8.0
+
+    def at(self, rows: Ints, part: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return tips, tool axes and, of the angles, nothing at parts (n,) of rows."""
+        here = _between(self.start, self.end, rows, part)
+        axis = _on_circle(self.vectors.start[rows], self.vectors.end[rows], part)
+        return here[:, :3], axis, np.full((len(rows), len(self.place.columns)), np.nan)
+
+
+def _on_circle(one: Floats, other: Floats, part: Floats) -> Floats:
+    across = np.cross(one, other)
+    size = np.linalg.norm(across, axis=1)
+    angle = np.arctan2(size, np.einsum("ij,ij->i", one, other)) * part
+    pole = across / np.where(size > 0.0, size, 1.0)[:, None]
+    axis = np.cos(angle)[:, None] * one + np.sin(angle)[:, None] * np.cross(pole, one)
+    return np.where((part == 1.0)[:, None], other, axis)
 
 
 def _between(start: Floats, end: Floats, rows: Ints, part: Floats) -> Floats:

@@ -210,8 +210,7 @@ class Moving(Cutting):
         Rows that turn far have several places, and of short ones that follow each other some have
         none.
         """
-        turn = np.abs(self.place.angles(self.end[rows] - self.start[rows])).max(axis=1)
-        turn, rapid = np.nan_to_num(turn), self.path.kind[rows] == gx.Kind.RAPID
+        turn, rapid = self._turn(rows), self.path.kind[rows] == gx.Kind.RAPID
         turn[rapid] = 0.0
         along = np.cumsum(turn)
         cells = np.floor(2.0 * along / SAMPLE)
@@ -222,13 +221,22 @@ class Moving(Cutting):
         pieces[rows] = count
         part = self._parts(pieces, row)
         axis = self._axis(self._cut(pieces, row), row, part)
-        angles, retracts = self._choice(axis, np.repeat(~rapid, count), row)
+        angles, retracts = self._choice(axis, np.repeat(self._holds(rows), count), row)
         self.retracts = np.append(self.retracts, row[retracts] + part[retracts])
         inner = [at for at in retracts if part[at] < 1.0]
         self.least[row[inner]] = pieces[row[inner]]
         along += NEXT * np.arange(len(rows))
         ends = np.cumsum(count)[kept] - 1.0
         return angles, np.interp(along, along[kept], ends)
+
+    def _turn(self, rows: Ints) -> Floats:
+        """Return by how much (n,) degrees the tool turns in rows."""
+        turn = np.abs(self.place.angles(self.end[rows] - self.start[rows])).max(axis=1)
+        return np.asarray(np.nan_to_num(turn))
+
+    def _holds(self, rows: Ints) -> Flags:
+        """Return in which rows (n,) no axis may leap."""
+        return np.asarray(self.path.kind[rows] != gx.Kind.RAPID)
 
     def _choice(self, axis: Floats, cut: Flags, row: Ints) -> tuple[Floats, list[int]]:
         """Return the angles of the target for tool axes along the source. Raises InputError.
@@ -246,6 +254,8 @@ class Moving(Cutting):
             if self.step.retract is None or trouble.trouble is not Trouble.FLIP:
                 break
         code, message, hint = WHY[trouble.trouble]
+        if self.step.direction != "retarget":
+            hint = hint.rpartition('retract = "20 mm"; or ')[2]
         raise self.path.refuse(code, row[trouble.at : trouble.at + 1], message, hint)
 
     def _guess(self, positions: Floats, row: Ints, part: Floats, after: bool = False) -> Floats:

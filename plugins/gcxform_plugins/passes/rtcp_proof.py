@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
-from gcxform_plugins.passes.rtcp_driven import Driven, Led
+from gcxform_plugins.passes.rtcp_driven import Driven, Leading
 from gcxform_plugins.passes.rtcp_lines import UserLines
 from gcxform_plugins.passes.rtcp_retracted import Retracted
 from gcxform_plugins.passes.rtcp_undoing import SHARE
@@ -36,7 +36,7 @@ class Proof:
     """The tips and tool axes of one window, as the source leads them and as the target does."""
 
     def __init__(
-        self, step: Rtcp, context: gx.PassContext, source: Driven | Led, target: Driven
+        self, step: Rtcp, context: gx.PassContext, source: Leading, target: Driven
     ) -> None:
         self.step, self.context = step, context
         self.source, self.target = source, target
@@ -75,9 +75,7 @@ class Proof:
     def run(self) -> None:
         """Measure `tip` (mm), `lean` and `turn` (degrees), with the row where the tip is worst."""
         after = self.after
-        own = np.isin(after.form, (gx.Form.HOME, gx.Form.MACHINE))
-        columns = [0, 1, 2, *self.target.place.columns]
-        known = np.isfinite(after.end[:, columns]).all(axis=1) & ~own
+        known = self._known()
         rapid = after.kind == gx.Kind.RAPID
         ends = np.flatnonzero(known & rapid)
         whole, none = np.ones(len(ends)), np.zeros(len(ends))
@@ -95,6 +93,12 @@ class Proof:
         for rows in np.split(lines, np.flatnonzero(np.diff(cuts)) + 1):
             slack = bend[rows] / many[rows] ** 2, lean[rows] / many[rows] ** 2
             self._along(rows, many[rows], nth[rows], count[self.owner[rows]], slack)
+
+    def _known(self) -> Flags:
+        """Return which rows (n,) are compared: where the tool is known."""
+        own = np.isin(self.after.form, (gx.Form.HOME, gx.Form.MACHINE))
+        columns = [0, 1, 2, *self.target.place.columns]
+        return np.asarray(np.isfinite(self.after.end[:, columns]).all(axis=1) & ~own)
 
     def _along(
         self, rows: Ints, many: Ints, nth: Ints, count: Ints, slack: tuple[Floats, Floats]
@@ -118,10 +122,18 @@ class Proof:
         off = np.where(np.isnan(off), np.inf, off)
         if off.max() > self.tip:
             self.tip, self.worst = float(off.max()), int(old[0][np.argmax(off)])
-        lean = np.linalg.norm(found[0][1] - found[1][1], axis=1) + slack[1]
-        self.lean = max(self.lean, float(np.degrees(lean.max())))
+        lean = np.linalg.norm(found[0][1] - found[1][1], axis=1)
+        self._note_lean(lean, slack[1], *old)
         if self.source.place.columns == self.target.place.columns:
             self.turn = max(self.turn, float(np.abs(found[0][2] - found[1][2]).max()))
+
+    def measured(self) -> dict[str, float]:
+        """Return what the certificate says besides tips, tool axes and angles."""
+        return {}
+
+    def _note_lean(self, lean: Floats, slack: Floats, rows: Ints, part: Floats) -> None:
+        """Note how far (n,) rad tool axes are apart at parts of rows of the source."""
+        self.lean = max(self.lean, float(np.degrees((lean + slack).max())))
 
     # --- the verdict ---
 

@@ -25,6 +25,7 @@ NEGLIGIBLE = 1e-5  # mm; a cut that mends less is not worth a block: a hundredth
 CURVED = 1e-4  # mm; what may stay between two cuts, without a tolerance, where the error is curved
 AHEAD, AHEAD_AT_MOST = 64, 1024  # places
 CURVED_SHARE = 0.25  # of a tolerance, for the same
+BEHIND = 10.0  # times what it moves the machine aside counts what a command is ahead or behind
 
 
 def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
@@ -37,15 +38,14 @@ def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
     lines &= path.starts_known & ~work.left
     row, part = _at_nodes(work, bending, lines)
     exact = step.tolerance is None or step.split == "nodes"
-    residual = NEGLIGIBLE if exact else step.limit
-    most = step.limit
+    most = np.full(len(path), work.room)
     if work.curvature.any() or work.swing is not None:
         between = CURVED if exact else CURVED_SHARE * step.limit
-        row, part = _divided(work, row, part, lines, between)
-        residual -= 0.0 if exact else between
-        most -= between
+        row, part, left = _divided(work, row, part, lines, between)
+        most -= left
     if not len(row):
         return row, part
+    residual = np.full(len(path), NEGLIGIBLE) if exact else most
     return _needed(work, row, part, points, (residual, most))
 
 
@@ -68,8 +68,11 @@ def _at_nodes(work: Compensation, points: Floats, lines: Flags) -> tuple[Ints, F
 
 def _divided(
     work: Compensation, row: Ints, part: Floats, lines: Flags, between: float
-) -> tuple[Ints, Floats]:
-    """Return the places, and more so that between two of them the error bends by `between` mm."""
+) -> tuple[Ints, Floats, Floats]:
+    """Return the places, and more so that between two of them the error bends by `between` mm.
+
+    With them stands by how much (mm) it still bends, at most, for each row of the path.
+    """
     whole = np.flatnonzero(lines)
     row, part = np.append(row, whole), np.append(part, np.ones(len(whole)))
     order = np.lexsort((part, row))
@@ -80,6 +83,8 @@ def _divided(
     if work.swing is not None:
         bend += work.swing.bend(row, way, part - before) * (1 + 4 * work.lipschitz)
     pieces = np.ceil(np.sqrt(bend / between)).astype(np.int64)
+    left = np.zeros(len(work.path))
+    np.maximum.at(left, row, bend / np.maximum(pieces, 1) ** 2)
     long = np.flatnonzero(pieces > 1)
     which = np.repeat(long, pieces[long] - 1)
     first = np.cumsum(pieces[long] - 1) - (pieces[long] - 1)
@@ -88,7 +93,7 @@ def _divided(
     inner = part < 1.0
     row, part = np.append(row[inner], row[which]), np.append(part[inner], more)
     order = np.lexsort((part, row))
-    return row[order], part[order]
+    return row[order], part[order], left
 
 
 def _needed(
@@ -96,34 +101,62 @@ def _needed(
     row: Ints,
     part: Floats,
     points: Floats,
-    residuals: tuple[float, float],
+    residuals: tuple[Floats, Floats],
 ) -> tuple[Ints, Floats]:
-    """Return the cuts that a residual (mm) needs; a larger one where they would be too near.
+    """Return the cuts that residuals (mm) of rows need; larger ones where they would be too near.
 
     A straight command from one exact point to another is off at the places between them, and
     nowhere more than there, by its distance from the exact command.
     """
-    limit, most = (residual * (1 - 1e-6) / (1 + work.undone) for residual in residuals)
+    steep = float(np.hypot(1 + work.undone, 1 / BEHIND))
+    limit, most = (residual * (1 - 1e-6) / steep for residual in residuals)
     start, way = work.start[row], work.end[row] - work.start[row]
     exact = work.command(start + part[:, None] * way, row, part)
     straight = points[row] + part[:, None] * (points[row + 1] - points[row])
-    off = np.sqrt(((exact - straight) ** 2).sum(axis=1))
+    along = _along(work, row)
+    off = np.sqrt((_squeezed(work, exact - straight, along) ** 2).sum(axis=1))
     begins = np.flatnonzero(np.append(True, row[1:] != row[:-1]))
     stops = np.append(begins[1:], len(row))
     worst = np.maximum.reduceat(off, begins)
     kept: list[int] = []
-    for which in np.flatnonzero(worst > limit).tolist():
+    for which in np.flatnonzero(worst > limit[row[begins]]).tolist():
         members = slice(int(begins[which]), int(stops[which]))
         owner = int(row[begins[which]])
         ends = points[[owner]], points[[owner + 1]]
         way = np.vstack([ends[0], exact[members], ends[1]])
+        way = _squeezed(work, way, along[[begins[which]]])
         parts = np.concatenate([[0.0], part[members], [1.0]])
-        inner = _farthest_reaching(way, parts, limit)
+        inner = _farthest_reaching(way, parts, float(limit[owner]))
         if work.step.min_length:
-            inner = _long_enough(work, owner, (way, parts), inner, most)
+            inner = _long_enough(work, owner, (way, parts), inner, float(most[owner]))
         kept += [int(begins[which]) + k - 1 for k in inner]
     chosen = np.array(kept, np.int64)
     return row[chosen], part[chosen]
+
+
+def _along(work: Compensation, row: Ints) -> Floats:
+    """Return the directions (n, 3) in which rows may be ahead or behind; 0 where they may not.
+
+    A machine that is ahead is still on its path, unless a rotary axis turns along it. Without a
+    tolerance lines are exact in their time as well.
+    """
+    way = work.end[row] - work.start[row]
+    length = np.sqrt((way**2).sum(axis=1))
+    turning = (np.nan_to_num(work.path.end - work.path.start)[:, 3:] != 0).any(axis=1)
+    free = (length > 0) & ~turning[row] & (work.step.tolerance is not None)
+    return np.where(free[:, None], way / np.where(free, length, 1.0)[:, None], 0.0)
+
+
+def _squeezed(work: Compensation, points: Floats, along: Floats) -> Floats:
+    """Return points (n, 3) brought together along directions (n or 1, 3) of unit length.
+
+    A command that is ahead by s and aside by q moves the machine aside by (1 + k) q + k s at most,
+    where k is the Lipschitz constant. With s squeezed to b k s this is no more than the length of
+    both times the root of (1 + k)^2 + 1 / b^2.
+    """
+    kept = min(BEHIND * work.undone, 1.0)
+    ahead = (points * along).sum(axis=1)
+    return np.asarray(points - (1.0 - kept) * ahead[:, None] * along)
 
 
 def _farthest_reaching(points: Floats, parts: Floats, limit: float) -> list[int]:

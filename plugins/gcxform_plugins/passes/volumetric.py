@@ -20,9 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
-from gcxform_plugins.passes.compensation import Compensation
+from gcxform_plugins.passes.compensation import Compensation, left_alone
 from gcxform_plugins.passes.levers import UNKNOWN, lever_of
 from gcxform_plugins.passes.placing import Place
+from gcxform_plugins.passes.ranges import beyond
 from gcxform_plugins.passes.retracing import Commands
 from gcxform_plugins.passes.undoing import Machine
 
@@ -174,6 +175,15 @@ class Volumetric(gx.Pass):
         """
         undoing = Commands if self.inverse else Machine
         return undoing(self, path, self._place(path, context)).run() if len(path) else path
+
+    def measure(
+        self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
+    ) -> dict[str, float]:
+        """Return how far the path goes beyond the tables, where that is allowed."""
+        if self.outside is gx.Outside.ERROR or not len(before):
+            return {}
+        rows = np.flatnonzero(~left_alone(before))
+        return beyond(self, before, self._place(before, context).offset, rows)
 
     def _place(self, path: gx.Toolpath, context: gx.PassContext) -> Place:
         """Return where the rows of a path are in the machine."""

@@ -1,7 +1,8 @@
 """What the formats of positioning tests share: deviations by target, direction and run (ISO 230-2).
 
 A deviation is the actual position minus the target. The error of a direction is the mean of its
-runs. An axis which was measured in one direction only has the same error in both.
+runs, and each run has every target. An axis which was measured in one direction only has the same
+error in both.
 """
 
 from __future__ import annotations
@@ -31,21 +32,22 @@ def table(axis: str, readings: Iterable[Reading]) -> gx.PitchTable:
     """Return the mean errors of an axis. Raises UsageError for what is missing or double."""
     found: dict[tuple[float, int], dict[str, float]] = {}
     for r in readings:
-        runs = found.setdefault((r.target, r.sense), {})
-        if r.run in runs:
+        own = found.setdefault((r.target, r.sense), {})
+        if r.run in own:
             message = f"run {r.run} of {axis} has two deviations at {r.target:g} in one direction"
             raise r.row.refuse("GX483", message, 0)
-        runs[r.run] = r.deviation
+        own[r.run] = r.deviation
     last = r.row
     targets = sorted({target for target, _ in found})
     if len(targets) < 2:
         raise last.refuse("GX411", f"{axis} has one target, needed are 2", 0)
     senses = sorted({sense for _, sense in found}, reverse=True)
-    for target in targets:
-        for sense in senses:
-            if (target, sense) not in found:
-                message = f"{axis} has no deviation at {target:g} in the direction {sense:+d}"
-                raise last.refuse("GX483", message.replace("+1", "+").replace("-1", "-"), 0)
+    for sense in senses:
+        runs = sorted({run for (_, way), own in found.items() if way == sense for run in own})
+        for target in targets:
+            if lost := [run for run in runs if run not in found.get((target, sense), ())]:
+                message = f"{axis} has no deviation of run {lost[0]} at {target:g}, direction "
+                raise last.refuse("GX483", message + ("+" if sense > 0 else "-"), 0)
     columns = {s: np.array([np.mean(list(found[t, s].values())) for t in targets]) for s in senses}
     largest = max(float(np.abs(column).max()) for column in columns.values())
     if not largest <= LARGEST or 0.0 < largest < LEAST:
