@@ -26,11 +26,12 @@ def turned_at(angles: Floats) -> Flags:
 
 
 def off_zero(angles: Floats) -> Flags:
-    """Return which angles are known, and neither 0 nor whole turns, at which all is as at 0."""
-    off = np.isfinite(angles) & (angles != 0.0)
-    far = off & (np.abs(angles) >= TURN)
-    off[far] = np.mod(angles[far], TURN) != 0.0
-    return np.asarray(off)
+    """Return which angles are neither 0 nor whole turns, at which all is as at 0; nan is not."""
+    off = np.asarray(angles != 0.0)
+    far = np.abs(angles) >= TURN
+    if far.any():
+        off[far] = np.mod(angles[far], TURN) != 0.0
+    return off
 
 
 class Place:

@@ -72,8 +72,8 @@ class Switches:
 
     def _wrong(self) -> Iterator[tuple[int, str, str]]:
         """Yield lines of what is refused, with messages and hints."""
-        turned = off_zero(self.angles)
-        rest = np.asarray((np.isfinite(self.angles) & ~turned).all(axis=1))
+        off = off_zero(self.angles)
+        turned, rest = off & np.isfinite(self.angles), np.asarray(~off.any(axis=1))
         for event in self.path.events:
             if event.what in self.codes and not rest[event.row]:
                 message = f"{event.what} where not all rotary axes are known to be at 0"
