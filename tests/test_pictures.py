@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import shutil
 import subprocess
 import sys
@@ -13,20 +12,18 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from cli_kit import call, process
+from picture_kit import SVG, assert_png, drawn, figures
 from simulate_kit import EXAMPLE, file_of, functions
 
 import gcxform as gx
-from gcxform import plot
 from gcxform.machine.machinefile import load_machine
 from gcxform.machine.modelfile import load_model
 from gcxform.plot import canvas
-from gcxform.plot.models import curves, squareness
 from gcxform.registry import default_registry
 from gcxform.simulate.heat import before_and_after, in_order
 
 EXAMPLES = EXAMPLE.parents[1]
 MODEL = ("--model", str(EXAMPLE))
-SVG = "{http://www.w3.org/2000/svg}"
 BALLBAR = ("simulate", "ballbar", *MODEL, "--planes", "XY", "--radius", "100 mm")
 LINES = ("simulate", "positioning", *MODEL, "--runs", "2", "--targets", "4")
 DIAGONAL = ("simulate", "diagonal", *MODEL, "--runs", "1", "--diagonals")
@@ -38,24 +35,6 @@ SHOW = ("show", "-f", "fanuc", *MODEL, "--part-origin", "0,0,0")
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def drawn(file: str) -> tuple[dict[str, ElementTree.Element], str]:
-    """Return the groups of an SVG by their names, and all that is written in it."""
-    root = ElementTree.parse(file).getroot()
-    groups = {group.get("id", ""): group for group in root.iter(f"{SVG}g")}
-    return groups, "\n".join(t.text or "" for t in root.iter(f"{SVG}text"))
-
-
-def corners(group: ElementTree.Element) -> int:
-    """Return how many points a curve has."""
-    return len(re.findall("[ML]", "".join(path.get("d", "") for path in group.iter(f"{SVG}path"))))
-
-
-def figures(stdout: str) -> dict[str, tuple[float, float]]:
-    """Return the table by the names in it: before and after, um."""
-    rows = re.findall(r"^(\S+ +\S.*?) +(-?[\d.]+|-) +(-?[\d.]+|-)$", stdout, re.MULTILINE)
-    return {" ".join(name.split()): (before, after) for name, before, after in rows}
 
 
 # --- simulate ---
@@ -162,15 +141,6 @@ def test_pictures_of_tests(here, words, named, written):
     assert_png(here / "three.png")
 
 
-def assert_png(file: Path) -> None:
-    """Assert that a picture opens and that there is something on it."""
-    from matplotlib.image import imread
-
-    picture = imread(file)
-    assert picture.shape[0] > 400
-    assert 0.5 < (picture[:, :, :3] == 1.0).all(axis=2).mean() < 0.995
-
-
 @pytest.mark.parametrize(
     ("words", "code"),
     [
@@ -235,126 +205,11 @@ def test_a_picture_on_stdout_would_have_no_kind(here):
     assert (found.returncode, found.stdout) == (2, b"")
 
 
-# --- models ---
-
-
-def test_a_model_is_drawn_as_a_grid_of_functions_and_a_volume(here):
-    assert call("show", str(EXAMPLE), "-o", "model.svg").exit_code == 0
-    groups, text = drawn("model.svg")
-    for name in ("EXX", "EYX", "EZX", "EXY", "EYY", "EZY", "EXZ", "EYZ", "EZZ"):
-        assert corners(groups[name]) == 11, name
-        assert f"{name}, um" in text
-    for name in ("EAX", "ECZ"):
-        assert name not in groups
-        assert f"{name}: none" in text
-    for word in ("C0Y -25.264 urad", "B0Z +34.424 urad", "A0Z -52.624 urad"):
-        assert word in text
-    assert {"nominal", "actual", "errors"} <= set(groups)
-    assert "errors x 2000" in text
-    assert call("show", str(EXAMPLE), "-o", "model.png").exit_code == 0
-    assert_png(here / "model.png")
-
-
-def test_squareness_is_the_angle_between_two_axes_whatever_their_frame():
-    """V9: turned by a small angle about Z, both straightnesses change and C0Y does not."""
-    turn = 3e-5
-    plain = curves(functions(EXY=-2e-5, EYZ=1e-5))
-    turned = curves(functions(EXY=-2e-5 - turn, EYX=turn, EYZ=1e-5))
-    assert squareness(plain) == pytest.approx({"C0Y": 2e-5, "B0Z": 0.0, "A0Z": -1e-5})
-    assert squareness(turned) == pytest.approx(squareness(plain))
-
-
-def test_a_machine_of_21_parameters_fills_the_grid(here):
-    assert call("show", str(EXAMPLES / "rigid-body" / "model.toml"), "-o", "all.svg").exit_code == 0
-    groups, text = drawn("all.svg")
-    names = [f"E{letter}{axis}" for axis in "XYZ" for letter in "XYZABC"]
-    assert [name for name in names if name not in groups] == []
-    assert all(f"{name}, {'um' if name[1] in 'XYZ' else 'urad'}" in text for name in names)
-    assert "none" not in text
-
-
-def test_what_show_refuses_is_named_as_it_was_given(here):
-    found = call("show", "none.toml", "-o", "model.svg")
-    assert found.exit_code == 2
-    assert found.stderr.startswith("none.toml: error[GX709]")
-    found = call("show", str(EXAMPLE), "-o", "model.pdf")
-    assert found.stderr.startswith("-o: error[GX737]")
-
-
 def test_a_long_title_stays_in_a_narrow_picture(here):
     assert call(*LINES, "--axes", "x", "--plot", "narrow.svg").exit_code == 0
     lines = drawn("narrow.svg")[1].splitlines()
     assert [line for line in lines if "proved" in line]
     assert max(map(len, lines)) < 60
-
-
-def test_of_a_sum_the_sums_of_the_functions_are_drawn(here):
-    """A warm screw and its geometry: each function is the error along its axis, from zero on."""
-    folder = EXAMPLES / "warm-screw"
-    whole, parts = load_model(folder / "machine.toml"), curves(load_model(folder / "machine.toml"))
-    assert call("show", str(folder / "machine.toml"), "-o", "sum.svg").exit_code == 0
-    groups, _ = drawn("sum.svg")
-    assert set(parts) <= set(groups)
-    for name, (position, value) in parts.items():
-        axis, into = "XYZ".index(name[2]), "XYZ".index(name[1])
-        points = np.zeros((len(position), 3))
-        points[:, axis] = position
-        expected = whole.error(points)[:, into] - whole.error(np.zeros((1, 3)))[0, into]
-        low = float(np.interp(0.0, position, value))
-        assert value - low == pytest.approx(expected, abs=5e-5), name
-    assert "EXX" in parts
-
-
-def test_a_model_without_limits_is_drawn_over_a_volume(here):
-    """B0Z of 200 urad is 20 um in X and C0Y of 100 urad 10 um, at 100 mm: 30 um where both add."""
-    (here / "skew.toml").write_text(
-        'format = 1\nkind = "skew"\n[squareness]\nC0Y = 1e-4\nB0Z = 2e-4\n'
-    )
-    assert call("show", "skew.toml", "-o", "skew.svg").exit_code == 0
-    groups, text = drawn("skew.svg")
-    assert "largest 30.00 um" in text
-    assert corners(groups["actual"]) > 100
-
-
-def test_both_directions_of_a_pitch_table_are_drawn(here):
-    table = "position = [0, 100, 200]\nforward = [0, 0.01, 0.02]"
-    (here / "pitch.toml").write_text(
-        f'format = 1\nkind = "pitch"\nvalues = "error"\n[X]\n{table}\n'
-        f"reverse = [-0.004, 0.007, 0.015]\n[Y]\n{table}\n"
-    )
-    assert call("show", "pitch.toml", "-o", "pitch.svg").exit_code == 0
-    groups, text = drawn("pitch.svg")
-    assert corners(groups["EXX"]) == corners(groups["EXX reverse"]) == 3
-    assert "reverse" in text
-    assert "EYY" in groups
-    assert "EYY reverse" not in groups
-
-
-class Lattice(gx.ErrorModel):
-    """A model that is no function of one axis at a time."""
-
-    kind = "lattice"
-    nodes = (np.array([0.0, 50.0]),) * 3
-
-    def lipschitz(self, reach=0.0):
-        return 1e-4
-
-    def largest(self, reach=0.0):
-        return 1e-2
-
-    def error(self, position, outside=gx.Outside.ERROR, tool=None, sense=None):
-        return 1e-6 * position * position[:, ::-1]
-
-    def range_of(self, axis_index):
-        return 0.0, 50.0
-
-
-def test_of_a_lattice_the_field_alone_is_drawn(here):
-    picture = plot.rendered(plot.model(Lattice(), "lattice"), "out.svg")
-    (here / "out.svg").write_bytes(picture)
-    groups, text = drawn("out.svg")
-    assert {"nominal", "actual", "errors"} <= set(groups)
-    assert "EXX" not in text
 
 
 # --- programs ---

@@ -7,6 +7,7 @@ from faults.mutation import Mutation
 FIGURES = "tests/test_figures.py"
 TESTS = "tests/test_simulate.py"
 PICTURES = "tests/test_pictures.py"
+MODELS = "tests/test_model_pictures.py"
 FOLDER = "gcxform/simulate"
 
 MUTATIONS = (
@@ -99,7 +100,7 @@ MUTATIONS = (
         "gcxform/plot/models.py",
         "sign * (_slope(found[one]) + _slope(found[other]))",
         "sign * _slope(found[one])",
-        PICTURES,
+        MODELS,
     ),
     Mutation(
         "show: moves of a cycle are taken for one another",
