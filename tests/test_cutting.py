@@ -85,6 +85,30 @@ def test_what_is_ahead_meets_another_error(tmp_path: Path) -> None:
     assert result.certificate.largest["deviation"] <= 0.0003
 
 
+def test_a_flat_arc_under_a_steep_error_has_one_radius(tmp_path: Path) -> None:
+    """Its ends are moved aside of the chord, so its centre cannot stay where it was."""
+    steep = model(y="[0.0, 0.012, 0.024]")
+    program = b"G21 G17 G90\nG0 X1 Y0\nG2 X6 Y0 I2.5 J-60 F100\nM2\n"
+    result = run(tmp_path, steep, program, 'tolerance = "10 um"')
+    path = gx.read(result.text, "linuxcnc").path
+    rows = np.flatnonzero(path.is_arc)
+    assert len(rows) == 1
+    first, last, _ = gx.radius_and_angle(path, rows)
+    assert abs(last - first)[0] < 3e-6
+    plain = gx.read(program, "linuxcnc").path
+    moved = (path.end[rows] - path.start[rows]) - (plain.end[rows] - plain.start[rows])
+    assert abs(moved[0, 1]) > 0.01
+
+
+def test_the_centre_of_a_flat_arc_of_two_radii_stays(tmp_path: Path) -> None:
+    """The ends of a fine arc are rounded: a centre as far from both would be far away."""
+    slight = model(y="[0.0, 0.00001, 0.00002]")
+    program = b"G21 G17 G90\nG0 X1 Y0\nG2 X1.1 Y0.001 I0.05 J-60 F100\nM2\n"
+    result = run(tmp_path, slight, program, 'tolerance = "1 um"')
+    path = gx.read(result.text, "linuxcnc").path
+    assert path.centre[-1, :2].tolist() == pytest.approx([1.05, -60.0], abs=1e-4)
+
+
 @pytest.fixture(scope="module")
 def cutting():
     """Load benchmarks/cutting.py."""

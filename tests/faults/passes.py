@@ -124,6 +124,13 @@ MUTATIONS = (
         RIGID_PASS,
     ),
     Mutation(
+        "volumetric: flat arcs may be as uneven as they like",
+        f"{PASSES}/fitting.py",
+        "np.abs(last - size) + UNEVEN)",
+        "np.inf)",
+        CUTTING,
+    ),
+    Mutation(
         "volumetric: a rotary axis may be ahead",
         f"{PASSES}/splitting.py",
         "(length > 0) & ~turning[row] &",

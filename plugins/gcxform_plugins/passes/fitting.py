@@ -23,6 +23,7 @@ REFINEMENTS = 6  # a piece is a sixty-fourth shorter than it could be, at most
 EVEN_TRIES = 8  # numbers of equal pieces that are tried, where others would be too short
 FLAT = 0.1  # mm; with less between arc and chord, three points say little about the centre
 NO_CHORD = 1e-6  # mm
+UNEVEN = 1e-4  # mm; by so much the radii of an arc may differ more than they did
 MARGIN = 0.9  # of the tolerance: what looking at points, and not along the curve, may miss
 LONGEST = 1.9 * np.pi  # rad; rounded, the ends of a longer piece may change places
 
@@ -153,16 +154,18 @@ class ArcFitter:
         second = self._command(row, low + (high - low) * share)
         third = self._command(row, np.where(share < 0.5, low + (high - low) * 2 / 3, high))
         shift = (self.work.correction(row, low) + self.work.correction(row, high)) / 2
-        size, _, _ = gx.radius_and_angle(self.path, row)
+        size, last, _ = gx.radius_and_angle(self.path, row)
         sag = size * (1 - np.cos((high - low) * self.path.sweep[row] / 2))
+        uneven = np.where(high - low < 1.0, -np.inf, np.abs(last - size) + UNEVEN)
         for plane in gx.Plane:
             here = np.flatnonzero(self.path.plane[row] == plane)
             axes, normal = np.array(plane.axes[:2]), plane.axes[2]
             points = [point[np.ix_(here, axes)] for point in (first, second, third)]
             fitted = gx.circle_through(*points)
             moved = (self.path.centre[row] + shift)[np.ix_(here, axes)]
-            cut = ((share == 0.5) & (high - low < 1.0))[here, None]
-            moved = np.where(cut, _as_far(moved, *points[::2]), moved)
+            ends = (np.hypot(*(point - moved).T) for point in points[::2])
+            far = (np.abs(np.subtract(*ends)) > uneven[here]) & (share[here] == 0.5)
+            moved = np.where(far[:, None], _as_far(moved, *points[::2]), moved)
             flat = ~np.isfinite(fitted).all(axis=1) | (sag[here] < FLAT)
             centre[np.ix_(here, axes)] = np.where(flat[:, None], moved, fitted)
             centre[here, normal] = first[here, normal]
