@@ -221,7 +221,7 @@ def test_the_error_along_a_program_before_and_after(here):
     groups, text = drawn("heat.svg")
     assert {"before", "after"} <= set(groups)
     assert "before: at most 13.85 um" in text
-    assert "after: at most 0.94 um" in text
+    assert "after: at most 1.35 um" in text
     assert "distance from the programmed path, um" in text
     colours = {path.get("style") for path in groups["before"].iter(f"{SVG}path")}
     assert len(colours) > 50
