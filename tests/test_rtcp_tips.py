@@ -107,15 +107,18 @@ def test_the_proof_follows_tips(tmp_path, monkeypatch, kind):
         steps.run(text, "full")
 
 
-def test_where_blocks_end(tmp_path):
+@pytest.mark.parametrize("code", ["G1", "G0"])
+def test_where_blocks_end(tmp_path, code):
     """An angle with more decimals than are written is rounded without being cut."""
     chain = chain_of_kind("ac-trunnion", 5)
     head = "G21 G90 G93 G17 G54\nG0 X0. Y0. A0. C0.\nG43 H1 Z0.\n"
-    text = f"{head}G0 X200. Y90.\nG1 A20.0049 C0. F2.\nG1 X90. F2.\nM30\n".encode()
-    with pytest.raises(gx.InputError, match=REFUSED):
-        steps_of(tmp_path, "ac-trunnion", chain, 2, 0.005).run(text)
-    result = steps_of(tmp_path, "ac-trunnion", chain, 2, 0.05).run(text, "full")
-    assert 0.005 < farthest(text, result, chain) <= 0.05
+    text = f"{head}G0 X200. Y90.\n{code} A20.0049 C0. F2.\nG1 X90. F2.\nM30\n".encode()
+    with pytest.raises(gx.InputError, match=r":5:.*" + REFUSED):
+        steps_of(tmp_path, "ac-trunnion", chain, 2, 0.005, rapids="ends").run(text)
+    result = steps_of(tmp_path, "ac-trunnion", chain, 2, 0.05, rapids="ends").run(text, "full")
+    old, new = positions(text, "XYZAC"), positions(result.text, "XYZAC")
+    far = np.linalg.norm(tips_of(chain, old[-1:]) - new[-1:, :3])
+    assert 0.005 < far <= 0.05
 
 
 @pytest.mark.parametrize("decimals", [2, 3])
