@@ -33,6 +33,7 @@ EACH = settings(
 )
 ROOM = 2e-6  # mm; the least decimals of a machine file and of the matrices
 OFF, LEAN = 0.05, 1.5e-4  # mm and rad; errors of a good machine
+FINE = "{ A = 5, B = 5, C = 5 }"  # of angles, for levers of some 300 mm
 TOLERANCE = 0.002
 
 
@@ -66,6 +67,7 @@ def reposted(folder, kind, nominal, real, **options):
     """Return the pipeline that corrects programs for a nominal machine."""
     (folder / "real.toml").write_text(measured_text(kind, real))
     options = {"tolerance": TOLERANCE, "direction": "repost", "calibrated": "real.toml"} | options
+    options = {"decimals": FINE} | options
     return pipeline(folder, machine_text(kind, nominal), **options)
 
 

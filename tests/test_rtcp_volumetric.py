@@ -18,7 +18,7 @@ from rtcp_kit import (
     positions,
     tips,
 )
-from test_rtcp_repost import leaning_poses, measured, measured_text, posted
+from test_rtcp_repost import FINE, leaning_poses, measured, measured_text, posted
 
 import gcxform as gx
 
@@ -61,6 +61,7 @@ def chained(folder, kind, nominal, real, model, **options):
     """Return the pipeline of both passes."""
     (folder / "real.toml").write_text(measured_text(kind, real))
     given = {"tolerance": TOLERANCE, "after": volumetric(model)} | options
+    given |= {"decimals": FINE} if options.get("direction") == "repost" else {}
     machine = measured_text(kind, real) if "direction" not in options else None
     return pipeline(folder, machine or machine_text(kind, nominal), **given)
 

@@ -18,11 +18,12 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_circling import Circling
 from gcxform_plugins.passes.rtcp_cutting import STILL, Cutting
-from gcxform_plugins.passes.rtcp_driven import Driven, Led, Pointed
+from gcxform_plugins.passes.rtcp_driven import Driven, Led, Pointed, Straight
 from gcxform_plugins.passes.rtcp_lines import UserLines
 from gcxform_plugins.passes.rtcp_moving import Correcting, Moving
 from gcxform_plugins.passes.rtcp_options import check_machines, check_options
@@ -32,9 +33,12 @@ from gcxform_plugins.passes.rtcp_pointing import InProportion, Pointing
 from gcxform_plugins.passes.rtcp_proof import Proof
 from gcxform_plugins.passes.rtcp_retracted import Retracted
 from gcxform_plugins.passes.rtcp_switches import Switches
+from gcxform_plugins.passes.rtcp_tips import TipProof
 from gcxform_plugins.passes.rtcp_undoing import Undoing
 from gcxform_plugins.passes.rtcp_vectors import without_left
 from gcxform_plugins.passes.rtcp_ways import Between, Corrected
+
+Ints = NDArray[np.int64]
 
 PLAIN = frozenset({gx.ABSOLUTE, gx.LINEAR_ONLY, gx.NOMINAL})
 
@@ -208,8 +212,22 @@ class Rtcp(gx.Pass):
         else:
             place = Place(path, context)
             way = self._corrected(path, context) or Between(place, self.direction == "to-machine")
-            path = Cutting(self, path, context, place, way).run()
+            cutting = Cutting(self, path, context, place, way)
+            after = cutting.run()
+            if self.direction != "to-machine":
+                self._check_tips(path, after, context, cutting.row)
+            path = after
         return path.replace(blocks=self.timed(path.blocks))
+
+    def _check_tips(
+        self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext, owner: Ints
+    ) -> None:
+        """Raise VerificationError where tips are farther off than the tolerance."""
+        source, _ = self._machines(before, context)
+        _, target = self._machines(after, context)
+        led = self.direction == "to-tip"
+        written = Straight(after, target) if led else Driven(self, after, target)
+        TipProof(self, context, Driven(self, before, source), written, owner).check_tips()
 
     def _nothing_to_correct(self, context: gx.PassContext) -> bool:
         """Whether the calibrated machine is where the one posted for is."""

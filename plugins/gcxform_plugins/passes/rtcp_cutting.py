@@ -20,6 +20,7 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 STILL = 1e-7  # mm, degrees; what moves by less stands still
+ASTRAY = 0.7  # of the tolerance; what rounded angles may take of it, where they move the tip
 MOST = 100_000  # pieces of one block
 
 
@@ -57,6 +58,7 @@ class Cutting:
         pieces = np.where(self.nowhere, 0, self._pieces())
         row = np.repeat(np.arange(len(path)), pieces)
         end = self._cut(pieces, row)
+        self.row = row
         self._check_limits(end, row)
         result = end.copy(order="F")
         result[:, :3] = self.way.converted(end, row)
@@ -82,11 +84,15 @@ class Cutting:
 
     def _cut(self, pieces: Ints, row: Ints) -> Floats:
         """Return the ends (n, axes) of the pieces of rows, before they are converted."""
+        middle, last = self._middle(pieces, row)
+        return np.where(last, self.end[row], self._rounded(middle))
+
+    def _middle(self, pieces: Ints, row: Ints) -> tuple[Floats, Flags]:
+        """Return the same with angles in proportion, and which (n, 1) are ends of rows."""
         nth = np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
         part = (nth / np.maximum(pieces[row], 1))[:, None]
         start, end = self.start[row], self.end[row]
-        middle = start + part * (end - start)
-        return np.where(part == 1.0, self.end[row], self._rounded(middle))
+        return np.asarray(start + part * (end - start)), np.asarray(part == 1.0)
 
     # --- pieces ---
 
@@ -124,7 +130,34 @@ class Cutting:
         start[1:] = end[:-1]
         start[first] = self.start[rows]
         far = self.way.leaving((start, end), row)
+        if not self.to_axes:
+            far = far + self._astray(pieces, end, row, first)
         return np.asarray(np.maximum.reduceat(far, first))
+
+    def _astray(self, pieces: Ints, end: Floats, row: Ints, first: Ints) -> Floats:
+        """Return how far (n,) mm rounded angles take the tip astray, at either end of pieces."""
+        middle, last = self._middle(pieces, row)
+        there = self._apart(np.where(last, self.path.end[row], middle), end, row)
+        self._check_astray(there, row)
+        before = np.append(0.0, there[:-1])
+        before[first] = self._apart(self.path.start[row[first]], self.start[row[first]], row[first])
+        return np.asarray(np.maximum(before, there))
+
+    def _apart(self, one: Floats, other: Floats, row: Ints) -> Floats:
+        """Return how far (n,) mm tips are apart, where axes stand at positions (n, axes)."""
+        place = self.place
+        tips = [place.tips_of(at[:, :3], place.angles(at), row) for at in (one, other)]
+        return np.asarray(np.nan_to_num(np.linalg.norm(tips[0] - tips[1], axis=1)))
+
+    def _check_astray(self, astray: Floats, row: Ints) -> None:
+        """Refuse angles that take the tip so far astray (mm) that nothing is left for its way."""
+        over = astray > ASTRAY * self.step.tolerance
+        if over.any():
+            far, letters = float(astray.max()), self.place.chain.letters
+            message = f"angles as they are written would take the tip {far:.4f} mm off"
+            more = ", ".join(f"{a} = {self.context.decimals_of_angle(a) + 1}" for a in letters)
+            hint = f"write more decimals: decimals = {{ {more} }} in [output]; or raise tolerance"
+            raise self.path.refuse("GX330", np.unique(row[over]), message, hint)
 
     # --- feeds ---
 
@@ -180,6 +213,7 @@ class Cutting:
         if self.step.direction == "repost":
             self._check_decimals()
         else:
+            self._check_ends()
             self._check_feeds(moved)
             if self.step.rapids == "refuse":
                 self._check_rapids(moved)
@@ -214,6 +248,14 @@ class Cutting:
         message = "where the tip goes in a rapid that turns axes is not known"
         hint = 'move at a feed, or say rapids = "ends" if the tool is clear on any way'
         self._refuse("GX330", rapid & moved, message, hint)
+
+    def _check_ends(self) -> None:
+        """Refuse where blocks end, if the angles there are rounded by too much."""
+        if self.to_axes:
+            return
+        off = np.nan_to_num(np.abs(self.place.angles(self.end - self.path.end))).max(axis=1)
+        rows = np.flatnonzero((off > 0.0) & ~self.own)
+        self._check_astray(self._apart(self.path.end[rows], self.end[rows], rows), rows)
 
     def _check_decimals(self) -> None:
         """Refuse angles that are rounded: where the tip was is not known at others."""

@@ -79,6 +79,21 @@ class Led:
         return here[:, :3], _on_circle(one, other, part), self.place.angles(here)
 
 
+class Straight:
+    """A path of the tip, which goes straight while the axes turn in proportion."""
+
+    def __init__(self, path: gx.Toolpath, place: Place) -> None:
+        self.path, self.place = path, place
+        self.start, self.end = path.start, path.end
+        self.bends = self.leans = np.zeros(len(path))
+
+    def at(self, rows: Ints, part: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return tips, tool axes and angles at parts (n,) of rows."""
+        here = _between(self.start, self.end, rows, part)
+        angles = self.place.angles(here)
+        return here[:, :3], self.place.chain.tool_axis(angles), angles
+
+
 class Pointed:
     """The same of a path that says the tool axis as a vector (G43.5)."""
 

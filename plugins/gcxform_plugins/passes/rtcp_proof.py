@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
-from gcxform_plugins.passes.rtcp_driven import Driven, Leading
+from gcxform_plugins.passes.rtcp_driven import Driven, Leading, Straight
 from gcxform_plugins.passes.rtcp_lines import UserLines
 from gcxform_plugins.passes.rtcp_retracted import Retracted
 from gcxform_plugins.passes.rtcp_undoing import SHARE
@@ -36,7 +36,7 @@ class Proof:
     """The tips and tool axes of one window, as the source leads them and as the target does."""
 
     def __init__(
-        self, step: Rtcp, context: gx.PassContext, source: Leading, target: Driven
+        self, step: Rtcp, context: gx.PassContext, source: Leading, target: Driven | Straight
     ) -> None:
         self.step, self.context = step, context
         self.source, self.target = source, target
@@ -54,6 +54,7 @@ class Proof:
         drawn = np.zeros(len(self.after), np.bool_)
         if self.step.retract is not None:
             lines = UserLines.of(self.step, self.context)
+            assert isinstance(self.target, Driven)
             found = Retracted(self.step, self.target, lines)
             for rows in found.found:
                 drawn[rows.start : rows.stop] = True

@@ -1,0 +1,65 @@
+"""Faults of `rtcp` of axes, where angles that are rounded move the tip, and of its proof."""
+
+from __future__ import annotations
+
+from faults.mutation import PASSES, Mutation
+
+CUTTING = f"{PASSES}/rtcp_cutting.py"
+RTCP = f"{PASSES}/rtcp.py"
+TIPS = f"{PASSES}/rtcp_tips.py"
+DRIVEN = f"{PASSES}/rtcp_driven.py"
+TESTS = "tests/test_rtcp_tips.py"
+WITHIN = f"{TESTS}::test_the_tip_is_within_its_tolerance"
+PROVED = f"{TESTS}::test_the_proof_follows_tips"
+
+MUTATIONS = (
+    Mutation(
+        "tips: what rounded angles do to them is not counted",
+        CUTTING,
+        "        if not self.to_axes:\n            far = far",
+        "        if self.to_axes:\n            far = far",
+        WITHIN,
+    ),
+    Mutation(
+        "tips: rounded angles may take them as far as the tolerance",
+        CUTTING,
+        "over = astray > ASTRAY * self.step.tolerance",
+        "over = astray > 1e9 * self.step.tolerance",
+        WITHIN,
+    ),
+    Mutation(
+        "tips: rounded angles where blocks end are not counted",
+        CUTTING,
+        "            self._check_ends()\n",
+        "",
+        f"{TESTS}::test_where_blocks_end",
+    ),
+    Mutation(
+        "tips: they are not followed",
+        RTCP,
+        'if self.direction != "to-machine":\n                self._check_tips',
+        'if self.direction == "to-machine":\n                self._check_tips',
+        PROVED,
+    ),
+    Mutation(
+        "tips: the proof does not look at any",
+        TIPS,
+        "super()._known() & turned &",
+        "super()._known() & ~turned &",
+        PROVED,
+    ),
+    Mutation(
+        "tips: the proof has no tolerance",
+        TIPS,
+        "if not self.tip <= self.step.tolerance:",
+        "if not self.tip <= 1e9 * self.step.tolerance:",
+        PROVED,
+    ),
+    Mutation(
+        "tips: the proof sees those that are written elsewhere",
+        DRIVEN,
+        "        angles = self.place.angles(here)\n        return here[:, :3],",
+        "        angles = self.place.angles(here)\n        return here[:, :3] * 1.001,",
+        WITHIN,
+    ),
+)
