@@ -163,13 +163,14 @@ class _Job:
 
         A piece in which no word changes is left out, and what it would have taken goes with it.
         """
-        path, line = self.path, self.pieces.line[chosen]
+        path, pieces = self.path, self.pieces
+        chosen = chosen[(pieces.has_row & ~pieces.special & ~pieces.tap)[chosen]]
         timed = (path.feed_mode == FeedMode.INVERSE_TIME) & (path.kind != Kind.RAPID)
         written = np.zeros(len(path), np.bool_)
-        written[self.pieces.row[chosen[self.pieces.has_row[chosen]]]] = True
-        again = np.zeros(len(self.pieces.count), np.bool_)
-        again[line] = True
-        timed &= again[path.block] & (self.pieces.count[path.block] > 1)
+        written[pieces.row[chosen]] = True
+        again = np.zeros(len(pieces.count), np.bool_)
+        again[pieces.line[chosen]] = True
+        timed &= again[path.block] & (pieces.count[path.block] > 1)
         if (written | ~timed).all():
             return
         block, time = path.block[timed], 1.0 / path.feed[timed]
