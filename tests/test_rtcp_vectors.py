@@ -344,3 +344,19 @@ def test_check_reads_what_is_run(tmp_path):
     (tmp_path / "a.nc").write_bytes(text)
     found = call("check", "-p", str(tmp_path / "p.toml"), str(tmp_path / "a.nc"))
     assert found.exit_code == 0, found.output
+
+
+@pytest.mark.parametrize("after", ["G0 Z7.", "G53 G0 Z0.", "G0 A0.", "G68"])
+def test_axes_that_were_left_are_no_arithmetic(tmp_path, after):
+    """Where the control has left axes is unknown: of that nothing is computed, nor warned."""
+    chain = chain_of_kind("ac-trunnion", 3)
+    text = b"G20 G90 G94 G17 G54\nG0 X0. Y0. A0. C0.\nG43.5 H1 Z3.\nG0 X.4 Y.2 I.1 K1.\n"
+    text += f"G1 X.5 F20.\nG49\n{after}\nM5\nX.5\nM30\n".encode()
+    text = text.replace(b"G49\nG68", b"G68 X0. Y0. R10.\nX.6\nG49")
+    steps = pointed(tmp_path, "ac-trunnion", chain)
+    if "G68" in after:
+        with pytest.raises(gx.InputError) as error:
+            steps.run(text)
+        assert {d.code for d in error.value.diagnostics} == {"GX330"}
+        return
+    assert steps.run(text, "full").certificate.verified

@@ -131,6 +131,14 @@ CODES: dict[str, tuple[str, str]] = {
         "and the move long. Give them a larger tolerance, or allow more: a control with little "
         "memory, or one that reads blocks slowly, sets the limit.",
     ),
+    "GX508": (
+        "Pieces in inverse time that are too short to write",
+        "A pass has cut this block into pieces of which some move no axis by the last decimal. "
+        "They would be left out, and the time that each of them takes (G93) would be left out with "
+        "them, so the tool would be faster than it was told to be. Write more decimals, give the "
+        "pass that cuts moves a larger tolerance or length, or lead the tool farther from the "
+        "pole, near which pieces become short.",
+    ),
     # --- 6xx: verification ---
     "GX601": (
         "The output does not do what the program does",

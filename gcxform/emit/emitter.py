@@ -30,11 +30,13 @@ from gcxform.modal.meaning import Meaning
 from gcxform.modal.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.syntax.tree import Comment, Item
-from gcxform.toolpath.path import Kind, Toolpath
+from gcxform.toolpath.path import FeedMode, Kind, Toolpath
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
+
+LOST = 1e-3  # relative; of the time of a block that pieces without words would take along
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +89,7 @@ class _Job:
         centre = Centres(self.task, self.kind, self.positions, self.copying).write()
         empty = self._without_words() | self._foreign() | self._gone() | self._only_compensates()
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
+        self._refuse_lost_times(chosen)
         style, columns = self.emitter.style, (self.positions, self.taps, self.kind, centre)
         text, lengths = Writing(self.task, style, self.pieces, *columns).text(chosen)
         line, nth = self.pieces.line[chosen], self.pieces.of_rows(self.path.nth, 0)[chosen]
@@ -154,6 +157,31 @@ class _Job:
                 self.task.refuse(first, "GX506", message, "write G61 before the cycle")
         if modes:
             self.emitter.path_mode = modes[-1].what
+
+    def _refuse_lost_times(self, chosen: Ints) -> None:
+        """Refuse blocks in inverse time whose pieces are too short to be written.
+
+        A piece in which no word changes is left out, and what it would have taken goes with it.
+        """
+        path, pieces = self.path, self.pieces
+        chosen = chosen[(pieces.has_row & ~pieces.special & ~pieces.tap)[chosen]]
+        timed = (path.feed_mode == FeedMode.INVERSE_TIME) & (path.kind != Kind.RAPID)
+        written = np.zeros(len(path), np.bool_)
+        written[pieces.row[chosen]] = True
+        again = np.zeros(len(pieces.count), np.bool_)
+        again[pieces.line[chosen]] = True
+        timed &= again[path.block] & (pieces.count[path.block] > 1)
+        if (written | ~timed).all():
+            return
+        block, time = path.block[timed], 1.0 / path.feed[timed]
+        lost = np.where(written[timed], 0.0, time)
+        gone, whole = (np.bincount(block, each, len(again)) for each in (lost, time))
+        wrong = gone > LOST * whole
+        if wrong.any():
+            rows = np.flatnonzero(timed & wrong[path.block])
+            rows = rows[np.unique(path.block[rows], return_index=True)[1]]
+            message = "in inverse time this block would lose pieces that are too short to write"
+            self.task.refuse(rows, "GX508", message, "write more decimals, or longer pieces")
 
     # --- after ---
 

@@ -385,7 +385,9 @@ def turns_only(path: Toolpath) -> Flags:
     if not rotary or not len(path):
         return np.zeros(len(path), np.bool_)
     start, ends = path.start, path.end
-    still = (np.abs(start - ends) < SAME_PLACE) | (np.isnan(start) & np.isnan(ends))
+    still = (start == ends) | (np.isnan(start) & np.isnan(ends))
+    with np.errstate(invalid="ignore"):  # an axis that was left where it is (inf) stays there
+        still |= np.abs(start - ends) < SAME_PLACE
     return np.asarray(still[:, linear].all(axis=1) & ~still[:, rotary].all(axis=1))
 
 

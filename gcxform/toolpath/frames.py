@@ -136,5 +136,6 @@ def _product(matrix: Floats, vectors: Floats) -> Floats:
     result = np.array(vectors, order="F")
     for row in range(3):
         used = np.flatnonzero(np.abs(matrix[row]) > 1e-15)
-        result[:, row] = sum(matrix[row, k] * vectors[:, k] for k in used)
+        with np.errstate(invalid="ignore"):  # of axes that a control has left where they are (inf)
+            result[:, row] = sum(matrix[row, k] * vectors[:, k] for k in used)
     return result

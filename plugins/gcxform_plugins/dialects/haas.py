@@ -64,6 +64,7 @@ class Haas(Fanuc):
     name = "haas"
     calls_own_lines = True
     tip_codes: ClassVar[Mapping[str, str]] = {"G234": "G43"}
+    vector_codes: ClassVar[Mapping[str, str]] = {}
     axes = "XYZABC"
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{name: code for name, code in Fanuc.codes.items() if name not in NOT_HERE},
