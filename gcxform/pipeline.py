@@ -217,7 +217,7 @@ class Pipeline:
     def angle_limit(self) -> float:
         """Return how far (deg) rotary axes may be off: what steps promise, and the rounding."""
         promised = sum(step.promise_angle for step in self.path_passes)
-        return promised + 1.01 * self.manner.step("A", False)
+        return promised + 1.01 * max(self.manner.step(letter, False) for letter in "ABC")
 
     def _check_budget(self) -> None:
         """Refuse a budget that the steps cannot keep, and steps without bound or budget."""

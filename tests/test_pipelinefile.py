@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar, Literal
 
 import pytest
 
+import gcxform as gx
 from gcxform.catalogue import CATALOGUE
 from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import UsageError
@@ -366,3 +367,18 @@ def test_the_schemas_of_the_other_files() -> None:
 def test_the_installed_passes_have_a_schema() -> None:
     steps = schema("pipeline")["properties"]["pass"]["items"]["anyOf"]
     assert len(steps) == len(default_registry().passes)
+
+
+@pytest.mark.parametrize("letter", "ABC")
+def test_an_axis_may_be_off_by_what_its_own_decimals_round(tmp_path: Path, letter: str) -> None:
+    """The budget of angles is that of the coarsest rotary axis."""
+    (tmp_path / "p.toml").write_text(
+        "format = 1\n[input]\n"
+        f'dialect = "linuxcnc"\nstart = {{ X = 0.0, Y = 0.0, Z = 0.0, {letter} = 0.0 }}\n'
+        '[[pass]]\nuse = "segment"\narcs = "split"\nmax-length = "1 mm"\n'
+        f"[output]\ndecimals = {{ {letter} = 2 }}\n"
+    )
+    program = f"G21 G90 G94\nG1 X7 {letter}10 F100\nM2\n".encode()
+    result = gx.Pipeline.load(tmp_path / "p.toml").run(program)
+    assert f"X1. {letter}1.43".encode() in result.text
+    assert 0.002 < result.certificate.largest["angle"] < 0.005
