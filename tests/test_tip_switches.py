@@ -166,6 +166,7 @@ REFUSED = {
     "never": ([line for line in WHOLE if line[:2] != "M4"], 5, "is not known"),
     "not yet": ([*WHOLE[:3], "G1 X1. C5. F100.", "C0.", *WHOLE[3:]], 4, "is not known"),
     "no longer": (with_line(8, "G1 C5. F100."), 9, "does not follow the tip"),
+    "no longer, in the last rapid": (with_line(8, "G0 C5."), 9, "does not follow the tip"),
     "where axes stand is not known": (["G21 G90 G94 G17 G54", "M428", *WHOLE[1:]], 2, "known"),
     "beside a move": ([*WHOLE[:3], "M428 G1 X10. Y5. F600.", *WHOLE[5:]], 4, "beside a move"),
     "a whole turn without": (with_line(8, "G1 C360. F100."), 9, "does not follow the tip"),
