@@ -169,8 +169,8 @@ MUTATIONS = (
     Mutation(
         "vectors: angles in proportion need no pieces",
         POINTING,
-        "far[here] = leaving(chain, (one, other), (sides[0][here], sides[1][here]))",
-        "far[here] = 0.0 * leaving(chain, (one, other), (sides[0][here], sides[1][here]))",
+        "return self._off_line(source, target, row)",
+        "return 0.0 * self._off_line(source, target, row)",
         ANY,
     ),
     Mutation(

@@ -41,13 +41,21 @@ class OnCircles(Moving):
 
     def _far(self, source: tuple[Floats, ...], target: tuple[Floats, ...], row: Ints) -> Floats:
         """Return how far (n,) mm the tip leaves its line, and in proportion the tool axis."""
+        one, other = (self.target.angles(side) for side in target)
+        share = np.degrees(self._aside(other - one)) / self.step.axis_tolerance
+        far = self._off_line(source, target, row)
+        return np.asarray(np.maximum(far, share * self.step.tolerance))
+
+    def _off_line(
+        self, source: tuple[Floats, ...], target: tuple[Floats, ...], row: Ints
+    ) -> Floats:
+        """Return how far (n,) mm the tip leaves its line."""
         far = np.zeros(len(row))
         sides = [self.target.angles(side) for side in target]
         for chain, here in self.target.chains(row):
             one, other = (self.target.on_workpiece(side[here, :3], chain) for side in source)
             far[here] = leaving(chain, (one, other), (sides[0][here], sides[1][here]))
-        share = np.degrees(self._aside(sides[1] - sides[0])) / self.step.axis_tolerance
-        return np.asarray(np.maximum(far, share * self.step.tolerance))
+        return far
 
     def _aside(self, step: Floats) -> Floats:
         """Return how far (n,) rad the tool axis leaves its circle while axes turn by steps (n, m).

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
-from gcxform_plugins.passes.rtcp_bound import leaving
 from gcxform_plugins.passes.rtcp_choice import TURN
 from gcxform_plugins.passes.rtcp_circling import OnCircles
 from gcxform_plugins.passes.rtcp_moving import STILL
@@ -169,10 +168,5 @@ class InProportion(Pointing):
         return np.where(part == 1.0, other, self.written(one + part * (other - one)))
 
     def _far(self, source: tuple[Floats, ...], target: tuple[Floats, ...], row: Ints) -> Floats:
-        """Return how far (n,) mm the tip leaves its line."""
-        far = np.zeros(len(row))
-        sides = [self.target.angles(side) for side in target]
-        for chain, here in self.target.chains(row):
-            one, other = (self.target.on_workpiece(side[here, :3], chain) for side in source)
-            far[here] = leaving(chain, (one, other), (sides[0][here], sides[1][here]))
-        return far
+        """Return how far (n,) mm the tip leaves its line; the tool axis is where it has to be."""
+        return self._off_line(source, target, row)
