@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from gcxform.dialect import ArcRule as ArcRule
     from gcxform.dialect import Dialect as Dialect
     from gcxform.dialect import NumberFormat as NumberFormat
+    from gcxform.flow.translation import Item as Item
+    from gcxform.flow.translation import Translator as Translator
     from gcxform.guess import Evidence as Evidence
     from gcxform.guess import Guess as Guess
     from gcxform.guess import guess_dialect as guess_dialect
@@ -136,6 +138,7 @@ _HOMES = {
     "diagnostics": "Diagnostic FileError GcxformError InputError Location UsageError "
     "VerificationError",
     "dialect": "ArcRule Dialect NumberFormat",
+    "flow.translation": "Item Translator",
     "guess": "Evidence Guess guess_dialect",
     "hookspecs": "hookimpl",
     "machine.chain": "Chain Rotary chain_of",

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from gcxform.dialect import Dialect, NumberFormat
 from gcxform.syntax.tree import Block
+from gcxform.tipcodes import switches_of
 from gcxform.toolpath.facts import Fact
 from gcxform.toolpath.path import FeedMode, Toolpath
 
@@ -41,6 +42,11 @@ class PassContext:
     numbers: NumberFormat
     machine: Machine | None = None
     decimals: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def switches(self) -> Mapping[str, str]:
+        """The M codes with which the control follows the tip and leaves it: their acts by code."""
+        return switches_of(self.source, self.machine.control if self.machine is not None else {})
 
     def decimals_of_angle(self, letter: str) -> int:
         """Return with how many decimals a rotary axis is written."""

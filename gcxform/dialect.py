@@ -15,12 +15,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from gcxform.modal.arithmetic import Arithmetic
 from gcxform.modal.codes import ISO, ISO_M, Code, CutterComp, MCode
 from gcxform.modal.cyclerule import CycleRule
 from gcxform.syntax.grammar import Grammar, load
+
+if TYPE_CHECKING:
+    from gcxform.flow.translation import Translator
 
 INCH = 25.4  # mm, exact by definition
 LINEAR = "XYZUVW"
@@ -197,6 +200,14 @@ class Dialect:
     """The same of codes with which I, J and K of lines are the tool axis, from tip to holder."""
     takes_vectors: ClassVar[bool] = False
     """Whether what is left of such codes is in the program: see `gcxform/tipcodes.py`."""
+    tip_switches: ClassVar[Mapping[str, str]] = {}
+    """M codes that follow the tip, and leave it, on every machine with this control: "tip-on" and
+    "tip-off", as in the machine file."""
+    translator: ClassVar[type[Translator] | None] = None
+    """What turns programs that are not written in words into blocks that are, which is what all
+    else here is about. Such a dialect is only read: see `gcxform/flow/translation.py`."""
+    spelled: ClassVar[Mapping[str, str]] = {}
+    """What codes of such blocks are called in the program: `M128` may be `TRAORI`."""
     calls_own_lines: ClassVar[bool] = False
     """M97 calls lines of the same program, up to M99."""
     numbers: ClassVar[NumberFormat] = NumberFormat()

@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from gcxform.dialect import LINEAR, Dialect
+from gcxform.flow.translation import foreign_lines, has_signs
 from gcxform.modal.meaning import Meaning
 from gcxform.modal.reader import WindowReader
 from gcxform.registry import default_registry
@@ -84,15 +85,18 @@ def guess_dialect(
     """Return which dialects a program, or the file of that name, may be in.
 
     Two megabytes from its start are looked at. `dialects` are those to choose from, by name; all
-    that are installed if not given. Raises FileError.
+    that are installed if not given; those without a sign of their language are left out. Raises
+    FileError.
     """
     if isinstance(program, Path):
         source = Source.open(program)
         with source.stream:
             return guess_dialect(source, dialects)
     source = Source.of_bytes(program) if isinstance(program, bytes) else program
-    tried = default_registry().dialects if dialects is None else dialects
-    seen = {name: _seen(source, dialect) for name, dialect in tried.items()}
+    known = default_registry().dialects if dialects is None else dialects
+    head = b"".join(islice(source.windows(), WINDOWS))
+    tried = {name: dialect for name, dialect in known.items() if has_signs(head, dialect)}
+    seen = {name: _seen(source, head, dialect) for name, dialect in tried.items()}
     found = {name: tuple(_evidence(tried[name], seen[name])) for name in tried}
     fitting = [n for n in tried if seen[n].foreign <= HOPELESS * max(seen[n].lines, 1)]
     scores = {name: sum(item.weight for item in found[name]) for name in fitting}
@@ -106,8 +110,12 @@ def guess_dialect(
 # --- what a dialect sees ---
 
 
-def _seen(source: Source, dialect: type[Dialect]) -> _Seen:
-    seen, reader = _Seen(), WindowReader(dialect)
+def _seen(source: Source, head: bytes, dialect: type[Dialect]) -> _Seen:
+    seen = _Seen()
+    if dialect.translator is not None:
+        seen.lines, seen.foreign = foreign_lines(head, dialect)
+        return seen
+    reader = WindowReader(dialect)
     for text in islice(source.windows(), WINDOWS):
         window = reader.read(text)
         reader.table.update()

@@ -67,6 +67,7 @@ class Pipeline:
     growth: float | None = None
 
     def __post_init__(self) -> None:
+        self._check_target()
         check_chain(self.path_passes)
         for step in self.path_passes:
             step.begin(self.context)
@@ -218,6 +219,14 @@ class Pipeline:
         """Return how far (deg) rotary axes may be off: what steps promise, and the rounding."""
         promised = sum(step.promise_angle for step in self.path_passes)
         return promised + 1.01 * max(self.manner.step(letter, False) for letter in "ABC")
+
+    def _check_target(self) -> None:
+        """Refuse to write, or to change the text of, programs that are only read."""
+        if self.target.translator is None or (self.copies and not self.passes):
+            return
+        message = f"programs for {self.target.name} are read, and not written"
+        hint = 'dialect = "linuxcnc" in [output], or -t linuxcnc; `gcxform list dialects`'
+        raise UsageError.one("GX747", message, hint=hint)
 
     def _check_budget(self) -> None:
         """Refuse a budget that the steps cannot keep, and steps without bound or budget."""

@@ -127,7 +127,7 @@ class Run:
         """Return the M codes that a pass takes over from the control."""
         if self.pipeline.read_as is self.pipeline.source:
             return frozenset()
-        return frozenset(switches_of(self.pipeline.machine_reading.control))
+        return frozenset(switches_of(self.pipeline.source, self.pipeline.machine_reading.control))
 
     def _unresolved(self) -> tuple[Pass, ...]:
         """Return the passes after the last one that gives the program another path on purpose."""

@@ -5,10 +5,11 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import BinaryIO
 
-from gcxform.diagnostics import FileError
+from gcxform.diagnostics import FileError, Location
 
 WINDOW = 1 << 20  # bytes; what is worked on at once should stay in the processor's cache
 CHUNK = 1 << 22
@@ -40,6 +41,10 @@ class Source:
     def line_of(self, line: int) -> int:
         """Return the line of the file, from 1, that a line of the text came from; 0 for 0."""
         return line
+
+    def shown(self, where: Location) -> Location:
+        """Return a place in the file for one in the text."""
+        return replace(where, line=self.line_of(where.line))
 
     @property
     def size(self) -> int:

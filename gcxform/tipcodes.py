@@ -67,14 +67,19 @@ class WithoutTipCodes(Source):
         raise InputError.one("GX330", message, Location(self.name, line))
 
 
-def switches_of(control: Mapping[str, str | float]) -> dict[str, str]:
-    """Return the M codes with which a control follows the tip and leaves it: their acts by code."""
-    return {str(control[act]): act for act in SWITCHES if act in control}
+def switches_of(dialect: type[Dialect], control: Mapping[str, str | float]) -> dict[str, str]:
+    """Return the M codes with which a control follows the tip and leaves it: their acts by code.
+
+    They are those of the dialect, and those that the machine file gives.
+    """
+    said = (dialect.tip_switches, control)
+    return {str(given[act]): act for given in said for act in SWITCHES if act in given}
 
 
 def with_switches(dialect: type[Dialect], control: Mapping[str, str | float]) -> type[Dialect]:
     """Return the dialect with the codes of a control that follow the tip; itself without them."""
-    codes = {int(code[1:]): MCode("tip", act=act) for code, act in switches_of(control).items()}
+    acts = switches_of(dialect, control)
+    codes = {int(code[1:]): MCode("tip", act=act) for code, act in acts.items()}
     if not codes:
         return dialect
     return type(dialect.__name__, (dialect,), {"m_codes": {**dialect.m_codes, **codes}})
@@ -85,7 +90,7 @@ def with_refusal(dialect: type[Dialect], control: Mapping[str, str | float]) -> 
 
     A dialect may take other M codes of the machine's own for what moves nothing.
     """
-    codes = [code for code, act in switches_of(control).items() if act == "tip-on"]
+    codes = [code for code, act in switches_of(dialect, control).items() if act == "tip-on"]
     if not codes:
         return dialect
     refused = {int(code[1:]): MCode("tip", barrier=FOLLOWING) for code in codes}

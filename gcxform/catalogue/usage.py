@@ -221,6 +221,11 @@ CODES: dict[str, tuple[str, str]] = {
         'With `tip-codes = "vectors"` `rtcp` reads programs that say the tool axis by I, J and K. '
         "Which code announces them is known of few dialects: G43.5 of `fanuc`.",
     ),
+    "GX747": (
+        "Programs for this control are only read",
+        "Its programs are not written in words. They are turned into blocks that are, and what is "
+        "written has to be a program of another control: name it in [output], or with -t.",
+    ),
     "GX801": (
         "Two plugins offer the same name",
         "Which one a pipeline means would depend on the order of installation. Uninstall one of "

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,6 +39,10 @@ def written_out(source: Source, dialect: type[Dialect], reading: Reading) -> Sou
     That is the source itself if it has neither calls nor loops. Raises InputError where what is
     executed is not known before the control runs.
     """
+    if dialect.translator is not None:
+        from gcxform.flow.translation import translated
+
+        return translated(source, dialect, reading)
     if not has_flow(source, dialect):
         return source
     run = _executed(b"".join(source.windows()), source.name, dialect, reading)
@@ -67,6 +70,6 @@ def located(error: GcxformError, source: Source) -> GcxformError:
     for diagnostic in error.diagnostics:
         where = diagnostic.where
         if where is not None and where.line and where.file == source.name:
-            diagnostic = diagnostic.at(replace(where, line=source.line_of(where.line)))
+            diagnostic = diagnostic.at(source.shown(where))
         found.append(diagnostic)
     return type(error)(tuple(found))

@@ -242,7 +242,8 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         if code.group == "spindle":
             meaning.groups["spindle"] = name
         if code.barrier:
-            yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.barrier}")
+            called = dialect.spelled.get(name, name)
+            yield Refusal("GX210", word.start, width, f"{called} is not resolved: {code.barrier}")
         meaning.ends |= code.ends
         if code.loses_position:
             meaning.loses_position = True

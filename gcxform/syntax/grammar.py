@@ -39,7 +39,7 @@ class Grammar:
         try:
             tree = self._lark.parse(text)
         except UnexpectedInput as error:
-            return Block(text, (), _refusal(error, text))
+            return Block(text, (), refusal_of(error, text))
         return Block(text, tuple(_item(child, text) for child in tree.children))
 
 
@@ -49,7 +49,7 @@ def load(package: str, name: str) -> Grammar:
     return Grammar(package, name)
 
 
-def _refusal(error: UnexpectedInput, text: str) -> tuple[int, str]:
+def refusal_of(error: UnexpectedInput, text: str) -> tuple[int, str]:
     """Return the column and a sentence for a text that the grammar does not accept."""
     at = error.pos_in_stream
     if at is None or at < 0 or at >= len(text):

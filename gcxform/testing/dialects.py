@@ -10,11 +10,14 @@ from gcxform.contract import Pass, PassContext
 from gcxform.diagnostics import GcxformError
 from gcxform.dialect import INCH, Dialect
 from gcxform.emit.numbers import MOST_DECIMALS
+from gcxform.flow.translation import Translator, translated
 from gcxform.modal.codes import ISO, Effect
 from gcxform.modal.meaning import Meaning
 from gcxform.modal.sorting import meaning_of
+from gcxform.modal.state import Reading
 from gcxform.modal.tables import COLUMNS, GROUPS, NUMBER
 from gcxform.pipeline import Pipeline
+from gcxform.source import Source
 from gcxform.syntax.shapes import Shape, slots_of
 from gcxform.toolpath.path import Plane, Toolpath
 
@@ -58,9 +61,29 @@ def check_dialect(dialect: type[Dialect]) -> None:
         _check_code(dialect, code)
     for number in dialect.m_codes:
         _check_m_code(dialect, number)
-    _check_program(dialect)
     _check_refusals(dialect)
+    if dialect.translator is not None:
+        _check_translator(dialect, dialect.translator)
+        return
+    _check_program(dialect)
     _check_planes(dialect)
+
+
+def _check_translator(dialect: type[Dialect], kind: type[Translator]) -> None:
+    """Check that an empty line stands for nothing, and that noise is refused with a place."""
+    here = f"the translator of {dialect.name}"
+    source = Source.of_bytes(b"\n\n")
+    assert not translated(source, dialect, Reading()).size, f"{here} makes blocks of nothing"
+    assert not kind.signs.search(b"\n"), f"{here} finds its signs in an empty program"
+    try:
+        translated(Source.of_bytes(b"\n?\n"), dialect, Reading())
+    except GcxformError as error:
+        (found,) = error.diagnostics
+        where = found.where
+        good = found.code == "GX101" and where is not None and where.line == 2
+        assert good, f"{here} refuses '?' with {found}, not with GX101 and its line"
+    else:
+        raise AssertionError(f"{here} takes '?'")
 
 
 def _check_declaration(dialect: type[Dialect]) -> None:

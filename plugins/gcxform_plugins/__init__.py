@@ -8,12 +8,13 @@ import gcxform as gx
 @gx.hookimpl
 def gcxform_dialects() -> list[type[gx.Dialect]]:
     """Return one class for each controller family."""
+    from gcxform_plugins.dialects.fagor import Fagor
     from gcxform_plugins.dialects.fanuc import Fanuc
     from gcxform_plugins.dialects.grbl import Grbl
     from gcxform_plugins.dialects.haas import Haas
     from gcxform_plugins.dialects.linuxcnc import LinuxCNC
 
-    return [Fanuc, Grbl, Haas, LinuxCNC]
+    return [Fagor, Fanuc, Grbl, Haas, LinuxCNC]
 
 
 @gx.hookimpl

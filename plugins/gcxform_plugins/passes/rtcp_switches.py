@@ -31,9 +31,9 @@ class Switches:
 
     def __init__(self, path: gx.Toolpath, context: gx.PassContext) -> None:
         assert context.machine is not None
-        control = context.machine.control
         self.path = path
-        self.codes = {control[name] for name in ("tip-on", "tip-off") if name in control}
+        self.codes = {*context.switches}
+        self.spelled = context.source.spelled
         last = path.end[-1:] if len(path) else path.entry[None, :]
         self.angles = self._angles(np.vstack([path.start, last]), gx.chain_of(context.machine))
         of_frame = np.array([self._state(frame) for frame in path.frames])
@@ -76,7 +76,8 @@ class Switches:
         turned, rest = off & np.isfinite(self.angles), np.asarray(~off.any(axis=1))
         for event in self.path.events:
             if event.what in self.codes and not rest[event.row]:
-                message = f"{event.what} where not all rotary axes are known to be at 0"
+                called = self.spelled.get(event.what, event.what)
+                message = f"{called} where not all rotary axes are known to be at 0"
                 yield event.line, message, TURN_BACK
         changed = (self.state != self.before) & ~rest[:-1]
         yield from self._rows(changed, "the control was switched where axes may be turned")

@@ -1,0 +1,291 @@
+"""Programs whose statements are not blocks of words: each becomes the blocks that say the same.
+
+A control with a language of its own is read in two steps. Its grammar takes a line apart into
+items, and a `Translator` says which blocks of words the items stand for, in order; those are read
+with the tables of the dialect, as any program is. So such a dialect is only read: what is written
+is a program of another one.
+
+lark parses one line of each shape, as it does for words (ARCHITECTURE, "Reading: shapes"): two
+lines that differ only in their numbers have the same items.
+"""
+
+from __future__ import annotations
+
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, NoReturn
+
+import numpy as np
+from lark import Lark, Token, Tree
+from lark.exceptions import UnexpectedInput
+
+from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.dialect import Dialect
+from gcxform.flow.written_out import WrittenOut
+from gcxform.modal.state import Reading
+from gcxform.source import Source
+from gcxform.syntax import kept
+from gcxform.syntax.grammar import refusal_of, rule_of, span_of
+
+NUMBER = "NUMBER"
+"""The terminal of a grammar that stands for numbers."""
+LINE_END = re.compile(rb"\r\n|\n|\r")
+HINT = "let the CAM write plain moves, or take this out of the program"
+STEPS_AT_MOST = 2_000_000  # lines that are executed: more is taken for a loop without an end
+BRACKETS = str.maketrans("()", "[]")
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """A part of a statement, as the grammar names it.
+
+    `kind` is the rule, `names` are its terminals but for numbers, in capitals, `numbers` the
+    numbers as written, without blanks; `place` are columns of its line, from 0.
+    """
+
+    kind: str
+    names: tuple[str, ...]
+    numbers: tuple[str, ...]
+    place: tuple[int, int]
+
+    @property
+    def name(self) -> str:
+        """The first name; nothing where there is none."""
+        return self.names[0] if self.names else ""
+
+    @property
+    def value(self) -> float:
+        """The only number. Raises ValueError where there is none, or more than one."""
+        (number,) = self.numbers
+        return float(number)
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """An item of a shape: its numbers are slots."""
+
+    kind: str
+    names: tuple[str, ...]
+    slots: tuple[int, ...]
+    place: tuple[int, int]
+
+
+class Translator(ABC):
+    """Turns the lines of one program into blocks; one is made for each program.
+
+    The children of the grammar's `start` are the items of a line. Two kinds are seen to here:
+    `comment`, which is kept, and `block_delete`, for which there is a setting. A translator may
+    carry on at another line by setting `at`, which counts from 0.
+    """
+
+    grammar: ClassVar[tuple[str, str]]
+    """Package and name of the grammar of a line."""
+    number: ClassVar[re.Pattern[str]]
+    """What the grammar's terminal NUMBER looks like."""
+    signs: ClassVar[re.Pattern[bytes]]
+    """What programs in this language have, and those of other controls have not."""
+
+    def __init__(self, lines: Sequence[str], file: str, dialect: type[Dialect], reading: Reading):
+        self.lines = lines
+        self.file = file
+        self.dialect = dialect
+        self.reading = reading
+        self.line = self.at = 0
+        self._lark: Lark = kept.grammar(*self.grammar)
+        self._shapes: dict[str, tuple[_Part, ...]] = {}
+
+    @abstractmethod
+    def blocks(self, items: Sequence[Item]) -> Iterable[str]:
+        """Return the blocks that the items of a line stand for. Raises InputError."""
+
+    def closing(self) -> Iterable[str]:
+        """Return the blocks behind the last line."""
+        return ()
+
+    # --- lines ---
+
+    def items(self, line: int) -> tuple[Item, ...]:
+        """Return the items of a line. Raises InputError for what the grammar does not accept."""
+        text = self.lines[line]
+        found = self.number.findall(text)
+        shape = self.number.sub("#", text)
+        parts = self._shapes.get(shape)
+        if parts is None or any(part.kind == "comment" for part in parts):
+            numbers, parts = self._parsed(line)
+            if numbers == found and not any(part.kind == "comment" for part in parts):
+                self._shapes[shape] = parts
+            found = numbers
+        bare = [number.replace(" ", "").replace("\t", "") for number in found]
+        return tuple(
+            Item(p.kind, p.names, tuple(bare[slot] for slot in p.slots), p.place) for p in parts
+        )
+
+    def _parsed(self, line: int) -> tuple[list[str], tuple[_Part, ...]]:
+        """Return the numbers of a line, and its parts."""
+        text = self.lines[line]
+        try:
+            tree = self._lark.parse(text)
+        except UnexpectedInput as error:
+            column, message = refusal_of(error, text)
+            what = f"this is not a program for {self.dialect.name}: {message}"
+            raise self._error(line, "GX101", what, (column - 1, column), "") from None
+        numbers: list[str] = []
+        return numbers, tuple(_part(child, numbers) for child in tree.children)
+
+    # --- the walk ---
+
+    def run(self) -> Iterator[tuple[int, str]]:
+        """Yield blocks with the line that each is for, from 0. Raises InputError."""
+        steps = 0
+        while self.at < len(self.lines):
+            self.line, self.at = self.at, self.at + 1
+            steps += 1
+            if steps > STEPS_AT_MOST:
+                raise self.refusal("GX224", f"the program is not over after {steps - 1} lines")
+            for block in self._translated(self.line):
+                yield self.line, block
+        self.line = max(len(self.lines) - 1, 0)
+        for block in self.closing():
+            yield self.line, block
+
+    def _translated(self, line: int) -> Iterator[str]:
+        """Yield the blocks of a line, the first with its comments."""
+        items = self.items(line)
+        rest = [item for item in items if item.kind not in ("comment", "block_delete")]
+        comments = "".join(
+            _comment(self.lines[line][slice(*item.place)])
+            for item in items
+            if item.kind == "comment"
+        )
+        if len(rest) + bool(comments) < len(items) and self._skips(items):
+            return
+        for block in self.blocks(rest) if rest else ():
+            yield f"{block} {comments}".rstrip()
+            comments = ""
+        if comments:
+            yield comments
+
+    def _skips(self, items: Sequence[Item]) -> bool:
+        """Whether the control skips the line. Raises InputError where nobody has said so."""
+        slash = next((item for item in items if item.kind == "block_delete"), None)
+        if slash is None:
+            return False
+        policy = self.reading.block_delete or self.dialect.block_delete
+        if not policy:
+            message = "a switch of the control decides whether this block is executed"
+            hint = 'say which: block-delete = "execute" or "skip" in [input]'
+            raise self.refusal("GX211", message, slash, hint)
+        return policy == "skip"
+
+    # --- refusals ---
+
+    def refusal(
+        self, code: str, message: str, item: Item | None = None, hint: str = ""
+    ) -> InputError:
+        """Return the error about an item of the line that is translated; about all of it without.
+
+        Where items of a shape stand is that of the first line of it, so the line is parsed again.
+        """
+        text = self.lines[self.line]
+        place = len(text) - len(text.lstrip()), len(text.rstrip())
+        if item is not None:
+            shared = self.items(self.line)
+            at = next((n for n, other in enumerate(shared) if other == item), None)
+            place = item.place if at is None else self._parsed(self.line)[1][at].place
+        return self._error(self.line, code, message, place, hint)
+
+    def refuse(self, message: str, item: Item | None = None, hint: str = HINT) -> NoReturn:
+        """Refuse an item as one that is not resolved. Raises InputError."""
+        raise self.refusal("GX210", message, item, hint)
+
+    def _error(
+        self, line: int, code: str, message: str, place: tuple[int, int], hint: str
+    ) -> InputError:
+        start, end = place
+        where = Location(self.file, line + 1, start + 1, self.lines[line], max(1, end - start))
+        return InputError((Diagnostic(code, message, where, hint),))
+
+
+class Translated(WrittenOut):
+    """The blocks of a program in another language; what is said about them shows its lines."""
+
+    def __init__(self, source: Source, lines: list[str], text: bytes, origin: list[int]) -> None:
+        super().__init__(source, text, np.array(origin, np.int64))
+        self.lines = lines
+
+    def shown(self, where: Location) -> Location:
+        """Return a place in the program, all of its line, for one in the blocks."""
+        line = self.line_of(where.line)
+        text = self.lines[line - 1]
+        start = len(text) - len(text.lstrip())
+        width = max(1, len(text.strip()))
+        return replace(where, line=line, column=start + 1, text=text, width=width)
+
+
+def translated(source: Source, dialect: type[Dialect], reading: Reading) -> Translated:
+    """Return the blocks of a program. Raises InputError where it is refused."""
+    text = b"".join(source.windows())
+    lines = [line.decode("latin-1") for line in LINE_END.split(text)]
+    if lines and not lines[-1]:
+        lines.pop()
+    assert dialect.translator is not None
+    kind: type[Translator] = dialect.translator
+    blocks, origin = [], []
+    for line, block in kind(lines, source.name, dialect, reading).run():
+        blocks.append(block)
+        origin.append(line)
+    joined = "".join(f"{block}\n" for block in blocks).encode("latin-1")
+    return Translated(source, lines, joined, origin)
+
+
+def has_signs(text: bytes, dialect: type[Dialect]) -> bool:
+    """Whether a text may be a program of a dialect: always, where that is one of words."""
+    return dialect.translator is None or dialect.translator.signs.search(text) is not None
+
+
+def foreign_lines(text: bytes, dialect: type[Dialect]) -> tuple[int, int]:
+    """Return how many lines a text has, empty ones left out, and how many the grammar refuses."""
+    assert dialect.translator is not None
+    kind: type[Translator] = dialect.translator
+    lines = [line.decode("latin-1") for line in LINE_END.split(text) if line.strip()]
+    reader = kind(lines, "", dialect, Reading())
+    return len(lines), sum(not _accepted(reader, line) for line in range(len(lines)))
+
+
+def _accepted(reader: Translator, line: int) -> bool:
+    try:
+        reader.items(line)
+    except InputError:
+        return False
+    return True
+
+
+def _comment(text: str) -> str:
+    """Return a comment in round brackets."""
+    inner = text[1:-1] if text.startswith("(") and text.endswith(")") else text.lstrip(";* \t")
+    return f"({inner.strip().translate(BRACKETS)})"
+
+
+def _part(node: Any, numbers: list[str]) -> _Part:
+    """Return a child of the start rule; its numbers are put behind those there are."""
+    tokens = [node] if isinstance(node, Token) else [*_tokens(node)]
+    names, slots = [], []
+    for token in tokens:
+        if token.type.rsplit("__", 1)[-1] == NUMBER:
+            slots.append(len(numbers))
+            numbers.append(str(token))
+        else:
+            names.append(str(token).upper())
+    kind = node.type.lower() if isinstance(node, Token) else rule_of(node)
+    return _Part(kind, tuple(names), tuple(slots), span_of(node))
+
+
+def _tokens(tree: Tree[Token]) -> Iterator[Token]:
+    """Yield the terminals below a node, in order."""
+    for child in tree.children:
+        if isinstance(child, Token):
+            yield child
+        else:
+            yield from _tokens(child)
