@@ -112,6 +112,9 @@ class Verifier:
             raise VerificationError(error.diagnostics) from None
         path = back.path
         self.findings.inch |= bool(path.blocks.inch[path.block].any())
+        if self.switches:
+            here = path.source - first
+            path = _followed(path, read.path, source[here], path.nth + nth[here])
         for step in reversed(self.passes):
             path = step.undo(path, self.context)
         trace = Trace(read.path, lines, back.path, path, source, nth, first)
@@ -307,6 +310,31 @@ def _speeds(context: PassContext) -> dict[str, tuple[float, float]]:
             known = context.decimals.get(letter, numbers.mm if letter in LINEAR else numbers.angle)
             found[letter] = axis.max_speed, 10.0**-known
     return found
+
+
+def _followed(path: Toolpath, read: Toolpath, line: Ints, nth: Ints) -> Toolpath:
+    """Return a path that was written, with what a pass has taken over from the control.
+
+    `line` (n,) are the lines of the source for its rows, and `nth` which of their moves. Where the
+    control of the source follows the tip no code in the output says; and behind such a code the
+    source does not know where X, Y and Z stand, while the output does: what does not move there is
+    not known here either.
+    """
+    if not len(read):
+        return path
+    first, last = (np.searchsorted(read.source, line, side) for side in ("left", "right"))
+    row = np.clip(first + nth, first, np.maximum(last, first + 1) - 1)
+    row = np.minimum(row, len(read) - 1)
+    pairs = np.stack([path.frame, read.frame[row]])
+    pairs, which = np.unique(pairs, axis=1, return_inverse=True)
+    frames = tuple(
+        replace(path.frames[mine], following=read.frames[its].following)
+        for mine, its in pairs.T.tolist()
+    )
+    end, rests = path.end.copy(order="F"), path.end == path.start
+    rests[:, 3:] = False
+    end[rests & np.isnan(read.end[row])] = np.nan
+    return path.replace(end=end, frames=frames, frame=which.reshape(-1))
 
 
 def _in_mm(event: Event, path: Toolpath) -> Event:

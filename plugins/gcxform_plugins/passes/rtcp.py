@@ -201,7 +201,7 @@ class Rtcp(gx.Pass):
         """Return the path of the axes for one of tips; if asked the reverse, or one corrected."""
         switches = Switches(path, context) if self.reads_tip_codes else None
         if switches is not None:
-            switches.refuse()
+            switches.refuse(self.turns_anew)
         if not len(path) or self._nothing_to_correct(context):
             return path.replace(blocks=self.timed(path.blocks))
         if switches is not None and (context.source.tip_codes or not switches.codes):
