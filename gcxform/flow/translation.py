@@ -31,10 +31,14 @@ from gcxform.syntax.grammar import refusal_of, rule_of, span_of
 
 NUMBER = "NUMBER"
 """The terminal of a grammar that stands for numbers."""
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+LEADER = b"\0\x7f"  # NUL and DEL, as in `iso.lark`
+COMMENT, BLOCK_DELETE = "comment", "block_delete"
 LINE_END = re.compile(rb"\r\n|\n|\r")
 HINT = "let the CAM write plain moves, or take this out of the program"
-STEPS_AT_MOST = 2_000_000  # lines that are executed: more is taken for a loop without an end
+STEPS_AT_MOST = 2_000_000  # lines executed more than once: more is taken for an endless loop
 BRACKETS = str.maketrans("()", "[]")
+SLOT = "\uffff"  # stands for a number in a shape: no program, read as bytes, has it
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +75,22 @@ class _Part:
     slots: tuple[int, ...]
     place: tuple[int, int]
 
+    def item(self, numbers: Sequence[str]) -> Item:
+        """Return the item with its numbers."""
+        return Item(self.kind, self.names, tuple(numbers[slot] for slot in self.slots), self.place)
+
+
+@dataclass(frozen=True, slots=True)
+class _Shape:
+    """The parts of all lines that differ only in their numbers, and their comments.
+
+    `template` is the block of a plain line, to be filled in with its numbers; nothing if it is not.
+    """
+
+    parts: tuple[_Part, ...]
+    comments: str
+    template: str
+
 
 class Translator(ABC):
     """Turns the lines of one program into blocks; one is made for each program.
@@ -83,7 +103,8 @@ class Translator(ABC):
     grammar: ClassVar[tuple[str, str]]
     """Package and name of the grammar of a line."""
     number: ClassVar[re.Pattern[str]]
-    """What the grammar's terminal NUMBER looks like."""
+    """What the grammar's terminal NUMBER looks like, without groups; with a look behind it need not
+    match the number of a code, which is then part of a name: `G54`."""
     signs: ClassVar[re.Pattern[bytes]]
     """What programs in this language have, and those of other controls have not."""
 
@@ -93,12 +114,24 @@ class Translator(ABC):
         self.dialect = dialect
         self.reading = reading
         self.line = self.at = 0
+        self.plainly = True
+        """Whether plain lines are translated as such, and not by `blocks`."""
         self._lark: Lark = kept.grammar(*self.grammar)
-        self._shapes: dict[str, tuple[_Part, ...]] = {}
+        self._split = re.compile(f"({self.number.pattern})", self.number.flags).split
+        self._shapes: dict[str, _Shape] = {}
+        self._items: tuple[Item, ...] = ()
 
     @abstractmethod
     def blocks(self, items: Sequence[Item]) -> Iterable[str]:
         """Return the blocks that the items of a line stand for. Raises InputError."""
+
+    def plain(self, items: Sequence[Item]) -> bool:
+        """Whether items are the words of one block, in order, whatever stands before them.
+
+        Asked once for each shape, so the answer must not depend on numbers. It spares such lines
+        the way through `blocks` while `plainly` is set: a name and a number for each item.
+        """
+        return False
 
     def closing(self) -> Iterable[str]:
         """Return the blocks behind the last line."""
@@ -108,19 +141,40 @@ class Translator(ABC):
 
     def items(self, line: int) -> tuple[Item, ...]:
         """Return the items of a line. Raises InputError for what the grammar does not accept."""
+        shape, numbers = self._shape(line)
+        bare = [number.replace(" ", "").replace("\t", "") for number in numbers]
+        return tuple(part.item(bare) for part in shape.parts)
+
+    def _shape(self, line: int) -> tuple[_Shape, list[str]]:
+        """Return the shape of a line, and its numbers.
+
+        A line with numbers in a comment, or in a name, is the only one of its shape.
+        """
+        pieces = self._split(self.lines[line])
+        found, key = pieces[1::2], SLOT.join(pieces[::2])
+        shape = self._shapes.get(key)
+        if shape is not None:
+            return shape, found
+        numbers, parts = self._parsed(line)
+        shape = self._shape_of(line, numbers, parts)
+        if numbers == found:
+            self._shapes[key] = shape
+        return shape, numbers
+
+    def _shape_of(self, line: int, numbers: list[str], parts: tuple[_Part, ...]) -> _Shape:
         text = self.lines[line]
-        found = self.number.findall(text)
-        shape = self.number.sub("#", text)
-        parts = self._shapes.get(shape)
-        if parts is None or any(part.kind == "comment" for part in parts):
-            numbers, parts = self._parsed(line)
-            if numbers == found and not any(part.kind == "comment" for part in parts):
-                self._shapes[shape] = parts
-            found = numbers
-        bare = [number.replace(" ", "").replace("\t", "") for number in found]
-        return tuple(
-            Item(p.kind, p.names, tuple(bare[slot] for slot in p.slots), p.place) for p in parts
-        )
+        said = [part for part in parts if part.kind == COMMENT]
+        comments = "".join(_comment(text[slice(*part.place)]) for part in said)
+        rest = [part for part in parts if part.kind != COMMENT]
+        slots = [slot for part in rest for slot in part.slots]
+        pairs = all(len(part.names) == len(part.slots) == 1 for part in rest)
+        if not rest or not pairs or slots != [*range(len(numbers))]:
+            return _Shape(parts, comments, "")
+        template = ""
+        if self.plain([part.item(numbers) for part in rest]):
+            words = [part.names[0].replace("%", "%%") + "%s" for part in rest]
+            template = " ".join([*words, comments.replace("%", "%%")]).rstrip()
+        return _Shape(parts, comments, template)
 
     def _parsed(self, line: int) -> tuple[list[str], tuple[_Part, ...]]:
         """Return the numbers of a line, and its parts."""
@@ -138,29 +192,31 @@ class Translator(ABC):
 
     def run(self) -> Iterator[tuple[int, str]]:
         """Yield blocks with the line that each is for, from 0. Raises InputError."""
-        steps = 0
+        left = STEPS_AT_MOST + len(self.lines)
         while self.at < len(self.lines):
             self.line, self.at = self.at, self.at + 1
-            steps += 1
-            if steps > STEPS_AT_MOST:
-                raise self.refusal("GX224", f"the program is not over after {steps - 1} lines")
-            for block in self._translated(self.line):
+            left -= 1
+            if left < 0:
+                most = STEPS_AT_MOST + len(self.lines)
+                raise self.refusal("GX224", f"the program is not over after {most} lines")
+            shape, numbers = self._shape(self.line)
+            if shape.template and self.plainly:
+                yield self.line, shape.template % (*numbers,)
+                continue
+            for block in self._translated(shape, numbers):
                 yield self.line, block
         self.line = max(len(self.lines) - 1, 0)
         for block in self.closing():
             yield self.line, block
 
-    def _translated(self, line: int) -> Iterator[str]:
+    def _translated(self, shape: _Shape, numbers: Sequence[str]) -> Iterator[str]:
         """Yield the blocks of a line, the first with its comments."""
-        items = self.items(line)
-        rest = [item for item in items if item.kind not in ("comment", "block_delete")]
-        comments = "".join(
-            _comment(self.lines[line][slice(*item.place)])
-            for item in items
-            if item.kind == "comment"
-        )
-        if len(rest) + bool(comments) < len(items) and self._skips(items):
+        bare = [number.replace(" ", "").replace("\t", "") for number in numbers]
+        items = self._items = tuple(part.item(bare) for part in shape.parts)
+        rest = [item for item in items if item.kind not in (COMMENT, BLOCK_DELETE)]
+        if self._skips(items):
             return
+        comments = shape.comments
         for block in self.blocks(rest) if rest else ():
             yield f"{block} {comments}".rstrip()
             comments = ""
@@ -169,7 +225,7 @@ class Translator(ABC):
 
     def _skips(self, items: Sequence[Item]) -> bool:
         """Whether the control skips the line. Raises InputError where nobody has said so."""
-        slash = next((item for item in items if item.kind == "block_delete"), None)
+        slash = next((item for item in items if item.kind == BLOCK_DELETE), None)
         if slash is None:
             return False
         policy = self.reading.block_delete or self.dialect.block_delete
@@ -191,9 +247,9 @@ class Translator(ABC):
         text = self.lines[self.line]
         place = len(text) - len(text.lstrip()), len(text.rstrip())
         if item is not None:
-            shared = self.items(self.line)
-            at = next((n for n, other in enumerate(shared) if other == item), None)
-            place = item.place if at is None else self._parsed(self.line)[1][at].place
+            same = [k for k, other in enumerate(self._items) if other is item]
+            same += [k for k, other in enumerate(self.items(self.line)) if other == item]
+            place = self._parsed(self.line)[1][same[0]].place if same else item.place
         return self._error(self.line, code, message, place, hint)
 
     def refuse(self, message: str, item: Item | None = None, hint: str = HINT) -> NoReturn:
@@ -226,8 +282,7 @@ class Translated(WrittenOut):
 
 def translated(source: Source, dialect: type[Dialect], reading: Reading) -> Translated:
     """Return the blocks of a program. Raises InputError where it is refused."""
-    text = b"".join(source.windows())
-    lines = [line.decode("latin-1") for line in LINE_END.split(text)]
+    lines = _lines(b"".join(source.windows()))
     if lines and not lines[-1]:
         lines.pop()
     assert dialect.translator is not None
@@ -240,6 +295,12 @@ def translated(source: Source, dialect: type[Dialect], reading: Reading) -> Tran
     return Translated(source, lines, joined, origin)
 
 
+def _lines(text: bytes) -> list[str]:
+    """Return the lines of a program, without the leader of a tape and what editors put first."""
+    lines = LINE_END.split(text.removeprefix(BYTE_ORDER_MARK))
+    return [line.decode("latin-1") if line.strip(LEADER) else "" for line in lines]
+
+
 def has_signs(text: bytes, dialect: type[Dialect]) -> bool:
     """Whether a text may be a program of a dialect: always, where that is one of words."""
     return dialect.translator is None or dialect.translator.signs.search(text) is not None
@@ -249,7 +310,7 @@ def foreign_lines(text: bytes, dialect: type[Dialect]) -> tuple[int, int]:
     """Return how many lines a text has, empty ones left out, and how many the grammar refuses."""
     assert dialect.translator is not None
     kind: type[Translator] = dialect.translator
-    lines = [line.decode("latin-1") for line in LINE_END.split(text) if line.strip()]
+    lines = [line for line in _lines(text) if line.strip()]
     reader = kind(lines, "", dialect, Reading())
     return len(lines), sum(not _accepted(reader, line) for line in range(len(lines)))
 
