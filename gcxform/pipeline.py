@@ -18,7 +18,7 @@ from gcxform.certifying import certificate
 from gcxform.chain import check_chain, facts_after
 from gcxform.contract import Pass, PassContext, TextPass
 from gcxform.diagnostics import UsageError
-from gcxform.dialect import Dialect, NumberFormat
+from gcxform.dialect import ROTARY, Dialect, NumberFormat
 from gcxform.emit.manner import Manner
 from gcxform.machine.machine import Machine
 from gcxform.machine.machinefile import load_machine
@@ -215,10 +215,10 @@ class Pipeline:
             total += self._repeated * ARC_ROUNDING * self.manner.step("X", inch)
         return total
 
-    def angle_limit(self) -> float:
+    def angle_limits(self) -> dict[str, float]:
         """Return how far (deg) rotary axes may be off: what steps promise, and the rounding."""
         promised = sum(step.promise_angle for step in self.path_passes)
-        return promised + 1.01 * max(self.manner.step(letter, False) for letter in "ABC")
+        return {a: promised + 1.01 * self.manner.step(a, False) for a in ROTARY}
 
     def _check_target(self) -> None:
         """Refuse to write, or to change the text of, programs that are only read."""

@@ -110,7 +110,7 @@ class Run:
                 self._reading_of_output(reading),
                 axes,
                 (pipeline.limit(False), pipeline.limit(True)),
-                pipeline.angle_limit(),
+                pipeline.angle_limits(),
                 self.source.name,
                 any(step.folds for step in self.steps),
                 self._switches(),
