@@ -43,8 +43,8 @@ class Place:
     A tip on the workpiece is then position - tool + zero + gauge point, and the axes stand at
     position + zero, where `zero` (3,) is the work offset. `which` (n,) of the `tools` (k, 3) in mm
     holds in each row, and `which_before` in the one before it: the frame of the row before the
-    first is the first of the frames. In rows that are `off` (n,) X, Y and Z are those of the axes,
-    because the control has been told not to follow the tip.
+    first is the first of the frames. `switched`: codes say where the control follows the tip, and
+    in rows that are `off` (n,) X, Y and Z are those of the axes.
     """
 
     def __init__(
@@ -53,6 +53,7 @@ class Place:
         context: gx.PassContext,
         chain: gx.Chain | None = None,
         others: str = "",
+        switched: bool = False,
     ) -> None:
         assert context.machine is not None
         self.path = path
@@ -63,8 +64,7 @@ class Place:
         self.zero = self._zero(context)
         self._check_frames()
         tools = np.array([frame.tool for frame in path.frames])
-        said = bool(context.switches)
-        off = np.array([said and frame.following is False for frame in path.frames])
+        off = np.array([switched and frame.following is False for frame in path.frames])
         self.off = np.asarray(off[path.frame])
         self.tools, which = np.unique(tools, axis=0, return_inverse=True)
         of_frame = which.reshape(-1)
