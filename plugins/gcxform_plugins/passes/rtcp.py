@@ -369,11 +369,8 @@ class Rtcp(gx.Pass):
         proof.run()
         found = {"tip off, mm": proof.tip, "tool axis off, degrees": proof.lean}
         found |= proof.measured()
-        return (
-            found
-            if self.calibrated is None
-            else found | {"angles corrected by, degrees": proof.turn}
-        )
+        corrected = {"angles corrected by, degrees": proof.turn}
+        return found if self.calibrated is None else found | corrected
 
     def timed(self, blocks: gx.Blocks) -> gx.Blocks:
         """Return blocks in inverse time, if positions of axes are written.
