@@ -67,11 +67,13 @@ class Blocks(Moves):
             yield from self._tooled(line)
         if line.work is not None:
             self._shift(line.work[0])
+        if line.modal is not None and (line.axes or line.centres):
+            self.refuse("MCALL beside a move", line.modal, "give it its own line")
         if line.machine is not None:
             yield self._in_machine(line)
             return
         yield self.block_of(line)
-        if self.drilling is not None and line.axes:
+        if self.drilling is not None and (line.axes or line.centres):
             yield from self._holes(self.drilling)
 
     # --- lines of one thing ---
@@ -155,8 +157,9 @@ class Blocks(Moves):
         if self.edge != "0" or self.following:
             message = "SUPA with a tool length or TRAORI in force, or where that is not known"
             self.refuse(message, line.machine, hint)
-        if motion not in ("0", "1") or line.centres or line.named or self.comp:
-            self.refuse("SUPA needs G0 or G1, and no compensation", line.machine, hint)
+        if motion not in ("0", "1") or line.centres or line.named or self.comp or self.drilling:
+            message = "SUPA needs G0 or G1, and neither compensation nor a cycle"
+            self.refuse(message, line.machine, hint)
         words = []
         for axis, (way, number, item) in line.axes.items():
             if way == STEP or (not way and self.steps):
