@@ -81,17 +81,24 @@ def one(control: Control, raw: str) -> None:
         control.seconds.append(named["F"][1])
         return
     modes(control, codes, named, cip)
+    tooled(control, words, named)
+    if named.keys() & {*"XYZABCIJK"}:
+        move(control, named)
+        for kind, level in control.hole:
+            axis = next(a for a in "XYZ" if a not in control.plane)
+            control.seconds.append(level) if kind == "4" else control.go(kind, {axis: level})
+
+
+def tooled(
+    control: Control, words: list[tuple[str, str, str]], named: dict[str, tuple[str, float]]
+) -> None:
+    """Take M6 and D."""
     if 6.0 in {float(number) for letter, _, number in words if letter == "M"}:
         control.at, control.edge = {}, ""
     if "D" in named and str(named["D"][1]) != control.edge:
         control.edge = str(named["D"][1])
         for axis in "XYZ":
             control.at.pop(axis, None)
-    if named.keys() & {*"XYZABCIJK"}:
-        move(control, named)
-        for kind, level in control.hole:
-            axis = next(a for a in "XYZ" if a not in control.plane)
-            control.seconds.append(level) if kind == "4" else control.go(kind, {axis: level})
 
 
 def modes(

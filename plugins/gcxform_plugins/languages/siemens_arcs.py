@@ -39,24 +39,25 @@ def _starts(place: Place, plane: str) -> list[float]:
 def centre_words(line: Line, place: Place, plane: str) -> tuple[bool, list[str]]:
     """Return whether centres are absolute, and their words. Raises PlaceError.
 
-    Both in AC stay as they are. Of one in AC the other is where the axis starts, and its distance.
+    Where the arc starts is known, those in AC become distances; else both of them have to be in AC,
+    and stay as they are.
     """
     ways = {letter: way for letter, (way, _, _) in line.centres.items()}
     if ABSOLUTE not in ways.values():
         return False, [letter + number for letter, (_, number, _) in line.centres.items()]
-    words = [letter + number for letter, (w, number, _) in line.centres.items() if w == ABSOLUTE]
-    for axis in plane:
-        way, number = line.centres.get(CENTRES[axis], ("", "0", None))[:2]
-        if way == ABSOLUTE:
-            continue
-        start = place.known(axis)
-        if start is None:
-            message = f"{CENTRES[axis]} is counted from the start, and where {axis} stands is open"
-            raise PlaceError("GX208", message, START)
-        words.append(CENTRES[axis] + text_of(start + type(start)(number)))
-    if len(words) > len(plane) or any(letter not in map(CENTRES.get, plane) for letter in ways):
+    axes = {CENTRES[axis]: axis for axis in plane}
+    if not line.centres.keys() <= axes.keys():
         raise PlaceError("GX304", "a centre beside the plane of the arc", "select its plane before")
-    return True, words
+    starts = {letter: place.known(axis) for letter, axis in axes.items()}
+    if None in starts.values():
+        if len(ways) < len(axes) or "" in ways.values():
+            raise PlaceError("GX208", "an arc, but where it starts is not known", START)
+        return True, [letter + number for letter, (_, number, _) in line.centres.items()]
+    words = []
+    for letter, (way, number, _) in line.centres.items():
+        start = starts[letter] if way == ABSOLUTE else None
+        words.append(letter + (number if start is None else text_of(Decimal(number) - start)))
+    return False, words
 
 
 def opened(

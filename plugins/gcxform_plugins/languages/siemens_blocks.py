@@ -91,7 +91,8 @@ class Blocks(Moves):
             yield f"G4 P{line.feed}"
         elif line.act is not None:
             self.following = line.act[0] == "M128"
-            self.place.lose(LINEAR, shifted=False)
+            if not self.place.unturned():
+                self.place.lose(LINEAR, shifted=False)
             yield from (f"F{line.feed}" if line.feed else "", line.act[0])
         elif self.once is not None:
             yield f"F{line.feed}" if line.feed else ""
@@ -103,7 +104,7 @@ class Blocks(Moves):
         if self.changed and self.edge is None:
             self.refuse("a cycle, and which edge is in force behind M6 is not known")
         first, *others = hole.blocks()
-        yield " ".join([*self.distance_code(False), first])
+        yield " ".join([*self.distance_code(Line(), False), first])
         yield from others
         self.said = "0"
         self.place.absolute(hole.axis, hole.back)
@@ -169,5 +170,5 @@ class Blocks(Moves):
             words.append(axis + number)
         self.place.lose("".join(line.axes))
         self.place.moved = True
-        codes = [*line.codes, *self.motion_code(motion), *self.distance_code(False)]
-        return " ".join([*codes, *(["G53"] if words else []), *words, *rest_of(line)])
+        codes = [*self.motion_code(line, motion), *self.distance_code(line, False)]
+        return " ".join([*line.codes, *codes, *(["G53"] if words else []), *words, *rest_of(line)])

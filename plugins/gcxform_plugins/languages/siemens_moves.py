@@ -17,18 +17,19 @@ LINEAR_WAY = 'write ORIAXES and ORIMKS; or say [control] orientation-path = "ang
 class Moves(Statements):
     """Makes the block of a move."""
 
-    def motion_code(self, motion: str) -> list[str]:
-        """Return the motion code where another is in force in the blocks."""
-        if motion == self.said:
+    def motion_code(self, line: Line, motion: str) -> list[str]:
+        """Return the motion code where the line has one, or another is in force in the blocks."""
+        if motion == self.said and not line.motion:
             return []
         self.said = motion
         return [f"G{motion}"]
 
-    def distance_code(self, steps: bool) -> list[str]:
-        """Return G90 or G91 where the other is in force in the blocks."""
+    def distance_code(self, line: Line, steps: bool) -> list[str]:
+        """Return G90 or G91 where the other is in force in the blocks, or stands in the line."""
         if steps == self.said_steps:
             return []
         self.said_steps = steps
+        line.codes[:] = [code for code in line.codes if code not in ("G90", "G91")]
         return ["G91" if steps else "G90"]
 
     def block_of(self, line: Line) -> str:
@@ -36,7 +37,7 @@ class Moves(Statements):
         self.motion = line.motion or self.motion
         if line.axes or line.centres or line.named or line.middles:
             return self._moving(line)
-        codes = self.motion_code(line.motion) if line.motion.isdigit() else []
+        codes = self.motion_code(line, line.motion) if line.motion.isdigit() else []
         return " ".join([*line.codes, *codes, *rest_of(line)])
 
     def _moving(self, line: Line) -> str:
@@ -52,9 +53,9 @@ class Moves(Statements):
             motion, computed, arc = self._arc(line)
         elif line.centres or line.named or line.middles:
             self.refuse("words of an arc in a block that is none", self.first_of(line))
-        codes = [*line.codes, *self.motion_code(motion)]
         steps, words = self._words(line, computed)
-        return " ".join([*codes, *self.distance_code(steps), *words, *arc, *rest_of(line)])
+        codes = [*self.motion_code(line, motion), *self.distance_code(line, steps)]
+        return " ".join([*line.codes, *codes, *words, *arc, *rest_of(line)])
 
     def any_of(self, line: Line) -> gx.Item | None:
         """Return a word of a move."""

@@ -40,6 +40,7 @@ class Place:
     absolute, are taken when a position is asked for. So each position has the line that told it.
 
     shifted   axes whose zero or tool length has changed, with the line that did
+    named     axes that the program has named
     unwound   rotary axes that stand whole turns beside the number that the control has
     """
 
@@ -49,6 +50,7 @@ class Place:
         }
         self.shifted: dict[str, int] = {}
         self.unwound: set[str] = set()
+        self.named: set[str] = set(start)
         self.moved = False
         self.line = 0
         self.passed: list[range] = []
@@ -58,6 +60,7 @@ class Place:
         """Take the words of the lines that were passed."""
         for line in (line for lines in self.passed for line in lines):
             for axis, number in self.words(line):
+                self.named.add(axis)
                 if line > self.at.get(axis, (-1,))[0]:
                     self.at[axis] = line, number
                 if line > self.shifted.get(axis, line):
@@ -70,6 +73,20 @@ class Place:
             self.catch_up()
         value = self.at.get(axis, (0, None))[1]
         return None if value is None else Decimal(value)
+
+    def unturned(self) -> bool:
+        """Whether rotary axes are known to stand at 0, and none of those that were named elsewhere.
+
+        Then X, Y and Z are the same numbers with TRAORI and without it.
+        """
+        self.catch_up()
+        angles = [self.known(axis) for axis in self.named & set(ROTARY)]
+        return bool(angles) and all(angle == 0 for angle in angles)
+
+    @property
+    def rotary_axes(self) -> int:
+        """How many rotary axes the program has named."""
+        return len(self.named & set(ROTARY))
 
     def lose(self, axes: str, shifted: bool = True) -> None:
         """Forget where axes stand."""
@@ -84,8 +101,12 @@ class Place:
         if axis in self.unwound:
             message = f"{axis} stands whole turns beside the number that the control has"
             raise PlaceError("GX210", message, f"write {axis}=DC(...) for all of its words")
-        self.at[axis] = self.line, number
+        self._stand(axis, number)
         self.shifted.pop(axis, None)
+
+    def _stand(self, axis: str, value: str | Decimal) -> None:
+        self.at[axis] = self.line, value
+        self.named.add(axis)
 
     def step(self, axis: str, number: str) -> None:
         """Take an incremental word. Raises PlaceError."""
@@ -97,7 +118,8 @@ class Place:
             )
             raise PlaceError("GX210", message, f"tell {axis} absolute before")
         if before is not None:
-            self.at[axis] = self.line, before + Decimal(number)
+            self._stand(axis, before + Decimal(number))
+        self.named.add(axis)
 
     def stepped(self, axis: str, number: str) -> str:
         """Return where an incremental word leads to, and go there. Raises PlaceError."""
@@ -123,7 +145,7 @@ class Place:
             message = f"{axis}={way}(...) in a cut, and where {axis} stands is not known"
             raise PlaceError("GX207", message, f"turn {axis} in a rapid before")
         end = wanted if before is None else before + _way(axis, way, before, wanted)
-        self.at[axis] = self.line, end
+        self._stand(axis, end)
         (self.unwound.add if end != wanted else self.unwound.discard)(axis)
         self.shifted.pop(axis, None)
         return text_of(end)

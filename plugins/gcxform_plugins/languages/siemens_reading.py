@@ -180,7 +180,8 @@ class Statements(gx.Translator):
             self._motion_code(line, item, code)
         elif code in ("90", "91"):
             self._once(line, item, "distance")
-            self.steps = code == "91"
+            self.steps = self.said_steps = code == "91"
+            line.codes.append(f"G{code}")
         elif code in WORK:
             self._once(line, item, "work")
             line.codes.append(WORK[code])
@@ -312,9 +313,9 @@ class Statements(gx.Translator):
 
     def _stands_still(self, given: Sequence[str]) -> bool:
         """Whether a swivel to nowhere turns no axis: two of them at least are known to be at 0."""
-        self.place.catch_up()
-        at = [self.place.known(axis) for axis in ROTARY if axis in self.place.at]
-        return cycles.swivels_nowhere(given) and len(at) > 1 and all(x == 0 for x in at)
+        return (
+            self.place.unturned() and self.place.rotary_axes > 1 and cycles.swivels_nowhere(given)
+        )
 
     def _drilled(self, line: Line, item: gx.Item, name: str, given: Sequence[str]) -> None:
         """Take a cycle, for this place or, behind MCALL, for those of the lines that follow."""
