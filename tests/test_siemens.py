@@ -374,6 +374,40 @@ def test_nothing_is_corrected_twice(tmp_path, use):
 
 MODEL = (Path(__file__).parents[1] / "examples" / "lddm" / "model.toml").read_text()
 
+# --- what turns between ends ---
+
+TIP = "G90 G0 X0 Y0 Z0 A0 C0\n{}TRAORI\nG1 X1 {} F100\n"
+LINEAR = {"control": {"orientation-path": "angles"}}
+
+
+@pytest.mark.parametrize(
+    ("said", "words", "told", "good"),
+    [
+        ("ORIAXES\n", "A10", {}, True),
+        ("ORIAXES ORIMKS\n", "A10", {}, True),
+        ("ORIAXES ORIWKS\n", "A10", {}, False),
+        ("ORIAXES ORIWKS\n", "A10", LINEAR, True),
+        ("ORIVECT\n", "A10", LINEAR, False),
+        ("ORIPLANE\n", "A10", {}, False),
+        ("ORIMKS\n", "A10", {}, False),
+        ("ORIWKS\n", "A10", {}, False),
+        ("", "A10", {}, False),
+        ("", "A10", LINEAR, True),
+        ("", "A0 C=DC(360)", {}, True),
+        ("", "C=IC(0)", {}, True),
+        ("", "C360", {}, False),
+        ("", "B0", {}, False),
+    ],
+)
+def test_what_turns_between_ends_is_said(said, words, told, good):
+    text = TIP.format(said, words)
+    if good:
+        _ = gx.read(text.encode(), FOLLOWS, **told).path
+    else:
+        with pytest.raises(gx.InputError, match="TRAORI: whether angles change in proportion"):
+            _ = gx.read(text.encode(), FOLLOWS, **told).path
+
+
 # --- bad input ---
 
 GOOD = FIVE_AXES.splitlines()

@@ -60,6 +60,8 @@ class Blocks(Moves):
         return not cuts_tips or self.angles_change_in_proportion
 
     def _made(self, line: Line) -> Iterator[str]:
+        if line.alone is not None and (line.axes or line.centres or line.codes or line.motion):
+            self.refuse("this stands in a block of its own", line.alone, "give it its own line")
         if line.dwell is not None or line.act is not None or line.cycle is not None:
             yield from self._alone(line)
             return

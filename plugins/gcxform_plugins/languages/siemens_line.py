@@ -20,7 +20,8 @@ class Line:
               same of I J K, and I1 J1 K1
     named     CR, TURN, AR: number and item
     others    S and M words
-    acts      statements that are blocks of their own: M128, M129
+    alone     what stands for nothing, and in a block of its own
+    act       what follows the tip, or stops: M128, M129
     """
 
     number: str = ""
@@ -42,5 +43,6 @@ class Line:
     speed: bool = False
     act: tuple[str, gx.Item] | None = None
     cycle: gx.Item | None = None
+    alone: gx.Item | None = None
     modal: gx.Item | None = None
     groups: set[str] = field(default_factory=set)

@@ -99,7 +99,10 @@ class Moves(Statements):
         if way == STEP or (not way and self.steps):
             return bool(Decimal(number))
         before = self.place.known(axis)
-        return before is None or bool((before - Decimal(number)) % 360)
+        if before is None:
+            return True
+        turn = before - Decimal(number)
+        return bool(turn if way in ("", ABSOLUTE) else turn % 360)
 
     # --- axis words ---
 

@@ -33,10 +33,12 @@ REASONS = {
 QUIET = frozenset((
     "SOFT", "BRISK", "DRIVE", "FFWON", "FFWOF", "COMPON", "COMPOF", "COMPCURV", "COMPCAD",
     "COMPSURF", "UPATH", "SPATH", "FNORM", "WALIMON", "STOPRE", "DIAMOF", "NORM", "KONT", "CUT2D",
-    "ORISON", "ORISOF", "RTLION", "RTLIOF", "TRANS", "ROT", "SCALE", "MIRROR",
+    "ORISON", "ORISOF", "RTLION", "RTLIOF",
 ))
 # fmt: on
-"""Commands that move nothing and change no word behind them; of frames, bare, which end them."""
+"""Commands that move nothing and change no word behind them."""
+FRAMES = frozenset(("TRANS", "ROT", "SCALE", "MIRROR"))
+"""Frames of the program: without words they end those that there are."""
 TOLERANCES = frozenset(("ADIS", "ADISPOS", "CTOL", "OTOL", "ATOL"))
 ORIENTATION = {"ORIAXES": 0, "ORIVECT": 0, "ORIPLANE": 0, "ORIMKS": 1, "ORIWKS": 1}
 WHY = {
@@ -279,6 +281,8 @@ class Statements(gx.Translator):
             return
         if name in ORIENTATION:
             self.orientation[ORIENTATION[name]] = name
+        elif name in FRAMES:
+            line.alone = item
         elif name == "SUPA":
             line.machine = item
         elif name == "CIP":
@@ -301,7 +305,9 @@ class Statements(gx.Translator):
         elif name in ("CYCLE81", "CYCLE82"):
             line.cycle = item
             self._drilled(line, item, name, given)
-        elif not self._quiet(name, given):
+        elif self._quiet(name, given):
+            line.alone = item
+        else:
             why = WHY.get(name, f"{name}(...) is not read")
             self.refuse(f"{why}, with these arguments" if name in WHY else why, item)
 
