@@ -25,6 +25,7 @@ TOLD = {
     "tools": {n: Tool(length=40.0 + n) for n in range(1, 9)},
 }
 NEAR = 2e-3
+CODES = ("G0", "G1")
 
 
 def executed(text, **told):
@@ -204,12 +205,14 @@ class Builder:
         dwell = self.draw.choice(
             [
                 "CYCLE81(30,4,1.5,-8.25)",
-                "CYCLE82(25.5,0,2,,7.5,0.5)",
+                "CYCLE82(25.5,1.25,2,,7.5,0.5)",
                 "CYCLE82(5,-1,5,-17.26, ,0.25,0,0,10)",
             ]
         )
         self.put(f"MCALL {dwell}")
-        self.put(f"G0 G90 {' '.join(self.word(a, '', 7.0) for a in 'XYZ' if a != axis)}")
+        self.put(
+            f"{self.draw.choice(CODES)} G90 {' '.join(self.word(a, '', 7.0) for a in 'XYZ' if a != axis)}"
+        )
         self.put(f"{self.control.plane[0]}=IC(2)")
         self.put("MCALL")
         if self.draw.random() < 0.5:

@@ -93,6 +93,8 @@ class Blocks(Moves):
             yield f"G4 P{line.feed}"
         elif line.act is not None:
             self.following = line.act[0] == "M128"
+            if self.following and (self.drilling is not None or self.comp):
+                self.refuse("TRAORI under MCALL or compensation", item, "end them before")
             if not self.place.unturned():
                 self.place.lose(LINEAR, shifted=False)
             yield from (f"F{line.feed}" if line.feed else "", line.act[0])

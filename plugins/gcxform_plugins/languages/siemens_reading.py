@@ -200,6 +200,8 @@ class Statements(gx.Translator):
         group = MODAL[code]
         self._once(line, item, group)
         if group == "plane":
+            if self.drilling is not None and self.plane != PLANES[code]:
+                self.refuse("another plane under MCALL", item, "write MCALL before")
             self.plane = PLANES[code]
         if group == "comp" and code != "40":
             self._compensates(line, item, code)
@@ -211,8 +213,8 @@ class Statements(gx.Translator):
     def _compensates(self, line: Line, item: gx.Item, code: str) -> None:
         """Take G41 and G42, with the radius of the tool whose edge is in force."""
         edge = line.edge_number if line.edge is not None else self.edge
-        if edge != "1" or self.tool is None or line.tool or self.following:
-            message = "compensation needs D1 of a known tool, and is not read under TRAORI"
+        if edge != "1" or self.tool is None or line.tool or self.following or self.drilling:
+            message = "compensation needs D1 of a known tool, and neither TRAORI nor MCALL"
             self.refuse(message, item, "write T, M6 and D1 before")
         self.comp = True
         line.codes.append(f"G{code} D{self.tool}")
