@@ -210,9 +210,8 @@ class Builder:
             ]
         )
         self.put(f"MCALL {dwell}")
-        self.put(
-            f"{self.draw.choice(CODES)} G90 {' '.join(self.word(a, '', 7.0) for a in 'XYZ' if a != axis)}"
-        )
+        places = " ".join(self.word(a, "", 7.0) for a in "XYZ" if a != axis)
+        self.put(f"{self.draw.choice(CODES)} G90 {places}")
         self.put(f"{self.control.plane[0]}=IC(2)")
         self.put("MCALL")
         if self.draw.random() < 0.5:
