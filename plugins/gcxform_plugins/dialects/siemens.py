@@ -7,6 +7,7 @@
 | `X=AC()`, `X=IC()` | absolute, incremental, for this word, whatever G90 and G91 say | 808D 53 |
 | both kinds in a block | steps become absolute; refused where the axis may stand anywhere | |
 | `I J K` | from the start, also in G90; `I=AC()` is the centre itself | 808D 53 |
+| `A10`, `C370` | rotary axes go to the number, as those without modulo do | [K] |
 | `C=DC()` | the shorter way to an angle of 0 to 360; half a turn is refused | [K] |
 | `C=ACP()`, `C=ACN()` | up, down; to where the axis stands already: refused | [K] |
 | that, from an unknown angle | a rapid goes to the number as written; a cut is refused | |
@@ -49,6 +50,7 @@
 | MCALL | that behind each line with axis words | C81 |
 | DP, DPR | absolute, or below RFP; both: refused; other cycles: refused | C81 |
 | R parameters, expressions, jumps, loops, subprograms, DEF, synchronous actions | refused | |
+| M128, M129 | M codes of the machine: refused, as blocks say TRAORI with them | |
 | `/`, `/0` to `/9` | a switch decides: `block-delete` in `[input]` | [K] |
 | `MSG("...")` | a comment | PM |
 | G291 | ISO dialects: refused | PM |

@@ -140,7 +140,7 @@ class Blocks(Moves):
     def _with_edge(self, number: str, item: gx.Item | None) -> Iterator[str]:
         if number == self.edge:
             return
-        if number == "1" and self.tool is None:
+        if number == "1" and self.tool in (None, "0"):
             message = "D1 of the tool in the spindle, and which that is is not known"
             self.refuse(message, item, "write T and M6 before")
         self.edge = number

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 import gcxform as gx
 from gcxform_plugins.languages import siemens_cycles as cycles
@@ -70,9 +71,9 @@ class Statements(gx.Translator):
     """
 
     def __init__(
-        self, lines: Sequence[str], file: str, dialect: type[gx.Dialect], reading: object
+        self, lines: Sequence[str], file: str, dialect: type[gx.Dialect], reading: Any
     ) -> None:
-        super().__init__(lines, file, dialect, reading)  # type: ignore[arg-type]
+        super().__init__(lines, file, dialect, reading)
         self.place = Place(self.reading.start, self._words_of)
         self.last = -1
         self.plainly = False
