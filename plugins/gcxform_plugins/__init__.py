@@ -13,8 +13,9 @@ def gcxform_dialects() -> list[type[gx.Dialect]]:
     from gcxform_plugins.dialects.grbl import Grbl
     from gcxform_plugins.dialects.haas import Haas
     from gcxform_plugins.dialects.linuxcnc import LinuxCNC
+    from gcxform_plugins.dialects.siemens import Siemens
 
-    return [Fagor, Fanuc, Grbl, Haas, LinuxCNC]
+    return [Fagor, Fanuc, Grbl, Haas, LinuxCNC, Siemens]
 
 
 @gx.hookimpl

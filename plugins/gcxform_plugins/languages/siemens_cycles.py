@@ -1,0 +1,106 @@
+"""Drilling cycles of a SINUMERIK as plain moves, and calls that move nothing."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+
+import gcxform as gx
+
+CALLED = re.compile(r"([A-Z_]\w*)[ \t]*\((.*)\)", re.IGNORECASE | re.DOTALL)
+PARTS = re.compile(r'"[^"]*"|[^,"]+|,')
+NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
+SECONDS = "10"
+"""The last argument of drilling cycles where dwells are in seconds, and depths as ever."""
+QUALITY = re.compile(r"_?(?:ORI_)?(?:OFF|FINISH|SEMIFIN|ROUGH)")
+NO_RETRACT, PLAIN_MODE = "0", re.compile(r"[0-9]*")
+
+
+def arguments(call: gx.Item) -> tuple[str, list[str]]:
+    """Return the name of what is called, and its arguments without blanks."""
+    found = CALLED.fullmatch(call.name)
+    assert found is not None
+    parts = [""]
+    for part in PARTS.findall(found[2]):
+        if part == ",":
+            parts.append("")
+        else:
+            parts[-1] += part.strip()
+    return found[1], parts
+
+
+@dataclass(frozen=True, slots=True)
+class Drilling:
+    """A hole along the axis across the plane: levels and a dwell (s), as blocks have them."""
+
+    axis: str
+    start: str
+    bottom: str
+    back: str
+    dwell: str = ""
+
+    def blocks(self) -> list[str]:
+        """Return the moves at a place: rapid to the start, feed to the bottom, rapid back."""
+        moves = [f"G0 {self.axis}{self.start}", f"G1 {self.axis}{self.bottom}"]
+        wait = [f"G4 P{self.dwell}"] if self.dwell else []
+        return [*moves, *wait, f"G0 {self.axis}{self.back}"]
+
+
+class CycleError(Exception):
+    """Arguments that are not understood."""
+
+
+def drilling(name: str, given: Sequence[str], axis: str) -> Drilling:
+    """Return the hole of CYCLE81 or CYCLE82. Raises CycleError."""
+    values = [*given, *[""] * 5]
+    rest = list(given[5:])
+    dwell = rest.pop(0) if name == "CYCLE82" and rest else ""
+    if any(other not in ("", "0") for other in rest[:-1]) or (rest and rest[-1] not in ALIKE):
+        raise CycleError("an argument behind the depth is not read")
+    back, plane, gap = (_number(values[k], what) for k, what in enumerate(("RTP", "RFP", "SDIS")))
+    if values[3] and values[4] and Decimal(_number(values[4], "DPR")):
+        raise CycleError("both DP and DPR are given")
+    level = Decimal(_number(plane, "RFP"))
+    bottom = _number(values[3], "DP") if values[3] else ""
+    if not bottom:
+        bottom = format(level - abs(Decimal(_number(values[4], "DPR"))), "f")
+    start = format(level + abs(Decimal(gap)), "f")
+    if not Decimal(bottom) < level <= Decimal(start) <= Decimal(back):
+        raise CycleError("its levels are not in order: depth, reference, start, return")
+    return Drilling(axis, start, bottom, back, _seconds(dwell))
+
+
+ALIKE = ("", "0", SECONDS)
+
+
+def _number(text: str, what: str) -> str:
+    """Return an argument that is a number. Raises CycleError."""
+    if not NUMBER.fullmatch(text):
+        raise CycleError(f"{what} is not a plain number")
+    return text
+
+
+def _seconds(text: str) -> str:
+    """Return a dwell; nothing for none. Raises CycleError."""
+    value = Decimal(_number(text, "DTB")) if text else Decimal(0)
+    if value < 0:
+        raise CycleError("the dwell is in turns of the spindle")
+    return text if value else ""
+
+
+def keeps_path(given: Sequence[str]) -> bool:
+    """Whether CYCLE832 changes nothing but tolerances: by name, and not by its older digits."""
+    if given == [""]:
+        return True
+    named = len(given) in (2, 3, 4) and QUALITY.fullmatch(given[1].upper()) is not None
+    return named and all(NUMBER.fullmatch(x) for x in (given[0], *given[2:]))
+
+
+def swivels_nowhere(given: Sequence[str]) -> bool:
+    """Whether CYCLE800 has neither angles nor shifts, and does not draw back."""
+    if len(given) not in (14, 15, 16) or given[0] != NO_RETRACT:
+        return False
+    numbers = given[4:13]
+    return all(not x or (NUMBER.fullmatch(x) and not Decimal(x)) for x in numbers)

@@ -1,0 +1,48 @@
+"""The words of one line of a program for a SINUMERIK, put in order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import gcxform as gx
+
+ABSOLUTE, STEP = "AC", "IC"
+
+
+@dataclass(slots=True)
+class Line:
+    """What stands in a line.
+
+    number    the sequence number as a word, with a blank
+    codes     G codes that are written as they are
+    motion    of this line: "0" to "3", "CIP", or nothing
+    axes      way (nothing, AC, IC, DC, ACP, ACN), number and item by letter; centres, middles: the
+              same of I J K, and I1 J1 K1
+    named     CR, TURN, AR: number and item
+    others    S and M words
+    alone     what stands for nothing, and in a block of its own
+    act       what follows the tip, or stops: M128, M129
+    """
+
+    number: str = ""
+    codes: list[str] = field(default_factory=list)
+    motion: str = ""
+    axes: dict[str, tuple[str, str, gx.Item]] = field(default_factory=dict)
+    centres: dict[str, tuple[str, str, gx.Item]] = field(default_factory=dict)
+    middles: dict[str, tuple[str, str, gx.Item]] = field(default_factory=dict)
+    named: dict[str, tuple[str, gx.Item]] = field(default_factory=dict)
+    feed: str = ""
+    others: list[str] = field(default_factory=list)
+    tool: str = ""
+    changes: gx.Item | None = None
+    edge: gx.Item | None = None
+    edge_number: str = ""
+    work: tuple[str, gx.Item] | None = None
+    machine: gx.Item | None = None
+    dwell: gx.Item | None = None
+    speed: bool = False
+    act: tuple[str, gx.Item] | None = None
+    cycle: gx.Item | None = None
+    alone: gx.Item | None = None
+    modal: gx.Item | None = None
+    groups: set[str] = field(default_factory=set)

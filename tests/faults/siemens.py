@@ -1,0 +1,172 @@
+"""Faults of the translator for a SINUMERIK: ways, distances, arcs, tools, cycles, the tip."""
+
+from __future__ import annotations
+
+from faults.mutation import Mutation
+
+PLACE = "plugins/gcxform_plugins/languages/siemens_place.py"
+MOVES = "plugins/gcxform_plugins/languages/siemens_moves.py"
+ARCS = "plugins/gcxform_plugins/languages/siemens_arcs.py"
+BLOCKS = "plugins/gcxform_plugins/languages/siemens_blocks.py"
+READING = "plugins/gcxform_plugins/languages/siemens_reading.py"
+CYCLES = "plugins/gcxform_plugins/languages/siemens_cycles.py"
+RANDOM = "tests/test_siemens.py::test_it_reads_what_the_reference_reads"
+CASES = "tests/test_corpus.py::test_case"
+TIPS = "tests/test_siemens.py::test_five_axes_become_what_the_same_program_by_hand_becomes"
+
+MUTATIONS = (
+    Mutation(
+        "siemens: DC goes the longer way",
+        PLACE,
+        "return up if up * 2 < TURN else up - TURN",
+        "return up if up * 2 > TURN else up - TURN",
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: half a turn goes up",
+        PLACE,
+        'if way != "DC" or up * 2 == TURN:',
+        'if way != "DC":',
+        f"{CASES}[dialects/siemens/half-a-turn]",
+    ),
+    Mutation(
+        "siemens: ACN goes up",
+        PLACE,
+        "        return up - TURN\n    if way",
+        "        return up\n    if way",
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: plain words behind whole turns are taken as they are",
+        PLACE,
+        "(self.unwound.add if end != wanted else self.unwound.discard)(axis)",
+        "self.unwound.discard(axis)",
+        f"{CASES}[dialects/siemens/plain-behind-turns]",
+    ),
+    Mutation(
+        "siemens: plain lines that were passed are not looked at",
+        BLOCKS,
+        "if self.line > self.last + 1:",
+        "if self.line > self.last + 9999:",
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: words of passed lines are older than what was told before",
+        PLACE,
+        "if line > self.at.get(axis, (-1,))[0]:",
+        "if line < self.at.get(axis, (-1,))[0]:",
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: IC is absolute in G90",
+        MOVES,
+        "        return way == STEP or (not way and self.steps)\n\n    def _words",
+        "        return not way and self.steps\n\n    def _words",
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: AC is a step in G91",
+        MOVES,
+        "        return way == STEP or (not way and self.steps)\n\n    def _words",
+        "        return way == STEP or self.steps\n\n    def _words",
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: TURN counts the arc as well",
+        ARCS,
+        'return f"P{int(number) + 1}"',
+        'return f"P{max(1, int(number))}"',
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: a centre in AC is a distance",
+        ARCS,
+        "start = starts[letter] if way == ABSOLUTE else None",
+        "start = None",
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: the opening angle lies on the other side",
+        ARCS,
+        "side = sense / (2 * math.tan(angle / 2))",
+        "side = -sense / (2 * math.tan(angle / 2))",
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: CIP goes the other way round",
+        ARCS,
+        'return ("3" if bend > 0 else "2"), centre',
+        'return ("2" if bend > 0 else "3"), centre',
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: which edge is in force behind M6 is not asked",
+        MOVES,
+        "if self.changed and self.edge is None:",
+        "if self.changed and self.edge is None and not self.tool:",
+        f"{CASES}[dialects/siemens/edge-not-said]",
+    ),
+    Mutation(
+        "siemens: the tool of the last T is the one in the spindle",
+        BLOCKS,
+        'yield f"G43 H{self.tool}" if number == "1" else "G49"',
+        'yield f"G43 H{self.waiting}" if number == "1" else "G49"',
+        f"{CASES}[dialects/siemens/tool]",
+    ),
+    Mutation(
+        "siemens: SUPA with a tool length",
+        BLOCKS,
+        'if self.edge != "0" or self.following:',
+        "if self.following:",
+        f"{CASES}[dialects/siemens/machine-with-a-length]",
+    ),
+    Mutation(
+        "siemens: steps behind another work offset are taken",
+        BLOCKS,
+        "        if name != self.work and (self.work or self.place.moved):\n",
+        "        if name != self.work and not self.work:\n",
+        f"{CASES}[dialects/siemens/steps-behind-an-offset]",
+    ),
+    Mutation(
+        "siemens: frames with words are taken for their ends",
+        READING,
+        "        elif name in FRAMES:\n            line.alone = item\n",
+        "        elif name in FRAMES:\n            pass\n",
+        f"{CASES}[dialects/siemens/frame]",
+    ),
+    Mutation(
+        "siemens: DPR is a level",
+        CYCLES,
+        'bottom = format(level - abs(Decimal(_number(values[4], "DPR"))), "f")',
+        'bottom = format(-abs(Decimal(_number(values[4], "DPR"))), "f")',
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: a cycle starts at the reference plane",
+        CYCLES,
+        'start = format(level + abs(Decimal(gap)), "f")',
+        'start = format(level, "f")',
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: behind a cycle the code before it is taken to hold",
+        BLOCKS,
+        '        self.said = "0"\n        self.place.absolute(hole.axis',
+        "        self.place.absolute(hole.axis",
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: TRAFOOF follows the tip",
+        BLOCKS,
+        'self.following = line.act[0] == "M128"',
+        "self.following = True",
+        RANDOM,
+    ),
+    Mutation(
+        "siemens: cuts that turn axes are taken whatever turns them",
+        MOVES,
+        'return said == "ORIAXES" and reference != "ORIWKS"',
+        "return True",
+        "tests/test_siemens.py::test_what_turns_between_ends_is_said",
+    ),
+)
