@@ -111,10 +111,11 @@ class Translator(ABC):
         text = self.lines[line]
         found = self.number.findall(text)
         shape = self.number.sub("#", text)
-        parts = self._shapes.get(shape)
+        parts = self._shapes.get(shape) if "#" not in text else None
         if parts is None or any(part.kind == "comment" for part in parts):
             numbers, parts = self._parsed(line)
-            if numbers == found and not any(part.kind == "comment" for part in parts):
+            other = "#" in text or any(part.kind == "comment" for part in parts)
+            if numbers == found and not other:
                 self._shapes[shape] = parts
             found = numbers
         bare = [number.replace(" ", "").replace("\t", "") for number in found]

@@ -12,9 +12,10 @@ def gcxform_dialects() -> list[type[gx.Dialect]]:
     from gcxform_plugins.dialects.fanuc import Fanuc
     from gcxform_plugins.dialects.grbl import Grbl
     from gcxform_plugins.dialects.haas import Haas
+    from gcxform_plugins.dialects.heidenhain import Heidenhain
     from gcxform_plugins.dialects.linuxcnc import LinuxCNC
 
-    return [Fagor, Fanuc, Grbl, Haas, LinuxCNC]
+    return [Fagor, Fanuc, Grbl, Haas, Heidenhain, LinuxCNC]
 
 
 @gx.hookimpl
