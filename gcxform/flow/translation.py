@@ -15,7 +15,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, NoReturn
+from typing import Any, ClassVar, NamedTuple, NoReturn
 
 import numpy as np
 from lark import Lark, Token, Tree
@@ -37,8 +37,7 @@ STEPS_AT_MOST = 2_000_000  # lines that are executed: more is taken for a loop w
 BRACKETS = str.maketrans("()", "[]")
 
 
-@dataclass(frozen=True, slots=True)
-class Item:
+class Item(NamedTuple):
     """A part of a statement, as the grammar names it.
 
     `kind` is the rule, `names` are its terminals but for numbers, in capitals, `numbers` the
@@ -119,9 +118,7 @@ class Translator(ABC):
                 self._shapes[shape] = parts
             found = numbers
         bare = [number.replace(" ", "").replace("\t", "") for number in found]
-        return tuple(
-            Item(p.kind, p.names, tuple(bare[slot] for slot in p.slots), p.place) for p in parts
-        )
+        return tuple(_item(part, bare) for part in parts)
 
     def _parsed(self, line: int) -> tuple[list[str], tuple[_Part, ...]]:
         """Return the numbers of a line, and its parts."""
@@ -267,6 +264,13 @@ def _comment(text: str) -> str:
     """Return a comment in round brackets."""
     inner = text[1:-1] if text.startswith("(") and text.endswith(")") else text.lstrip(";* \t")
     return f"({inner.strip().translate(BRACKETS)})"
+
+
+def _item(part: _Part, numbers: Sequence[str]) -> Item:
+    """Return a part with its numbers; most have one, and there are many lines."""
+    slots = part.slots
+    own = (numbers[slots[0]],) if len(slots) == 1 else tuple(numbers[slot] for slot in slots)
+    return Item(part.kind, part.names, own, part.place)
 
 
 def _part(node: Any, numbers: list[str]) -> _Part:
