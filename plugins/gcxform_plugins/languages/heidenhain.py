@@ -8,13 +8,12 @@ from decimal import Decimal
 from typing import Any
 
 import gcxform as gx
-from gcxform_plugins.languages.heidenhain_cycles import Cycles
+from gcxform_plugins.languages.heidenhain_cycles import VALUE, Cycles
 from gcxform_plugins.languages.heidenhain_words import exact, plain
 
 BEGIN = re.compile(r"BEGIN\s+PGM\b.*?\b(MM|INCH)\s*")
 END = re.compile(r"END\s+PGM\b(?:.*?\b(MM|INCH))?.*")
-VALUE = r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)"
-TOOL = re.compile(rf"TOOL\s+DEF\s*(\d+)(?:\s+L\s*({VALUE}))?(?:\s+R\s*({VALUE}))?\s*")
+TOOL = re.compile(rf"TOOL\s+DEF\s*(\d{{1,9}})(?:\s+L\s*({VALUE}))?(?:\s+R\s*({VALUE}))?\s*")
 TCPM = "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"
 RESET = "FUNCTION RESET TCPM"
 OTHERWISE = {
@@ -23,7 +22,8 @@ OTHERWISE = {
     "PATHCTRL VECTOR": "the tool axis then stays in a plane; write PATHCTRL AXIS",
     "REFPNT": "the control then follows another point of the tool",
 }
-TENTHS = 25.4
+LONGEST_TOOL = 9  # digits
+MM = 25.4  # of an inch
 
 
 class Klartext(Cycles):
@@ -103,7 +103,7 @@ class Klartext(Cycles):
             raise self.refusal("GX101", "BEGIN PGM stands once, and ends with MM or INCH", item)
         self.begun, self.inch = True, match[1] == "INCH"
         for axis, value in self.reading.start.items():
-            scale = TENTHS if self.inch and axis not in "ABC" else 1.0
+            scale = MM if self.inch and axis not in "ABC" else 1.0
             self.place[axis] = exact(Decimal(repr(value / scale)))
         return [f"{'G20' if self.inch else 'G21'} G17 G90 G94"]
 
@@ -136,36 +136,44 @@ class Klartext(Cycles):
             self.refuse(
                 "TOOL CALL while the control follows the tip", items[0], "write M129 before"
             )
-        tool, words = "", ""
-        for item in items[1:]:
-            kind = item.kind
-            if kind == "number":
-                tool = self._tool_number(item)
-            elif kind == "tool_axis":
-                self.axis = item.name
-            elif kind == "speed":
-                words += f" S{self.number_of(item)}"
-            elif kind == "feed":
-                words += self.feed_word(self.number_of(item))
-                self.tool_feed = self.feed
-            elif kind == "delta":
-                if float(self.number_of(item)):
-                    self.refuse(f"{item.name} changes the tool by what no table has", item)
-            else:
-                raise self.refusal("GX101", f"{item.name[:20]!r} does not fit here", item)
-        if self.axis not in ("Z", "") or (tool and not self.axis):
+        self.tool, self.tool_feed = "", ""
+        words = "".join(self._tool_word(item) for item in items[1:])
+        if self.axis not in ("Z", "") or (self.tool and not self.axis):
             self.refuse("a tool along another axis than Z", items[0])
-        blocks = self._changed(tool) if tool else []
+        blocks = self._changed() if self.tool else []
         return [*blocks, words.strip()] if words else blocks
+
+    def _tool_word(self, item: gx.Item) -> str:
+        """Take a word of TOOL CALL, and return what it is in the block behind the tool change."""
+        kind = item.kind
+        if item.name.startswith('"'):
+            self.refuse("a tool by its name", item)
+        if kind == "number":
+            self.tool = self._tool_number(item)
+        elif kind == "tool_axis":
+            self.axis = item.name
+        elif kind == "speed":
+            return f" S{self.number_of(item)}"
+        elif kind == "feed":
+            word = self.feed_word(self.number_of(item))
+            self.tool_feed = self.feed
+            return word
+        elif kind == "delta":
+            if float(self.number_of(item)):
+                self.refuse(f"{item.name} changes the tool by what no table has", item)
+        else:
+            raise self.refusal("GX101", f"{item.name[:20]!r} does not fit here", item)
+        return ""
 
     def _tool_number(self, item: gx.Item) -> str:
         text = self.number_of(item)
-        if not text.isdigit():
+        if not text.isdigit() or len(text) > LONGEST_TOOL:
             self.refuse(f"a tool with the number {text}", item)
         return str(int(text))
 
-    def _changed(self, tool: str) -> list[str]:
+    def _changed(self) -> list[str]:
         """Return the blocks of a tool change; tool 0 has no length."""
+        tool = self.tool
         self.lose()
         return [f"T{tool} M6", "G49" if tool == "0" else f"G43 H{tool}"]
 
@@ -176,7 +184,7 @@ class Klartext(Cycles):
             self.refuse(f"{item.name.strip()} is not resolved", item)
         known = self.reading.tools.get(int(match[1]))
         if known is not None:
-            unit = TENTHS if self.inch else 1.0
+            unit = MM if self.inch else 1.0
             for text, value, what in ((match[2], known.length, "L"), (match[3], known.radius, "R")):
                 if text and abs(float(plain(text)) * unit - value) > 1e-9:
                     message = f"{what} of tool {match[1]} is another one in the machine file"

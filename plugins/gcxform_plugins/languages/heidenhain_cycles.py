@@ -10,12 +10,12 @@ import gcxform as gx
 from gcxform_plugins.languages.heidenhain_labels import Labels
 from gcxform_plugins.languages.heidenhain_words import LINEAR, exact, plain, written
 
-VALUE = r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)"
-DEFINED = re.compile(r"CYCLE?\s+DEF\s*(\d+)(?:\.(\d+))?(?![\d.])\s*(.*?)\s*~?\s*")
+VALUE = r"[+-]?(?:\d{1,9}(?:[.,]\d{0,9})?|[.,]\d{1,9})"
+DEFINED = re.compile(r"CYCLE?\s+DEF\s*(\d{1,4})(?:\.(\d{1,2}))?(?![\d.])\s*(.*?)\s*~?\s*")
 SHIFT_LINE = re.compile(r"[\s\d/]*CYCLE?\s+DEF\s*7\.[1-9]", re.IGNORECASE)
 SHIFTED = re.compile(rf"([XYZABCUVW])\s*({VALUE})")
 LAST_VALUE = re.compile(rf"(?:[A-Z][A-Z. -]*?)?\s*({VALUE})")
-PARAMETER = re.compile(rf"Q(\d+)\s*=\s*({VALUE})")
+PARAMETER = re.compile(rf"Q(\d{{1,4}})\s*=\s*({VALUE})(?![\w.,])")
 PARAMETER_LINE = re.compile(r"[\s\d]*Q[2-4]\d\d\s*=")
 REST_OF_HOLES = {395: "a depth of the tip or of the full diameter", 210: "a dwell above"}
 HOLE = (200, 201, 206, 202, 203, 204, 211)
@@ -149,8 +149,8 @@ class Cycles(Labels):
         if len(told) > len(HOLE):
             raise self.refusal("GX215", "cycle 200 with parameters that are not known", item)
         clear, depth, feed, peck, surface, high, dwell = (self.hole[n] for n in HOLE)
-        if depth >= 0 or peck < -depth:
-            message = "cycle 200 in several strokes, or upwards"
+        if depth >= 0 or peck < -depth or self.inch:
+            message = "cycle 200 in several strokes, upwards, or in inches"
             raise self.refusal("GX215", message, item, ALONE)
         if clear < 0 or 0 < high < clear:
             raise self.refusal("GX215", "cycle 200 with Q204 below Q200", item, ALONE)

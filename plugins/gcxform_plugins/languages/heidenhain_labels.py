@@ -8,10 +8,12 @@ from typing import Any
 import gcxform as gx
 from gcxform_plugins.languages.heidenhain_moves import Moves
 
-NAME = r'(?:0*(\d+)|"([^"]*)")'
+NAME = r'(?:0*(\d{1,9})|"([^"]*)")'
 LABEL = re.compile(rf"LBL\s*{NAME}\s*", re.IGNORECASE)
 LABEL_LINE = re.compile(rf"[\s\d/]*LBL\s*{NAME}\s*(?:;.*)?", re.IGNORECASE)
-CALL = re.compile(rf"CALL\s+LBL\s*{NAME}(?:\s*REP\s*(\d+)(?:\s*/\s*(\d+))?)?\s*", re.IGNORECASE)
+CALL = re.compile(
+    rf"CALL\s+LBL\s*{NAME}(?:\s*REP\s*(\d{{1,9}})(?:\s*/\s*(\d{{1,9}}))?)?\s*", re.IGNORECASE
+)
 END = ("", None)
 DEEPEST = 8  # calls within calls on the control that takes the fewest
 MOST = 65534

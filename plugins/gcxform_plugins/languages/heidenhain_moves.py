@@ -52,7 +52,8 @@ class Moves(Saying):
         block = f"{self.moving(code)}{words}{said.feed}"
         self.place.update(ends)
         self.moved.update(ends)
-        self.polar = None
+        if not {"X", "Y"}.isdisjoint(ends):
+            self.polar = None
         return block.lstrip()
 
     def _check_feed(self) -> None:
@@ -69,7 +70,7 @@ class Moves(Saying):
                     message = f"M126: {axis} goes the shorter way where it shows less than 360"
                     self.refuse(message, None, "let the CAM write turns below 180 degrees")
         alone = all(axis in ROTARY for axis in ends)
-        if self.inch and alone and not said.rapid and not self.following:
+        if self.inch and alone and not said.rapid:
             self.refuse("a feed in degrees in a program in inches", None)
 
     def _in_machine(self, said: Said, code: gx.Item) -> str:
@@ -208,7 +209,7 @@ class Moves(Saying):
         radius, begin = hypot(x, y), self._angle(path)
         sense = 1.0 if said.sense == "G3" else -1.0
         turn = given["IPA"] if "IPA" in given else sense * ((given["PA"] - begin) * sense % TURN)
-        self._check_turn(turn, sense, path)
+        self._check_turn(turn, sense, path, "IPA" in given)
         turns = ceil(abs(turn) / TURN)
         words = "".join(
             f" {letter}{exact(Decimal(pole[axis]) - Decimal(self.place[axis]))}"
@@ -221,13 +222,13 @@ class Moves(Saying):
         self.polar = radius, begin + turn
         return self._all(said, block)
 
-    def _check_turn(self, turn: float, sense: float, path: gx.Item) -> None:
+    def _check_turn(self, turn: float, sense: float, path: gx.Item, by_turn: bool) -> None:
         """Refuse turns against DR, and those of which it is not certain how many they are."""
         if turn * sense < 0:
             self.refuse("CP turns against its DR", path)
         rest = abs(turn) % TURN
         near = min(rest, TURN - rest)
-        if abs(turn) < LEAST_ANGLE or (near and near < LEAST_ANGLE):
+        if near < LEAST_ANGLE and (near or not turn or not by_turn):
             self.refuse(f"CP turns by {turn:g} degrees", path)
 
     def _polar_words(self, said: Said) -> tuple[dict[str, float], dict[str, str]]:

@@ -13,6 +13,7 @@ AT_START = {13: ("M3", "M8"), 14: ("M4", "M8"), 128: ("M128",), 126: (), 127: ()
 AT_END = {0: ("M5", "M0"), 1: ("M1",), 5: ("M5",), 6: ("M6",), 9: ("M9",), 129: ("M129",)}
 ENDS = (2, 30)
 CALLS = 99
+LONGEST_M = 4  # digits
 MACHINE = 91
 SILENT = frozenset({90, 102, 107, 108, 111, 113, 115, 117, 137, 145})
 """Rounding of corners, messages, and M functions that cancel what is refused here."""
@@ -113,7 +114,7 @@ class Saying(Words):
     def _function(self, item: gx.Item, said: Said) -> int:
         """Take an M function, and return its number."""
         text = self.number_of(item)
-        if not text.isdigit():
+        if not text.isdigit() or len(text) > LONGEST_M:
             raise self.refusal("GX101", f"M{text} is no M function", item)
         code = int(text)
         if code == MACHINE:
@@ -144,5 +145,5 @@ class Saying(Words):
         self.following = on
 
     def turned(self) -> list[str]:
-        """Return the rotary axes that the program has moved."""
-        return [axis for axis in ROTARY if axis in self.moved]
+        """Return the rotary axes of the program."""
+        return [axis for axis in ROTARY if axis in self.moved or axis in self.place]

@@ -13,6 +13,7 @@ import gcxform as gx
 
 LINEAR = "XYZ"
 ROTARY = "ABC"
+LONGEST = 20  # characters of a number
 COMPUTED = 8  # decimals of mm, inch or degrees: far below what the control resolves
 UNKNOWN = "say where the axes stand: start = { X = ... } in [input], or begin with absolute values"
 
@@ -67,6 +68,8 @@ class Words(gx.Translator):
         """Return the number of an item. Raises InputError for a parameter."""
         if not item.numbers:
             self.refuse(f"{item.names[-1]} is a Q parameter", item)
+        if len(item.numbers[0]) > LONGEST:
+            raise self.refusal("GX219", "a number beyond what the control takes", item)
         return plain(item.numbers[0])
 
     def stands_at(self, axis: str, item: gx.Item, what: str = "") -> Decimal:
@@ -102,6 +105,8 @@ class Words(gx.Translator):
 
     def lose(self, axes: str | None = None) -> None:
         """Forget where axes stand, all of them if none are named."""
-        for axis in [*self.place] if axes is None else axes:
+        lost = [*self.place] if axes is None else axes
+        for axis in lost:
             self.place.pop(axis, None)
-        self.polar = None
+        if not {"X", "Y"}.isdisjoint(lost):
+            self.polar = None
