@@ -196,12 +196,8 @@ class Klartext(Cycles):
     def _function_of(self, item: gx.Item) -> list[str]:
         """Follow the tip by FUNCTION TCPM where that is what M128 does."""
         said = " ".join(item.name.split())
-        if said == RESET:
-            self.switch(False)
-            return ["M129"]
-        if said == TCPM:
-            self.switch(True)
-            return ["M128"]
+        if said in (RESET, TCPM):
+            return [*self.switch(said == TCPM)]
         why = next((why for words, why in OTHERWISE.items() if words in said), "")
         self.refuse(f"{said} is not resolved" + (f": {why}" if why else ""), item)
 

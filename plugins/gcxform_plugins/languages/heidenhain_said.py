@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import gcxform as gx
 from gcxform_plugins.languages.heidenhain_words import ROTARY, Words
 
-AT_START = {13: ("M3", "M8"), 14: ("M4", "M8"), 128: ("M128",), 126: (), 127: ()}
+AT_START = {13: ("M3", "M8"), 14: ("M4", "M8")}
 """What M functions become that act at the start of their block, where that is not themselves."""
 AT_END = {0: ("M5", "M0"), 1: ("M1",), 5: ("M5",), 6: ("M6",), 9: ("M9",), 129: ("M129",)}
 ENDS = (2, 30)
@@ -130,19 +130,26 @@ class Saying(Words):
         elif code in (126, 127):
             self.shortest = code == 126
         elif code not in SILENT:
-            if code >= FIRST_OF_CONTROL and code not in AT_START:
+            if code >= FIRST_OF_CONTROL and code != 128:
                 self.refuse(f"M{code} is not resolved: {WHY.get(code, 'what it does')}", item)
-            said.before += AT_START.get(code, (f"M{code}",))
             if code == 128:
-                self.switch(True)
+                said.before += self.switch(True)
+            else:
+                said.before += AT_START.get(code, (f"M{code}",))
         return code
 
-    def switch(self, on: bool) -> None:
-        """Follow the tip, or leave it; where axes are turned X, Y and Z then count otherwise."""
+    def switch(self, on: bool) -> tuple[str, ...]:
+        """Follow the tip, or leave it, and return the block of it.
+
+        Where axes are turned X, Y and Z then count otherwise.
+        """
+        if on and self.following:
+            return ()
         turned = any(float(self.place.get(axis, "nan")) % 360 for axis in self.turned())
         if on != self.following and turned:
             self.lose("XYZ")
         self.following = on
+        return ("M128",) if on else ("M129",)
 
     def turned(self) -> list[str]:
         """Return the rotary axes of the program."""
