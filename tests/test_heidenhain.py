@@ -267,7 +267,17 @@ REFUSED = {
     "F and FMAX": (["L X+5 F5 FMAX"], "GX202"),
     "a feed of nothing": (["L X+5 F0"], "GX204"),
     "a feed per tooth": (["L X+5 FZ0.1"], "GX210"),
-    "compensation": (["L X+5 RL"], "GX210"),
+    "compensation in Z": (["L Z+5 RL"], "GX210"),
+    "compensation in a circle": (["CC X+5 Y+0", "C X+10 Y+0 DR+ RL"], "GX210"),
+    "no compensation in a circle": (["L X+5 RR", "CC X+7 Y+0", "C X+9 Y+0 DR+ R0"], "GX210"),
+    "the other side": (["L X+5 RL", "L X+6 RR"], "GX210"),
+    "compensation, then a tool": (["L X+5 RL", "TOOL CALL 2 Z"], "GX210"),
+    "compensation, then M91": (["L X+5 RL", "L Z+5 M91"], "GX210"),
+    "compensation, then M128": (["L X+5 RL", "L Z+5 M128"], "GX210"),
+    "compensation, then a shift": (["L X+5 RL", "CYCL DEF 7.0", "CYCL DEF 7.1 X+5"], "GX210"),
+    "compensation, then a cycle": (["L X+5 RL", "L X+6 M99"], "GX210"),
+    "compensation, then TCPM": (["L X+5 RL", "FUNCTION RESET TCPM"], "GX210"),
+    "compensation of no tool": (["TOOL CALL 0 Z", "L X+5 Y+5 RL"], "GX210"),
     "radius in a line": (["L X+5 R5"], "GX203"),
     "rounding": (["RND R5"], "GX210"),
     "a chamfer": (["CHF 2"], "GX210"),
@@ -327,7 +337,6 @@ REFUSED = {
     "the machine under M128": (["M128", "L Z+5 FMAX M91"], "GX210"),
     "a tool under M128": (["M128", "TOOL CALL 2 Z"], "GX210"),
     "a shift under M128": (["M128", "CYCL DEF 7.0", "CYCL DEF 7.1 X+5"], "GX210"),
-    "M128 in the open": (["M128"], "GX210"),
     "feed of the contour": (["FUNCTION TCPM F CONT AXIS POS PATHCTRL AXIS"], "GX210"),
     "angles of space": (["FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS"], "GX210"),
     "the axis in a plane": (["FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR"], "GX210"),
@@ -360,10 +369,10 @@ def test_it_is_refused_by_name(name):
     lines, code = REFUSED[name]
     text = program(*ARM, *lines).encode()
     if code is None:
-        assert len(gx.read(text, DIALECT, tools=TOOLS).path)
+        assert len(gx.read(text, SWITCHED, tools=TOOLS).path)
         return
     with pytest.raises(gx.InputError) as error:
-        gx.read(text, DIALECT, tools=TOOLS).path  # noqa: B018
+        gx.read(text, SWITCHED, tools=TOOLS).path  # noqa: B018
     found = error.value.diagnostics[0]
     assert found.code == code
     assert 3 < found.where.line <= 4 + len(lines)
@@ -372,11 +381,11 @@ def test_it_is_refused_by_name(name):
 
 
 def test_where_it_is_refused_is_shown():
-    text = program(*ARM, "L X+5 FMAX", "12 L   X+5 RL F5")
+    text = program(*ARM, "L X+5 FMAX", "12 L   X+5 FZ5 F5")
     with pytest.raises(gx.InputError) as error:
         read(text)
     where = error.value.diagnostics[0].where
-    assert (where.line, where.column, where.width) == (5, 12, 2)
+    assert (where.line, where.column, where.width) == (5, 12, 3)
 
 
 @pytest.mark.parametrize(
@@ -590,6 +599,7 @@ def test_what_the_control_follows_is_not_corrected_twice(tmp_path, passes, on):
 
 READ = {
     "0D.h": 1,
+    "DangaRPT-CNC_Prog/test.h": 1571,
     "parts-2021/basemach/11.h": 2277,
     "parts-2022/Dem-target1/11.h": 110,
     "parts-2022/Dem-target2/11.h": 527,
@@ -603,7 +613,6 @@ WHY = {
     "PRINTR1.h": (8, "Q parameters"),
     "0TREF.h": (11, "Q parameters"),
     "Teflon-gasket/11.h": (53, "cycle 1 counts from where Z stands"),
-    "DangaRPT-CNC_Prog/test.h": (36, "RL"),
     ".nc": (1, "this is not a program for heidenhain"),
 }
 
@@ -623,3 +632,37 @@ def test_real_programs():
         with pytest.raises(gx.InputError, match=why) as error:
             gx.read(path, DIALECT).path  # noqa: B018
         assert error.value.diagnostics[0].where.line == line
+
+
+CONTOUR = ["TOOL CALL 2 Z", "L X-10 Y-5 Z+0 R0 FMAX", "L X+0 Y+0 RL F100", "L Y+20", "L X+20 RL"]
+CONTOUR += ["L Y+0", "CC X+20 Y-5", "C X+20 Y-10 DR-", "L X+10 Y-20 R0", "L X+5 R0"]
+
+
+def test_beside_a_contour_it_is_read_as_g41(tmp_path):
+    assert blocks(*CONTOUR)[2:] == [
+        *["G0 X-10 Y-5 Z0", "G41 D2 G1 X0 Y0 F100", "Y20", "X20", "Y0"],
+        *["G2 X20 Y-10 I0 J-5", "G40 G1 X10 Y-20", "X5"],
+    ]
+    path = read(program(*CONTOUR), tools=TOOLS)
+    assert path.side.tolist() == [0, 1, 1, 1, 1, 1, 0, 0]
+    assert path.radius[1:6].tolist() == [1.0] * 5
+    ours = beside(tmp_path / "a", "heidenhain", program(*CONTOUR).encode())
+    theirs = ["G21 G17 G90 G94", "T2 M6", "G43 H2", *blocks(*CONTOUR)[2:], "M30"]
+    pointed = re.sub(r"([XYZIJ]-?\d+)", r"\1.", "\n".join(theirs))
+    assert ours == beside(tmp_path / "b", "fanuc", pointed.encode())
+
+
+def beside(folder, source, text):
+    """Return the words of X and Y of the path of the tool's centre."""
+    folder.mkdir()
+    (folder / "m.toml").write_text(
+        "format = 1\n[axis.X]\n[axis.Y]\n[axis.Z]\n[tool.2]\nradius = 1.0\n"
+    )
+    (folder / "p.toml").write_text(
+        f'format = 1\n[input]\ndialect = "{source}"\n[output]\ndialect = "linuxcnc"\n'
+        '[machine]\nfile = "m.toml"\n[[pass]]\nuse = "absolute"\n'
+        '[[pass]]\nuse = "cutter-comp"\ncorners = "arc"\nentry = "next"\n'
+    )
+    result = gx.Pipeline.load(folder / "p.toml").run(text)
+    assert result.certificate.verified
+    return re.findall(r"[XYIJ][-.\d]+", result.text.decode())

@@ -138,8 +138,8 @@ MUTATIONS = (
     Mutation(
         "klartext: places are known behind a tool change",
         PROGRAM,
-        "        tool = self.tool\n        self.lose()",
-        "        tool = self.tool",
+        "        tool = self.in_spindle = self.tool\n        self.lose()",
+        "        tool = self.in_spindle = self.tool",
         REFUSED,
     ),
     Mutation(

@@ -16,7 +16,8 @@ named, that is where it is said; [K] is known from practice only.
 | CP | IPA is the whole angle, of many turns in a helix; its sign is that of DR | TNC 430, p. 153 |
 | polar angles | from +X towards +Y | TNC 310 Pilot, p. 8 |
 | arcs outside XY, helices by C | refused: helices are polar only | TNC 430, p. 153 |
-| RL, RR | refused: where the first move ends is not certain | |
+| RL, RR | the contour, as G41 and G42: `cutter-comp` must be told corners and entry | 640, p. 201 |
+| RL, RR, R0 | only in lines in X and Y; much is refused while on | 620 ISO, p. 154 |
 | RND, CHF, APPR, DEP, CT, LN, FK, PLANE | refused | |
 | M3 M4 M8 M13 M14 | at the start of their block | TNC 155, p. 15 |
 | M0 M2 M5 M6 M9 M30 | at the end of their block; M0 stops the spindle | TNC 155, p. 15 |
@@ -62,6 +63,7 @@ class Heidenhain(gx.Dialect):
     axes = "XYZABCUVW"
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
+        **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
         "G43": v.frame("tool-length", "length", "H"),
         "G52": v.frame("non-modal", "local", v.AXES),
         "G53": v.frame("non-modal", "machine"),

@@ -140,7 +140,7 @@ class Klartext(Cycles):
         words = "".join(self._tool_word(item) for item in items[1:])
         if self.axis not in ("Z", "") or (self.tool and not self.axis):
             self.refuse("a tool along another axis than Z", items[0])
-        blocks = self._changed() if self.tool else []
+        blocks = self._changed(items[0]) if self.tool else []
         return [*blocks, words.strip()] if words else blocks
 
     def _tool_word(self, item: gx.Item) -> str:
@@ -171,9 +171,10 @@ class Klartext(Cycles):
             self.refuse(f"a tool with the number {text}", item)
         return str(int(text))
 
-    def _changed(self) -> list[str]:
+    def _changed(self, item: gx.Item) -> list[str]:
         """Return the blocks of a tool change; tool 0 has no length."""
-        tool = self.tool
+        self.refuse_beside("TOOL CALL", item)
+        tool = self.in_spindle = self.tool
         self.lose()
         return [f"T{tool} M6", "G49" if tool == "0" else f"G43 H{tool}"]
 
@@ -197,6 +198,7 @@ class Klartext(Cycles):
         """Follow the tip by FUNCTION TCPM where that is what M128 does."""
         said = " ".join(item.name.split())
         if said in (RESET, TCPM):
+            self.refuse_beside(said, item)
             return [*self.switch(said == TCPM)]
         why = next((why for words, why in OTHERWISE.items() if words in said), "")
         self.refuse(f"{said} is not resolved" + (f": {why}" if why else ""), item)

@@ -97,6 +97,7 @@ class Cycles(Labels):
             return []
         if any(float(old[axis]) and axis not in given for axis in LINEAR):
             self.refuse("a datum shift that does not name an axis that is shifted", item)
+        self.refuse_beside("a datum shift", item)
         if self.following:
             self.refuse("a datum shift while the control follows the tip", item)
         for axis in self.place.keys() & by.keys():
@@ -130,6 +131,7 @@ class Cycles(Labels):
 
     def called(self, item: gx.Item) -> list[str]:
         """M99 and CYCL CALL: the hole where the tool stands."""
+        self.refuse_beside("a cycle", item)
         if self.following:
             self.refuse("a cycle while the control follows the tip", item)
         if self.cycle == 200:

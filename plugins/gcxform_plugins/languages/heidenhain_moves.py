@@ -11,6 +11,7 @@ from gcxform_plugins.languages.heidenhain_said import Said, Saying
 from gcxform_plugins.languages.heidenhain_words import ROTARY, exact, written
 
 TURN = 360.0
+SIDES = {"RL": "G41", "RR": "G42"}
 LEAST_ANGLE = 1e-4  # degrees, the last decimal of the control: less is neither an arc nor a turn
 
 
@@ -49,12 +50,28 @@ class Moves(Saying):
         code = "G0" if said.rapid else "G1"
         if code == "G1":
             self._check_feed()
-        block = f"{self.moving(code)}{words}{said.feed}"
+        beside = self._beside(said, ends)
+        block = f"{self.moving(code)}{words}{said.feed}".lstrip()
         self.place.update(ends)
         self.moved.update(ends)
         if not {"X", "Y"}.isdisjoint(ends):
             self.polar = None
-        return block.lstrip()
+        return f"{beside} {block}" if beside else block
+
+    def _beside(self, said: Said, ends: dict[str, str]) -> str:
+        """Return the code with which radius compensation begins or ends in a line."""
+        if said.side is None:
+            return ""
+        side = SIDES.get(said.side.name, "")
+        if side == self.side:
+            return ""
+        if {"X", "Y"}.isdisjoint(ends) or said.machine or (side and self.side):
+            name = said.side.name
+            self.refuse(f"{name} here: the side changes in lines in X and Y, by R0", said.side)
+        if self.following or self.in_spindle in ("", "0"):
+            self.refuse("radius compensation without a tool, or under M128", said.side)
+        self.side = side
+        return f"{side} D{self.in_spindle}" if side else "G40"
 
     def _check_feed(self) -> None:
         if self.feed_lost:
@@ -158,6 +175,8 @@ class Moves(Saying):
         """Return the block of an arc; `words` say what it is like, or it is about the pole."""
         if not said.sense:
             raise self.refusal("GX213", f"{path.name} without DR+ or DR-", path)
+        if said.side is not None and SIDES.get(said.side.name, "") != self.side:
+            self.refuse("radius compensation changes in a circle", said.side)
         if said.rapid or said.machine or said.radius:
             raise self.refusal("GX213", f"{path.name} with FMAX, M91 or R", path)
         self._check_feed()

@@ -15,6 +15,7 @@ ENDS = (2, 30)
 CALLS = 99
 LONGEST_M = 4  # digits
 MACHINE = 91
+NEVER_BESIDE = (6, 91, 128, 129)
 SILENT = frozenset({90, 102, 107, 108, 111, 113, 115, 117, 137, 145})
 """Rounding of corners, messages, and M functions that cancel what is refused here."""
 FIRST_OF_CONTROL = 89  # M functions below are those of the machine's builder
@@ -49,6 +50,7 @@ class Said:
     feed: str = ""
     rapid: gx.Item | None = None
     sense: str = ""
+    side: gx.Item | None = None
     radius: str = ""
     machine: gx.Item | None = None
     leaves: bool = False
@@ -101,10 +103,11 @@ class Saying(Words):
             if float(number) and said.radius:
                 raise self.refusal("GX203", "R stands here twice", item)
             said.radius = number if float(number) else said.radius
+            said.side = said.side if float(number) else item
         elif item.kind == "per":
             self.refuse(f"{item.name} is a feed per turn or per tooth", item)
         elif item.kind == "comp":
-            self.refuse(f"{item.name}: the control moves the path beside the contour", item)
+            said.side = item
         else:
             text = item.name.strip()
             raise self.refusal("GX101", f"{text[:20]!r} does not fit here", item)
@@ -117,6 +120,8 @@ class Saying(Words):
         if not text.isdigit() or len(text) > LONGEST_M:
             raise self.refusal("GX101", f"M{text} is no M function", item)
         code = int(text)
+        if code in NEVER_BESIDE:
+            self.refuse_beside(f"M{code}", item)
         if code == MACHINE:
             said.machine = item
         elif code == CALLS:
@@ -130,13 +135,18 @@ class Saying(Words):
         elif code in (126, 127):
             self.shortest = code == 126
         elif code not in SILENT:
-            if code >= FIRST_OF_CONTROL and code != 128:
-                self.refuse(f"M{code} is not resolved: {WHY.get(code, 'what it does')}", item)
-            if code == 128:
-                said.before += self.switch(True)
-            else:
-                said.before += AT_START.get(code, (f"M{code}",))
+            said.before += self._at_start(code, item)
         return code
+
+    def _at_start(self, code: int, item: gx.Item) -> tuple[str, ...]:
+        """Return the blocks of an M function that acts at the start of its block."""
+        if code == 128:
+            return self.switch(True)
+        if code >= FIRST_OF_CONTROL:
+            self.refuse(
+                f"M{code} is not resolved: {WHY.get(code, 'what it does is not known')}", item
+            )
+        return AT_START.get(code, (f"M{code}",))
 
     def switch(self, on: bool) -> tuple[str, ...]:
         """Follow the tip, or leave it, and return the block of it.

@@ -42,6 +42,7 @@ class Words(gx.Translator):
     pole      X and Y of CC, as numbers of the program
     polar     PR and PA that were programmed last, None after other moves
     moved     axes that have moved to a place of the workpiece since the program began
+    side      G41 or G42 where RL or RR is in force
     """
 
     grammar = ("gcxform_grammars", "heidenhain")
@@ -61,6 +62,8 @@ class Words(gx.Translator):
         self.inch = False
         self.following = False
         self.shortest = False
+        self.side = ""
+        self.in_spindle = ""
 
     # --- numbers ---
 
@@ -86,6 +89,11 @@ class Words(gx.Translator):
             return name, number
         axis = name[1:]
         return axis, exact(self.stands_at(axis, item) + Decimal(number))
+
+    def refuse_beside(self, what: str, item: gx.Item) -> None:
+        """Refuse what is not read while the tool is beside the contour. Raises InputError."""
+        if self.side:
+            self.refuse(f"{what} under radius compensation", item, "write R0 in a line before")
 
     # --- words ---
 
