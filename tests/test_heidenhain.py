@@ -497,6 +497,17 @@ def test_how_far_before_the_hole_it_stops(depth, near):
     assert path.end[3, 2] == pytest.approx(near)
 
 
+@pytest.mark.parametrize("lines", [["M128", "L C+30 F50", "M129"], ["L C+30 FMAX", "M128"]])
+def test_behind_a_switch_with_turned_axes_places_are_lost(lines):
+    """What X, Y and Z show then is another place, so that steps count from nowhere known."""
+    here = ["L X+1 Y+2 Z+3 C+0 FMAX", *lines]
+    with pytest.raises(gx.InputError, match="GX207"):
+        read(program(*here, "L IX+1 FMAX"))
+    assert len(read(program(*here, "L X+1 FMAX", "L IX+1 F5")))
+    straight = [line.replace("+30", "+360") for line in here]
+    assert len(read(program(*straight, "L IX+1 FMAX")))
+
+
 def test_labels_in_labels():
     lines = ["L X+0 FMAX", "LBL 1", "CALL LBL 2", "LBL 3", "L IX+1 FMAX", "CALL LBL 3 REP 2"]
     lines += ["CALL LBL 1 REP 1", "M30", "LBL 2", "L IX+100 FMAX", "LBL 0", "nonsense"]

@@ -156,4 +156,18 @@ MUTATIONS = (
         "- value) > 1e9:",
         REFUSED,
     ),
+    Mutation(
+        "klartext: RL is right of the contour",
+        MOVES,
+        'SIDES = {"RL": "G41", "RR": "G42"}',
+        'SIDES = {"RR": "G41", "RL": "G42"}',
+        f"{TESTS}::test_beside_a_contour_it_is_read_as_g41",
+    ),
+    Mutation(
+        "klartext: behind a switch with turned axes places are known",
+        SAID,
+        'self.lose("XYZ")',
+        'self.lose("")',
+        f"{TESTS}::test_behind_a_switch_with_turned_axes_places_are_lost",
+    ),
 )
