@@ -15,7 +15,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, NoReturn
+from typing import Any, ClassVar, NamedTuple, NoReturn
 
 import numpy as np
 from lark import Lark, Token, Tree
@@ -41,8 +41,7 @@ BRACKETS = str.maketrans("()", "[]")
 SLOT = "\uffff"  # stands for a number in a shape: no program, read as bytes, has it
 
 
-@dataclass(frozen=True, slots=True)
-class Item:
+class Item(NamedTuple):
     """A part of a statement, as the grammar names it.
 
     `kind` is the rule, `names` are its terminals but for numbers, in capitals, `numbers` the
@@ -76,8 +75,10 @@ class _Part:
     place: tuple[int, int]
 
     def item(self, numbers: Sequence[str]) -> Item:
-        """Return the item with its numbers."""
-        return Item(self.kind, self.names, tuple(numbers[slot] for slot in self.slots), self.place)
+        """Return the item with its numbers; most have one, and there are many lines."""
+        slots = self.slots
+        own = (numbers[slots[0]],) if len(slots) == 1 else tuple(numbers[slot] for slot in slots)
+        return Item(self.kind, self.names, own, self.place)
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from faults import (
     flow,
     frames,
     heads,
+    heidenhain,
     kinematics,
     passes,
     proof,
@@ -65,4 +66,5 @@ MUTATIONS: tuple[Mutation, ...] = (
     *rotary.MUTATIONS,
     *kinematics.MUTATIONS,
     *heads.MUTATIONS,
+    *heidenhain.MUTATIONS,
 )
