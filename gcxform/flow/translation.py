@@ -129,7 +129,7 @@ class Translator(ABC):
         """Whether items are the words of one block, in order, whatever stands before them.
 
         Asked once for each shape, so the answer must not depend on numbers. It spares such lines
-        the way through `blocks` while `plainly` is set: a name and a number for each item.
+        the way through `blocks` while `plainly` is set: each item has a name, or one and a number.
         """
         return False
 
@@ -167,12 +167,12 @@ class Translator(ABC):
         comments = "".join(_comment(text[slice(*part.place)]) for part in said)
         rest = [part for part in parts if part.kind != COMMENT]
         slots = [slot for part in rest for slot in part.slots]
-        pairs = all(len(part.names) == len(part.slots) == 1 for part in rest)
+        pairs = all(len(part.names) == 1 and len(part.slots) <= 1 for part in rest)
         if not rest or not pairs or slots != [*range(len(numbers))]:
             return _Shape(parts, comments, "")
         template = ""
         if self.plain([part.item(numbers) for part in rest]):
-            words = [part.names[0].replace("%", "%%") + "%s" for part in rest]
+            words = [part.names[0].replace("%", "%%") + "%s" * len(part.slots) for part in rest]
             template = " ".join([*words, comments.replace("%", "%%")]).rstrip()
         return _Shape(parts, comments, template)
 
@@ -325,7 +325,7 @@ def _accepted(reader: Translator, line: int) -> bool:
 
 def _comment(text: str) -> str:
     """Return a comment in round brackets."""
-    inner = text[1:-1] if text.startswith("(") and text.endswith(")") else text.lstrip(";* \t")
+    inner = text[1:].removesuffix(")") if text.startswith("(") else text.lstrip(";* \t")
     return f"({inner.strip().translate(BRACKETS)})"
 
 

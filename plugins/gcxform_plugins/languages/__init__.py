@@ -1,0 +1,1 @@
+"""Statements of controls with a language of their own, as blocks of words."""
