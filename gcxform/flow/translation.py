@@ -282,17 +282,30 @@ class Translated(WrittenOut):
 
 def translated(source: Source, dialect: type[Dialect], reading: Reading) -> Translated:
     """Return the blocks of a program. Raises InputError where it is refused."""
+    found, refused = translated_so_far(source, dialect, reading)
+    if refused is not None:
+        raise refused
+    return found
+
+
+def translated_so_far(
+    source: Source, dialect: type[Dialect], reading: Reading
+) -> tuple[Translated, InputError | None]:
+    """Return the blocks of a program up to the line that is refused, and why it is."""
     lines = _lines(b"".join(source.windows()))
     if lines and not lines[-1]:
         lines.pop()
     assert dialect.translator is not None
     kind: type[Translator] = dialect.translator
-    blocks, origin = [], []
-    for line, block in kind(lines, source.name, dialect, reading).run():
-        blocks.append(block)
-        origin.append(line)
+    blocks, origin, refused = [], [], None
+    try:
+        for line, block in kind(lines, source.name, dialect, reading).run():
+            blocks.append(block)
+            origin.append(line)
+    except InputError as error:
+        refused = error
     joined = "".join(f"{block}\n" for block in blocks).encode("latin-1")
-    return Translated(source, lines, joined, origin)
+    return Translated(source, lines, joined, origin), refused
 
 
 def _lines(text: bytes) -> list[str]:
