@@ -78,7 +78,7 @@ class Blocks(gx.Translator):
     def _block(self, items: Sequence[gx.Item]) -> Iterator[str]:
         """Yield the blocks of a line of words."""
         for item in items:
-            self._check(item, items)
+            self._check(item)
         codes = {code_of(item): item for item in items if item.kind == "code"}
         if "G4" in codes:
             yield self._dwell(items)
@@ -92,6 +92,8 @@ class Blocks(gx.Translator):
         words = [word for item in items for word in self._said(item)]
         words, after = self._relative(items, words)
         if "G6" in codes:
+            if sum(item.name in {*"IJK"} for item in items) != 2:
+                self.refuse("G6 is read with both words of a centre", codes["G6"])
             words, after = ["G90.1", *words], ["G91.1", *after]
         if "G60" in codes:
             after += self._corner_again(codes["G60"])
@@ -101,7 +103,7 @@ class Blocks(gx.Translator):
         if END & {*codes}:
             self.at = len(self.lines)
 
-    def _check(self, item: gx.Item, items: Sequence[gx.Item]) -> None:
+    def _check(self, item: gx.Item) -> None:
         """Refuse an item that is not read in a block of words."""
         code = code_of(item)
         if item.kind in tables.KINDS:
@@ -120,8 +122,6 @@ class Blocks(gx.Translator):
             self.refuse(f"{item.name} is not resolved: {what}", item)
         if item.kind == "numbered" and (code != "G159" or not self._work(item)):
             self.refuse(f"{code}={item.numbers[0]} is not resolved: only G159=1 to 6 are", item)
-        if code == "G6" and sum(other.name in {*"IJK"} for other in items) != 2:
-            self.refuse("G6 is read with both words of a centre", item)
 
     def _work(self, item: gx.Item) -> str:
         """Return the work offset that G159 names, nothing if it is none."""
@@ -231,7 +231,7 @@ class Blocks(gx.Translator):
 
     def _statement(self, items: Sequence[gx.Item]) -> list[str]:
         """Return the blocks of a statement. Raises InputError."""
-        (item,) = (item for item in items if item.kind == "statement")
+        item = next(item for item in items if item.kind == "statement")
         head, *rest = item.name.split()
         name = " ".join([head, *rest])
         inside = item.names[1:]

@@ -8,9 +8,10 @@ from decimal import Decimal
 import gcxform as gx
 from gcxform_plugins.languages import fagor_tables as tables
 
-QUIET = tables.PLAIN | {"G90", "M3", "M4", "M5", "M8", "M9"}
+QUIET = tables.PLAIN | {*tables.CORNERS, "G4", "G6", "G60", "G80", "G90"}
+QUIET |= {f"M{code}" for code in (0, 1, 3, 4, 5, 7, 8, 9)}
 """Codes over which the coordinates of an axis stay what they are."""
-KINDS = {"code", "word", "incremental", "comment"}
+KINDS = {"code", "word", "incremental", "comment", "label", "colon"}
 
 
 def code_of(item: gx.Item) -> str:
@@ -69,5 +70,5 @@ def _quiet(items: Sequence[gx.Item]) -> bool:
     """Whether the coordinates before a line are those behind it, but for what it moves."""
     codes = {code_of(item) for item in items if item.kind == "code"}
     words = {item.name for item in items if item.kind in ("word", "incremental")}
-    kinds = {item.kind for item in items}
+    kinds = {item.kind for item in items if item.name.split(" ")[0] not in tables.INERT}
     return kinds <= KINDS and codes <= QUIET and words <= tables.PLAIN_WORDS | {"N"}
