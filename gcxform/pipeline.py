@@ -46,6 +46,14 @@ class Result:
     source_map: list[int]
 
 
+def check_written(dialect: type[Dialect]) -> None:
+    """Raise UsageError for a dialect in which nothing is written."""
+    if dialect.translator is not None:
+        message = f"programs for {dialect.name} are read, and not written"
+        hint = 'dialect = "linuxcnc" in [output], or -t linuxcnc; `gcxform list dialects`'
+        raise UsageError.one("GX747", message, hint=hint)
+
+
 @dataclass(frozen=True)
 class Pipeline:
     """Passes between two dialects. Build it with `load`, `parse` or the constructor.
@@ -222,11 +230,8 @@ class Pipeline:
 
     def _check_target(self) -> None:
         """Refuse to write, or to change the text of, programs that are only read."""
-        if self.target.translator is None or (self.copies and not self.passes):
-            return
-        message = f"programs for {self.target.name} are read, and not written"
-        hint = 'dialect = "linuxcnc" in [output], or -t linuxcnc; `gcxform list dialects`'
-        raise UsageError.one("GX747", message, hint=hint)
+        if not self.copies or self.passes:
+            check_written(self.target)
 
     def _check_budget(self) -> None:
         """Refuse a budget that the steps cannot keep, and steps without bound or budget."""
