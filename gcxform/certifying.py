@@ -91,8 +91,10 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
         if group not in stated and group not in ("motion", "arc-distance"):
             code = run.pipeline.source.initial[group]
             certificate.assumed.append(f"{group} {code}, which the program does not state")
-    if run.pipeline.source.follows_at_start is False:
-        certificate.assumed.append("the control does not follow the tip before the first block")
+    following = run.interpreter.reading.follows_at_start(run.pipeline.source.follows_at_start)
+    if following is not None:
+        what = "follows" if following else "does not follow"
+        certificate.assumed.append(f"the control {what} the tip before the first block")
     for axis, value in run.interpreter.reading.start.items():
         certificate.assumed.append(f"{axis} stands at {value:g} before the first block")
     for name, value in run.interpreter.reading.parameters.items():

@@ -111,7 +111,8 @@ def codes_table():
         if dialect.translator is not None:
             place = f"plugins/gcxform_plugins/dialects/{name}.py"
             lines.append(f"| | read | what the table at the top of [{name}.py]({place}) says |")
-            lines.append(f"| | for `tip-codes` | {', '.join(dialect.spelled.values())} |")
+            codes = [dialect.spelled.get(c, c) for c in dialect.tip_switches.values()]
+            lines.append(f"| | for `tip-codes` | {', '.join(codes)} |")
             continue
         codes = sorted(dialect.codes.items(), key=lambda item: float(item[0][1:]))
         m_codes = sorted(dialect.m_codes.items())

@@ -415,6 +415,25 @@ def test_the_dialect_itself_stays_as_it_is():
     assert with_switches(LINUXCNC, {"g52": "fanuc"}) is LINUXCNC
 
 
+@pytest.mark.parametrize("first", ["on", "off"])
+def test_the_machine_file_may_say_what_holds_at_the_start(tmp_path, first):
+    """Then the program need not, with whatever axes are turned."""
+    turned = ["G1 X1. Y2. Z3. A5. C10. F600.", "A0. C0."] if first == "on" else ["G0 C20.", "C0."]
+    lines = [*WHOLE[:3], *turned, *WHOLE[3:]]
+    with pytest.raises(gx.InputError, match="whether the control follows the tip is not known"):
+        linuxcnc(tmp_path).run(text_of(lines))
+    told = CONTROL + f'tip-at-start = "{first}"\n'
+    result = linuxcnc(tmp_path, control=told).run(text_of(lines))
+    said = [line for line in lines if line not in ("M428", "M429")]
+    other = linuxcnc(tmp_path, control="", rapids="ends").run(text_of(said))
+    verb = "follows" if first == "on" else "does not follow"
+    assert f"the control {verb} the tip before the first block" in result.certificate.assumed
+    if first == "on":
+        assert result.text == other.text
+    else:
+        assert b"\nG0 C20.\nC0.\n" in result.text
+
+
 @pytest.mark.parametrize(
     ("control", "message"),
     [
@@ -425,6 +444,7 @@ def test_the_dialect_itself_stays_as_it_is():
         ('tip-on = "M5"\ntip-off = "M428"', "expected an M code"),
         ('tip-on = 428\ntip-off = "M429"', "expected an M code"),
         ('tip-on = ["M428"]\ntip-off = "M429"', "expected"),
+        ('tip-at-start = "perhaps"', "tip-at-start: expected"),
     ],
 )
 def test_settings_that_say_nothing_are_refused(tmp_path, control, message):

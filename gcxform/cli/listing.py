@@ -104,7 +104,7 @@ def _dialect(thing: type[Dialect]) -> list[str]:
     if thing.translator is not None:
         return [
             f"axes      {' '.join(thing.axes)}",
-            f"tip       {' '.join(thing.spelled.values())}",
+            f"tip       {', '.join(thing.spelled.get(c, c) for c in thing.tip_switches.values())}",
             "written   no: name another dialect in [output]",
         ]
     return [

@@ -10,6 +10,7 @@ import msgspec
 MARK = "a number, or a string with a unit"
 """The description, in the schema, of what may be written with a unit."""
 SWITCHES = ("tip-on", "tip-off")
+TIP_AT_START = "tip-at-start"
 """Settings that name the M codes with which the control follows the tip of the tool, and stops."""
 Value = Annotated[float, msgspec.Meta(description=MARK)]
 Triple = tuple[Value, Value, Value]

@@ -19,7 +19,16 @@ import msgspec
 
 from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.machine import presets
-from gcxform.machine.machine import MARK, SWITCHES, Axis, Machine, MachineFile, Offset, Tool
+from gcxform.machine.machine import (
+    MARK,
+    SWITCHES,
+    TIP_AT_START,
+    Axis,
+    Machine,
+    MachineFile,
+    Offset,
+    Tool,
+)
 from gcxform.machine.modelfile import CODES, check_version
 from gcxform.machine.quantities import (
     ANGLE,
@@ -208,6 +217,7 @@ def _findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
     yield from _offset_findings(document, file)
     yield from _tool_findings(document, file)
     yield from _switch_findings(document, file)
+    yield from _start_findings(document, file)
     for name, value in file.control.items():
         if isinstance(value, list) != (name == INERT):
             wanted = "a list of M codes, such as [100, 101]" if name == INERT else "one value"
@@ -228,6 +238,13 @@ def _switch_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnost
             message = f"{name}: one code cannot say both"
         if message:
             yield Diagnostic(document.codes.wrong_value, message, document.where("control", name))
+
+
+def _start_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
+    if file.control.get(TIP_AT_START, "off") not in ("off", "on"):
+        message = f'{TIP_AT_START}: expected "off", or "on"'
+        where = document.where("control", TIP_AT_START)
+        yield Diagnostic(document.codes.wrong_value, message, where)
 
 
 def _axis_findings(

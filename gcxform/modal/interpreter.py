@@ -87,7 +87,8 @@ class Interpreter:
             self.reading.work_offsets,
             self.reading.homes,
         )
-        frames = replace(frames, following=self.dialect.follows_at_start)
+        following = self.reading.follows_at_start(self.dialect.follows_at_start)
+        frames = replace(frames, following=following)
         state = State(groups, position, feed, unit, frames, parameters=self._given())
         rule = self.dialect.cycle_rule
         if rule is not None:

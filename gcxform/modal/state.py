@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.machine.machine import Machine, Tool
+from gcxform.machine.machine import TIP_AT_START, Machine, Tool
 from gcxform.modal.frames import FrameState
 from gcxform.toolpath.frames import Frame
 
@@ -58,6 +58,11 @@ class Reading:
     control: Mapping[str, str | float] = field(default_factory=dict)
     inert_m: frozenset[int] = frozenset()
     rotary: str = ""
+
+    def follows_at_start(self, otherwise: bool | None) -> bool | None:
+        """Return whether the control follows the tip before the first block, None if not known."""
+        said = {"on": True, "off": False}
+        return said.get(str(self.control.get(TIP_AT_START)), otherwise)
 
     def on(self, machine: Machine) -> Reading:
         """Return what is known when the program runs on a machine."""

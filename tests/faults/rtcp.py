@@ -273,7 +273,7 @@ MUTATIONS = (
     Mutation(
         "rtcp: axes may be turned while it is not known what is on",
         SWITCHES,
-        "yield from self._rows((self.state == UNKNOWN) & moves, message)",
+        "yield from self._rows((self.state == UNKNOWN) & moves, message, SAY)",
         "yield from self._rows((self.state == UNKNOWN) & (not moves.size), message)",
         "tests/test_tip_switches.py",
     ),

@@ -19,6 +19,7 @@ from gcxform_plugins.passes.rtcp_place import off_zero
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+SAY = 'switch it before; or say what holds: tip-at-start = "off" in [control] of the machine file'
 TURN_BACK = "turn them to 0 before; or say where they stand: start = { A = 0.0, ... } in [input]"
 UNKNOWN, OFF, ON = 0, 1, 2
 
@@ -88,7 +89,7 @@ class Switches:
             message = "axes are turned while the control does not follow the tip"
             yield from self._rows((self.state == OFF) & moves, message)
         message = "axes are turned, and whether the control follows the tip is not known"
-        yield from self._rows((self.state == UNKNOWN) & moves, message)
+        yield from self._rows((self.state == UNKNOWN) & moves, message, SAY)
 
     def _switched_turned(self, rest: Flags) -> Iterator[tuple[int, str, str]]:
         """Yield switches where not all axes (n + 1,) rest at 0."""
@@ -100,6 +101,8 @@ class Switches:
         changed = (self.state != self.before) & ~rest[:-1]
         yield from self._rows(changed, "the control was switched where axes may be turned")
 
-    def _rows(self, wrong: Flags, message: str) -> Iterator[tuple[int, str, str]]:
+    def _rows(
+        self, wrong: Flags, message: str, hint: str = TURN_BACK
+    ) -> Iterator[tuple[int, str, str]]:
         for row in np.flatnonzero(wrong)[:1].tolist():
-            yield int(self.path.source[row]), message, TURN_BACK
+            yield int(self.path.source[row]), message, hint
