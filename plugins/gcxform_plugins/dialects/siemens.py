@@ -7,7 +7,7 @@
 | `X=AC()`, `X=IC()` | absolute, incremental, for this word, whatever G90 and G91 say | 808D 53 |
 | both kinds in a block | steps become absolute; refused where the axis may stand anywhere | |
 | `I J K` | from the start, also in G90; `I=AC()` is the centre itself | 808D 53 |
-| `A10`, `C370` | rotary axes go to the number; MD30455 may take modulo axes the shorter way | R2 225 |
+| `A10`, `C370` | to the number; MD30455 may take modulo axes the shorter way | R2 225 |
 | `C=DC()` | the shorter way to an angle of 0 to 360; half a turn is refused | [K] |
 | `C=ACP()`, `C=ACN()` | up, down; to where the axis stands already: refused | [K] |
 | that, from an unknown angle | a rapid goes to the number as written; a cut is refused | |
