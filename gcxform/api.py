@@ -78,7 +78,7 @@ class Program:
                 start = len(text) - len(text.lstrip()) + 1
                 bare = Location("", 0, start, text, max(1, len(text.strip())))
                 place = replace(where if where.text else bare, file=self.name)
-                diagnostic = diagnostic.at(replace(place, line=self.line_of(where.line)))
+                diagnostic = diagnostic.at(self._executed.shown(replace(place, line=where.line)))
             found.append(diagnostic)
         return InputError(tuple(found))
 

@@ -11,6 +11,7 @@ from gcxform.certificate import Certificate
 from gcxform.contract import Pass, TextPass
 from gcxform.modal.tables import GROUPS
 from gcxform.options import KinematicsFile, ModelFile, to_toml
+from gcxform.source import lines_in
 from gcxform.version import VERSION
 
 if TYPE_CHECKING:
@@ -22,12 +23,13 @@ def certificate(run: Run, out: Output) -> Certificate:
     """Return what was proved of a run, once its output is complete."""
     pipeline = run.pipeline
     run.text.finish()
-    executed = run.source is not run.given
+    executed, lines = run.source is not run.given, 0
     for text in run.given.windows() if executed else ():
         out.read.update(text)
+        lines += lines_in(text)
     made = Certificate(
         VERSION,
-        {"name": run.source.name, "dialect": pipeline.source.name, "lines": out.lines_in}
+        {"name": run.source.name, "dialect": pipeline.source.name, "lines": lines or out.lines_in}
         | {"sha256": out.read.hexdigest()},
         {"dialect": pipeline.target.name, "lines": out.lines_out}
         | {"sha256": out.written.hexdigest()},
@@ -89,6 +91,8 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
         if group not in stated and group not in ("motion", "arc-distance"):
             code = run.pipeline.source.initial[group]
             certificate.assumed.append(f"{group} {code}, which the program does not state")
+    if run.pipeline.source.follows_at_start is False:
+        certificate.assumed.append("the control does not follow the tip before the first block")
     for axis, value in run.interpreter.reading.start.items():
         certificate.assumed.append(f"{axis} stands at {value:g} before the first block")
     for name, value in run.interpreter.reading.parameters.items():

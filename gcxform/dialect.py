@@ -203,6 +203,8 @@ class Dialect:
     tip_switches: ClassVar[Mapping[str, str]] = {}
     """M codes that follow the tip, and leave it, on every machine with this control: "tip-on" and
     "tip-off", as in the machine file."""
+    follows_at_start: ClassVar[bool | None] = None
+    """Whether the control follows the tip when a program starts; None where that is not known."""
     translator: ClassVar[type[Translator] | None] = None
     """What turns programs that are not written in words into blocks that are, which is what all
     else here is about. Such a dialect is only read: see `gcxform/flow/translation.py`."""

@@ -18,7 +18,7 @@ from gcxform.certifying import certificate
 from gcxform.chain import check_chain, facts_after
 from gcxform.contract import Pass, PassContext, TextPass
 from gcxform.diagnostics import UsageError
-from gcxform.dialect import Dialect, NumberFormat
+from gcxform.dialect import ROTARY, Dialect, NumberFormat
 from gcxform.emit.manner import Manner
 from gcxform.machine.machine import Machine
 from gcxform.machine.machinefile import load_machine
@@ -44,6 +44,14 @@ class Result:
     text: bytes
     certificate: Certificate
     source_map: list[int]
+
+
+def check_written(dialect: type[Dialect]) -> None:
+    """Raise UsageError for a dialect in which nothing is written."""
+    if dialect.translator is not None:
+        message = f"programs for {dialect.name} are read, and not written"
+        hint = 'dialect = "linuxcnc" in [output], or -t linuxcnc; `gcxform list dialects`'
+        raise UsageError.one("GX747", message, hint=hint)
 
 
 @dataclass(frozen=True)
@@ -215,18 +223,15 @@ class Pipeline:
             total += self._repeated * ARC_ROUNDING * self.manner.step("X", inch)
         return total
 
-    def angle_limit(self) -> float:
+    def angle_limits(self) -> dict[str, float]:
         """Return how far (deg) rotary axes may be off: what steps promise, and the rounding."""
         promised = sum(step.promise_angle for step in self.path_passes)
-        return promised + 1.01 * max(self.manner.step(letter, False) for letter in "ABC")
+        return {a: promised + 1.01 * self.manner.step(a, False) for a in ROTARY}
 
     def _check_target(self) -> None:
         """Refuse to write, or to change the text of, programs that are only read."""
-        if self.target.translator is None or (self.copies and not self.passes):
-            return
-        message = f"programs for {self.target.name} are read, and not written"
-        hint = 'dialect = "linuxcnc" in [output], or -t linuxcnc; `gcxform list dialects`'
-        raise UsageError.one("GX747", message, hint=hint)
+        if not self.copies or self.passes:
+            check_written(self.target)
 
     def _check_budget(self) -> None:
         """Refuse a budget that the steps cannot keep, and steps without bound or budget."""

@@ -110,7 +110,7 @@ class Run:
                 self._reading_of_output(reading),
                 axes,
                 (pipeline.limit(False), pipeline.limit(True)),
-                pipeline.angle_limit(),
+                pipeline.angle_limits(),
                 self.source.name,
                 any(step.folds for step in self.steps),
                 self._switches(),
@@ -140,9 +140,6 @@ class Run:
             self._over(size, out, progress)
         except GcxformError as error:
             raise located(error, self.source) from None
-        if self.source is not self.given and out.source_map is not None:
-            line_of = self.source.line_of
-            out.source_map[:] = [line_of(line + 1) - 1 for line in out.source_map]
 
     def _over(self, size: int, out: Output, progress: Progress) -> None:
         """Run over the windows of a program.
@@ -242,7 +239,10 @@ class Run:
         text, lines = self.text.edit(text, lines)
         out.lines_out += len(lines)
         if out.source_map is not None:
-            out.source_map += lines
+            line_of = self.source.line_of
+            out.source_map += (
+                lines if self.source is self.given else [line_of(k + 1) - 1 for k in lines]
+            )
         out.put(text)
 
     def _transform(self, apart: Apart) -> Transformed:

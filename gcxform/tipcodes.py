@@ -88,13 +88,19 @@ def with_switches(dialect: type[Dialect], control: Mapping[str, str | float]) ->
 def with_refusal(dialect: type[Dialect], control: Mapping[str, str | float]) -> type[Dialect]:
     """Return the dialect that does not resolve the code from which on a control follows the tip.
 
-    A dialect may take other M codes of the machine's own for what moves nothing.
+    A dialect may take other M codes of the machine's own for what moves nothing. Programs that are
+    only read are written for another control, which follows no tip: the code that leaves it says
+    nothing there.
     """
-    codes = [code for code, act in switches_of(dialect, control).items() if act == "tip-on"]
+    refused = MCode("tip", barrier=FOLLOWING)
+    acts = switches_of(dialect, control)
+    codes = {int(code[1:]): refused for code, act in acts.items() if act == "tip-on"}
+    if dialect.translator is not None:
+        left = (int(code[1:]) for code, act in acts.items() if act == "tip-off")
+        codes |= {code: MCode("tip", act="tip-off") for code in left}
     if not codes:
         return dialect
-    refused = {int(code[1:]): MCode("tip", barrier=FOLLOWING) for code in codes}
-    return type(dialect.__name__, (dialect,), {"m_codes": {**dialect.m_codes, **refused}})
+    return type(dialect.__name__, (dialect,), {"m_codes": {**dialect.m_codes, **codes}})
 
 
 def with_vectors(dialect: type[Dialect]) -> type[Dialect]:

@@ -8,7 +8,7 @@ budget, with the same kinds of moves, feeds and events.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -72,7 +72,7 @@ class Verifier:
         reading: Reading,
         axes: str,
         budgets: tuple[float, float],
-        angle_budget: float,
+        angle_budgets: Mapping[str, float],
         file: str = "-",
         folded: bool = False,
         switches: frozenset[str] = frozenset(),
@@ -86,7 +86,8 @@ class Verifier:
         self.budgets = budgets
         self.feed_modes = [step.feed_mode for step in passes if step.feed_mode is not None]
         self.speeds = _speeds(context) if any(step.slows for step in passes) else {}
-        self.angle_budget = angle_budget
+        self.angle_budgets = angle_budgets
+        self.angle_budget = max(angle_budgets.values())
         self.file = file
         self.findings = Findings()
 
@@ -112,6 +113,9 @@ class Verifier:
             raise VerificationError(error.diagnostics) from None
         path = back.path
         self.findings.inch |= bool(path.blocks.inch[path.block].any())
+        if self.switches:
+            here = path.source - first
+            path = _followed(path, read.path, source[here], path.nth + nth[here])
         for step in reversed(self.passes):
             path = step.undo(path, self.context)
         trace = Trace(read.path, lines, back.path, path, source, nth, first)
@@ -152,13 +156,29 @@ class Verifier:
         if not distance[worst] <= self.budget:
             size = f"{distance[worst]:.5f} mm" if np.isfinite(distance[worst]) else "far"
             self._fail(f"the path is {size} off, the budget is {self.budget:.5f} mm", trace, worst)
-        turned = int(np.argmax(off.angle))
-        if not off.angle[turned] <= self.angle_budget:
+        turned = self._turned_too_far(trace, runs, off.angle)
+        if turned is not None:
             self._fail(f"a rotary axis is {off.angle[turned]:.5f} degrees off", trace, turned)
         self._kinds(trace)
         self._sides(trace)
         for wrong in self._proof(trace).wrong():
             self._raise(*wrong)
+
+    def _turned_too_far(self, trace: Trace, runs: Runs, angle: Floats) -> int | None:
+        """Return the row in which a rotary axis is farthest beyond its budget, if one is.
+
+        `angle` (n,) are degrees. Where budgets differ they are measured again with each axis in
+        the measure of the largest budget.
+        """
+        axes = trace.before.axes
+        scale = np.array([self.angle_budget / self.angle_budgets.get(a, np.inf) for a in axes])
+        scale[scale == 0.0] = 1.0
+        if (scale != 1.0).any():
+            both = (path.replace(end=path.end * scale) for path in (trace.before, trace.after))
+            before, after = (path.replace(entry=path.entry * scale) for path in both)
+            angle = deviation_of_runs(before, after, runs, self.budget).angle
+        turned = int(np.argmax(angle))
+        return None if angle[turned] <= self.angle_budget else turned
 
     def _but_between_taps(self, distance: Floats, trace: Trace) -> Floats:
         """Return distances without those of moves between taps that nothing can say better."""
@@ -307,6 +327,31 @@ def _speeds(context: PassContext) -> dict[str, tuple[float, float]]:
             known = context.decimals.get(letter, numbers.mm if letter in LINEAR else numbers.angle)
             found[letter] = axis.max_speed, 10.0**-known
     return found
+
+
+def _followed(path: Toolpath, read: Toolpath, line: Ints, nth: Ints) -> Toolpath:
+    """Return a path that was written, with what a pass has taken over from the control.
+
+    `line` (n,) are the lines of the source for its rows, and `nth` which of their moves. Where the
+    control of the source follows the tip no code in the output says; and behind such a code the
+    source does not know where X, Y and Z stand, while the output does: what does not move there is
+    not known here either.
+    """
+    if not len(read):
+        return path
+    first, last = (np.searchsorted(read.source, line, side) for side in ("left", "right"))
+    row = np.clip(first + nth, first, np.maximum(last, first + 1) - 1)
+    row = np.minimum(row, len(read) - 1)
+    pairs = np.stack([path.frame, read.frame[row]])
+    pairs, which = np.unique(pairs, axis=1, return_inverse=True)
+    frames = tuple(
+        replace(path.frames[mine], following=read.frames[its].following)
+        for mine, its in pairs.T.tolist()
+    )
+    end, rests = path.end.copy(order="F"), path.end == path.start
+    rests[:, 3:] = False
+    end[rests & np.isnan(read.end[row])] = np.nan
+    return path.replace(end=end, frames=frames, frame=which.reshape(-1))
 
 
 def _in_mm(event: Event, path: Toolpath) -> Event:

@@ -108,6 +108,11 @@ def codes_table():
     for name, dialect in DIALECTS.items():
         said = dialect.__doc__.partition("\n")[0]
         lines.append(f"| **`{name}`** | axes {' '.join(dialect.axes)} | {said} |")
+        if dialect.translator is not None:
+            place = f"plugins/gcxform_plugins/dialects/{name}.py"
+            lines.append(f"| | read | what the table at the top of [{name}.py]({place}) says |")
+            lines.append(f"| | for `tip-codes` | {', '.join(dialect.spelled.values())} |")
+            continue
         codes = sorted(dialect.codes.items(), key=lambda item: float(item[0][1:]))
         m_codes = sorted(dialect.m_codes.items())
         effects = {

@@ -371,7 +371,7 @@ def test_the_installed_passes_have_a_schema() -> None:
 
 @pytest.mark.parametrize("letter", "ABC")
 def test_an_axis_may_be_off_by_what_its_own_decimals_round(tmp_path: Path, letter: str) -> None:
-    """The budget of angles is that of the coarsest rotary axis."""
+    """Each rotary axis has a budget of its own."""
     (tmp_path / "p.toml").write_text(
         "format = 1\n[input]\n"
         f'dialect = "linuxcnc"\nstart = {{ X = 0.0, Y = 0.0, Z = 0.0, {letter} = 0.0 }}\n'

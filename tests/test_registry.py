@@ -200,7 +200,9 @@ def test_unknown_names() -> None:
         registry.dialect("fanucc", place)
     (found,) = caught.value.diagnostics
     assert (found.code, found.where) == ("GX703", place)
-    assert found.hint.startswith("did you mean 'fanuc'?; known: fagor, fanuc, grbl, haas, linuxcnc")
+    assert found.hint.startswith(
+        "did you mean 'fanuc'?; known: fagor, fanuc, grbl, haas, heidenhain"
+    )
     with pytest.raises(UsageError) as caught:
         registry.pass_("nothing", place)
     (found,) = caught.value.diagnostics

@@ -42,11 +42,15 @@ Change = Callable[[list[Line]], Iterable[Line]]
 
 
 def run(
-    change: Change = iter, chain: str = CHAIN, program: bytes = PROGRAM, size: int = 1 << 19
+    change: Change = iter,
+    chain: str | gx.Pipeline = CHAIN,
+    program: bytes = PROGRAM,
+    size: int = 1 << 19,
 ) -> bytes:
     """Run a chain whose emitter lies: the lines it writes are changed before they are verified."""
     source = Source.of_bytes(program)
-    job = Run(gx.Pipeline.parse(chain, "linuxcnc"), source, "full")
+    pipeline = gx.Pipeline.parse(chain, "linuxcnc") if isinstance(chain, str) else chain
+    job = Run(pipeline, source, "full")
     emit, texts = job.emitter.emit, list[bytes]()
 
     def lying(*task: object) -> Emitted:
@@ -376,3 +380,21 @@ def test_a_feed_per_minute_converted_wrong_is_refused() -> None:
             run(
                 lambda lines, o=old, n=new: [(t.replace(o, n), k) for t, k in lines], chain, program
             )  # type: ignore[misc]
+
+
+@pytest.mark.parametrize("fine", "AC")
+def test_an_axis_with_more_decimals_has_a_budget_of_its_own(tmp_path: Path, fine: str) -> None:
+    coarse = "CA"["AC".index(fine)]
+    start = "{ X = 0.0, Y = 0.0, Z = 0.0, A = 0.0, C = 0.0 }"
+    (tmp_path / "p.toml").write_text(
+        f'format = 1\n[input]\ndialect = "linuxcnc"\nstart = {start}\n'
+        '[[pass]]\nuse = "segment"\narcs = "split"\nmax-length = "5 mm"\n'
+        f"[output]\ndecimals = {{ {coarse} = 2, {fine} = 4 }}\n"
+    )
+    pipeline = gx.Pipeline.load(tmp_path / "p.toml")
+    program = f"G21 G90 G94\nG1 X10 {fine}10 {coarse}7 F100\nM2\n".encode()
+    assert f"{fine}5. {coarse}3.5".encode() in run(chain=pipeline, program=program)
+    off_by = said(f"{coarse}3.5", f"{coarse}3.505")
+    assert b".505" in run(off_by, pipeline, program)
+    with pytest.raises(gx.VerificationError, match=r"a rotary axis is 0\.00"):
+        run(said(f"{fine}5.", f"{fine}5.005"), pipeline, program)

@@ -298,7 +298,8 @@ CODES: dict[str, tuple[str, str]] = {
         "with tool lengths that are known and do not change while axes are turned. Moves to "
         "machine coordinates, rapids that turn axes and axes that the machine file does not have "
         "are refused, because where the tip goes is not known. So are axes that are turned while "
-        "a program leaves its control in axes, and a switch between both with an axis turned.",
+        "it is not known whether the control follows the tip; and on great circles, while it does "
+        "not, or where it is switched.",
     ),
     "GX331": (
         "An axis would go beyond its limits",

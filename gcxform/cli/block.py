@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gcxform.cli.asked import Asked, needed_dialect
 from gcxform.cli.programs import opened
 from gcxform.cli.tolerant import Tolerant
-from gcxform.diagnostics import UsageError
-from gcxform.dialect import INCH
-from gcxform.modal.state import State
+from gcxform.diagnostics import Diagnostic, UsageError
+from gcxform.dialect import INCH, Dialect
+from gcxform.flow.translation import translated_so_far
+from gcxform.modal.state import Reading, State
 from gcxform.modal.tables import GROUPS, code_of
 from gcxform.registry import default_registry
 from gcxform.source import Source
@@ -39,6 +42,9 @@ def explained(file: str, line: int, dialect: str | None, asked: Mapping[str, Any
     """Return a line, from 1, of a file in words. Raises UsageError if the file is shorter."""
     kind = default_registry().dialect(needed_dialect(dialect))
     reading = Asked(**asked).reading()
+    if kind.translator is not None:
+        with opened(file) as source:
+            return _foreign(source, line, kind, reading)
     with opened(file) as source:
         tolerant = Tolerant(kind, source, reading)
         text = _up_to(tolerant, source, line)
@@ -47,16 +53,65 @@ def explained(file: str, line: int, dialect: str | None, asked: Mapping[str, Any
         _, path = tolerant.window(text)
     block = kind.load_grammar().parse(text.rstrip(b"\r\n").decode("latin-1"))
     lines = [f"{file}:{line}  {block.text}", "", *_items(block)]
+    told = _told(before, tolerant.interpreter.axes, earlier, tolerant.refused.get(line), path)
+    return [*lines, *told]
+
+
+def _foreign(source: Source, line: int, kind: type[Dialect], reading: Reading) -> list[str]:
+    """Return a line of a program that is turned into blocks: those, and what they do."""
+    blocks, error = translated_so_far(source, kind, reading)
+    if line > len(blocks.lines):
+        message = f"{source.name} has {len(blocks.lines)} lines and no line {line}"
+        raise UsageError.one("GX731", message)
+    text = b"".join(blocks.windows()).splitlines(keepends=True)
+    first, last = _run_of(line - 1, blocks.origin)
+    tolerant = Tolerant(kind, blocks, reading)
+    tolerant.window(b"".join(text[:first]))
+    before = copy.deepcopy(tolerant.interpreter.state)
+    _, path = tolerant.window(b"".join(text[first:last]))
+    refused = {blocks.line_of(number): found for number, found in tolerant.refused.items()}
+    refused |= (
+        {found.where.line: found for found in error.diagnostics if found.where} if error else {}
+    )
+    own = [f"  {block.decode('latin-1').rstrip()}" for block in text[first:last]]
+    lines = [f"{source.name}:{line}  {blocks.lines[line - 1]}", "", *own]
+    lines += [] if own else ["  it stands for no block"]
+    earlier = sorted(number for number in refused if number < line)
+    axes = tolerant.interpreter.axes
+    return [*lines, *_told(before, axes, earlier, refused.get(line), path, kind.spelled)]
+
+
+def _run_of(line: int, origin: NDArray[np.int64]) -> tuple[int, int]:
+    """Return the blocks, from and to, that a line stands for when it is first executed."""
+    own = origin == line
+    if not own.any():
+        behind = origin > line
+        first = int(np.argmax(behind)) if behind.any() else len(origin)
+        return first, first
+    first = int(np.argmax(own))
+    others = np.flatnonzero(~own[first:])
+    return first, first + int(others[0]) if len(others) else len(origin)
+
+
+def _told(
+    before: State,
+    axes: str,
+    earlier: Sequence[int],
+    refusal: Diagnostic | None,
+    path: Toolpath | None,
+    spelled: Mapping[str, str] = MappingProxyType({}),
+) -> Iterator[str]:
+    """Yield what was before a block, and what it does."""
     if earlier:
-        count = len(earlier)
-        lines += ["", f"read without {count} refused line(s) before, first line {earlier[0]}"]
-    lines += ["", "before it", *_state(before, tolerant.interpreter.axes)]
-    refusal = tolerant.refused.get(line)
+        yield ""
+        yield f"read without {len(earlier)} refused line(s) before, first line {earlier[0]}"
+    yield from ["", "before it", *_state(before, axes), ""]
     if refusal is not None:
-        return [*lines, "", f"refused [{refusal.code}]: {refusal.message}", *_hint(refusal.hint)]
-    if before.ended:
-        return [*lines, "", "the program has ended: the control does not execute this block"]
-    return [*lines, "", "what it does", *_doings(path)]
+        yield from [f"refused [{refusal.code}]: {refusal.message}", *_hint(refusal.hint)]
+    elif before.ended:
+        yield "the program has ended: the control does not execute this block"
+    else:
+        yield from ["what it does", *_doings(path, spelled)]
 
 
 def _hint(hint: str) -> list[str]:
@@ -120,22 +175,23 @@ def _point(axes: str, position: Any) -> str:
     )
 
 
-def _doings(path: Toolpath | None) -> Iterator[str]:
+def _doings(path: Toolpath | None, spelled: Mapping[str, str]) -> Iterator[str]:
     """Yield moves and events."""
     if path is None or not (len(path) or path.events):
         yield "  it moves nothing and switches nothing"
         return
     events = iter(path.events)
     told = [event for event in path.events if event.row == 0]
-    yield from (f"  {_event(event)}" for event in told)
+    yield from (f"  {_event(event, spelled)}" for event in told)
     for row in range(len(path)):
         yield from _move(path, row)
-    yield from (f"  {_event(event)}" for event in events if event not in told)
+    yield from (f"  {_event(event, spelled)}" for event in events if event not in told)
 
 
-def _event(event: Event) -> str:
+def _event(event: Event, spelled: Mapping[str, str]) -> str:
     values = " ".join(f"{name} {value:g}" for name, value in event.values)
-    return f"{event.what.lower() if event.what == 'DWELL' else event.what} {values}".rstrip()
+    name = "dwell" if event.what == "DWELL" else spelled.get(event.what, event.what)
+    return f"{name} {values}".rstrip()
 
 
 def _move(path: Toolpath, row: int) -> Iterator[str]:

@@ -19,6 +19,7 @@ from gcxform.cli.tolerant import Tolerant
 from gcxform.cli.tools import Extents, Tools
 from gcxform.diagnostics import InputError
 from gcxform.dialect import Dialect
+from gcxform.flow.translation import translated_so_far
 from gcxform.flow.written_out import written_out
 from gcxform.guess import guess_dialect
 from gcxform.machine.machine import Machine
@@ -32,6 +33,7 @@ from gcxform.syntax.tree import Comment, Expression, Number, Statement
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 FIRST = 10  # lines that are shown of those that are refused
+NOT_READ = "; what stands behind it is not read"
 _KINDS = {
     Kind.RAPID: "rapids",
     Kind.LINE: "lines",
@@ -51,10 +53,13 @@ def command(file: str, dialect: str | None, as_json: bool, **asked: Any) -> None
     reading, speeds = what.reading(), _speeds(what.loaded_machine)
     kind = default_registry().dialect(dialect) if dialect else None
     with opened(file) as source:
-        found = {"file": source.name, "bytes": source.size, **_words(source, kind or Dialect)}
+        found: dict[str, Any] = {"file": source.name, "bytes": source.size}
         if kind is None:
-            found |= _guess(source)
+            found |= _words(source, Dialect) | _guess(source)
+        elif kind.translator is not None:
+            found |= _foreign(source, kind, reading, speeds)
         else:
+            found |= _words(source, kind)
             tolerant = Tolerant(kind, _executed(source, kind, reading), reading)
             found |= _meaning(tolerant, found["codes"], speeds)
     click.echo(json.dumps(found, indent=2) if as_json else "\n".join(_text(found)))
@@ -66,6 +71,28 @@ def _executed(source: Source, dialect: type[Dialect], reading: Reading) -> Sourc
         return written_out(source, dialect, reading)
     except InputError:
         return source
+
+
+def _foreign(
+    source: Source, dialect: type[Dialect], reading: Reading, speeds: dict[str, float]
+) -> dict[str, Any]:
+    """Return what is in a program that is turned into blocks, up to what is refused of it."""
+    blocks, error = translated_so_far(source, dialect, reading)
+    said = _words(blocks, dialect)
+    found: dict[str, Any]
+    ends: Counter[str] = Counter()
+    for text in source.windows():
+        ends.update(_line_ends(text))
+    found = {"lines": len(blocks.lines), "line_ends": dict(ends), "blocks": said["lines"]}
+    found |= {name: said[name] for name in ("comments", "codes", "letters")}
+    found |= _meaning(Tolerant(dialect, blocks, reading), said["codes"], speeds)
+    for part in ("codes", "events"):
+        found[part] = {dialect.spelled.get(name, name): n for name, n in found[part].items()}
+    for diagnostic in error.diagnostics if error else ():
+        line = str(diagnostic.where.line if diagnostic.where else 0)
+        found["refused"] += 1
+        found["first_refused"][line] = f"{diagnostic.code} {diagnostic.message}{NOT_READ}"
+    return found
 
 
 def _speeds(machine: Machine | None) -> dict[str, float]:

@@ -101,6 +101,12 @@ def _dialect(thing: type[Dialect]) -> list[str]:
     """Return what a dialect can do, in a few lines."""
     codes = sorted(thing.codes, key=lambda code: float(code[1:]))
     numbers = thing.numbers
+    if thing.translator is not None:
+        return [
+            f"axes      {' '.join(thing.axes)}",
+            f"tip       {' '.join(thing.spelled.values())}",
+            "written   no: name another dialect in [output]",
+        ]
     return [
         f"axes      {' '.join(thing.axes)}",
         f"G codes   {' '.join(codes)}",

@@ -15,6 +15,7 @@ from gcxform.cli.programs import opened
 from gcxform.cli.restart import Restart
 from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
 from gcxform.machine.quantities import LENGTH
+from gcxform.pipeline import check_written
 from gcxform.registry import default_registry
 
 
@@ -39,6 +40,7 @@ def command(
 ) -> None:
     """Print the blocks for a restart at a line, proved to lead to what the program does."""
     kind = default_registry().dialect(needed_dialect(dialect))
+    check_written(kind)
     height = _height(clearance)
     if plunge is not None and not plunge > 0:
         raise UsageError.one("GX706", f"{plunge:g} is not above 0", Location("--plunge"))

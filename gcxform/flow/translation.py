@@ -15,7 +15,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, NoReturn
+from typing import Any, ClassVar, NamedTuple, NoReturn
 
 import numpy as np
 from lark import Lark, Token, Tree
@@ -41,8 +41,7 @@ BRACKETS = str.maketrans("()", "[]")
 SLOT = "\uffff"  # stands for a number in a shape: no program, read as bytes, has it
 
 
-@dataclass(frozen=True, slots=True)
-class Item:
+class Item(NamedTuple):
     """A part of a statement, as the grammar names it.
 
     `kind` is the rule, `names` are its terminals but for numbers, in capitals, `numbers` the
@@ -76,8 +75,10 @@ class _Part:
     place: tuple[int, int]
 
     def item(self, numbers: Sequence[str]) -> Item:
-        """Return the item with its numbers."""
-        return Item(self.kind, self.names, tuple(numbers[slot] for slot in self.slots), self.place)
+        """Return the item with its numbers; most have one, and there are many lines."""
+        slots = self.slots
+        own = (numbers[slots[0]],) if len(slots) == 1 else tuple(numbers[slot] for slot in slots)
+        return Item(self.kind, self.names, own, self.place)
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +130,7 @@ class Translator(ABC):
         """Whether items are the words of one block, in order, whatever stands before them.
 
         Asked once for each shape, so the answer must not depend on numbers. It spares such lines
-        the way through `blocks` while `plainly` is set: a name and a number for each item.
+        the way through `blocks` while `plainly` is set: each item has a name, or one and a number.
         """
         return False
 
@@ -167,12 +168,12 @@ class Translator(ABC):
         comments = "".join(_comment(text[slice(*part.place)]) for part in said)
         rest = [part for part in parts if part.kind != COMMENT]
         slots = [slot for part in rest for slot in part.slots]
-        pairs = all(len(part.names) == len(part.slots) == 1 for part in rest)
+        pairs = all(len(part.names) == 1 and len(part.slots) <= 1 for part in rest)
         if not rest or not pairs or slots != [*range(len(numbers))]:
             return _Shape(parts, comments, "")
         template = ""
         if self.plain([part.item(numbers) for part in rest]):
-            words = [part.names[0].replace("%", "%%") + "%s" for part in rest]
+            words = [part.names[0].replace("%", "%%") + "%s" * len(part.slots) for part in rest]
             template = " ".join([*words, comments.replace("%", "%%")]).rstrip()
         return _Shape(parts, comments, template)
 
@@ -282,17 +283,30 @@ class Translated(WrittenOut):
 
 def translated(source: Source, dialect: type[Dialect], reading: Reading) -> Translated:
     """Return the blocks of a program. Raises InputError where it is refused."""
+    found, refused = translated_so_far(source, dialect, reading)
+    if refused is not None:
+        raise refused
+    return found
+
+
+def translated_so_far(
+    source: Source, dialect: type[Dialect], reading: Reading
+) -> tuple[Translated, InputError | None]:
+    """Return the blocks of a program up to the line that is refused, and why it is."""
     lines = _lines(b"".join(source.windows()))
     if lines and not lines[-1]:
         lines.pop()
     assert dialect.translator is not None
     kind: type[Translator] = dialect.translator
-    blocks, origin = [], []
-    for line, block in kind(lines, source.name, dialect, reading).run():
-        blocks.append(block)
-        origin.append(line)
+    blocks, origin, refused = [], [], None
+    try:
+        for line, block in kind(lines, source.name, dialect, reading).run():
+            blocks.append(block)
+            origin.append(line)
+    except InputError as error:
+        refused = error
     joined = "".join(f"{block}\n" for block in blocks).encode("latin-1")
-    return Translated(source, lines, joined, origin)
+    return Translated(source, lines, joined, origin), refused
 
 
 def _lines(text: bytes) -> list[str]:
@@ -325,7 +339,7 @@ def _accepted(reader: Translator, line: int) -> bool:
 
 def _comment(text: str) -> str:
     """Return a comment in round brackets."""
-    inner = text[1:-1] if text.startswith("(") and text.endswith(")") else text.lstrip(";* \t")
+    inner = text[1:].removesuffix(")") if text.startswith("(") else text.lstrip(";* \t")
     return f"({inner.strip().translate(BRACKETS)})"
 
 

@@ -87,6 +87,7 @@ class Interpreter:
             self.reading.work_offsets,
             self.reading.homes,
         )
+        frames = replace(frames, following=self.dialect.follows_at_start)
         state = State(groups, position, feed, unit, frames, parameters=self._given())
         rule = self.dialect.cycle_rule
         if rule is not None:

@@ -41,6 +41,7 @@ class Reading:
     inert_m       M codes of the machine's own that move no axis and set no variable
     feed_increment   what 1 means in an F without a point, in units per minute; None: such an F is
                   refused where the dialect asks for a point
+    rotary        the letters of the rotary axes of the machine; "" where that is not known
     parameters    values of parameters before the first block, by number ("100") or name ("<a>")
     """
 
@@ -56,6 +57,7 @@ class Reading:
     tools: Mapping[int, Tool] = field(default_factory=dict)
     control: Mapping[str, str | float] = field(default_factory=dict)
     inert_m: frozenset[int] = frozenset()
+    rotary: str = ""
 
     def on(self, machine: Machine) -> Reading:
         """Return what is known when the program runs on a machine."""
@@ -66,6 +68,7 @@ class Reading:
             tools=machine.tools,
             control=machine.control,
             inert_m=machine.inert_m,
+            rotary="".join(machine.table + machine.head),
         )
 
 

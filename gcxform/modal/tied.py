@@ -17,7 +17,7 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.rows import Rows
 from gcxform.modal.state import UNKNOWN_SPINDLE
 from gcxform.modal.tables import NUMBER, PROBES, TAP, THREAD
-from gcxform.modal.track import Break, Track
+from gcxform.modal.track import SPATIAL, Break, Track
 from gcxform.toolpath.path import FeedMode, Form, Kind
 
 Floats = NDArray[np.float64]
@@ -25,7 +25,6 @@ Ints = NDArray[np.int64]
 Small = NDArray[np.int8]
 Flags = NDArray[np.bool_]
 
-SPATIAL = 7  # X, Y and Z as bits
 Objection = tuple[Flags, str, str]
 
 

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import INCH, LINEAR
+from gcxform.dialect import INCH, LINEAR, ROTARY
 from gcxform.distinct import distinct
 from gcxform.modal.acts import ACTS
 from gcxform.modal.asking import ActError, Asked
@@ -36,6 +36,10 @@ LENGTHENED = frozenset(
         *("vectors", "no-vectors"),
     }
 )
+
+SWITCHED = frozenset({"tip-on", "tip-off"})
+SPATIAL = 0b111  # X, Y and Z as bits
+WHOLE_TURN = 360.0  # degrees
 
 LEFT = np.inf
 """The position of an axis that is where a control has left it that turns the tool along vectors.
@@ -114,6 +118,8 @@ class Track:
             self._lose(line, (1 << len(self.axes)) - 1)
         if act.name == "no-vectors" and before.following:
             self.state.position[:] = LEFT  # the angles are the control's own choice
+        if act.name in SWITCHED and before.following is not frames.following:
+            self._lose(line, 0 if self._upright() else SPATIAL)
         if act.name in LENGTHENED and self.dialect.length_may_move and frames.frame() != old:
             self._lose(line, 4)
         if act.name == "polar":
@@ -121,6 +127,12 @@ class Track:
         if act.name in LOST_BY_TURN:
             self._lose(line, self._turned_by(line, before, frames))
         self._enter(line, old)
+
+    def _upright(self) -> bool:
+        """Whether all rotary axes are known to be at 0, where the tip is as far as the axes are."""
+        rotary = self.lines.reading.rotary or ROTARY
+        turned = [v for a, v in zip(self.axes, self.state.position, strict=True) if a in rotary]
+        return all(v % WHOLE_TURN == 0.0 for v in turned)
 
     def _turned_by(self, line: int, before: FrameState, after: FrameState) -> int:
         """Return the axes, as bits, of which controls differ in where a turn leaves them."""

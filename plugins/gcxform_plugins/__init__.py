@@ -12,10 +12,11 @@ def gcxform_dialects() -> list[type[gx.Dialect]]:
     from gcxform_plugins.dialects.fanuc import Fanuc
     from gcxform_plugins.dialects.grbl import Grbl
     from gcxform_plugins.dialects.haas import Haas
+    from gcxform_plugins.dialects.heidenhain import Heidenhain
     from gcxform_plugins.dialects.linuxcnc import LinuxCNC
     from gcxform_plugins.dialects.siemens import Siemens
 
-    return [Fagor, Fanuc, Grbl, Haas, LinuxCNC, Siemens]
+    return [Fagor, Fanuc, Grbl, Haas, Heidenhain, LinuxCNC, Siemens]
 
 
 @gx.hookimpl

@@ -151,7 +151,7 @@ def motions(fact: dict[str, Any]) -> list[dict[str, Any]]:
         found += _steps_of(motion)
     return [
         one
-        for one, after in zip(found, [*found[1:], {}], strict=True)
+        for one, after in zip(found, [*found[1:], {}], strict=False)
         if not (one.get("what") == "M5" and after.get("what") == "M6")  # M6 stops the spindle
     ]
 

@@ -17,7 +17,9 @@ def _feeds(name: str, old: str) -> Mutation:
 
 MUTATIONS = (
     _verifier("the budget is ignored", "if not distance[worst] <= self.budget:"),
-    _verifier("rotary axes are ignored", "if not off.angle[turned] <= self.angle_budget:"),
+    _verifier(
+        "rotary axes are ignored", "None if angle[turned] <= self.angle_budget else turned", "None"
+    ),
     _verifier("kinds are ignored", "if wrong.any():"),
     _feeds("feeds are ignored", "if (off & plain).any():"),
     _feeds("feed modes are ignored", "if strange.any():"),

@@ -239,7 +239,7 @@ class _Proof:
         """
         inside = (self.turn > self.straight) & (self.turn < np.pi - ANGLE)
         k = np.flatnonzero((inside | self.valley) & ~self.entry)
-        k = k[~self.entry[k - 1] | ~self.beside_next]
+        k = k[~self.entry[k - 1] | (not self.beside_next)]
         u, v = self._heading(k - 1, self.b[k - 1]), self._heading(k, self.a[k])
         back = self.side[k] * _cross(u, v) < -ANGLE
         _fail_if(self.before, self.row[k][back], "an inside corner is not where the moves meet")

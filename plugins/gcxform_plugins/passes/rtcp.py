@@ -201,7 +201,7 @@ class Rtcp(gx.Pass):
         """Return the path of the axes for one of tips; if asked the reverse, or one corrected."""
         switches = Switches(path, context) if self.reads_tip_codes else None
         if switches is not None:
-            switches.refuse()
+            switches.refuse(self.turns_anew)
         if not len(path) or self._nothing_to_correct(context):
             return path.replace(blocks=self.timed(path.blocks))
         if switches is not None and (context.source.tip_codes or not switches.codes):
@@ -210,7 +210,7 @@ class Rtcp(gx.Pass):
             source, target = self._machines(path, context)
             path = self._moving(self, path, context, source, target).run()
         else:
-            place = Place(path, context)
+            place = self._place(path, context)
             way = self._corrected(path, context) or Between(place, self.direction == "to-machine")
             cutting = Cutting(self, path, context, place, way)
             after = cutting.run()
@@ -243,13 +243,17 @@ class Rtcp(gx.Pass):
     def _corrected(self, path: gx.Toolpath, context: gx.PassContext) -> Corrected | None:
         return None if self.calibrated is None else Corrected(*self._machines(path, context))
 
+    def _place(self, path: gx.Toolpath, context: gx.PassContext) -> Place:
+        """Return the place of the machine file."""
+        return Place(path, context, switched=self.reads_tip_codes)
+
     def _machines(self, path: gx.Toolpath, context: gx.PassContext) -> tuple[Place, Place]:
         """Return the places of the machine posted for, and of the one that is written for.
 
         A calibrated machine has the work offset of the other: it is what the operator has set.
         """
         if self.target is None:
-            place = Place(path, context)
+            place = self._place(path, context)
             if self.calibrated is None:
                 return place, place
             return place, Place(path, context, gx.chain_of(self.calibrated.machine))
@@ -330,7 +334,7 @@ class Rtcp(gx.Pass):
         owner = np.searchsorted(before.source, after.source)
         cut = (after.kind != gx.Kind.RAPID) & (after.feed_mode != before.feed_mode[owner])
         rows = np.flatnonzero(cut)
-        place = Place(before, context)
+        place = self._place(before, context)
         step = before.end - before.start
         way = np.sqrt((step[:, :3] ** 2).sum(axis=1))
         turned = np.sqrt((place.angles(step) ** 2).sum(axis=1))
@@ -365,11 +369,8 @@ class Rtcp(gx.Pass):
         proof.run()
         found = {"tip off, mm": proof.tip, "tool axis off, degrees": proof.lean}
         found |= proof.measured()
-        return (
-            found
-            if self.calibrated is None
-            else found | {"angles corrected by, degrees": proof.turn}
-        )
+        corrected = {"angles corrected by, degrees": proof.turn}
+        return found if self.calibrated is None else found | corrected
 
     def timed(self, blocks: gx.Blocks) -> gx.Blocks:
         """Return blocks in inverse time, if positions of axes are written.
@@ -393,4 +394,4 @@ class Rtcp(gx.Pass):
         if way is not None:
             return Undoing(self, path, way.axes, True, way.nominal).run()
         inwards = self.direction == "to-machine"
-        return Undoing(self, path, Place(path, context), inwards).run()
+        return Undoing(self, path, self._place(path, context), inwards).run()

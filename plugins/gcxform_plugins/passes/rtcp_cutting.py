@@ -43,8 +43,8 @@ class Cutting:
         self.start[:1] = self._rounded(self.start[:1])
         followed = [0, 1, 2, *place.columns]
         self.unknown_start = np.isnan(self.start[:, followed]).any(axis=1)
-        self.turned = turned_at(place.angles(self.end))
-        self.turned_before = turned_at(place.angles(self.start))
+        self.turned = turned_at(place.angles(self.end)) & ~place.off
+        self.turned_before = turned_at(place.angles(self.start)) & ~place.off
         self.own = (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
         self.cuts = (path.kind == gx.Kind.LINE) & (path.form == gx.Form.PLAIN)
         per_minute = path.feed_mode == gx.FeedMode.PER_MINUTE
@@ -117,7 +117,7 @@ class Cutting:
     def _turning(self) -> Ints:
         """Return the rows that cut while axes turn."""
         way = np.abs(self.place.angles(self.end - self.start)).max(axis=1, initial=0.0)
-        return np.flatnonzero(self.cuts & (way > 0.0))
+        return np.flatnonzero(self.cuts & (way > 0.0) & ~self.place.off)
 
     def _worst(self, rows: Ints, count: Ints) -> Floats:
         """Return how far (mm) the tip can leave its line in any piece of rows."""
@@ -208,7 +208,7 @@ class Cutting:
         moved |= (np.isnan(before) & ~np.isnan(angles)).any(axis=1)
         turned = self.turned | self.turned_before
         self._check_known(turned, moved)
-        turned |= moved & (self.path.kind != gx.Kind.RAPID)  # a whole turn
+        turned |= moved & (self.path.kind != gx.Kind.RAPID) & ~self.place.off  # a whole turn
         self._check_forms(turned)
         if self.step.direction == "repost":
             self._check_decimals()
@@ -225,6 +225,8 @@ class Cutting:
         unknown |= np.isnan(self.end[:, :3]).any(axis=1) & turned
         unknown |= self.cuts & (turned | moved) & self.unknown_start
         hint = "program all axes before, or say where they are with start in [input]"
+        if self.place.off.any():
+            hint = "after a switch with axes turned, name X, Y and Z together in a rapid"
         message = "where the axes stand is not known here"
         self._refuse("GX311", unknown & ~self.own, message, hint)
 
@@ -244,7 +246,7 @@ class Cutting:
     def _check_rapids(self, moved: Flags) -> None:
         """Refuse rapids that turn axes, but from an unknown angle to 0, as a program begins."""
         unknown = np.isnan(self.place.angles(self.start)).any(axis=1)
-        rapid = (self.path.kind == gx.Kind.RAPID) & ~(unknown & ~self.turned)
+        rapid = (self.path.kind == gx.Kind.RAPID) & ~(unknown & ~self.turned) & ~self.place.off
         message = "where the tip goes in a rapid that turns axes is not known"
         hint = 'move at a feed, or say rapids = "ends" if the tool is clear on any way'
         self._refuse("GX330", rapid & moved, message, hint)
@@ -301,9 +303,10 @@ class Cutting:
         feeding = path.kind != gx.Kind.RAPID
         told = feeding & (path.feed_mode != gx.FeedMode.INVERSE_TIME)
         hint = "let the CAM write this part in the feed mode that is wanted"
+        axes = np.full(len(path), not self.to_axes) | self.place.off
+        message = "what a feed of linear and rotary axes together means is not known"
+        self._refuse("GX320", told & moved & axes, message, hint)
         if not self.to_axes:
-            message = "what a feed of linear and rotary axes together means is not known"
-            self._refuse("GX320", told & moved, message, hint)
             return
         turn = path.feed_mode == gx.FeedMode.PER_TURN
         self._refuse("GX320", feeding & turn, "its speed depends on the spindle", hint)

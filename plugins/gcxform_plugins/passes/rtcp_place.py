@@ -43,7 +43,8 @@ class Place:
     A tip on the workpiece is then position - tool + zero + gauge point, and the axes stand at
     position + zero, where `zero` (3,) is the work offset. `which` (n,) of the `tools` (k, 3) in mm
     holds in each row, and `which_before` in the one before it: the frame of the row before the
-    first is the first of the frames.
+    first is the first of the frames. `switched`: codes say where the control follows the tip, and
+    in rows that are `off` (n,) X, Y and Z are those of the axes.
     """
 
     def __init__(
@@ -52,6 +53,7 @@ class Place:
         context: gx.PassContext,
         chain: gx.Chain | None = None,
         others: str = "",
+        switched: bool = False,
     ) -> None:
         assert context.machine is not None
         self.path = path
@@ -62,6 +64,8 @@ class Place:
         self.zero = self._zero(context)
         self._check_frames()
         tools = np.array([frame.tool for frame in path.frames])
+        off = np.array([switched and frame.following is False for frame in path.frames])
+        self.off = np.asarray(off[path.frame])
         self.tools, which = np.unique(tools, axis=0, return_inverse=True)
         of_frame = which.reshape(-1)
         self.which = np.asarray(of_frame[path.frame])
@@ -178,7 +182,7 @@ class Place:
     ) -> Floats:
         """Return points changed, but those where no axis is known to be turned."""
         result = points.copy()
-        turned = turned_at(angles)
+        turned = turned_at(angles) & ~self.off[rows]
         for chain, here in self.chains(rows):
             here = here[turned[here]]
             result[here] = change(chain, points[here] + self.zero, angles[here]) - self.zero

@@ -1,8 +1,9 @@
 """Where a control that is switched by M codes follows the tip of the tool, for `rtcp`.
 
-A program that switches with the codes of the machine file is one of tips while they are on. With
-all rotary axes at 0 tip and axes are at one position, so there a program may be off as well, and
-only there may it switch: with an axis turned the same numbers are another place after it.
+A program that switches with codes of the control is one of tips while they are on, and of axes
+while they are off. With all rotary axes at 0 tip and axes are at one position. With an axis turned
+the same numbers are another place after a switch: X, Y and Z are then known again where a rapid has
+named them.
 """
 
 from __future__ import annotations
@@ -52,12 +53,15 @@ class Switches:
             return UNKNOWN
         return ON if frame.following else OFF
 
-    def refuse(self) -> None:
-        """Refuse what is not one program of tips, wherever axes are turned. Raises InputError."""
+    def refuse(self, tips_only: bool) -> None:
+        """Refuse what is not certain wherever axes are turned. Raises InputError.
+
+        `tips_only`: the program may be off, and switch, only where all axes are at 0.
+        """
         if not self.codes:
             return
         self._refuse_company()
-        for line, message, hint in self._wrong():
+        for line, message, hint in self._wrong(tips_only):
             raise gx.InputError.one("GX330", message, gx.Location("", line + 1), hint)
 
     def _refuse_company(self) -> None:
@@ -70,10 +74,24 @@ class Switches:
             where = gx.Location("", int(company.min()) + 1)
             raise gx.InputError.one("GX330", message, where, "give each code its own block")
 
-    def _wrong(self) -> Iterator[tuple[int, str, str]]:
+    def _wrong(self, tips_only: bool) -> Iterator[tuple[int, str, str]]:
         """Yield lines of what is refused, with messages and hints."""
         off = off_zero(self.angles)
         turned, rest = off & np.isfinite(self.angles), np.asarray(~off.any(axis=1))
+        if tips_only:
+            yield from self._switched_turned(rest)
+        turns = np.asarray(turned.any(axis=1))
+        step = np.nan_to_num(np.diff(self.angles, axis=0))
+        moves = turns[1:] | turns[:-1]
+        moves |= (step != 0.0).any(axis=1) & (self.path.kind != gx.Kind.RAPID)
+        if tips_only:
+            message = "axes are turned while the control does not follow the tip"
+            yield from self._rows((self.state == OFF) & moves, message)
+        message = "axes are turned, and whether the control follows the tip is not known"
+        yield from self._rows((self.state == UNKNOWN) & moves, message)
+
+    def _switched_turned(self, rest: Flags) -> Iterator[tuple[int, str, str]]:
+        """Yield switches where not all axes (n + 1,) rest at 0."""
         for event in self.path.events:
             if event.what in self.codes and not rest[event.row]:
                 called = self.spelled.get(event.what, event.what)
@@ -81,14 +99,6 @@ class Switches:
                 yield event.line, message, TURN_BACK
         changed = (self.state != self.before) & ~rest[:-1]
         yield from self._rows(changed, "the control was switched where axes may be turned")
-        turns = np.asarray(turned.any(axis=1))
-        step = np.nan_to_num(np.diff(self.angles, axis=0))
-        moves = turns[1:] | turns[:-1]
-        moves |= (step != 0.0).any(axis=1) & (self.path.kind != gx.Kind.RAPID)
-        message = "axes are turned while the control does not follow the tip"
-        yield from self._rows((self.state == OFF) & moves, message)
-        message = "axes are turned, and whether the control follows the tip is not known"
-        yield from self._rows((self.state == UNKNOWN) & moves, message)
 
     def _rows(self, wrong: Flags, message: str) -> Iterator[tuple[int, str, str]]:
         for row in np.flatnonzero(wrong)[:1].tolist():

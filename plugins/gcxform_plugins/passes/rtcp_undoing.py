@@ -82,7 +82,7 @@ class Undoing:
         bend = np.zeros(len(path))
         rows = np.flatnonzero((path.kind == gx.Kind.LINE) & path.starts_known)
         turning = np.abs(self._steps(rows)).max(axis=1, initial=0.0) > 0.0
-        rows = rows[turning]
+        rows = rows[turning & ~self.place.off[rows]]
         rows = rows[np.isfinite((self.start + self.end)[rows, :3]).all(axis=1)]  # or it is far off
         for chain, here in self.place.chains(rows):
             bend[rows[here]] = self._bend(chain, rows[here]) / 8.0

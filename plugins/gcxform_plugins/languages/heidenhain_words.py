@@ -1,0 +1,120 @@
+"""What a TNC knows while it runs a program, and the words that its blocks become.
+
+Numbers are texts wherever nothing is computed, so that they keep their digits.
+"""
+
+from __future__ import annotations
+
+import re
+from decimal import Decimal
+from typing import Any
+
+import gcxform as gx
+
+LINEAR = "XYZ"
+ROTARY = "ABC"
+LONGEST = 20  # characters of a number
+COMPUTED = 8  # decimals of mm, inch or degrees: far below what the control resolves
+UNKNOWN = "say where the axes stand: start = { X = ... } in [input], or begin with absolute values"
+
+
+def plain(number: str) -> str:
+    """Return a number as blocks have it: with a point, and without a plus."""
+    return number.replace(",", ".").removeprefix("+")
+
+
+def written(value: float | Decimal) -> str:
+    """Return a computed number: no exponent, and no more decimals than it needs."""
+    text = f"{value:.{COMPUTED}f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def exact(value: Decimal) -> str:
+    """Return a sum of numbers of the program, with all of its digits."""
+    text = f"{value:f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+class Words(gx.Translator):
+    """The state that statements of a TNC share.
+
+    place     where the axes stand, as the program counts it; an axis that is not here is lost
+    pole      X and Y of CC, as numbers of the program
+    polar     PR and PA that were programmed last, None after other moves
+    moved     axes that have moved to a place of the workpiece since the program began
+    side      G41 or G42 where RL or RR is in force
+    """
+
+    grammar = ("gcxform_grammars", "heidenhain")
+    number = re.compile(r"[+-]?(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)")
+    signs = re.compile(rb"\bBEGIN[ \t]+PGM\b", re.IGNORECASE)
+
+    def __init__(self, *program: Any) -> None:
+        super().__init__(*program)
+        self.place: dict[str, str] = {}
+        self.pole: dict[str, str] = {}
+        self.polar: tuple[float, float] | None = None
+        self.moved: set[str] = set()
+        self.motion = ""
+        self.feed = ""
+        self.tool_feed = ""
+        self.feed_lost = False
+        self.inch = False
+        self.following = False
+        self.shortest = False
+        self.side = ""
+        self.in_spindle = ""
+
+    # --- numbers ---
+
+    def number_of(self, item: gx.Item) -> str:
+        """Return the number of an item. Raises InputError for a parameter."""
+        if not item.numbers:
+            self.refuse(f"{item.names[-1]} is a Q parameter", item)
+        if len(item.numbers[0]) > LONGEST:
+            raise self.refusal("GX219", "a number beyond what the control takes", item)
+        return plain(item.numbers[0])
+
+    def stands_at(self, axis: str, item: gx.Item, what: str = "") -> Decimal:
+        """Return where an axis stands. Raises InputError where that is not known."""
+        if axis not in self.place:
+            message = f"{what or item.name} counts from where {axis} stands, which is not known"
+            raise self.refusal("GX207", message, item, UNKNOWN)
+        return Decimal(self.place[axis])
+
+    def reached(self, item: gx.Item) -> tuple[str, str]:
+        """Return the axis of a coordinate, and the number that it leads to."""
+        number, name = self.number_of(item), item.names[0]
+        if name[0] != "I":
+            return name, number
+        axis = name[1:]
+        return axis, exact(self.stands_at(axis, item) + Decimal(number))
+
+    def refuse_beside(self, what: str, item: gx.Item) -> None:
+        """Refuse what is not read while the tool is beside the contour. Raises InputError."""
+        if self.side:
+            self.refuse(f"{what} under radius compensation", item, "write R0 in a line before")
+
+    # --- words ---
+
+    def feed_word(self, number: str) -> str:
+        """Return F in the unit of blocks: programs in inches have tenths of inches."""
+        if self.inch:
+            number = exact(Decimal(number).scaleb(-1))
+        self.feed, self.feed_lost = number, False
+        return f" F{number}"
+
+    def moving(self, code: str) -> str:
+        """Return a motion code where another one is in force."""
+        if code == self.motion:
+            return ""
+        self.motion = code
+        return code
+
+    def lose(self, axes: str | None = None) -> None:
+        """Forget where axes stand, all of them if none are named."""
+        lost = [*self.place] if axes is None else axes
+        for axis in lost:
+            self.place.pop(axis, None)
+        if not {"X", "Y"}.isdisjoint(lost):
+            self.polar = None

@@ -1,0 +1,173 @@
+"""Faults of the translator of Klartext: each turns a program into another one."""
+
+from __future__ import annotations
+
+from faults.mutation import Mutation
+
+LANGUAGES = "plugins/gcxform_plugins/languages"
+CYCLES = f"{LANGUAGES}/heidenhain_cycles.py"
+LABELS = f"{LANGUAGES}/heidenhain_labels.py"
+MOVES = f"{LANGUAGES}/heidenhain_moves.py"
+SAID = f"{LANGUAGES}/heidenhain_said.py"
+WORDS = f"{LANGUAGES}/heidenhain_words.py"
+PROGRAM = f"{LANGUAGES}/heidenhain.py"
+TESTS = "tests/test_heidenhain.py"
+READ = f"{TESTS}::test_it_is_read_as_by_a_reader_of_one_line_at_a_time"
+REFUSED = f"{TESTS}::test_it_is_refused_by_name"
+
+MUTATIONS = (
+    Mutation(
+        "klartext: DR+ is clockwise",
+        SAID,
+        'said.sense = "G3" if item.name[-1] == "+" else "G2"',
+        'said.sense = "G2" if item.name[-1] == "+" else "G3"',
+        READ,
+    ),
+    Mutation(
+        "klartext: FMAX stays in force",
+        MOVES,
+        'code = "G0" if said.rapid else "G1"\n        if code == "G1":',
+        'code = "G0" if said.rapid or self.motion == "G0" else "G1"\n        if code == "G1":',
+        READ,
+    ),
+    Mutation(
+        "klartext: steps count from zero",
+        WORDS,
+        "return axis, exact(self.stands_at(axis, item) + Decimal(number))",
+        "return axis, exact(self.stands_at(axis, item) * 0 + Decimal(number))",
+        READ,
+    ),
+    Mutation(
+        "klartext: feeds in inches are inches",
+        WORDS,
+        "number = exact(Decimal(number).scaleb(-1))",
+        "number = exact(Decimal(number))",
+        READ,
+    ),
+    Mutation(
+        "klartext: the feed of M128 is that of the tip",
+        SAID,
+        "if last == 128:",
+        "if last == 127:",
+        READ,
+    ),
+    Mutation(
+        "klartext: M129 acts at the start of its block",
+        MOVES,
+        "blocks = [*said.before, *([block] if block else ()), *said.after]",
+        "blocks = [*said.before, *said.after, *([block] if block else ())]",
+        READ,
+    ),
+    Mutation(
+        "klartext: a turn more or less in a helix",
+        MOVES,
+        'words += f" P{turns}" if turns > 1 else ""',
+        'words += f" P{turns + 1}" if turns > 1 else ""',
+        READ,
+    ),
+    Mutation(
+        "klartext: a helix ends beside its circle",
+        MOVES,
+        "ends |= self._at(pole, radius, begin + turn)",
+        "ends |= self._at(pole, radius, begin - turn)",
+        READ,
+    ),
+    Mutation(
+        "klartext: a helix may turn against its sense",
+        MOVES,
+        "if turn * sense < 0:",
+        "if turn * sense > 1e9:",
+        REFUSED,
+    ),
+    Mutation(
+        "klartext: REP counts all runs",
+        LABELS,
+        "left = self.left.get(key, times)",
+        "left = self.left.get(key, times - 1)",
+        READ,
+    ),
+    Mutation(
+        "klartext: a repeat is not begun anew",
+        LABELS,
+        "        if not left:\n            del self.left[key]",
+        "        if not left:\n            self.left[key] = 0",
+        f"{TESTS}::test_labels_in_labels",
+    ),
+    Mutation(
+        "klartext: a shift is added to the one before",
+        CYCLES,
+        "new = {axis: given.get(axis, old[axis]) for axis in LINEAR}",
+        "new = {a: exact(Decimal(given.get(a, 0)) + Decimal(old[a])) for a in LINEAR}",
+        READ,
+    ),
+    Mutation(
+        "klartext: places keep their numbers under a shift",
+        CYCLES,
+        "self.place[axis] = exact(Decimal(self.place[axis]) - by[axis])",
+        "self.place[axis] = exact(Decimal(self.place[axis]))",
+        f"{TESTS}::test_a_shift_counts_from_the_datum",
+    ),
+    Mutation(
+        "klartext: pecks go to the bottom of the last one in rapid",
+        CYCLES,
+        "near = surface - reached + before",
+        "near = surface - reached",
+        f"{TESTS}::test_strokes_of_the_old_cycle",
+    ),
+    Mutation(
+        "klartext: a hole in many strokes is one in one",
+        CYCLES,
+        "if depth >= 0 or peck < -depth or self.inch:",
+        "if depth >= 0 or self.inch:",
+        f"{TESTS}::test_other_holes_are_not_certain",
+    ),
+    Mutation(
+        "klartext: the feed in force behind a cycle is that of the cycle",
+        CYCLES,
+        'self.motion, self.feed_lost = "G0", True',
+        'self.motion, self.feed_lost = "G0", False',
+        f"{TESTS}::test_a_hole_in_one_stroke",
+    ),
+    Mutation(
+        "klartext: the shorter way is as it is written",
+        MOVES,
+        "abs(Decimal(after) - Decimal(before)) >= 180",
+        "abs(Decimal(after) - Decimal(before)) > 180",
+        REFUSED,
+    ),
+    Mutation(
+        "klartext: places are known behind a tool change",
+        PROGRAM,
+        "        tool = self.in_spindle = self.tool\n        self.lose()",
+        "        tool = self.in_spindle = self.tool",
+        REFUSED,
+    ),
+    Mutation(
+        "klartext: M91 under M128",
+        MOVES,
+        'if self.following:\n            self.refuse("M91',
+        'if self.following is None:\n            self.refuse("M91',
+        REFUSED,
+    ),
+    Mutation(
+        "klartext: tools may be longer than the machine file says",
+        PROGRAM,
+        "- value) > 1e-9:",
+        "- value) > 1e9:",
+        REFUSED,
+    ),
+    Mutation(
+        "klartext: RL is right of the contour",
+        MOVES,
+        'SIDES = {"RL": "G41", "RR": "G42"}',
+        'SIDES = {"RR": "G41", "RL": "G42"}',
+        f"{TESTS}::test_beside_a_contour_it_is_read_as_g41",
+    ),
+    Mutation(
+        "klartext: behind a switch with turned axes places are known",
+        SAID,
+        'self.lose("XYZ")',
+        'self.lose("")',
+        f"{TESTS}::test_behind_a_switch_with_turned_axes_places_are_lost",
+    ),
+)
