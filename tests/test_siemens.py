@@ -263,6 +263,19 @@ def test_a_modal_cycle_drills_behind_each_place():
     assert executed(text) == ["G0 F100", "X10 Y10", *levels, "X20", *levels, "M30"]
 
 
+@pytest.mark.parametrize(("switch", "end"), [("skip", "G0 X8 Y2"), ("execute", "G0 X9 Y2")])
+def test_lines_that_are_skipped_move_nothing(switch, end):
+    """Plain lines are not looked at before a position is asked for; those with a slash are none."""
+    text = "G0 X1 Y0\nX7\n/ X8\nG0 X=IC(1) Y2\n"
+    assert executed(text, block_delete=switch)[-1] == end
+
+
+def test_a_refusal_shows_its_own_line():
+    """Lines of one shape share their items, and not their columns."""
+    found = refused("G0 C0\nN1 C=DC(10)\nN20000 C=DC(190)\n")
+    assert (found.code, found.where.line, found.where.column) == ("GX210", 3, 8)
+
+
 # --- end to end ---
 
 MACHINE = """format = 1

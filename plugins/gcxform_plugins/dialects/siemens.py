@@ -7,7 +7,7 @@
 | `X=AC()`, `X=IC()` | absolute, incremental, for this word, whatever G90 and G91 say | 808D 53 |
 | both kinds in a block | steps become absolute; refused where the axis may stand anywhere | |
 | `I J K` | from the start, also in G90; `I=AC()` is the centre itself | 808D 53 |
-| `A10`, `C370` | rotary axes go to the number, as those without modulo do | [K] |
+| `A10`, `C370` | to the number; MD30455 may take modulo axes the shorter way | R2 225 |
 | `C=DC()` | the shorter way to an angle of 0 to 360; half a turn is refused | [K] |
 | `C=ACP()`, `C=ACN()` | up, down; to where the axis stands already: refused | [K] |
 | that, from an unknown angle | a rapid goes to the number as written; a cut is refused | |
@@ -15,8 +15,8 @@
 | steps behind G54, D, M6, SUPA | SD42440 or SD42442 adds the difference, or not: refused | [K] |
 | motion at start | MD20150: axis words before any motion code are refused | PM 1262 |
 | `CR=` | positive for the arc up to half a turn, negative for the longer | OM 579 |
-| `AR=` | the opening angle, beside the end or the centre | 5AX 98 |
-| `TURN=n` | n full turns beyond the arc; of a full circle: refused | 5AX 98 |
+| `AR=` | the opening angle, beside the end or the centre | PM 204 |
+| `TURN=n` | n full turns before the arc; of a full circle: refused | PM 205 |
 | `CIP` | an arc over a point; refused in G91, and outside of the plane in force | T 91 |
 | `CT` | refused | |
 | start and end radius | may differ by 0.01 mm (MD21000) | [K] |
@@ -56,9 +56,10 @@
 | G291 | ISO dialects: refused | PM |
 
 Manuals of Siemens: PM NC programming 12/2019 (6FC5398-2EP40-0BA0), 808D Programming 01/2014
-(6FC5398-4DP10-0BA1), OM Operating 05/2017, 5AX 5-axis machining, T Turning 01/2017, K2 Frames and
-828D Basic functions 09/2011, ISO Milling 04/2007, W1 Tool offset 11/2006, TR Transformations
-06/2019 (A5E47435470B), SW Swivelling 03/2013; C81 helmancnc.com on CYCLE81. [K]: not looked up.
+(6FC5398-4DP10-0BA1), OM Operating 05/2017, T Turning 01/2017, K2 Frames and 828D Basic functions
+09/2011, ISO Milling 04/2007, W1 Tool offset 11/2006, TR Transformations 06/2019 (A5E47435470B),
+R2 Axes and spindles 06/2019 (A5E47437747B), SW Swivelling 03/2013; C81 helmancnc.com on CYCLE81.
+[K]: not looked up.
 """
 
 from __future__ import annotations
