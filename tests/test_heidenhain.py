@@ -478,7 +478,7 @@ def test_other_holes_are_not_certain(change):
     name = change.partition("=")[0]
     kept = [line for line in lines if not line.startswith(name)]
     with pytest.raises(gx.InputError, match="GX215"):
-        blocks(*kept[:-1], f"{change} ", kept[-1])
+        blocks(*kept[:-2], f"{change} ~", *kept[-2:])
 
 
 PECKED = ["CYCL DEF 1.0 PECKING", "CYCL DEF 1.1 DIST2.000", "CYCL DEF 1.2 DEPTH-7.5"]
