@@ -353,7 +353,16 @@ REFUSED = {
     ),
     "another preset": (["CYCL DEF 247 DATUM SETTING Q339=+1"], "GX210"),
     "a preset behind moves": (["CYCL DEF 247 DATUM SETTING Q339=+0"], "GX210"),
-    "a rotation": (["CYCL DEF 10.0 ROTATION"], "GX210"),
+    "a rotation": (["CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+5"], "GX210"),
+    "no rotation": (["CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+0", "L X+1 FMAX"], None),
+    "no plane": (["PLANE RESET STAY", "L X+1 FMAX"], None),
+    "a way out of a plane": (["PLANE RESET TURN FMAX"], "GX210"),
+    "a mirror": (["CYCL DEF 8.0 MIRROR IMAGE", "CYCL DEF 8.1 X"], "GX210"),
+    "a scale": (["CYCL DEF 11.0 SCALING", "CYCL DEF 11.1 SCL 0.5"], "GX210"),
+    "what is set behind a cycle": (
+        ["CYCL DEF 200 DRILLING ~", "Q200=2 ~", "Q201=-5 ;DEPTH", "Q203=+7"],
+        "GX210",
+    ),
     "a pocket": (["CYCL DEF 251 RECTANGULAR POCKET"], "GX210"),
     "a pattern": (["CYCL CALL PAT F500"], "GX210"),
     "no cycle": (["L X+5 FMAX M99"], "GX215"),
@@ -469,7 +478,7 @@ def test_other_holes_are_not_certain(change):
     name = change.partition("=")[0]
     kept = [line for line in lines if not line.startswith(name)]
     with pytest.raises(gx.InputError, match="GX215"):
-        blocks(*kept[:-1], f"{change} ", kept[-1])
+        blocks(*kept[:-2], f"{change} ~", *kept[-2:])
 
 
 PECKED = ["CYCL DEF 1.0 PECKING", "CYCL DEF 1.1 DIST2.000", "CYCL DEF 1.2 DEPTH-7.5"]

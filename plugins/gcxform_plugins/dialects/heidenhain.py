@@ -38,6 +38,7 @@ named, that is where it is said; [K] is known from practice only.
 | cycle 7 | the zero is elsewhere; steps, tables, one of several axes: refused | [K] |
 | cycle 9 | a dwell in seconds | 640, p. 631 |
 | cycle 32 | tolerance: changes no position that is programmed | |
+| PLANE RESET STAY, ROT+0, SCL 1 | cancel what is refused here | [K] |
 | cycle 247 | preset 0, before the first move; others are refused | [K] |
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |
 | cycle 200 | in one stroke; the feed behind a cycle must be programmed | [K] |

@@ -93,6 +93,8 @@ class Klartext(Cycles):
         }.get(word[0])
         if read is not None:
             return read(item)
+        if name.split() == ["PLANE", "RESET", "STAY"]:  # no plane is read that it could end
+            return []
         if word[0] in ("FN", "Q", "QL", "QR", "QS"):
             self.refuse("Q parameters: nothing is computed here", item)
         self.refuse(f"{name.strip()[:40]} is not resolved", item)

@@ -20,6 +20,13 @@ PARAMETER_LINE = re.compile(r"[\s\d]*Q[2-4]\d\d\s*=")
 REST_OF_HOLES = {395: "a depth of the tip or of the full diameter", 210: "a dwell above"}
 HOLE = (200, 201, 206, 202, 203, 204, 211)
 PECKS = ("DIST", "DEPTH", "PECKING DEPTH", "DWELL", "F")
+CANCELS = {
+    **{"8.0": ("MIRROR IMAGE", "SPIEGELN"), "8.1": ("",)},
+    **{"10.0": ("ROTATION", "DREHUNG"), "10.1": ("ROT+0", "ROT +0", "ROT+0.000")},
+    **{"11.0": ("SCALING", "MASSFAKTOR"), "11.1": ("SCL 1", "SCL1", "SCL 1.000000")},
+}
+"""Lines of cycles that turn, mirror and scale, where they say that nothing is."""
+LEAVE = "if all of the program counts from it, leave this block out: G54 stands for it then"
 ALONE = "let the CAM write the hole as plain moves"
 
 
@@ -44,7 +51,7 @@ class Cycles(Labels):
             return self._shift(item, part, text)
         if number == 9:
             return self._dwell(item, part, text)
-        if number == 32:
+        if number == 32 or text in CANCELS.get(f"{number}.{part}", ()):
             return []
         if number == 247:
             return self._preset(item, self._parameters(text))
@@ -108,7 +115,7 @@ class Cycles(Labels):
     def _preset(self, item: gx.Item, told: dict[int, Decimal]) -> list[str]:
         """Cycle 247: the preset; the one set by hand, if all of the program counts from it."""
         if told.get(339) != 0 or len(told) > 1:
-            self.refuse("a preset of the table: only 0, which is set by hand, is read", item)
+            self.refuse("a preset of the table: only 0, which is set by hand, is read", item, LEAVE)
         if self.moved or any(float(n) for n in self.shift.values()):
             self.refuse("another preset in the middle of a program", item)
         self.lose()
@@ -117,15 +124,13 @@ class Cycles(Labels):
     def _parameters(self, text: str) -> dict[int, Decimal]:
         """Return the parameters of a cycle, from this line or from those behind it."""
         parts = [text]
-        more = self.lines[self.line].rstrip().endswith("~") or "Q" not in text
-        while more and self.at < len(self.lines) and PARAMETER_LINE.match(self._ahead()):
-            parts.append(self._ahead().partition(";")[0])
+        while self.lines[self.at - 1].rstrip().endswith("~") and self.at < len(self.lines):
+            if not PARAMETER_LINE.match(self.lines[self.at].upper()):
+                break
+            parts.append(self.lines[self.at].upper().partition(";")[0])
             self.at += 1
         found = " ".join(parts)
         return {int(m[1]): Decimal(plain(m[2])) for m in PARAMETER.finditer(found)}
-
-    def _ahead(self) -> str:
-        return self.lines[self.at].upper()
 
     # --- holes ---
 
