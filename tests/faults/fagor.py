@@ -88,8 +88,8 @@ MUTATIONS = (
     Mutation(
         "fagor: moves between a tool change and D",
         BLOCKS,
-        '                self.bars["length"] = NO_EDGE',
-        '                self.bars["nothing"] = NO_EDGE',
+        '                self.bars["length"] = NO_EDGE, "write D1 behind the tool change"\n',
+        "                pass\n",
         f"{CASE}tool-without-edge]",
     ),
     Mutation(
