@@ -54,6 +54,9 @@ class Walk(gx.Translator):
             if first.name.startswith("BAD"):
                 self.refuse(f"{first.name} is not resolved", first)
             return [f"({first.name})"]
+        for item in items:
+            if item.numbers == ("9",):
+                self.refuse("nine", item)
         if [item.name for item in items].count("X") > 1:
             self.refuse("X again", items[-1])
         return [" ".join(item.name + item.numbers[0] for item in items)]
@@ -161,6 +164,11 @@ def test_what_is_refused_is_shown_where_it_stands(kind):
     assert (found.where.line, found.where.column) == (1, 7)
     found = refused(b"/GO 2\nX1\n", kind)
     assert (found.code, found.where.column, found.where.width) == ("GX211", 1, 1)
+
+
+def test_a_later_line_of_a_shape_has_places_of_its_own():
+    found = refused(b"X1   Y2\nX100.25   Y9\n")
+    assert (found.where.line, found.where.column, found.where.width) == (2, 11, 2)
 
 
 @both

@@ -65,7 +65,7 @@ def summary(pipeline: Pipeline, done: Done) -> str:
     """Return what a run has done in one or two lines."""
     found = done.certificate
     growth = found.growth["ratio"]
-    counts = f"{found.source['lines']} -> {found.output['lines']} blocks"
+    counts = f"{found.growth['blocks_in']} -> {found.growth['blocks_out']} blocks"
     counts += "" if growth is None else f" (x {growth:.3g})"
     if pipeline.copies and not pipeline.text_passes:
         counts = "copied byte for byte"

@@ -10,6 +10,7 @@ from faults import (
     computing,
     cutter,
     cycles,
+    fagor,
     flow,
     frames,
     heads,
@@ -39,6 +40,7 @@ from faults.mutation import Mutation
 MUTATIONS: tuple[Mutation, ...] = (
     *cycles.MUTATIONS,
     *flow.MUTATIONS,
+    *fagor.MUTATIONS,
     *commands.MUTATIONS,
     *computing.MUTATIONS,
     *frames.MUTATIONS,

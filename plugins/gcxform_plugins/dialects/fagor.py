@@ -35,6 +35,7 @@ of 8055 and 8065. What no source says is refused.
 | G43, G44, G49 | are of the 8055: refused |
 | tool change | `T5 M6`; it runs a program of the machine: where the axes stand is not known |
 | tool length | `D1` is that of the tool in the spindle, whatever its number [post]; D0 is none |
+| D1 with T0, or with no tool change before | refused |
 | D2 and more | another edge of the tool: refused |
 | no D behind M6 | which is in force is not certain: moves are refused up to a D |
 | D between T and M6 | holds from M6 on; moves before M6 are refused |
@@ -73,7 +74,7 @@ class Fagor(gx.Dialect):
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
         "G95": gx.Code("feed-mode"),
-        "G97": v.inert("spindle-mode"),
+        "G97": v.inert("spindle-mode", "S"),
         **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
         **{code: v.inert("path", "PQ", "PQ") for code in ("G61", "G64")},
         "G43": v.frame("tool-length", "length", "H"),

@@ -187,11 +187,11 @@ class Blocks(gx.Translator):
     def _changed(self, items: Sequence[gx.Item], moved: Sequence[gx.Item]) -> str:
         """Take notice of T, D and M6, and return the block of the length that is in force then."""
         words = {code_of(item) or item.name: item for item in items}
-        for name in ("D", "M6"):
-            if name in words and moved:
-                self.refuse(
-                    f"{name} beside a move: which is first is not certain", words[name], ALONE
-                )
+        if len(words) < len(items):
+            raise self.refusal("GX203", "T, D or M6 stands here twice", items[-1])
+        for name in {"D", "M6"} & words.keys() if moved else ():
+            what = f"{name} beside a move: which is first is not certain"
+            self.refuse(what, words[name], ALONE)
         if "T" in words:
             self.tool, self.edge, self.changing = self._whole(words["T"]), "", True
         if "D" in words:
@@ -220,9 +220,9 @@ class Blocks(gx.Translator):
     def _length(self, edge: str, item: gx.Item) -> str:
         """Return the block that takes the length of the tool in the spindle, or none."""
         self.bars.pop("length", None)
-        if edge == "0" or self.in_spindle == "0":
+        if edge == "0":
             return "G49"
-        if not self.in_spindle:
+        if self.in_spindle in ("", "0"):
             what = "D is about the tool in the spindle, and which that is is not known"
             self.refuse(what, item, "write the tool change before")
         return f"G43 H{self.in_spindle}"

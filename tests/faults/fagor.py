@@ -1,0 +1,179 @@
+"""Faults in how blocks of a Fagor are read, and in the shapes of languages that are translated."""
+
+from __future__ import annotations
+
+from faults.mutation import Mutation
+
+LANGUAGES = "plugins/gcxform_plugins/languages"
+BLOCKS = f"{LANGUAGES}/fagor.py"
+PLACES = f"{LANGUAGES}/fagor_places.py"
+TABLES = f"{LANGUAGES}/fagor_tables.py"
+TRANSLATION = "gcxform/flow/translation.py"
+CASE = "tests/test_corpus.py::test_case[dialects/fagor/"
+READS = "tests/test_fagor.py::test_it_reads_what_another_reader_reads"
+WALK = "tests/test_translation.py"
+RUNS = "tests/test_translated_runs.py"
+
+MUTATIONS = (
+    Mutation(
+        "fagor: X10I counts from zero",
+        PLACES,
+        "found[item.name] = before + Decimal(item.numbers[0])",
+        "found[item.name] = Decimal(item.numbers[0])",
+        READS,
+    ),
+    Mutation(
+        "fagor: what was incremental before does not count",
+        PLACES,
+        '                    if other.kind == "word":\n                        return way',
+        "                    return way",
+        READS,
+    ),
+    Mutation(
+        "fagor: the coordinate before holds over another work offset",
+        PLACES,
+        "            if not _quiet(items):\n                break",
+        "            if not items:\n                break",
+        f"{CASE}incremental-from-nowhere]",
+    ),
+    Mutation(
+        "fagor: incremental blocks stay so",
+        BLOCKS,
+        'if word != "G90")], ["G90"]',
+        'if word != "G90")], []',
+        READS,
+    ),
+    Mutation(
+        "fagor: X10I in G91 is absolute",
+        BLOCKS,
+        "if not marked or self.incremental:",
+        "if not marked:",
+        READS,
+    ),
+    Mutation(
+        "fagor: centres stay absolute behind G6",
+        BLOCKS,
+        '["G90.1", *words], ["G91.1", *after]',
+        '["G90.1", *words], after',
+        READS,
+    ),
+    Mutation(
+        "fagor: G6 says nothing",
+        BLOCKS,
+        '["G90.1", *words], ["G91.1", *after]',
+        '["G91.1", *words], ["G91.1", *after]',
+        READS,
+    ),
+    Mutation(
+        "fagor: inches are millimetres",
+        TABLES,
+        '"G70": "G20", "G71": "G21"',
+        '"G70": "G21", "G71": "G21"',
+        READS,
+    ),
+    Mutation(
+        "fagor: D0 takes a length",
+        BLOCKS,
+        '        if edge == "0":\n            return "G49"\n',
+        "",
+        READS,
+    ),
+    Mutation(
+        "fagor: the length is that of the tool that was called first",
+        BLOCKS,
+        "self.in_spindle, self.tool, self.changing = self.tool",
+        "self.in_spindle, self.tool, self.changing = self.in_spindle or self.tool",
+        READS,
+    ),
+    Mutation(
+        "fagor: moves between a tool change and D",
+        BLOCKS,
+        '                self.bars["length"] = NO_EDGE, "write D1 behind the tool change"\n',
+        "                pass\n",
+        f"{CASE}tool-without-edge]",
+    ),
+    Mutation(
+        "fagor: moves behind G53",
+        BLOCKS,
+        '        if "G53" in codes:',
+        '        if "G530" in codes:',
+        f"{CASE}g53]",
+    ),
+    Mutation(
+        "fagor: plain blocks are not looked at while nothing may move",
+        BLOCKS,
+        "        self.plainly = not self.bars\n",
+        "",
+        f"{CASE}g53]",
+    ),
+    Mutation(
+        "fagor: off is on",
+        BLOCKS,
+        'return "M128" if on else "M129"',
+        'return "M129" if on else "M128"',
+        READS,
+    ),
+    Mutation(
+        "fagor: G159 counts from nought",
+        BLOCKS,
+        'f"{k + 1}": f"G{54 + k}"',
+        'f"{k}": f"G{54 + k}"',
+        f"{CASE}g159]",
+    ),
+    Mutation(
+        "fagor: what stands behind M30 is read",
+        BLOCKS,
+        "            self.at = len(self.lines)",
+        "            pass",
+        READS,
+    ),
+    Mutation(
+        "translation: a shape holds for lines with numbers in comments",
+        TRANSLATION,
+        "        if numbers == found:",
+        "        if numbers is not None:",
+        WALK,
+    ),
+    Mutation(
+        "translation: a sign of programs stands for numbers in shapes",
+        TRANSLATION,
+        'SLOT = "\\uffff"',
+        'SLOT = "#"',
+        WALK,
+    ),
+    Mutation(
+        "translation: carets stand where the first line of a shape has them",
+        TRANSLATION,
+        "place = self._parsed(self.line)[1][same[0]].place if same else item.place",
+        "place = item.place",
+        WALK,
+    ),
+    Mutation(
+        "translation: a percent sign of a comment is a place for a number",
+        TRANSLATION,
+        'comments.replace("%", "%%")',
+        "comments",
+        WALK,
+    ),
+    Mutation(
+        "translation: long programs are loops",
+        TRANSLATION,
+        "        left = STEPS_AT_MOST + len(self.lines)",
+        "        left = STEPS_AT_MOST",
+        WALK,
+    ),
+    Mutation(
+        "translation: maps tell of blocks",
+        "gcxform/run.py",
+        "lines if self.source is self.given else [line_of(k + 1) - 1 for k in lines]",
+        "lines",
+        RUNS,
+    ),
+    Mutation(
+        "translation: errors show the block",
+        TRANSLATION,
+        "column=start + 1, text=text, width=width)",
+        "column=start + 1)",
+        RUNS,
+    ),
+)
