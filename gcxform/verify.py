@@ -33,6 +33,7 @@ from gcxform.trace import Trace
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 
 LENGTHS = frozenset("XYZUVWIJKR")
@@ -113,9 +114,7 @@ class Verifier:
             raise VerificationError(error.diagnostics) from None
         path = back.path
         self.findings.inch |= bool(path.blocks.inch[path.block].any())
-        if self.switches:
-            here = path.source - first
-            path = _followed(path, read.path, source[here], path.nth + nth[here])
+        path = self._as_known(path, read.path, source[path.source - first], nth, first)
         for step in reversed(self.passes):
             path = step.undo(path, self.context)
         trace = Trace(read.path, lines, back.path, path, source, nth, first)
@@ -128,6 +127,21 @@ class Verifier:
         self._events(self._without_switches(read.path), self._told(back.path), trace)
         self._given(read.path, again, source)
         return self.findings
+
+    def _as_known(
+        self, path: Toolpath, read: Toolpath, line: Ints, nth: Ints, first: int
+    ) -> Toolpath:
+        """Return a path that was written with no more than is known of the source.
+
+        `line` (n,) are the lines of the source for its rows.
+        """
+        unknown = np.isnan(read.end).any()
+        if not len(read) or not (unknown or self.switches):
+            return path
+        row = _row_of(read, line, path.nth + nth[path.source - first])
+        if unknown:
+            path = _at_rest_unknown(path, np.isnan(read.end[row]))
+        return _followed(path, read, row) if self.switches else path
 
     def _count(self, read: Interpreted, lines: range, trace: Trace) -> None:
         found = self.findings
@@ -329,29 +343,36 @@ def _speeds(context: PassContext) -> dict[str, tuple[float, float]]:
     return found
 
 
-def _followed(path: Toolpath, read: Toolpath, line: Ints, nth: Ints) -> Toolpath:
-    """Return a path that was written, with what a pass has taken over from the control.
-
-    `line` (n,) are the lines of the source for its rows, and `nth` which of their moves. Where the
-    control of the source follows the tip no code in the output says; and behind such a code the
-    source does not know where X, Y and Z stand, while the output does: what does not move there is
-    not known here either.
-    """
-    if not len(read):
-        return path
+def _row_of(read: Toolpath, line: Ints, nth: Ints) -> Ints:
+    """Return the rows (n,) of the source, by their lines and which of the moves there they are."""
     first, last = (np.searchsorted(read.source, line, side) for side in ("left", "right"))
     row = np.clip(first + nth, first, np.maximum(last, first + 1) - 1)
-    row = np.minimum(row, len(read) - 1)
+    return np.asarray(np.minimum(row, len(read) - 1))
+
+
+def _at_rest_unknown(path: Toolpath, unknown: Flags) -> Toolpath:
+    """Return a path in which axes that do not move stand nowhere known where `unknown` (n, axes).
+
+    A tool change of the source may move axes, and another control knows that its own does not. The
+    source does not say where such an axis stands; all that can be asked is that it is left there.
+    """
+    end, rests = path.end.copy(order="F"), path.end == path.start
+    end[rests & unknown] = np.nan
+    return path.replace(end=end)
+
+
+def _followed(path: Toolpath, read: Toolpath, row: Ints) -> Toolpath:
+    """Return a path with what a pass has taken over: where the control follows the tip.
+
+    No code in the output says it, but the rows (n,) of the source that its rows came from.
+    """
     pairs = np.stack([path.frame, read.frame[row]])
     pairs, which = np.unique(pairs, axis=1, return_inverse=True)
     frames = tuple(
         replace(path.frames[mine], following=read.frames[its].following)
         for mine, its in pairs.T.tolist()
     )
-    end, rests = path.end.copy(order="F"), path.end == path.start
-    rests[:, 3:] = False
-    end[rests & np.isnan(read.end[row])] = np.nan
-    return path.replace(end=end, frames=frames, frame=which.reshape(-1))
+    return path.replace(frames=frames, frame=which.reshape(-1))
 
 
 def _in_mm(event: Event, path: Toolpath) -> Event:

@@ -72,8 +72,8 @@ MUTATIONS = (
     Mutation(
         "switches: the proof lets axes move of which the source knows nothing",
         VERIFY,
-        "end[rests & np.isnan(read.end[row])] = np.nan",
-        "end[np.isnan(read.end[row])] = np.nan",
+        "end[rests & unknown] = np.nan",
+        "end[unknown] = np.nan",
         f"{TESTS}::test_what_is_not_known_may_not_move",
     ),
 )
