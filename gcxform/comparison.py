@@ -263,13 +263,16 @@ def _events(a: Side, b: Side, matching: Matching, tolerance: float) -> list[Diff
 def _told(side: Side, other: type[Dialect]) -> list[Event]:
     """Return the events, without those that the other dialect reads as modes.
 
-    What shifts coordinates by known amounts is seen in the positions, and needs no telling.
+    What shifts coordinates by known amounts is seen in the positions, and needs no telling. Where
+    the other control follows no tip, the code that leaves it says nothing.
     """
     path, own = side
     plainly = all(set(frame.origin) == {path.first} for frame in path.frames)
     silent = {
         code for code, what in other.codes.items() if what.effect is Effect.MODAL and not what.takes
     }
+    if own.tip_switches != other.tip_switches:
+        silent |= {code for act, code in own.tip_switches.items() if act == "tip-off"}
     if plainly:
         silent |= {code for code, what in own.codes.items() if what.act in FRAMING}
     return [event for event in path.events if event.what not in silent]

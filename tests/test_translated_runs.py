@@ -170,6 +170,14 @@ def test_compare_tells_the_lines_of_both():
     assert (found.line_a, found.line_b) in {(10, 10), (11, 11), (10, 11)}
 
 
+def test_compare_finds_what_is_written_the_same(place):
+    """The code that leaves the tip is not written for a control that follows none."""
+    assert written("a.nc", "-o", "o.nc").exit_code == 0
+    found = call("compare", "-f", "fagor", "-t", "linuxcnc", "a.nc", "o.nc")
+    assert found.exit_code == 0, found.output
+    assert "A: a.nc (fagor), 4 moves" in found.output
+
+
 CHECKED = {
     "GX101": (b"M30\n", b"G1 ?\nM30\n", 12, "G1 ?", 4),
     "GX201": (b"M30\n", b"G555\nM30\n", 12, "G555", 1),
