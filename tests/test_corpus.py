@@ -22,7 +22,6 @@ PLACES = {"lddm": ROOT / "examples" / "lddm" / "model.toml"}
 LONGEST_PAGE = 60
 
 ELSEWHERE = {
-    "GX222": "test_cli_verbs.py",  # of whole files, which only `check` asks for
     "GX453": "test_kinematics.py",
     "GX454": "test_controls.py",
     **dict.fromkeys(("GX470", "GX471", "GX472", "GX473", "GX474"), "test_diagonal_files.py"),

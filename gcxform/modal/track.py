@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import isfinite, remainder
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +41,7 @@ LENGTHENED = frozenset(
 SWITCHED = frozenset({"tip-on", "tip-off"})
 SPATIAL = 0b111  # X, Y and Z as bits
 WHOLE_TURN = 360.0  # degrees
+NOISE = 1e-9  # degrees; what steps of G91 may leave of their sum
 
 LEFT = np.inf
 """The position of an axis that is where a control has left it that turns the tool along vectors.
@@ -132,7 +134,7 @@ class Track:
         """Whether all rotary axes are known to be at 0, where the tip is as far as the axes are."""
         rotary = self.lines.reading.rotary or ROTARY
         turned = [v for a, v in zip(self.axes, self.state.position, strict=True) if a in rotary]
-        return all(v % WHOLE_TURN == 0.0 for v in turned)
+        return all(isfinite(v) and abs(remainder(v, WHOLE_TURN)) < NOISE for v in turned)
 
     def _turned_by(self, line: int, before: FrameState, after: FrameState) -> int:
         """Return the axes, as bits, of which controls differ in where a turn leaves them."""
