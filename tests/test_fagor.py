@@ -156,13 +156,7 @@ class Programs:
         self.put("G90", "G0", *words)
 
     def unit(self) -> None:
-        self.lines += [
-            "G70 F10",
-            "G1 G90 X1 Y2.5 Z1 F20",
-            "X1.5i Y.5i",
-            "Z2 X.25I",
-            f"G71 F{int(self.rng.integers(1, 99))}",
-        ]
+        self.lines.append(f"G71 F{int(self.rng.integers(1, 99))}")
         self.place()
 
     def program(self) -> str:

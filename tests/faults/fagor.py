@@ -65,10 +65,10 @@ MUTATIONS = (
         READS,
     ),
     Mutation(
-        "fagor: inches are millimetres",
+        "fagor: millimetres are inches",
         TABLES,
-        '"G70": "G20", "G71": "G21"',
-        '"G70": "G21", "G71": "G21"',
+        '"G71": "G21"',
+        '"G71": "G20"',
         READS,
     ),
     Mutation(

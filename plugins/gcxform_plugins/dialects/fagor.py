@@ -28,7 +28,8 @@ of 8055 and 8065. What no source says is refused.
 | G53 | cancels the work offset up to the next G54 to G59 [post]: a move there is refused |
 | `#MCS` | moves to places of the machine: refused |
 | G54 to G59, `G159=1` to 6 | the same offsets: G159=1 is ORGT[1] [8070], and so is G54 [stone] |
-| G70, G71 | inches, millimetres, of feeds as well; behind them a feed must be written |
+| G71 | millimetres |
+| G70 | inches: refused, as no source was found for the unit of feeds |
 | G80, G98, G99 | say nothing, as all cycles are refused |
 | G92, G93, G96 | refused: another zero, a time in place of the feed, a speed that follows an axis |
 | G10 to G14, G72, G73 | mirror, scale and turn: refused |

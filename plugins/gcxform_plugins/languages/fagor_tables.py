@@ -16,7 +16,7 @@ UNSAID = frozenset({"G80", "G98", "G99", "G53"})
 WORK = frozenset({"G54", "G55", "G56", "G57", "G58", "G59"})
 CORNERS = {"G5": "G64", "G7": "G61", "G50": "G64", "G61": "G64"}
 """How corners are taken: exactly, or rounded."""
-OTHER = {**CORNERS, "G60": "G61", "G70": "G20", "G71": "G21"}
+OTHER = {**CORNERS, "G60": "G61", "G71": "G21"}
 """Codes that have another name in the tables of the dialect."""
 CODES = PLAIN | UNSAID | WORK | {*OTHER, "G4", "G6", "G90", "G91", "G159"}
 M_CODES = frozenset(f"M{code}" for code in (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 30))
@@ -54,6 +54,7 @@ REFUSED: Mapping[str, str] = {
     "G45": "it turns an axis along the path",
     **{f"G{code}": PATTERN for code in (62, 64, 65, 160, 161, 162, 163, 164, 165)},
     "G63": v.SYNCHRONISED,
+    "G70": "lengths are inches behind it; whether feeds are too is not certain",
     "G72": "it scales the coordinates",
     "G73": "it turns the coordinates",
     "G74": v.HOME,
