@@ -13,7 +13,7 @@ WORDS = f"{LANGUAGES}/heidenhain_words.py"
 PROGRAM = f"{LANGUAGES}/heidenhain.py"
 TESTS = "tests/test_heidenhain.py"
 READ = f"{TESTS}::test_it_is_read_as_by_a_reader_of_one_line_at_a_time"
-REFUSED = f"{TESTS}::test_it_is_refused_by_name"
+REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 
 MUTATIONS = (
     Mutation(
