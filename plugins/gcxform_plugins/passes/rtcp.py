@@ -69,9 +69,10 @@ class Rtcp(gx.Pass):
     tip_codes: Annotated[
         Literal["refuse", "read", "vectors"],
         gx.Option(
-            "to-machine: programs that let the control follow the tip (G43.4, G234, tip-on of the "
-            "machine file): read them as what it is without, for a control that does not; vectors: "
-            "those that say the tool axis by I, J, K (G43.5)"
+            "to-machine: programs that let the control follow the tip (G43.4, G234, TRAORI, M128, "
+            "FUNCTION TCPM, #RTCP ON, tip-on of the machine file): read them as what it is "
+            "without, for a control that does not; vectors: those that say the tool axis by I, J, "
+            "K (G43.5)"
         ),
     ] = "refuse"
     rapids: Annotated[
