@@ -450,3 +450,38 @@ def test_the_machine_file_may_say_what_holds_at_the_start(tmp_path, first):
 def test_settings_that_say_nothing_are_refused(tmp_path, control, message):
     with pytest.raises(gx.UsageError, match=message):
         linuxcnc(tmp_path, control=f"[control]\n{control}\n")
+
+
+# --- a control that follows the tip with its tool length ---
+
+BY_LENGTH = [
+    "G21 G90 G94 G17 G54",
+    "G0 X0. Y0. A0. C0.",
+    "G43.4 H1 Z90.",
+    "G0 X10. Y5. Z3. A20. C30.",
+    "G1 X12. F100.",
+    "G0 A0. C0.",
+    "G49",
+    "M30",
+]
+
+
+def fanuc(folder, control):
+    machine = machine_text("ac-trunnion", chain_of_kind("ac-trunnion", 3)) + control
+    return pipeline(folder, machine, tolerance=0.01, tip_codes="read", rapids="ends")
+
+
+def test_what_holds_at_the_start_ends_where_a_length_follows_the_tip(tmp_path):
+    """G43.4 follows the tip, whatever was said of the control before the first block."""
+    there = fanuc(tmp_path, "").run(text_of(BY_LENGTH)).text
+    said = fanuc(tmp_path, '[control]\ntip-at-start = "off"\n').run(text_of(BY_LENGTH)).text
+    assert said == there
+    assert b"G0 X10. Y5. Z3." not in there
+
+
+@pytest.mark.parametrize("behind", [2, 3])
+def test_a_length_that_follows_and_a_code_that_does_not_are_refused(tmp_path, behind):
+    """Which of the two holds is not known; X, Y and Z must not be taken for those of axes."""
+    lines = [*BY_LENGTH[:behind], "M429", *BY_LENGTH[behind:]]
+    with pytest.raises(gx.InputError, match=r"(?s)GX330.*does not follow the tip"):
+        fanuc(tmp_path, CONTROL).run(text_of(lines))

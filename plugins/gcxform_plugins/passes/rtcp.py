@@ -206,7 +206,7 @@ class Rtcp(gx.Pass):
         if not len(path) or self._nothing_to_correct(context):
             return path.replace(blocks=self.timed(path.blocks))
         if switches is not None and (context.source.tip_codes or not switches.codes):
-            Place(path, context).refuse_followed_late()
+            self._place(path, context).refuse_followed_late(bool(context.source.tip_codes))
         if self.turns_anew:
             source, target = self._machines(path, context)
             path = self._moving(self, path, context, source, target).run()
@@ -245,8 +245,12 @@ class Rtcp(gx.Pass):
         return None if self.calibrated is None else Corrected(*self._machines(path, context))
 
     def _place(self, path: gx.Toolpath, context: gx.PassContext) -> Place:
-        """Return the place of the machine file."""
-        return Place(path, context, switched=self.reads_tip_codes)
+        """Return the place of the machine file.
+
+        A dialect that follows the tip with its tool length does so whatever held at the start.
+        """
+        switched = bool(context.switches) or not context.source.tip_codes
+        return Place(path, context, switched=self.reads_tip_codes and switched)
 
     def _machines(self, path: gx.Toolpath, context: gx.PassContext) -> tuple[Place, Place]:
         """Return the places of the machine posted for, and of the one that is written for.

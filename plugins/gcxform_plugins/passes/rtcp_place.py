@@ -119,16 +119,17 @@ class Place:
                     message += f": {', '.join(sorted(names))}"
                 raise path.refuse("GX330", rows, message, ENOUGH)
 
-    def refuse_followed_late(self) -> None:
+    def refuse_followed_late(self, by_length: bool) -> None:
         """Refuse turned axes where the control would not follow the tip, or begin to follow it.
 
         Positions are those of the axes without a tool length; and where the control begins with
-        axes turned, a parameter says whether X, Y and Z turn with the table.
+        axes turned, a parameter says whether X, Y and Z turn with the table. `by_length`: the code
+        of the tool length follows the tip, which an M code has switched off before or behind it.
         """
         bare = np.asarray(~self.tools.any(axis=1))
         start, end = (self.angles(side) for side in (self.path.start, self.path.end))
         cuts = (np.nan_to_num(end - start) != 0.0).any(axis=1) & (self.path.kind != gx.Kind.RAPID)
-        without = bare[self.which] & (turned_at(end) | cuts)
+        without = (bare[self.which] | (self.off & by_length)) & (turned_at(end) | cuts)
         begins = (self.which != self.which_before) & turned_at(start)
         for rows, what in (
             (without, "axes are turned while the control does not follow the tip"),
