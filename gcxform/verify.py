@@ -140,7 +140,7 @@ class Verifier:
             return path
         row = _row_of(read, line, path.nth + nth[path.source - first])
         if unknown:
-            path = _at_rest_unknown(path, np.isnan(read.end[row]))
+            path = _at_rest_unknown(path, (np.isnan(read.start) & np.isnan(read.end))[row])
         return _followed(path, read, row) if self.switches else path
 
     def _count(self, read: Interpreted, lines: range, trace: Trace) -> None:
@@ -355,6 +355,8 @@ def _at_rest_unknown(path: Toolpath, unknown: Flags) -> Toolpath:
 
     A tool change of the source may move axes, and another control knows that its own does not. The
     source does not say where such an axis stands; all that can be asked is that it is left there.
+    `unknown` is where the source knows neither where a move starts nor where it ends: one that it
+    takes from a known place to a place of the machine must not rest.
     """
     end, rests = path.end.copy(order="F"), path.end == path.start
     end[rests & unknown] = np.nan

@@ -398,3 +398,15 @@ def test_an_axis_with_more_decimals_has_a_budget_of_its_own(tmp_path: Path, fine
     assert b".505" in run(off_by, pipeline, program)
     with pytest.raises(gx.VerificationError, match=r"a rotary axis is 0\.00"):
         run(said(f"{fine}5.", f"{fine}5.005"), pipeline, program)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("G53 G0 X-5. Y-6.", "G53 G0 X-5."), ("G53 G0 X-5. Y-6.", "G53 G0 Y-6.")],
+)
+def test_an_axis_that_goes_to_a_place_of_the_machine_does_not_rest(old: str, new: str) -> None:
+    """Where that place is the source does not know, and yet the axis has to move."""
+    program = b"G21 G90 G94 G17 G54\nG0 X0. Y0. Z9.\nG53 G0 X-5. Y-6.\nG0 X1. Y2.\nM2\n"
+    assert b"X-5. Y-6." in run(program=program)
+    with pytest.raises(gx.VerificationError, match="GX601"):
+        run(said(old, new), program=program)

@@ -217,7 +217,7 @@ MUTATIONS = (
     Mutation(
         "rtcp: axes may be turned before the control follows",
         f"{PASSES}/rtcp_place.py",
-        "bare[self.which] & (turned_at(end) | cuts)",
+        "(bare[self.which] | (self.off & by_length)) & (turned_at(end) | cuts)",
         "np.zeros(len(self.which), np.bool_)",
         "tests/test_corpus.py::test_case",
     ),
@@ -229,10 +229,17 @@ MUTATIONS = (
         "tests/test_tip_switches.py::test_it_is_refused_by_name",
     ),
     Mutation(
+        "rtcp: a code may leave the tip that a tool length follows",
+        PLACE,
+        "(self.off & by_length)",
+        "(self.off & False)",
+        "tests/test_tip_switches.py::test_a_length_that_follows_and_a_code_that_does_not_are_refused",
+    ),
+    Mutation(
         "rtcp: a whole turn may be made before the control follows",
         PLACE,
-        "without = bare[self.which] & (turned_at(end) | cuts)",
-        "without = bare[self.which] & (turned_at(end) | (cuts & ~cuts))",
+        "(self.off & by_length)) & (turned_at(end) | cuts)",
+        "(self.off & by_length)) & (turned_at(end) | (cuts & ~cuts))",
         "tests/test_corpus.py::test_case",
     ),
     Mutation(
