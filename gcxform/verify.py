@@ -240,12 +240,14 @@ class Verifier:
         """Check that rows which no move in the output stands for were too short to write.
 
         Those that follow one another have to be that short together, or they might lead far away.
+        A move from a place that is not known is not short.
         """
         left, along = runs.left, ways(trace.before, runs.left)
         begins = np.append(True, np.diff(left) > 1)[: len(left)]
         together = np.bincount(np.cumsum(begins) - 1, along) if len(left) else along
         short = together[np.cumsum(begins) - 1] <= self.budget
-        missing = left[trace.before.is_arc[left] | ~short]
+        far = trace.before.is_arc[left] | ~trace.before.starts_known[left]
+        missing = left[far | ~short]
         if len(missing):
             line = int(trace.before.source[missing[0]])
             self._raise("a move of the source is missing in the output", line, 0)

@@ -410,3 +410,11 @@ def test_an_axis_that_goes_to_a_place_of_the_machine_does_not_rest(old: str, new
     assert b"X-5. Y-6." in run(program=program)
     with pytest.raises(gx.VerificationError, match="GX601"):
         run(said(old, new), program=program)
+
+
+def test_a_last_move_from_nowhere_known_is_not_left_out() -> None:
+    """No move behind it would show that Z has stayed where it was."""
+    program = b"G21 G90 G94 G17 G54\nG0 X1. Y2.\nG0 Z3.\nM2\n"
+    assert b"Z3." in run(program=program)
+    with pytest.raises(gx.VerificationError, match="a move of the source is missing"):
+        run(dropped(2), program=program)
