@@ -245,10 +245,7 @@ class Rtcp(gx.Pass):
         return None if self.calibrated is None else Corrected(*self._machines(path, context))
 
     def _place(self, path: gx.Toolpath, context: gx.PassContext) -> Place:
-        """Return the place of the machine file.
-
-        A dialect that follows the tip with its tool length does so whatever held at the start.
-        """
+        """Return the place of the machine file; a length that follows the tip does so at once."""
         switched = bool(context.switches) or not context.source.tip_codes
         return Place(path, context, switched=self.reads_tip_codes and switched)
 
