@@ -171,6 +171,9 @@ class Blocks(Moves):
                 self.refuse("SUPA in incremental words", item, hint)
             if way not in ("", ABSOLUTE) and (motion != "0" or axis not in ROTARY):
                 self.refuse(f"SUPA beside {way} goes a way that is not known", item, hint)
+            if way in ("", ABSOLUTE):
+                self.place.absolute(axis, number)
+            self.place.unwound.discard(axis)
             words.append(axis + number)
         self.place.lose("".join(line.axes))
         self.place.moved = True
