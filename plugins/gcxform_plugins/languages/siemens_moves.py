@@ -73,9 +73,7 @@ class Moves(Statements):
     def check_plane(self, item: gx.Item | None) -> None:
         """Refuse moves in planes that turn the length of the tool. Raises InputError."""
         if self.length_is_elsewhere:
-            message = (
-                "D1 in G18 or G19: its length is across the plane, and not along Z"
-            )
+            message = "D1 in G18 or G19: its length is across the plane, and not along Z"
             self.refuse(message, item, ALONG)
 
     def _check_tool(self, line: Line) -> None:
