@@ -23,6 +23,7 @@ KINDS = {"RAPID": "0", "LINE": "1", "ARC_CW": "2", "ARC_CCW": "3"}
 TOLD = {
     "work_offsets": {"G54": {"X": 3.0, "C": 5.0}, "G55": {"X": -20.0, "Y": 7.0, "Z": 1.0}},
     "tools": {n: Tool(length=40.0 + n) for n in range(1, 9)},
+    "control": {"tool-length-axis": "Z"},
 }
 NEAR = 2e-3
 CODES = ("G0", "G1")

@@ -24,6 +24,7 @@ of 8055 and 8065. What no source says is refused.
 | `G4 K2` | 2 seconds, alone in its block [post]; on an 8055 hundredths; other forms are refused |
 | G5, G7, G50, G61 | how corners are taken: G64, G61, G64, G64 of the blocks; G60 for one block |
 | G17, G18, G19 | planes; G20 gives the plane other axes: refused |
+| D1 in G18, G19 | length across the plane: refused without `[control] tool-length-axis = "Z"` |
 | G40 | reads; G41 and G42 take a radius, and a rule for corners, of the control: refused |
 | G53 | cancels the work offset up to the next G54 to G59 [post]: a move there is refused |
 | `#MCS` | moves to places of the machine: refused |

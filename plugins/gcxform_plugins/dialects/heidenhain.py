@@ -17,13 +17,13 @@ named, that is where it is said; [K] is known from practice only.
 | polar angles | from +X towards +Y | TNC 310 Pilot, p. 8 |
 | arcs outside XY, helices by C | refused: helices are polar only | TNC 430, p. 153 |
 | RL, RR | the contour, as G41 and G42: `cutter-comp` must be told corners and entry | 640, p. 201 |
-| RL, RR, R0 | only in lines in X and Y; much is refused while on | 620 ISO, p. 154 |
+| RL, RR, R0 | only in lines with X or Y; much is refused while on | 620 ISO, p. 154 |
 | RND, CHF, APPR, DEP, CT, LN, FK, PLANE | refused | |
 | M3 M4 M8 M13 M14 | at the start of their block | TNC 155, p. 15 |
 | M0 M2 M5 M6 M9 M30 | at the end of their block; M0 stops the spindle | TNC 155, p. 15 |
 | M91 | coordinates of the machine, without the tool length | TNC 426 B, p. 122 |
 | M92, M94, M116, M140, M144 and their like | refused | |
-| M126 | shorter way on axes that show less than 360: turns from 180 are refused | 620, p. 566 |
+| M126 | shorter way on axes that show less than 360: from 180 refused, or unknown | 620, p. 566 |
 | M128 | from the start of its block; its F limits other moves | TNC 410, p. 169 |
 | M129 | from the end of its block | TNC 410, p. 169 |
 | M91, TOOL CALL | are refused under M128, as the manual asks | 620, p. 340 |

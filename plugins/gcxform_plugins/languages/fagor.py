@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import gcxform as gx
 from gcxform_plugins.languages import fagor_tables as tables
 from gcxform_plugins.languages.fagor_places import Places, code_of
 
+PLANES = frozenset({"G17", "G18", "G19"})
 END = frozenset({"M2", "M30"})
 ALONE = "write it in a block of its own"
 NO_EDGE = "which D is in force after a tool change that names none is the control's choice"
 EDGE_EARLY = "whether a D acts before the tool that it is for is changed is not certain"
+ACROSS = "in G18 and G19 the length of the tool may be across the plane, and not along Z"
+ALONG = 'write G17 before; or say [control] tool-length-axis = "Z", if it stays there'
 NO_OFFSET = "G53 has cancelled the work offset, and where the zero is then only the control knows"
 WHOLE = re.compile(r"[0-9]+\Z")
 
@@ -34,14 +37,14 @@ class Blocks(gx.Translator):
         self.incremental = self.following = self.taken_away = False
         self.corners = self.kinematics = ""
         self.tool = self.edge = self.in_spindle = ""
-        self.changing = False
+        self.changing = self.across = self.long = False
 
     def plain(self, items: Sequence[gx.Item]) -> bool:
         """Whether a block has plain codes and words only, its number before them."""
         names = [code_of(item) or item.name for item in items]
         rest = names[1:] if names[0] == "N" else names
         kinds = {item.kind for item in items}
-        return kinds <= {"code", "word"} and {*rest} <= tables.PLAIN | tables.PLAIN_WORDS
+        return kinds <= {"code", "word"} and {*rest} <= (tables.PLAIN - PLANES) | tables.PLAIN_WORDS
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
         """Return the blocks of a line. Raises InputError for what is not read."""
@@ -87,6 +90,7 @@ class Blocks(gx.Translator):
         moved = [item for item in items if item.name in tables.AXES | {*"IJKR"}]
         change = [item for item in items if item.name in ("T", "D") or code_of(item) == "M6"]
         length = self._changed(change, moved) if change else ""
+        self._turned(codes, length)
         if moved:
             self._move(moved[0])
         words = [word for item in items for word in self._said(item)]
@@ -210,6 +214,15 @@ class Blocks(gx.Translator):
         elif "D" in words:
             return self._length(self.edge, words["D"])
         return ""
+
+    def _turned(self, codes: Mapping[str, gx.Item], length: str) -> None:
+        """Take notice of planes in which the length of the tool may not be along Z."""
+        self.across = bool({"G18", "G19"} & {*codes}) if PLANES & {*codes} else self.across
+        self.long = length.startswith("G43") if length else self.long
+        if self.across and self.long and self.reading.control.get("tool-length-axis") != "Z":
+            self.bars["plane"] = ACROSS, ALONG
+        else:
+            self.bars.pop("plane", None)
 
     def _whole(self, item: gx.Item) -> str:
         """Return a number that is whole. Raises InputError."""

@@ -128,6 +128,7 @@ class Klartext(Cycles):
         wrong = said.machine or next(iter(said.axes), None)
         if wrong or said.radius or said.sense:
             raise self.refusal("GX101", "coordinates without a path function", wrong)
+        self.keep_side(said)
         return self._all(said, said.feed.strip())
 
     # --- tools ---
@@ -150,6 +151,8 @@ class Klartext(Cycles):
         kind = item.kind
         if item.name.startswith('"'):
             self.refuse("a tool by its name", item)
+        if kind == "number" and self.tool:
+            raise self.refusal("GX203", "a tool stands here twice", item)
         if kind == "number":
             self.tool = self._tool_number(item)
         elif kind == "tool_axis":

@@ -42,6 +42,7 @@ class Moves(Saying):
     def _straight(self, said: Said, ends: dict[str, str], words: str) -> str:
         """Return the block of a line to the ends of axes."""
         if not ends:
+            self.keep_side(said)
             return said.feed.strip()
         if not ends.keys().isdisjoint(ROTARY):
             self._check_turning(said, ends)
@@ -73,6 +74,12 @@ class Moves(Saying):
         self.side = side
         return f"{side} D{self.in_spindle}" if side else "G40"
 
+    def keep_side(self, said: Said) -> None:
+        """Refuse a change of sides in a block that is no line in X and Y. Raises InputError."""
+        if said.side is not None and SIDES.get(said.side.name, "") != self.side:
+            name = said.side.name
+            self.refuse(f"{name} here: the side changes in lines in X and Y, by R0", said.side)
+
     def _check_feed(self) -> None:
         if self.feed_lost:
             message = "behind a cycle it is not certain which feed is in force"
@@ -83,6 +90,9 @@ class Moves(Saying):
         if self.shortest:
             for axis in ROTARY:
                 before, after = self.place.get(axis), ends.get(axis)
+                if after and before is None and not said.rapid:
+                    message = f"M126: the shorter way of {axis} from where it is not known to stand"
+                    self.refuse(message, None, f"turn {axis} in a rapid before")
                 if after and before and abs(Decimal(after) - Decimal(before)) >= 180:
                     message = f"M126: {axis} goes the shorter way where it shows less than 360"
                     self.refuse(message, None, "let the CAM write turns below 180 degrees")
@@ -94,6 +104,9 @@ class Moves(Saying):
         """M91: the coordinates of the machine, which leave the tool out."""
         if self.following:
             self.refuse("M91 while the control follows the tip", code, "write M129 before")
+        self.keep_side(said)
+        if said.radius or said.sense:
+            raise self.refusal("GX203", "R and DR belong to circles")
         words = ""
         for item in said.axes:
             if item.name[0] in "IP":
@@ -175,8 +188,7 @@ class Moves(Saying):
         """Return the block of an arc; `words` say what it is like, or it is about the pole."""
         if not said.sense:
             raise self.refusal("GX213", f"{path.name} without DR+ or DR-", path)
-        if said.side is not None and SIDES.get(said.side.name, "") != self.side:
-            self.refuse("radius compensation changes in a circle", said.side)
+        self.keep_side(said)
         if said.rapid or said.machine or said.radius:
             raise self.refusal("GX213", f"{path.name} with FMAX, M91 or R", path)
         self._check_feed()

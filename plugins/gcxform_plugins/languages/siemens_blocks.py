@@ -54,6 +54,8 @@ class Blocks(Moves):
             return False
         if self.steps or self.said_steps or self.place.unwound or not self.place.moved:
             return False
+        if self.length_is_elsewhere:
+            return False
         if (self.changed and self.edge is None) or (self.waiting is not None and not self.changed):
             return False
         cuts_tips = self.following and self.motion == "1"
@@ -107,6 +109,7 @@ class Blocks(Moves):
         """Yield the moves of a cycle where the axes stand. Raises PlaceError."""
         if self.changed and self.edge is None:
             self.refuse("a cycle, and which edge is in force behind M6 is not known")
+        self.check_plane(None)
         first, *others = hole.blocks()
         yield " ".join([*self.distance_code(Line(), False), first])
         yield from others
@@ -171,6 +174,9 @@ class Blocks(Moves):
                 self.refuse("SUPA in incremental words", item, hint)
             if way not in ("", ABSOLUTE) and (motion != "0" or axis not in ROTARY):
                 self.refuse(f"SUPA beside {way} goes a way that is not known", item, hint)
+            if way in ("", ABSOLUTE):
+                self.place.absolute(axis, number)
+            self.place.unwound.discard(axis)
             words.append(axis + number)
         self.place.lose("".join(line.axes))
         self.place.moved = True

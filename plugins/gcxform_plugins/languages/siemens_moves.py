@@ -11,6 +11,7 @@ from gcxform_plugins.languages.siemens_place import LINEAR, ROTARY
 from gcxform_plugins.languages.siemens_reading import Statements
 
 EDGE = "say D1 before, or [control] edge-after-tool-change = 1 (or 0) in the machine file"
+ALONG = 'move in G17; or say [control] tool-length-axis = "Z", if it stays there (SD42940)'
 LINEAR_WAY = 'write ORIAXES and ORIMKS; or say [control] orientation-path = "angles", if it is so'
 
 
@@ -63,8 +64,21 @@ class Moves(Statements):
 
     # --- checks ---
 
+    @property
+    def length_is_elsewhere(self) -> bool:
+        """Whether the length of the tool may be along Y, in G18, or along X, in G19."""
+        said = self.reading.control.get("tool-length-axis")
+        return self.edge == "1" and self.plane != "XY" and said != "Z"
+
+    def check_plane(self, item: gx.Item | None) -> None:
+        """Refuse moves in planes that turn the length of the tool. Raises InputError."""
+        if self.length_is_elsewhere:
+            message = "D1 in G18 or G19: its length is across the plane, and not along Z"
+            self.refuse(message, item, ALONG)
+
     def _check_tool(self, line: Line) -> None:
         """Refuse moves of a tool of which the control alone knows the length."""
+        self.check_plane(self.any_of(line))
         item = next((line.axes[a][2] for a in LINEAR if a in line.axes), None)
         if item is None:
             return

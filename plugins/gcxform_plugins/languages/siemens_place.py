@@ -89,10 +89,9 @@ class Place:
         return len(self.named & set(ROTARY))
 
     def lose(self, axes: str, shifted: bool = True) -> None:
-        """Forget where axes stand."""
+        """Forget where axes stand; those that are unwound stay so."""
         for axis in axes:
             self.at[axis] = self.line, None
-            self.unwound.discard(axis)
             if shifted:
                 self.shifted[axis] = self.line
 

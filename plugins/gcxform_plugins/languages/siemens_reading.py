@@ -95,7 +95,7 @@ class Statements(gx.Translator):
             "command": self._command,
             "call": self._call,
             "label": self._nothing,
-            "header": self._nothing,
+            "header": self._header,
             "main_number": self._number,
         }
 
@@ -112,7 +112,13 @@ class Statements(gx.Translator):
         return words and {*names} <= {*AXES, "N", "F"} and not {*names} <= {"N", "F"}
 
     def _nothing(self, line: Line, item: gx.Item) -> None:
-        """Take labels and the header of a file: jumps are refused."""
+        """Take labels: jumps are refused."""
+
+    def _header(self, line: Line, item: gx.Item) -> None:
+        """Take the name of the program. Raises InputError where another one begins."""
+        before = (other for at in range(self.line) for other in self.items(at))
+        if any(other.kind != "comment" for other in before):
+            self.refuse("here another program begins", item, "keep each program in its own file")
 
     def _number(self, line: Line, item: gx.Item) -> None:
         if item.numbers[0].isdigit():
@@ -138,6 +144,7 @@ class Statements(gx.Translator):
         elif letter in "IJK":
             self._put(line.centres, letter, "", number, item)
         elif letter == "F":
+            self._once(line, item, "F")
             line.feed = number
         elif letter == "N":
             self._number(line, item)
@@ -167,8 +174,10 @@ class Statements(gx.Translator):
         elif letter == "M" and number.isdigit() and int(number) not in OWN:
             line.others.append(f"M{number}")
         elif letter == "T" and number.isdigit():
+            self._once(line, item, "T")
             line.tool = str(int(number))
         elif letter == "D" and number.isdigit():
+            self._once(line, item, "D")
             line.edge, line.edge_number = item, str(int(number))
         elif letter in "LP":
             self.refuse(f"{letter}{number} calls a subprogram", item)
@@ -194,6 +203,8 @@ class Statements(gx.Translator):
 
     def _once(self, line: Line, item: gx.Item, group: str) -> None:
         if group in line.groups:
+            if item.kind == "named" or not item.name.startswith(("G", "CIP")):
+                raise self.refusal("GX203", f"{item.name} stands twice in its block", item)
             raise self.refusal("GX202", "two codes of one group in a block", item)
         line.groups.add(group)
 
@@ -272,6 +283,7 @@ class Statements(gx.Translator):
     def _named(self, line: Line, item: gx.Item) -> None:
         name = item.name
         if name in ("CR", "AR", "TURN"):
+            self._once(line, item, name)
             line.named[name] = (item.numbers[0], item)
         elif name not in TOLERANCES:
             self.refuse(f"{name}= is not read", item)
