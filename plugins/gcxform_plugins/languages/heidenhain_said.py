@@ -97,20 +97,33 @@ class Saying(Words):
                 raise self.refusal("GX204", "no TOOL CALL gives the feed of FAUTO", item)
             said.feed, self.feed, self.feed_lost = f" F{self.tool_feed}", self.tool_feed, False
         elif item.kind == "dr":
+            if said.sense:
+                raise self.refusal("GX203", "DR stands here twice", item)
             said.sense = "G3" if item.name[-1] == "+" else "G2"
         elif item.kind == "radius":
-            number = self.number_of(item)
-            if float(number) and said.radius:
-                raise self.refusal("GX203", "R stands here twice", item)
-            said.radius = number if float(number) else said.radius
-            said.side = said.side if float(number) else item
+            self._radius(item, said)
         elif item.kind == "per":
             self.refuse(f"{item.name} is a feed per turn or per tooth", item)
         elif item.kind == "comp":
-            said.side = item
+            self._side(item, said)
         else:
             text = item.name.strip()
             raise self.refusal("GX101", f"{text[:20]!r} does not fit here", item)
+
+    def _radius(self, item: gx.Item, said: Said) -> None:
+        """Take the radius of CR, or R0."""
+        number = self.number_of(item)
+        if not float(number):
+            self._side(item, said)
+            return
+        if said.radius:
+            raise self.refusal("GX203", "R stands here twice", item)
+        said.radius = number
+
+    def _side(self, item: gx.Item, said: Said) -> None:
+        if said.side is not None:
+            raise self.refusal("GX203", "the side of the contour stands here twice", item)
+        said.side = item
 
     # --- M functions ---
 
