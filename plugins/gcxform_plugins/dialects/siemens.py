@@ -26,7 +26,7 @@
 | SUPA, G153 | in machine coordinates; only with D0: a tool length may stay | ISO 3-42 |
 | G58, G59, TRANS, ROT, SCALE, MIRROR | programmable frames: refused; bare, they end them | [K] |
 | G710, G700 | mm, inches, also of feeds | 828D 341 |
-| G71 | only with `units = "mm"` in `[input]`, the unit of feeds; G70: refused | 828D 341 |
+| G71 | `units` in `[input]`, mm unless said, is the unit of feeds; G70: refused | 828D 341 |
 | another feed mode | F has to be programmed again | |
 | `T5`, M6, `D1` | the tool is chosen, changed, its length in force: `T5 M6`, `G43 H5` | W1 13 |
 | `D0` | no length: `G49`; D2 and more: refused | W1 13 |
