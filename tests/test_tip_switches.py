@@ -347,6 +347,16 @@ def test_a_position_that_is_lost_is_not_known(tmp_path):
             Run(step, Source.of_bytes(text_of(lines)), "on").over(Output(len, None), abs, size)
 
 
+def test_on_great_circles_a_position_that_is_lost_is_refused_at_the_switch(tmp_path):
+    lines = [*WHOLE[:4], "M429", "M101", "M428", *WHOLE[4:]]
+    lines = [each.replace(" C30.", "") for each in lines]
+    told = CONTROL + 'user-codes = "keep"\n'
+    step = linuxcnc(tmp_path, control=told, orientation_path="great-circle", before="")
+    for size in (1, 8, 12, 16, 24, 32, 40, 48, 56, 64, 72, 80, 0):
+        with pytest.raises(gx.InputError, match="GX330"):
+            Run(step, Source.of_bytes(text_of(lines)), "on").over(Output(len, None), abs, size)
+
+
 @pytest.mark.parametrize(
     "options",
     [
