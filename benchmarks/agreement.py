@@ -76,13 +76,13 @@ def outcome(corpus: Path, row: dict[str, str]) -> Outcome:
     return Outcome(name, DISAGREE if problem else AGREE, "", problem)
 
 
-def outcomes(corpus: Path) -> list[Outcome]:
-    """Return what became of every program that LinuxCNC was given."""
+def outcomes(corpus: Path, part: slice = slice(None)) -> list[Outcome]:
+    """Return what became of every program that LinuxCNC was given, or of a part of them."""
     with (corpus / "rs274_results.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))
     with (corpus / "manifest.csv").open(newline="") as stream:
         programs = {r["path"] for r in csv.DictReader(stream) if r["role"] == "program"}
-    return [outcome(corpus, row) for row in rows if row["path"] in programs]
+    return [outcome(corpus, row) for row in rows[part] if row["path"] in programs]
 
 
 def print_tables(found: list[Outcome], every: bool) -> None:

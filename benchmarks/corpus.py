@@ -6,12 +6,17 @@ CORPUS is a folder with `manifest.csv` and `programs/`; by default the one besid
 each program: reading and printing must give its bytes, so must the empty pipeline, and `absolute |
 segment | volumetric` must give a verified program or a refusal with a code and a line. Programs of
 other dialects are run too, as each of ours: they may be refused, but never crash.
+
+A second table says what the programs that go through held, before and after: blocks that move,
+subprograms, parameters that are set. A program that moved and does not move any more is emptied,
+and one that is refused has lost nothing.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import re
 import sys
 from collections import Counter
 from pathlib import Path
@@ -58,15 +63,47 @@ def prints_back(text: bytes, dialect: str) -> bool:
     return b"".join(printed) == text
 
 
-def outcome(text: bytes, dialect: str, chain: str) -> str:
-    """Return "verified", or the code with which a program is refused."""
+HELD = ("motions", "definitions", "assignments")
+WORD = rb"(?<![#<A-Z])[XYZABCUVW][ \t]*(?:[-+.0-9#\[]|[A-Z]{2,5}[ \t]*\[)"
+MOVES = re.compile(WORD, re.IGNORECASE)
+NAME = re.compile(rb"O[ \t]*(?:<[^<>]*>|[0-9]+)[ \t]*(?:SUB)?", re.IGNORECASE)
+FLOW = re.compile(rb"O[ \t]*(?:<[^<>]*>|[0-9]+)[ \t]*[A-Z]{2}", re.IGNORECASE)
+SETS = re.compile(rb"#[^#=\s]+[ \t]*=", re.IGNORECASE)
+ASIDE = re.compile(rb"\([^()\n]*\)|;[^\n]*|^[/\s]*(?:N[0-9.]+)?\s+")
+
+
+def held(text: bytes) -> tuple[int, int, int]:
+    """Return how many blocks move, begin a subprogram, and set a parameter, by patterns alone."""
+    lines = [ASIDE.sub(b"", line) for line in text.splitlines()]
+    names = sum(NAME.fullmatch(line) is not None for line in lines)
+    plain = [line for line in lines if FLOW.match(line) is None]
+    moves = sum(MOVES.search(line) is not None for line in plain)
+    return moves, names, sum(len(SETS.findall(line)) for line in plain)
+
+
+def outcome(text: bytes, dialect: str, chain: str, before_after: Counter[str] | None = None) -> str:
+    """Return "verified", or the code with which a program is refused.
+
+    What a program that goes through held is added to `before_after`.
+    """
     try:
         result = pipeline(dialect, chain).run(text)
     except gx.GcxformError as error:
         first = error.diagnostics[0]
         placed = first.where is not None and first.where.line > 0
         return first.code if placed else f"{first.code} WITHOUT A LINE"
+    if before_after is not None:
+        _add_up(before_after, held(text), held(result.text))
     return "verified" if result.certificate.verified else "NOT VERIFIED"
+
+
+def _add_up(total: Counter[str], before: tuple[int, ...], after: tuple[int, ...]) -> None:
+    """Add what a program held before and after to the sums."""
+    for kind, one, other in zip(HELD, before, after, strict=True):
+        total[f"{kind} before"] += one
+        total[f"{kind} after"] += other
+    total["programs that keep their motion"] += before[0] > 0 and after[0] > 0
+    total["emptied"] += before[0] > 0 and not after[0]
 
 
 def main() -> int:
@@ -78,12 +115,14 @@ def main() -> int:
     with (options.corpus / "manifest.csv").open() as stream:
         entries = [row for row in csv.DictReader(stream) if row["role"] == "program"]
     tables: dict[str, Counter[str]] = {dialect: Counter() for dialect in OURS}
+    sums: dict[str, Counter[str]] = {dialect: Counter() for dialect in OURS}
     bad = 0
     for entry in entries:
         text = (options.corpus / entry["path"]).read_bytes()
         mine = [entry["dialect"]] if entry["dialect"] in OURS else list(OURS)
         for dialect in mine:
-            found = outcome(text, dialect, CHAIN)
+            ours = entry["dialect"] in OURS
+            found = outcome(text, dialect, CHAIN, sums[dialect] if ours else None)
             same = outcome_of_nothing(text, dialect)
             if entry["dialect"] in OURS:
                 tables[dialect][found] += 1
@@ -92,12 +131,22 @@ def main() -> int:
             if options.list or not same:
                 print(f"{found:10} {'same' if same else 'CHANGED'} {dialect:9} {entry['path']}")
     print_tables(tables)
-    return 1 if bad else 0
+    print_sums(sums)
+    emptied = sum(table["emptied"] for table in sums.values())
+    return 1 if bad or emptied else 0
 
 
 def outcome_of_nothing(text: bytes, dialect: str) -> bool:
     """Whether the empty pipeline gives the same bytes."""
     return pipeline(dialect, "").run(text).text == text
+
+
+def print_sums(sums: dict[str, Counter[str]]) -> None:
+    """Print a Markdown table of what programs that go through held, before and after."""
+    rows = [f"{kind} {when}" for kind in HELD for when in ("before", "after")]
+    print(f"\n| verified programs | {' | '.join(sums)} |\n|---|{'--:|' * len(sums)}")
+    for row in ["programs that keep their motion", "emptied", *rows]:
+        print(f"| {row} | {' | '.join(str(table[row]) for table in sums.values())} |")
 
 
 def print_tables(tables: dict[str, Counter[str]]) -> None:

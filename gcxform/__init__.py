@@ -35,9 +35,11 @@ if TYPE_CHECKING:
     from gcxform.guess import Guess as Guess
     from gcxform.guess import guess_dialect as guess_dialect
     from gcxform.hookspecs import hookimpl as hookimpl
+    from gcxform.limits import Limits as Limits
     from gcxform.machine.chain import Chain as Chain
     from gcxform.machine.chain import Rotary as Rotary
     from gcxform.machine.chain import chain_of as chain_of
+    from gcxform.machine.control import Setting as Setting
     from gcxform.machine.converting import Fit as Fit
     from gcxform.machine.converting import to_functions as to_functions
     from gcxform.machine.converting import to_lattice as to_lattice
@@ -141,9 +143,11 @@ _HOMES = {
     "flow.translation": "Item Translator",
     "guess": "Evidence Guess guess_dialect",
     "hookspecs": "hookimpl",
+    "limits": "Limits",
     "machine.chain": "Chain Rotary chain_of",
     "machine.inverse": "Attitudes Poses State attitudes inverse turns",
     "machine.errors": "ErrorModel Outside check_contraction compensate reach_of",
+    "machine.control": "Setting",
     "machine.converting": "Fit to_functions to_lattice to_nine to_pitch",
     "machine.functions": "AxisFunction AxisFunctions Fault faults",
     "machine.lattice": "Lattice",

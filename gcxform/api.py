@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from gcxform import door
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect import Dialect
 from gcxform.files import write_atomically
@@ -18,7 +19,7 @@ from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.pipeline import Result
-from gcxform.registry import default_registry
+from gcxform.registry import dialect_of
 from gcxform.source import Source
 from gcxform.toolpath.path import (
     BLOCK_MODES,
@@ -30,6 +31,8 @@ from gcxform.toolpath.path import (
 def write(result: Result | bytes, path: str | Path) -> None:
     """Write a result's program to a file, whole or not at all. Raises FileError."""
     text = result.text if isinstance(result, Result) else result
+    door.instance("result", text, bytes, "the result of a run, or bytes")
+    door.instance("path", path, (str, Path), "a path")
     with write_atomically(Path(path)) as put:
         put(text)
 
@@ -97,12 +100,10 @@ def read(program: bytes | str | Path, dialect: str | type[Dialect], **reading: A
     `reading` is what the program does not say of itself: `start`, `increment`, `feed`,
     `block_delete`, `units`, as in `Reading`. Raises FileError, and UsageError for the dialect.
     """
-    kind = default_registry().dialect(dialect) if isinstance(dialect, str) else dialect
-    if isinstance(program, bytes):
-        return Program(program, kind, Reading(**reading))
-    source = Source.open(Path(program))
+    kind, said = dialect_of(dialect), Reading(**reading)
+    source = door.program(program)
     with source.stream as stream:
-        return Program(stream.read(), kind, Reading(**reading), source.name)
+        return Program(stream.read(), kind, said, source.name)
 
 
 def joined(parts: Sequence[Toolpath]) -> Toolpath:

@@ -6,6 +6,8 @@ import json
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from gcxform.diagnostics import Diagnostic
+
 FORMAT = 1
 
 
@@ -15,8 +17,13 @@ class Certificate:
 
     Lengths are mm, hashes SHA-256. `largest` holds the deviation and its source and output line,
     `growth` the blocks read and written, their ratio (None where nothing was read) and its limit,
+    `stamps` the stamps of the two programs, what was done to the source after it was stamped, and
+    the line of its first stamp (0: none),
     `measured` what passes tell of their own work, the largest over the program, and `added` what
-    the output has and the source does not, in all.
+    the output has and the source does not, in all. `inventory` is what source and output hold, by
+    kind, and the rules that account for the difference, each with how many it adds or takes away.
+    `assumed` is what was taken for granted, in sentences, and `warnings` what of it may surprise;
+    these are shown, and not written.
     """
 
     version: str
@@ -30,9 +37,13 @@ class Certificate:
     checked: dict[str, int] = field(default_factory=dict)
     measured: dict[str, float] = field(default_factory=dict)
     added: dict[str, int] = field(default_factory=dict)
+    inventory: dict[str, Any] = field(default_factory=dict)
+    stamps: dict[str, Any] = field(default_factory=dict)
     not_checked: list[str] = field(default_factory=list)
     assumed: list[str] = field(default_factory=list)
+    warnings: list[Diagnostic] = field(default_factory=list)
 
     def to_json(self) -> str:
         """Return the certificate as JSON text."""
-        return json.dumps({"format": FORMAT, **asdict(self)}, indent=2) + "\n"
+        said = {name: value for name, value in asdict(self).items() if name != "warnings"}
+        return json.dumps({"format": FORMAT, **said}, indent=2) + "\n"

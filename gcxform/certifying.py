@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gcxform.certificate import Certificate
-from gcxform.contract import Pass, TextPass
+from gcxform.contract import resolved
+from gcxform.diagnostics import Diagnostic, InputError
+from gcxform.dialect import Dialect
+from gcxform.flow.written_out import located
+from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.tables import GROUPS
-from gcxform.options import KinematicsFile, ModelFile, to_toml
-from gcxform.source import lines_in
+from gcxform.source import Source, lines_in
+from gcxform.stamped import described
 from gcxform.version import VERSION
 
 if TYPE_CHECKING:
+    from gcxform.output import Output
     from gcxform.pipeline import Pipeline
-    from gcxform.run import Output, Run
+    from gcxform.run import Run
+    from gcxform.verify import Findings
 
 
 def certificate(run: Run, out: Output) -> Certificate:
@@ -33,16 +39,40 @@ def certificate(run: Run, out: Output) -> Certificate:
         | {"sha256": out.read.hexdigest()},
         {"dialect": pipeline.target.name, "lines": out.lines_out}
         | {"sha256": out.written.hexdigest()},
-        [_described(step) for step in pipeline.passes],
-        _budget(pipeline, run.findings.inch),
-        {"blocks_in": out.lines_in, "blocks_out": out.lines_out}
+        [described(step) for step in pipeline.passes],
+        _budget(pipeline, run.findings),
+        {"blocks_in": out.blocks_in, "blocks_out": out.blocks_out}
         | {"ratio": out.growth, "limit": pipeline.growth},
         run.verifier is not None or (pipeline.copies and run.verify != "off"),
     )
     made.measured = run.measured
     made.added = run.added
+    made.inventory = dict(run.account.table())
+    if run.frame.behind or run.frame.before:
+        made.inventory["percent_signs"] = {
+            "source": 0,
+            "output": run.frame.before + run.frame.behind,
+            "rules": {f"{pipeline.target.name} wants an end": run.frame.before + run.frame.behind},
+        }
+    _stamps(run, made)
     _fill(run, made)
     return made
+
+
+def _stamps(run: Run, certificate: Certificate) -> None:
+    """Say which stamps there were and are, and what was assumed against them."""
+    marks, heads = run.marks, run.heads
+    written = [line.decode() for line in heads.lines] if heads and not heads.waits else []
+    certificate.stamps = {
+        "read": [stamp.content for stamp in marks.read.stamps],
+        "edited": marks.read.edited,
+        "line": marks.read.line,
+        "written": written,
+    }
+    if marks.against:
+        certificate.assumed.append(f"the program may be run once more, though {marks.against}")
+    if run.pipeline.stamp and marks.changes and not marks.written:
+        certificate.not_checked.append("whether it is run twice: no stamp could be written")
 
 
 def _fill(run: Run, certificate: Certificate) -> None:
@@ -59,14 +89,29 @@ def _fill(run: Run, certificate: Certificate) -> None:
         "output_line": found.output_line,
         "angle": found.angle,
     }
+    _add_promised(run, certificate.largest)
     certificate.checked = {"moves": found.moves, "events": found.events}
     _not_checked(run, certificate)
+
+
+def _add_promised(run: Run, largest: dict[str, Any]) -> None:
+    """Let `largest` count what passes measure of their promises besides what was compared.
+
+    What is written beside a path that a pass has proved adds to that; otherwise both are measures
+    of one thing.
+    """
+    for number, step in enumerate(run.steps):
+        for key, name in step.deviates.items():
+            off = run.measured.get(name, 0.0)
+            proved = number < resolved(run.steps)
+            largest[key] = largest[key] + off if proved else max(largest[key], off)
 
 
 def _not_checked(run: Run, certificate: Certificate) -> None:
     if run.executes:
         what = "the order in which calls and loops execute blocks: it was found once"
         certificate.not_checked.append(what)
+    certificate.not_checked += _of_the_file(run)
     assert run.interpreter is not None
     found = run.findings
     for count, what in (
@@ -74,10 +119,23 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
             found.rapids,
             "rapids: only their ends, because controls do not move straight in them",
         ),
+        (
+            found.spared - found.spared_unknown,
+            "rapids to points of the machine, and others left uncompensated: the machine is off "
+            f"there by up to {found.spared_by:.4f} mm",
+        ),
+        (
+            found.spared_unknown,
+            "rapids left uncompensated where the error of the machine is not known",
+        ),
         (found.unknown_starts, "moves from an unknown position: only their ends"),
         (
             found.between_taps,
             f"moves between taps: only that they are within {found.aside:.4f} mm",
+        ),
+        (
+            found.contour_only,
+            "where the control takes the centre under cutter compensation: only the contour, moves",
         ),
         (found.lines_after_end, "lines after the end of the program: copied, not read"),
     ):
@@ -86,39 +144,60 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
     if added := [f"{count} {what}" for what, count in run.added.items() if count]:
         what = "whether the tool is clear in moves that the source does not have"
         certificate.not_checked.append(f"{what}: {', '.join(added)}")
-    stated = run.interpreter.state.stated
+    chosen = (*run.assumed, *run.emitter.assumed)
+    certificate.assumed += assumptions(run.interpreter, run.pipeline.source, chosen)
+    certificate.warnings += warnings_of(run.interpreter, run.source)
+
+
+def assumptions(
+    interpreter: Interpreter, dialect: type[Dialect], chosen: Iterable[str] = ()
+) -> list[str]:
+    """Return what a program was taken to mean that it does not say, in sentences.
+
+    `chosen` is what was chosen outside of the interpreter.
+    """
+    state, reading = interpreter.state, interpreter.reading
+    found = [*dict.fromkeys((*chosen, *state.assumed))]
     for group in GROUPS:
-        if group not in stated and group not in ("motion", "arc-distance"):
-            code = run.pipeline.source.initial[group]
-            certificate.assumed.append(f"{group} {code}, which the program does not state")
-    following = run.interpreter.reading.follows_at_start(run.pipeline.source.follows_at_start)
+        if group not in state.stated and group not in ("motion", "arc-distance"):
+            code = dialect.initial[group]
+            if group == "units" and reading.units:
+                code = {"mm": "G21", "in": "G20"}[reading.units]
+            found.append(f"{group} {code}, which the program does not state")
+    following = reading.follows_at_start(dialect.follows_at_start)
     if following is not None:
         what = "follows" if following else "does not follow"
-        certificate.assumed.append(f"the control {what} the tip before the first block")
-    for axis, value in run.interpreter.reading.start.items():
-        certificate.assumed.append(f"{axis} stands at {value:g} before the first block")
-    for name, value in run.interpreter.reading.parameters.items():
-        certificate.assumed.append(f"#{name} is {value:g} before the first block")
+        found.append(f"the control {what} the tip before the first block")
+    for axis, value in reading.start.items():
+        found.append(f"{axis} stands at {value:g} before the first block")
+    if reading.feed is not None:
+        found.append(f"F{reading.feed:g} is in force before the first block")
+    for name, value in reading.parameters.items():
+        found.append(f"#{name} is {value:g} before the first block")
+    return found
 
 
-def _described(step: Pass | TextPass) -> dict[str, Any]:
-    """Return a step's name, options and promise for the certificate."""
-    entry: dict[str, Any] = {"use": step.name, **to_toml(step)}
-    for key, value in vars(step).items():
-        if isinstance(value, ModelFile | KinematicsFile):
-            entry[key] = {"file": value.path.name, "sha256": value.sha256}
-            if isinstance(value, ModelFile) and value.model.states:
-                entry[key] |= {"states": [asdict(state) for state in value.model.states]}
-    if isinstance(step, Pass):
-        entry["promise"] = step.promise if np.isfinite(step.promise) else None
-    return entry
+def warnings_of(interpreter: Interpreter, source: Source) -> tuple[Diagnostic, ...]:
+    """Return what may surprise of what was assumed, with places in the program."""
+    found = tuple(each for each in interpreter.state.assumed.values() if each is not None)
+    return located(InputError(found), source).diagnostics
 
 
-def _budget(pipeline: Pipeline, inch: bool) -> dict[str, object]:
-    promised = pipeline.promised()
+def _of_the_file(run: Run) -> Iterator[str]:
+    """Yield what was not checked of the file as a whole."""
+    if run.executed is not None and run.executed.kept:
+        what = "subprograms that nothing calls: kept as they stand behind the end, not transformed"
+        yield f"{what}: {run.executed.kept}"
+    if why := run.findings.file.no_end:
+        yield f"whether this is a whole program: {why}, and the source has none"
+
+
+def _budget(pipeline: Pipeline, found: Findings) -> dict[str, object]:
+    promised, inch = pipeline.promised(), found.inch
     return {
-        "deviation": pipeline.limit(inch),
+        "deviation": pipeline.limit(inch, found.contours > 0, found.arcs),
         "explicit": pipeline.budget is not None,
         "steps": promised if np.isfinite(promised) else None,
+        "angle": max(pipeline.angle_limits().values()),
         "rounding": pipeline.rounding(inch),
     }

@@ -8,6 +8,7 @@ from itertools import zip_longest
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform import door
 from gcxform.api import Program
 from gcxform.contract import Pass, PassContext
 from gcxform.diagnostics import InputError
@@ -16,7 +17,7 @@ from gcxform.machine.machine import Machine
 from gcxform.modal.codes import Effect
 from gcxform.modal.meaning import FRAMING
 from gcxform.toolpath.circles import radius_and_angle
-from gcxform.toolpath.matching import Matching, Pieces, match, measure
+from gcxform.toolpath.matching import Matching, Pieces, cut, match, measure
 from gcxform.toolpath.path import (
     WHOLE,
     Event,
@@ -54,6 +55,8 @@ class Comparison:
     matched         pairs of moves, or of their parts, that were compared
     ends_only       how many of them only at their ends: rapids, and from an unknown start
     parted          lines of A and B from which nothing fits, None if everything does
+    spared          rapids of B that are left to where the machine goes, off by up to `spared_by`
+                    (mm) if that is known; they are compared by what the control is told
     """
 
     deviation: float
@@ -66,6 +69,8 @@ class Comparison:
     parted: tuple[int, int] | None = None
     feeds: tuple[Difference, ...] = ()
     events: tuple[Difference, ...] = ()
+    spared: int = 0
+    spared_by: float = 0.0
 
     @property
     def same(self) -> bool:
@@ -86,13 +91,21 @@ def compare(
     With `through`, B holds commands that came from this pass, and what the machine does with them
     is compared. Raises InputError where one of them is refused.
     """
+    for one in (a, b):
+        door.instance("program", one, Program, "a program, as `read` returns it")
+    tolerance = door.positive("tolerance", tolerance)
     path_a, path_b = _same_axes(a.path, b.path)
+    left = _Left(path_b, path_b, np.zeros(len(path_b), np.bool_))
     if through is not None:
         numbers = b.dialect.numbers
-        path_b = _undone(b, path_b, through, PassContext(a.dialect, b.dialect, numbers, machine))
+        undone = _undone(b, path_b, through, PassContext(a.dialect, b.dialect, numbers, machine))
+        left = _Left.of(path_b, undone, through)
+        path_b = left.path
     path_a, path_b = (straightened(path, STRAIGHT) for path in (path_a, path_b))
     matching = match(path_a, path_b, tolerance, max(REACH, tolerance))
     found = measure(path_a, path_b, matching)
+    if len(path_b) == len(left.path) and len(matching.a) and through is not None:
+        found = replace(found, distance=np.maximum(found.distance, left.begins(path_a, matching)))
     worst = int(np.argmax(found.distance)) if len(matching.a) else -1
     compared = Comparison(
         np.inf if matching.parted else float(found.distance.max(initial=0.0)),
@@ -105,6 +118,8 @@ def compare(
         _parted(path_a, path_b, matching),
         tuple(_feeds(path_a, path_b, matching, tolerance)),
         tuple(_events((path_a, a.dialect), (path_b, b.dialect), matching, tolerance)),
+        int(left.rows.sum()),
+        left.size,
     )
     return _in_lines_of(a, b, compared)
 
@@ -116,6 +131,51 @@ def _undone(b: Program, path: Toolpath, through: Pass, context: PassContext) -> 
         return through.undo(path, context)
     except InputError as error:
         raise b.located(error) from None
+
+
+@dataclass(frozen=True)
+class _Left:
+    """A path behind a pass, of which some rapids are left to where the machine goes.
+
+    path    where the machine goes, but where it is told to go at the end of these rapids
+    actual  where the machine goes
+    rows    (n,) these rapids
+    """
+
+    path: Toolpath
+    actual: Toolpath
+    rows: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, told: Toolpath, actual: Toolpath, through: Pass) -> _Left:
+        """Return what the machine does with a path that the control is told."""
+        mine, rows = np.flatnonzero(through.spares(told)), through.spares(actual)
+        if len(mine) != np.count_nonzero(rows):
+            return cls(actual, actual, np.zeros(len(actual), np.bool_))
+        end = actual.end.copy(order="F")
+        for row, other in zip(mine.tolist(), np.flatnonzero(rows).tolist(), strict=True):
+            before = end[other - 1] if other else actual.entry
+            rests = told.end[row] == told.start[row]
+            end[other] = np.where(rests, before, told.end[row])
+        return cls(actual.replace(end=end), actual, rows)
+
+    @property
+    def size(self) -> float:
+        """How far (mm) the machine is off at most where they end, as far as that is known."""
+        off = np.nan_to_num((self.actual.end - self.path.end)[self.rows, :3])
+        return float(np.sqrt((off**2).sum(axis=1)).max(initial=0.0))
+
+    def begins(self, other: Toolpath, matching: Matching) -> NDArray[np.float64]:
+        """Return how far (mm) feed moves begin from where those of another path do (pieces,).
+
+        Only what begins behind these rapids, or with the program, is looked at.
+        """
+        row, fresh = matching.b.row, matching.b.low == 0.0
+        behind = np.append(True, self.rows[:-1])[row] if len(self.rows) else fresh
+        feeds = self.path.kind[row] != Kind.RAPID
+        gap = (self.actual.start[row] - cut(other, matching.a).start)[:, :3]
+        gap = np.sqrt((np.nan_to_num(gap) ** 2).sum(axis=1))
+        return np.where(fresh & behind & feeds, gap, 0.0)
 
 
 def _in_lines_of(a: Program, b: Program, found: Comparison) -> Comparison:

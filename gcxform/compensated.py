@@ -15,10 +15,16 @@ from numpy.typing import NDArray
 from gcxform.contract import Pass
 from gcxform.toolpath.path import Toolpath
 
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
 CODE = re.compile(rb"[Gg][ \t]*0*4[ \t]*([012])")
 COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
 AXIS = re.compile(rb"[XYZxyz]")
-MENDED = "put the pass cutter-comp before it"
+WHICH = ("kind", "plane", "source", "nth", "form", "side")
+WHERE = ("start", "end", "centre", "sweep", "radius")
+NOISE = 1e-9  # mm, rad; what computing a position in another way makes of it
+MENDED = "put the pass cutter-comp before it: cutter-comp | {}"
 
 
 def whole_stretches(texts: Iterator[bytes]) -> Iterator[bytes]:
@@ -47,26 +53,48 @@ def whole_stretches(texts: Iterator[bytes]) -> Iterator[bytes]:
 def check_compensated(step: Pass, before: Toolpath, after: Toolpath) -> None:
     """Refuse what a pass must not do under compensation. Raises InputError.
 
-    It may not move the contour, because the control would offset another one; and the moves that
-    begin and end compensation have to stay whole.
+    The contour, with the moves that begin and end it, has to stay as it is, row by row: the control
+    offsets what it reads, and a point that is moved by a little, or a corner more, leads the centre
+    of the tool elsewhere by more than that.
     """
-    on = before.side != 0
-    if not on.any() and not before.after_side:
+    held = _contour(before)
+    if not held.any() and not after.side.any():
         return
-    rows = np.flatnonzero(on)
-    if type(step).undo is not Pass.undo and len(rows):
-        message = f"{step.name} moves a contour that the control offsets by the tool's radius"
-        raise before.refuse("GX233", rows[:1], message, MENDED)
-    ends = np.flatnonzero(on != np.append(before.after_side != 0, on[:-1]))
-    lines = before.source[ends]
-    if len(lines) and (_pieces(after, lines) != _pieces(before, lines)).any():
-        wrong = ends[_pieces(after, lines) != _pieces(before, lines)]
-        message = f"{step.name} cuts a move that begins or ends cutter compensation"
-        raise before.refuse("GX233", wrong, message, MENDED)
+    rows, new = np.flatnonzero(held), np.flatnonzero(_contour(after))
+    if type(step).undo is not Pass.undo and before.side.any():
+        wrong, what = np.flatnonzero(before.side)[:1], "moves a contour"
+    elif len(rows) != len(new):
+        wrong, what = _of_other_count(before, after, rows, new), "cuts or joins moves of a contour"
+    else:
+        wrong, what = rows[_changed(before, rows, after, new)], "moves a contour"
+    if len(wrong):
+        message = f"{step.name} {what} that the control offsets by the tool's radius"
+        raise before.refuse("GX233", wrong, message, MENDED.format(step.name))
 
 
-def _pieces(path: Toolpath, lines: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return how many rows lines have, and whether the first is an arc, in one number."""
-    at = np.searchsorted(path.source, lines, "left")
-    counts = np.searchsorted(path.source, lines, "right") - at
-    return np.asarray(2 * counts + (path.kind[np.minimum(at, len(path) - 1)] > 1))
+def _contour(path: Toolpath) -> Flags:
+    """Return the rows (n,) under compensation, and those that end it."""
+    on = path.side != 0
+    return np.asarray(on | np.append(path.after_side != 0, on[:-1])[: len(on)])
+
+
+def _of_other_count(before: Toolpath, after: Toolpath, rows: Ints, new: Ints) -> Ints:
+    """Return the rows whose lines have not as many moves of a contour as they had."""
+    lines = before.source[rows]
+    had = np.searchsorted(lines, lines, "right") - np.searchsorted(lines, lines, "left")
+    others = after.source[new]
+    has = np.searchsorted(others, lines, "right") - np.searchsorted(others, lines, "left")
+    found = rows[had != has]
+    return found if len(found) else rows[:1]
+
+
+def _changed(before: Toolpath, rows: Ints, after: Toolpath, new: Ints) -> Flags:
+    """Return which rows (n,) of a contour are not what they were."""
+    wrong: Flags = np.zeros(len(rows), np.bool_)
+    for name in WHICH:
+        wrong |= getattr(before, name)[rows] != getattr(after, name)[new]
+    for name in WHERE:
+        one, other = getattr(before, name)[rows], getattr(after, name)[new]
+        same = (np.abs(one - other) <= NOISE) | (np.isnan(one) & np.isnan(other))
+        wrong |= ~same.reshape(len(rows), -1).all(axis=1)
+    return wrong

@@ -15,10 +15,15 @@ and what comes after it is compared with that path.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.diagnostics import InputError
 from gcxform.dialect import Dialect, NumberFormat
 from gcxform.syntax.tree import Block
 from gcxform.tipcodes import switches_of
@@ -79,6 +84,9 @@ class Pass:
     """It does what codes for following the tip ask for, so they are read as plain tool lengths."""
     reads_vectors: ClassVar[bool] = False
     """It makes angles of the tool vectors that such codes announce."""
+    deviates: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    """By "deviation" (mm) and "angle" (degrees) the name of what it measures of the same kind: what
+    its promise bounds, and what no comparison of what it wrote with its own path can show."""
     whole_cuts: ClassVar[bool] = False
     """Whether it has to see every cut as a whole: a window then ends where a rapid follows one."""
 
@@ -123,6 +131,14 @@ class Pass:
         """Return what the machine does with a path that came from this pass."""
         return path
 
+    def spares(self, path: Toolpath) -> NDArray[np.bool_]:
+        """Return which rapids (n,) of a path are left to go where the machine takes them.
+
+        Of these the proof asks that the control is told what the program says, and the certificate
+        says how far off the machine is there.
+        """
+        return np.zeros(len(path), np.bool_)
+
     def measure(
         self, before: Toolpath, after: Toolpath, context: PassContext
     ) -> Mapping[str, float]:
@@ -135,6 +151,21 @@ class Pass:
     def added(self, before: Toolpath, after: Toolpath, context: PassContext) -> Mapping[str, int]:
         """Return how many things of a window the source does not have, by name, if any may be."""
         return {}
+
+    @classmethod
+    def ways(cls, dialect: type[Dialect]) -> tuple[Pass, ...]:
+        """Return the passes that, together, resolve in all ways in which such controls may do it.
+
+        Where a parameter of the machine decides there is one for each of its settings.
+        """
+        return ()
+
+    def stops(self, path: Toolpath, context: PassContext) -> InputError | None:
+        """Return why the control itself stops where it is left to resolve a path; None: it goes on.
+
+        Only what is certain counts.
+        """
+        return None
 
     def prove(self, before: Toolpath, after: Toolpath, context: PassContext) -> None:
         """Check what a pass that resolves has made of the path as read; VerificationError if wrong.
@@ -166,3 +197,8 @@ class TextPass:
     def refuse(self, block: Block) -> str:
         """Return why a program that has this block cannot be edited, or nothing."""
         return ""
+
+
+def resolved(passes: Sequence[Pass]) -> int:
+    """Return after how many steps the path is the one that the rest of the run is compared with."""
+    return max((n for n, step in enumerate(passes, 1) if step.resolves), default=0)

@@ -17,6 +17,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
+from gcxform import door
+from gcxform.machine.control import Setting, declare
 from gcxform.modal.arithmetic import Arithmetic
 from gcxform.modal.codes import ISO, ISO_M, Code, CutterComp, MCode
 from gcxform.modal.cyclerule import CycleRule
@@ -25,6 +27,7 @@ from gcxform.syntax.grammar import Grammar, load
 if TYPE_CHECKING:
     from gcxform.flow.translation import Translator
 
+MOST_DECIMALS = 15  # what a double holds
 INCH = 25.4  # mm, exact by definition
 LINEAR = "XYZUVW"
 ROTARY = "ABC"
@@ -42,6 +45,12 @@ class NumberFormat:
     angle: int = 3
     feed: int = 3
     zeros: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what is no number of decimals. Raises UsageError."""
+        for name in ("mm", "inch", "angle", "feed"):
+            object.__setattr__(self, name, door.whole(name, getattr(self, name), MOST_DECIMALS))
+        object.__setattr__(self, "zeros", door.flag("zeros", self.zeros))
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +78,13 @@ class Dialect:
     axes: ClassVar[str] = "XYZABC"
     codes: ClassVar[Mapping[str, Code]] = ISO
     m_codes: ClassVar[Mapping[int, MCode]] = ISO_M
+    m_order_chosen: ClassVar[bool] = False
+    """Whether the machine decides when an M code beside a move acts, so that it is assumed."""
+    chosen: ClassVar[Mapping[str, str]] = {}
+    """What is taken for the meaning of a code, or of words of an axis, where a parameter decides:
+    a sentence for the certificate."""
+    rounds_corners: ClassVar[bool] = False
+    """Whether corners are rounded where no path mode is stated, as they are in G64."""
     unknown_m: ClassVar[MCode | None] = None
     """What an M code outside `m_codes` is; None: it is refused."""
     m_first: ClassVar[bool] = False
@@ -84,6 +100,10 @@ class Dialect:
         "cutter-comp": "G40",
     }
     """The modal state a program is taken to start in; the certificate says what was taken."""
+    settings: ClassVar[tuple[Setting, ...]] = ()
+    """Settings in [control] of a machine file that the dialect asks for, beside the common ones."""
+    lone_codes_count: ClassVar[bool] = False
+    """G1, G2 and G3 are executed without axis words too: G1 asks for a feed, arcs for words."""
     axis_words_once: ClassVar[bool] = False
     """A motion code beside a code that takes the axis words for itself (G92, G28) is refused."""
     g80_beside_motion: ClassVar[bool] = True
@@ -93,9 +113,13 @@ class Dialect:
     cutter_comp: ClassVar[CutterComp] = CutterComp()
     """How G41 and G42 are read, where the dialect has them."""
     point_required: ClassVar[bool] = False
-    """A distance without a point counts in increments of the control, which must be configured."""
+    """A distance without a point counts in increments of the control, or in units: a setting."""
     feed_point_required: ClassVar[bool] = False
     """An F without a point counts in a unit of the control, which must be configured."""
+    calculator_words: ClassVar[str] = "XYZUVWABCIJKRQF"
+    """Words to which the control can be set to add a point where they have none."""
+    feed_steps: ClassVar[Mapping[str, tuple[float, float]]] = {}
+    """Steps in mm/min and inch/min of an F without a point, by the system in which it counts."""
     circle_needs_axis_word: ClassVar[bool] = False
     turns_address: ClassVar[str] = ""
     """The word that counts the turns of an arc (n - 1 full turns beyond the arc itself)."""
@@ -223,6 +247,15 @@ class Dialect:
 
     cycles_stop: ClassVar[bool] = False
     """The moves of a cycle end exactly, also where G64 rounds corners."""
+
+    differs: ClassVar[Mapping[str, str]] = {}
+    """What is otherwise here than on controls that agree, on purpose: a code or the name of one of
+    these attributes, and from where that is known. The conformance kit asks for it."""
+
+    def __init_subclass__(cls) -> None:
+        """Let machine files have the settings that the dialect asks for."""
+        super().__init_subclass__()
+        declare(cls.settings)
 
     @classmethod
     def executes(cls, comment: str) -> bool:

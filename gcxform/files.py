@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from gcxform.diagnostics import FileError
+from gcxform.diagnostics import FileError, UsageError
+from gcxform.inputs import is_read
+
+WRITABLE = 0o222  # nobody is to write it without one of these, not even the superuser by mistake
+NAME_KEPT = 40  # characters of the name of a file that are in that of its temporary one
 
 
 @contextmanager
@@ -16,11 +21,14 @@ def write_atomically(path: Path) -> Iterator[Callable[[bytes], object]]:
     """Give a function that takes the file's bytes; the file appears when the block ends well.
 
     The bytes go to a temporary file beside the place, which is flushed to disk and renamed. On any
-    failure the destination is as it was. Permissions of a file that is replaced are kept. Raises
-    FileError.
+    failure the destination is as it was. Permissions of a file that is replaced are kept; one that
+    may not be written to is not replaced, nor is one that the run has read. Raises FileError, and
+    UsageError for the latter.
     """
+    _check_replaceable(path)
+    prefix = f".{path.name[:NAME_KEPT]}."
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+        handle, name = tempfile.mkstemp(prefix=prefix, suffix=".part", dir=path.parent)
     except OSError as error:
         raise _cannot(path, error) from None
     temporary = Path(name)
@@ -39,10 +47,21 @@ def write_atomically(path: Path) -> Iterator[Callable[[bytes], object]]:
             temporary.unlink()
 
 
+def _check_replaceable(path: Path) -> None:
+    """Refuse to replace a file that is read for this run, or that may not be written to."""
+    if is_read(path):
+        message = f"{path} would be overwritten, and it was read for this run"
+        raise UsageError.one("GX727", message, hint="write elsewhere")
+    with suppress(FileNotFoundError):
+        if not path.stat().st_mode & WRITABLE or not os.access(path, os.W_OK):
+            why = OSError(errno.EACCES, "it is there, and may not be written to")
+            raise _cannot(path, why)
+
+
 def _take_mode(path: Path, temporary: Path) -> None:
     """Give the new file the permissions of the old one, or the usual ones."""
     if path.exists():
-        temporary.chmod(path.stat().st_mode & 0o7777)
+        temporary.chmod(path.stat().st_mode & 0o777)  # to run as another user is not ours to give
     else:
         mask = os.umask(0)
         os.umask(mask)

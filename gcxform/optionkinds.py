@@ -13,11 +13,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple, TypeVar
 
 import msgspec
 
-from gcxform.diagnostics import Location, UsageError
+from gcxform import inputs
+from gcxform.diagnostics import FileError, Location, UsageError
 from gcxform.machine import modelfile
 from gcxform.machine.errors import ErrorModel
 from gcxform.machine.formats import ErrorFormat
@@ -26,7 +27,10 @@ from gcxform.machine.machinefile import NONE, load_machine
 from gcxform.machine.modeltext import fingerprint, to_toml
 from gcxform.machine.presets import Known
 from gcxform.machine.quantities import ANGLE, AXIS_LETTERS, LENGTH, Quantity, quantity_of
+from gcxform.modal.increments import CALCULATOR, SYSTEMS, Increments
 from gcxform.tomltext import did_you_mean
+
+Read = TypeVar("Read")
 
 
 class Argument(str):
@@ -48,9 +52,12 @@ class ModelFile:
     @classmethod
     def load(cls, path: Path, formats: Iterable[type[ErrorFormat]] = ()) -> ModelFile:
         """Return the model of a file; raises UsageError as `load_model` does."""
-        model = modelfile.load_model(path, tuple(formats))
         native = path.suffix.lower() == modelfile.SUFFIX
-        data = path.read_bytes() if native else to_toml(model).encode()
+        if native:
+            model, data = _read_twice(path, partial(modelfile.load_model, formats=tuple(formats)))
+        else:
+            model = modelfile.load_model(path, tuple(formats))
+            data = to_toml(model).encode()
         data += fingerprint(model) if model.composed else b""
         return cls(path, model, hashlib.sha256(data).hexdigest())
 
@@ -80,8 +87,21 @@ class KinematicsFile:
     @classmethod
     def load(cls, path: Path, kinematics: Known = NONE) -> KinematicsFile:
         """Return the machine of a file; raises UsageError as `load_machine` does."""
-        machine = load_machine(path, kinematics)
-        return cls(path, machine, hashlib.sha256(path.read_bytes()).hexdigest())
+        machine, data = _read_twice(path, partial(load_machine, kinematics=kinematics))
+        return cls(path, machine, hashlib.sha256(data).hexdigest())
+
+
+def _read_twice(path: Path, load: Callable[[Path], Read]) -> tuple[Read, bytes]:
+    """Return what a file says, and its bytes. Raises FileError if they may not belong together."""
+    try:
+        before, data = os.stat(path), inputs.read(path)
+    except (OSError, ValueError):
+        load(path)  # says what is wrong, in the words of its kind
+        raise
+    found = load(path)
+    if inputs.is_changed(before, os.stat(path), len(data)):
+        raise FileError.one("GX904", f"cannot read {path}: {inputs.CHANGED}")
+    return found, data
 
 
 @dataclass(frozen=True)
@@ -149,7 +169,9 @@ def _read_plain(kind: type, what: str, raw: object, around: Around) -> Any:
 def _read_path(raw: object, around: Around) -> Path:
     if not isinstance(raw, str) or not raw or "\0" in raw:
         raise _expected("the name of a file", raw)
-    return around.base / raw
+    if isinstance(raw, Argument):  # the user's own word
+        return around.base / raw
+    return inputs.referred(around.base, raw, around.where)
 
 
 def _read_existing(raw: object, around: Around) -> Path:
@@ -175,6 +197,27 @@ def _read_quantity(quantity: Quantity, raw: object, around: Around) -> float:
             raise RefusedError("GX708", str(error)) from None
     what = f"{quantity.article}, such as {quantity.example}"
     return float(_read_plain(float, what, raw, around))
+
+
+def _read_increment(raw: object, around: Around) -> float | str:
+    """Return a length in mm, or how a system is called."""
+    if not isinstance(raw, str) or LENGTH.of(raw) is not None:
+        return _read_quantity(LENGTH, raw, around)
+    try:
+        Increments.of(raw)
+    except ValueError as error:
+        raise RefusedError("GX708", str(error)) from None
+    return raw
+
+
+def _read_feed_increment(raw: object, around: Around) -> float | str:
+    """Return a number of units per minute, or how a system is called."""
+    if raw in (CALCULATOR, *SYSTEMS):
+        return str(raw)
+    if isinstance(raw, str) and not isinstance(raw, Argument):
+        known = f"a number of units per minute, {', '.join(SYSTEMS)} or {CALCULATOR}"
+        raise RefusedError("GX702", f"expected {known}, got {written(raw)}")
+    return float(_read_plain(float, "a number of units per minute", raw, around))
 
 
 def _read_vector(raw: object, around: Around) -> tuple[float, float, float]:
@@ -237,6 +280,8 @@ def choice_kind(choices: tuple[Any, ...]) -> Kind:
 
 _LENGTH = Kind("length", partial(_read_quantity, LENGTH), unit=" mm")
 _ANGLE = Kind("angle", partial(_read_quantity, ANGLE), unit=" deg")
+_INCREMENT = Kind("increment system or length", _read_increment, unit=" mm")
+_FEED_INCREMENT = Kind("increment system or number", _read_feed_increment)
 _VECTOR = Kind("three lengths", _read_vector, list)
 _COORDINATES = Kind("coordinates by axis letter", _read_coordinates)
 _PARAMETERS = Kind("numbers by parameter", _read_parameters)
@@ -251,11 +296,17 @@ PLAIN: dict[type, Kind] = {
     KinematicsFile: Kind("machine file", _read_machine, lambda f: str(f.path.absolute())),
 }
 """The types that are known by themselves; all others stand in an annotation."""
+LOADED: dict[Kind, type] = {PLAIN[kind]: kind for kind in (Path, ModelFile, Lines, KinematicsFile)}
+"""Kinds whose values are more than what a file says of them: in Python they come ready made."""
 
 Length = Annotated[float, _LENGTH]
 """A length in mm; written "5 um", "0.2 mm", "0.001 in" or as a number in mm."""
 Angle = Annotated[float, _ANGLE]
 """An angle in degrees; written "10 deg", "80 urad" or as a number in degrees."""
+Increment = Annotated[float | str, _INCREMENT]
+"""A length in mm, or what `Increments` takes: "IS-B", "calculator", "0.01 mm, 0.01 deg"."""
+FeedIncrement = Annotated[float | str, _FEED_INCREMENT]
+"""A number of units per minute, or the name of a system or of calculator input."""
 Vector = Annotated[tuple[float, float, float], _VECTOR]
 """Three lengths in mm; written as a list, as "0,0,0" or as a table of X, Y and Z."""
 Coordinates = Annotated[dict[str, float], _COORDINATES]

@@ -24,45 +24,28 @@ from dataclasses import MISSING, dataclass
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeVar
 
+from gcxform import door
 from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.machine.formats import ErrorFormat
 from gcxform.machine.machinefile import NONE
 from gcxform.machine.presets import Known
-from gcxform.optionkinds import PLAIN, Around, Kind, RefusedError, choice_kind, written
+from gcxform.optionkinds import LOADED, PLAIN, Around, Kind, RefusedError, choice_kind, written
 from gcxform.optionkinds import Angle as Angle
 from gcxform.optionkinds import Argument as Argument
 from gcxform.optionkinds import Coordinates as Coordinates
+from gcxform.optionkinds import FeedIncrement as FeedIncrement
+from gcxform.optionkinds import Increment as Increment
 from gcxform.optionkinds import KinematicsFile as KinematicsFile
 from gcxform.optionkinds import Length as Length
 from gcxform.optionkinds import Lines as Lines
 from gcxform.optionkinds import ModelFile as ModelFile
 from gcxform.optionkinds import ParameterValues as ParameterValues
 from gcxform.optionkinds import Vector as Vector
+from gcxform.optionmark import Option as Option
 from gcxform.tomltext import did_you_mean
 
 Built = TypeVar("Built")
 Where = Callable[[str], Location]
-
-
-@dataclass(frozen=True)
-class Option:
-    """What an option says beyond its type: help, and the range of its value in its base unit."""
-
-    help: str = ""
-    above: float | None = None
-    at_least: float | None = None
-    at_most: float | None = None
-
-    def admits(self, value: float) -> bool:
-        """Return whether a value is in the range."""
-        above = self.above is None or value > self.above
-        at_least = self.at_least is None or value >= self.at_least
-        return above and at_least and (self.at_most is None or value <= self.at_most)
-
-    def range_text(self, unit: str) -> str:
-        """Return the range in words, each bound with its unit."""
-        words = {"above": self.above, "at least": self.at_least, "at most": self.at_most}
-        return " and ".join(f"{word} {b:g}{unit}" for word, b in words.items() if b is not None)
 
 
 class OptionDoc(NamedTuple):
@@ -163,6 +146,34 @@ def _instance(target: type[Built], values: dict[str, object], owner: str, where:
         raise UsageError.one("GX713", f"{owner}: {error}", where("use")) from None
 
 
+def taken(instance: Built) -> Built:
+    """Return a dataclass of options that was made in Python, its values as a file would give them.
+
+    Raises UsageError for values that no file could give.
+    """
+    changed: dict[str, object] = {}
+    for spec in _specs(type(instance)):
+        value = getattr(instance, spec.name)
+        if value is None and spec.default is None:
+            continue
+        found = _taken(spec, value, instance)
+        if found is not value and (type(found) is not type(value) or found != value):
+            changed[spec.name] = found
+    return dataclasses.replace(instance, **changed) if changed else instance  # type: ignore[type-var]
+
+
+def _taken(spec: _Spec, value: Any, owner: object) -> object:
+    """Return the value of one option as its file would give it. Raises UsageError."""
+    if spec.kind in LOADED and isinstance(value, LOADED[spec.kind]):
+        return value
+    try:
+        return spec.read(door.plain(value), Around(Path()))
+    except RefusedError as refusal:
+        name = getattr(owner, "name", "") or type(owner).__name__
+        message = f"{name}: {spec.name}: {refusal.message}"
+        raise UsageError.one(refusal.code, message, hint=refusal.hint) from None
+
+
 def describe(target: type) -> list[OptionDoc]:
     """Return the documentation of the options of a pass; TypeError for a field that is none."""
     return [
@@ -212,7 +223,7 @@ def _spec(of: dataclasses.Field[Any], annotation: Any) -> _Spec:
     choices = _choices(plain[0])
     kind = marks[0] if marks else choice_kind(choices) if choices else PLAIN.get(plain[0])
     default = of.default if of.default_factory is MISSING else of.default_factory()
-    if kind is None or len(plain) != 1:
+    if kind is None or (len(plain) != 1 and not marks):
         raise TypeError(f"the option {of.name!r} has the type {annotation}, which is none of ours")
     return _Spec(
         name=of.name,

@@ -10,28 +10,38 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from string import ascii_uppercase
 
 import numpy as np
 
+from gcxform import door
 from gcxform.certificate import Certificate
 from gcxform.certifying import certificate
 from gcxform.chain import check_chain, facts_after
-from gcxform.contract import Pass, PassContext, TextPass
-from gcxform.diagnostics import UsageError
-from gcxform.dialect import ROTARY, Dialect, NumberFormat
+from gcxform.contract import Pass, PassContext, TextPass, resolved
+from gcxform.diagnostics import Diagnostic, UsageError
+from gcxform.dialect import MOST_DECIMALS, ROTARY, Dialect, NumberFormat
 from gcxform.emit.manner import Manner
+from gcxform.limits import Limits, in_force
 from gcxform.machine.machine import Machine
 from gcxform.machine.machinefile import load_machine
 from gcxform.modal.state import Reading
-from gcxform.pipelinefile import PipelineSpec, load, parse_chain
-from gcxform.registry import Registry, default_registry
-from gcxform.run import Output, Progress, Run, Sink
+from gcxform.options import taken
+from gcxform.output import Output, Sink
+from gcxform.pipelinefile import PipelineSpec, chain_doubts, load, parse_chain
+from gcxform.registry import Registry, default_registry, dialect_of
+from gcxform.run import Progress, Run
 from gcxform.source import Source
+from gcxform.stamp import stamps_in
+from gcxform.stamped import Marks, against, refusal, stamp_of
+from gcxform.stamping import comment_line
 from gcxform.tipcodes import with_refusal, with_switches, with_vectors, without_tip_codes
 from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY, NO_CYCLES
 
 ARC_ROUNDING = 2.0  # of the last decimal: what rounding ends and centre can add along an arc
+CENTRE_ROUNDING = 0.003  # mm: what rounding moves a centre by depends on the contour's corners
 VERIFY = ("off", "on", "full")
+WORDS = ("changed", "programmed", "all")
 
 
 @dataclass(frozen=True)
@@ -50,7 +60,7 @@ def check_written(dialect: type[Dialect]) -> None:
     """Raise UsageError for a dialect in which nothing is written."""
     if dialect.translator is not None:
         message = f"programs for {dialect.name} are read, and not written"
-        hint = 'dialect = "linuxcnc" in [output], or -t linuxcnc; `gcxform list dialects`'
+        hint = 'dialect = "linuxcnc" in [output]; `gcxform list dialects`'
         raise UsageError.one("GX747", message, hint=hint)
 
 
@@ -60,7 +70,11 @@ class Pipeline:
 
     budget   mm that the path may deviate; None: what the steps promise, and the rounding
     growth   how many blocks may be written for each one read, over the program; None: any number
+    warnings what is odd in what the pipeline was built from, and no error
     words    which axis words a changed block gets: "changed", "programmed" or "all"
+    stamp    whether what turns positions into others is stamped, so that it is not done twice
+    again    run on stamped programs all the same, as if they were not
+    limits   what a run may take; None: as much as is usual
     """
 
     source: type[Dialect]
@@ -73,13 +87,45 @@ class Pipeline:
     numbers: NumberFormat | None = None
     decimals: Mapping[str, int] = field(default_factory=dict)
     growth: float | None = None
+    stamp: bool = True
+    again: bool = False
+    warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)
+    limits: Limits | None = None
 
     def __post_init__(self) -> None:
+        for name, value in self._taken().items():
+            object.__setattr__(self, name, value)
         self._check_target()
         check_chain(self.path_passes)
         for step in self.path_passes:
             step.begin(self.context)
         self._check_budget()
+
+    def _taken(self) -> dict[str, object]:
+        """Return what was given as what is meant by it. Raises UsageError for all else."""
+        steps = self.passes if isinstance(self.passes, list | tuple) else (self.passes,)
+        for step in steps:
+            door.instance("passes", step, (Pass, TextPass), "passes, each made with its options")
+        door.instance("reading", self.reading, Reading, "a Reading")
+        numbers, machine, limit = self.numbers, self.machine, door.positive
+        if numbers is not None:
+            door.instance("numbers", numbers, NumberFormat, "a NumberFormat")
+        if machine is not None:
+            door.instance("machine", machine, Machine, "a machine, as load_machine gives it")
+        return {
+            "source": dialect_of(self.source),
+            "target": dialect_of(self.target),
+            "passes": tuple(taken(step) for step in steps),
+            "budget": None if self.budget is None else limit("budget", self.budget),
+            "growth": None if self.growth is None else limit("growth", self.growth),
+            "words": door.chosen("words", self.words, WORDS),
+            "decimals": {
+                door.chosen("decimals", letter, tuple(ascii_uppercase)): door.whole(
+                    f"decimals of {letter}", count, MOST_DECIMALS
+                )
+                for letter, count in door.table("decimals", self.decimals).items()
+            },
+        }
 
     # --- ways to build one ---
 
@@ -100,7 +146,7 @@ class Pipeline:
         """Return the pipeline of a chain like `absolute | segment chord-error=5um`."""
         registry = registry or default_registry()
         passes = tuple(parse_chain(chain, base or Path.cwd(), registry))
-        spec = PipelineSpec(passes=passes)
+        spec = PipelineSpec(passes=passes, warnings=chain_doubts(chain))
         return cls.of_spec(spec, registry, dialect)
 
     @classmethod
@@ -118,23 +164,29 @@ class Pipeline:
             raise UsageError.one(
                 "GX722",
                 "which dialect is the program in?",
-                hint='dialect = "fanuc" in [input], or -f fanuc; `gcxform list dialects`',
+                hint='dialect = "fanuc" in [input]; `gcxform list dialects`',
             )
         source = registry.dialect(name_in)
         target = registry.dialect(dialect_out or spec.output.dialect or name_in)
         numbers, decimals = _numbers(target, spec)
         file = machine or spec.machine
+        with in_force(spec.limits):
+            loaded = load_machine(file, registry.kinematics) if file else None
         return cls(
             source,
             target,
             tuple(spec.passes),
             _reading(source, spec),
-            load_machine(file, registry.kinematics) if file else None,
+            loaded,
             spec.budget,
             spec.output.words,
             numbers,
             decimals,
             spec.growth,
+            spec.output.stamp,
+            spec.input.again,
+            spec.warnings,
+            spec.limits,
         )
 
     # --- what is known before a run ---
@@ -214,18 +266,33 @@ class Pipeline:
         """Return the sum of what the passes promise (mm); inf if one promises nothing."""
         return sum(step.promise for step in self.path_passes)
 
-    def limit(self, inch: bool = False) -> float:
-        """Return the deviation (mm) that a run may have, in blocks of a unit."""
+    def limit(self, inch: bool = False, compensated: bool = False, arcs: bool = True) -> float:
+        """Return the deviation (mm) that a run may have, in blocks of a unit.
+
+        `compensated`: that of the tool's centre where the control offsets a contour; `arcs`:
+        whether there is any arc or spline, as far as the passes leave some.
+        """
         if self.budget is not None:
             return self.budget
+        if compensated:
+            return max(self.limit(inch, arcs=arcs), CENTRE_ROUNDING)
         total = self.promised() + self.rounding(inch)
-        if LINEAR_ONLY not in facts_after(self.path_passes):
+        if arcs and LINEAR_ONLY not in facts_after(self.path_passes):
             total += self._repeated * ARC_ROUNDING * self.manner.step("X", inch)
         return total
 
-    def angle_limits(self) -> dict[str, float]:
-        """Return how far (deg) rotary axes may be off: what steps promise, and the rounding."""
-        promised = sum(step.promise_angle for step in self.path_passes)
+    def limit_of_written(self, inch: bool, compensated: bool, arcs: bool) -> float:
+        """Return what of `limit` is left to what is written, beside the path that passes proved."""
+        proved = self.path_passes[: resolved(self.path_passes)]
+        return self.limit(inch, compensated, arcs) - sum(step.promise for step in proved)
+
+    def angle_limits(self, written: bool = False) -> dict[str, float]:
+        """Return how far (deg) rotary axes may be off: what steps promise, and the rounding.
+
+        `written`: beside the path that passes have proved.
+        """
+        steps = self.path_passes[resolved(self.path_passes) if written else 0 :]
+        promised = sum(step.promise_angle for step in steps)
         return {a: promised + 1.01 * self.manner.step(a, False) for a in ROTARY}
 
     def _check_target(self) -> None:
@@ -241,7 +308,7 @@ class Pipeline:
                 raise UsageError.one(
                     "GX723",
                     "a step promises no bound, so the pipeline needs an explicit budget",
-                    hint='[budget] deviation = "20 um"; the certificate states what was measured',
+                    hint='deviation = "20 um" in [budget]; the certificate says what was measured',
                 )
         elif bounded and self.promised() + self.manner.rounding(False) > self.budget * (1 + 1e-9):
             raise UsageError.one(
@@ -259,15 +326,26 @@ class Pipeline:
 
         `name` is what messages call a program that is given as bytes.
         """
-        if isinstance(program, bytes):
-            source = Source.of_bytes(program, name)
-        else:
-            source = Source.open(Path(program))
+        source = door.program(program, name)
         parts: list[bytes] = []
         lines: list[int] = []
         with source.stream:
             certificate = self.run_stream(source, parts.append, verify, lines)
         return Result(b"".join(parts), certificate, lines)
+
+    def marks(self, source: Source) -> Marks:
+        """Return the stamps of a run on a program.
+
+        Raises InputError where the program is stamped, and not what the chain takes it for.
+        """
+        read, context = stamps_in(source), self.context
+        new = stamp_of(self.passes, context, self.words)
+        found = against(read, self.path_passes, context, new)
+        if found is not None and not self.again:
+            raise refusal(read, source, found)
+        why = "" if found is None else found[1]
+        writes = self.stamp and new is not None and bool(comment_line(self.target, new.content))
+        return Marks(read, new if writes else None, new is not None, why)
 
     def run_stream(
         self,
@@ -281,10 +359,12 @@ class Pipeline:
 
         What was handed over is to be thrown away if an error is raised.
         """
+        door.chosen("verify", verify, VERIFY)
         out = Output(sink, source_map)
-        run = Run(self, source, verify)
-        run.over(out, progress or (lambda size: None))
-        run.check_growth(out)
+        with in_force(self.limits):
+            run = Run(self, source, verify)
+            run.over(out, progress or (lambda size: None))
+            run.check_growth(out)
         return certificate(run, out)
 
 

@@ -13,18 +13,22 @@ Whatever is not understood is an error with its place. Relative paths are relati
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar
 
 from gcxform.contract import Pass, TextPass
 from gcxform.diagnostics import Diagnostic, Location, UsageError
+from gcxform.doubts import doubts_of
+from gcxform.limits import Limits, in_force
 from gcxform.machine import machinefile, modelfile
 from gcxform.options import (
     Argument,
     Coordinates,
+    FeedIncrement,
+    Increment,
     Length,
     Option,
     OptionDoc,
@@ -52,13 +56,14 @@ class InputSpec:
         default_factory=dict
     )
     increment: Annotated[
-        Length | None, Option("what 1 means in a distance without a point", above=0.0)
+        Increment | None, Option("what 1 means in a distance without a point", above=0.0)
     ] = None
     feed: Annotated[
         float | None, Option("feed before the first F word, in units per minute", above=0.0)
     ] = None
     feed_increment: Annotated[
-        float | None, Option("what 1 means in an F without a point, per minute", above=0.0)
+        FeedIncrement | None,
+        Option("what 1 means in an F without a point, per minute", above=0.0),
     ] = None
     block_delete: Annotated[
         Literal["execute", "skip", ""], Option("what the control does with / blocks")
@@ -67,6 +72,7 @@ class InputSpec:
     parameters: Annotated[
         ParameterValues, Option("values of parameters that the program reads and does not set")
     ] = field(default_factory=dict)
+    again: Annotated[bool, Option("take stamped programs too, as if they were not stamped")] = False
 
 
 @dataclass(frozen=True)
@@ -81,11 +87,15 @@ class OutputSpec:
         Literal["changed", "programmed", "all"], Option("which axes a changed block names")
     ] = "changed"
     trailing_zeros: Annotated[bool | None, Option("write 1.500 instead of 1.5")] = None
+    stamp: Annotated[bool, Option("say in comments what was done to positions")] = True
 
 
 @dataclass(frozen=True)
 class PipelineSpec:
-    """A pipeline as written: input, machine file, budget (mm) and growth, passes, output."""
+    """A pipeline as written: input, machine file, budget (mm), growth, passes, output, limits.
+
+    `warnings` is what is odd in it, and no error.
+    """
 
     input: InputSpec = field(default_factory=InputSpec)
     machine: Path | None = None
@@ -94,6 +104,8 @@ class PipelineSpec:
     passes: tuple[Step, ...] = ()
     output: OutputSpec = field(default_factory=OutputSpec)
     file: Path | None = None
+    warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)
+    limits: Limits | None = None
 
 
 @dataclass(frozen=True)
@@ -120,6 +132,7 @@ SECTIONS: Final[Mapping[str, type]] = {
     "machine": _MachineSection,
     "budget": _BudgetSection,
     "output": OutputSpec,
+    "limits": Limits,
 }
 KEYS: Final = ("format", *SECTIONS, "pass")
 
@@ -132,6 +145,14 @@ def load(path: Path, registry: Registry) -> PipelineSpec:
     document = read_toml(path, CODES)
     _check_version(document)
     reader = _Reader(document, path.parent, registry, _unknown_keys(document))
+    limits = reader.section("limits", Limits)
+    with in_force(limits):
+        return replace(_spec(reader, path), limits=limits)
+
+
+def _spec(reader: _Reader, path: Path) -> PipelineSpec:
+    """Return what the file says besides its limits. Raises UsageError for all that is wrong."""
+    document = reader.document
     machine_section = reader.section("machine", _MachineSection)
     budget = reader.section("budget", _BudgetSection)
     spec = PipelineSpec(
@@ -142,6 +163,7 @@ def load(path: Path, registry: Registry) -> PipelineSpec:
         passes=reader.steps(),
         output=reader.section("output", OutputSpec) or OutputSpec(),
         file=path,
+        warnings=tuple(reader.doubts()),
     )
     reader.check_dialects(spec)
     if budget and budget.deviation is None and budget.growth is None:
@@ -220,6 +242,17 @@ class _Reader:
         options = {key: value for key, value in raw.items() if key != "use"}
         return _built(chosen, options, self.base, self.registry, where)
 
+    def doubts(self) -> Iterator[Diagnostic]:
+        """Yield warnings about tolerances of the file."""
+        document = self.document
+        steps = document.values.get("pass", [])
+        for k, step in enumerate(steps if isinstance(steps, list) else []):
+            if isinstance(step, dict):
+                yield from doubts_of(step, partial(document.where, "pass", k))
+        budget = document.values.get("budget")
+        if isinstance(budget, dict):
+            yield from doubts_of(budget, partial(document.where, "budget"))
+
     def check_dialects(self, spec: PipelineSpec) -> None:
         """Look the dialects up."""
         for name, dialect in (("input", spec.input.dialect), ("output", spec.output.dialect)):
@@ -235,6 +268,22 @@ def _built(
 ) -> Step:
     formats, kinds = registry.formats.values(), registry.kinematics
     return build(chosen, options, base, formats, where, kinematics=kinds)
+
+
+def _at(text: str, token: re.Match[str]) -> Callable[[str], Location]:
+    """Return what gives the place of a word of a chain, whatever key is asked for."""
+    return lambda key: _place(text, token)
+
+
+def chain_doubts(text: str) -> tuple[Diagnostic, ...]:
+    """Return warnings about tolerances in a chain that `parse_chain` takes."""
+    found: list[Diagnostic] = []
+    text = re.sub(r"\s", " ", text)
+    for words in _split(text):
+        for token in words.options:
+            key, _, value = token[0].partition("=")
+            found += doubts_of({key: Argument(value)}, _at(text, token))
+    return tuple(found)
 
 
 # --- chains on the command line ---
@@ -315,6 +364,8 @@ def _chain_step(words: _Words, text: str, base: Path, registry: Registry) -> Ste
 
 _JSON_TYPES: Final[Mapping[str, str | list[str]]] = {
     "length": ["number", "string"],
+    "increment system or length": ["number", "string"],
+    "increment system or number": ["number", "string"],
     "angle": ["number", "string"],
     "three lengths": ["array", "string", "object"],
     "coordinates by axis letter": "object",
@@ -332,6 +383,7 @@ def schema(
 ) -> dict[str, Any]:
     """Return the JSON Schema of a kind of files; that of pipelines has the passes' options."""
     if kind == "machine":
+        _ = registry or default_registry()  # dialects have settings of their own
         return machinefile.schema()
     if kind == "model":
         return modelfile.schema()

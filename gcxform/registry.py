@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import importlib.metadata
 import re
+import sys
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import redirect_stdout
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import EntryPoint
@@ -108,7 +110,8 @@ class Registry:
     def _register(self, manager: pluggy.PluginManager, name: str, point: EntryPoint) -> bool:
         """Import a plugin and register its hooks; return whether that went well."""
         try:
-            plugin = point.load()
+            with redirect_stdout(sys.stderr):  # stdout is for programs
+                plugin = point.load()
             manager.register(plugin, name)
         except (Exception, SystemExit) as error:
             self._warn(point, f"cannot be loaded: {_reason(error)}")
@@ -124,7 +127,8 @@ class Registry:
     def _take(self, kind: str, implementation: pluggy.HookImpl, point: EntryPoint) -> None:
         """Take what one hook of one plugin returns."""
         try:
-            offers = _listed(implementation.function())
+            with redirect_stdout(sys.stderr):
+                offers = _listed(implementation.function())
         except (Exception, SystemExit) as error:
             self._warn(point, f"fails in {KINDS[kind]}: {_reason(error)}")
             return
@@ -167,6 +171,16 @@ class Registry:
 def default_registry() -> Registry:
     """Return the registry of the installed plugins, loaded at the first call."""
     return Registry.load()
+
+
+def dialect_of(given: object) -> type[Dialect]:
+    """Return a dialect that is given as itself, or by its name. Raises UsageError."""
+    if isinstance(given, str):
+        return default_registry().dialect(given)
+    if not (isinstance(given, type) and issubclass(given, Dialect)):
+        message = f"dialect: expected a dialect or its name, got {given!r:.80}"
+        raise UsageError.one("GX702", message, hint="`gcxform list dialects`")
+    return given
 
 
 def _origin(point: EntryPoint) -> str:

@@ -2,26 +2,35 @@
 
 from __future__ import annotations
 
-import hashlib
+import math
+import sys
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gcxform.compensated import check_compensated, whole_stretches
-from gcxform.contract import Pass
+from gcxform.contract import Pass, resolved
 from gcxform.cuts import whole_cuts, whole_sections
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
 from gcxform.dialect import LINEAR, Dialect
 from gcxform.emit.emitter import Emitted, Emitter
 from gcxform.flow.written_out import located, written_out
 from gcxform.heap import Heap
+from gcxform.inventory import Account
+from gcxform.inventoryproof import Books
+from gcxform.modal.ending import Ending, Frame, frame_for, with_ends
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import Apart, WindowReader
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import MeaningTable
+from gcxform.output import Output
 from gcxform.source import Source, lines_in
+from gcxform.stamp import StampReader
+from gcxform.stamped import check_stamps
+from gcxform.stamping import Heads, Seal, comment_line
 from gcxform.syntax.scan import Window
 from gcxform.textpasses import TextRun
 from gcxform.tipcodes import switches_of
@@ -32,30 +41,8 @@ from gcxform.worker import Worker, ahead, worker
 if TYPE_CHECKING:
     from gcxform.pipeline import Pipeline
 
-Sink = Callable[[bytes], object]
+Floats = NDArray[np.float64]
 Progress = Callable[[int], object]
-
-
-@dataclass
-class Output:
-    """Where the text of a run goes, and what is counted on the way."""
-
-    sink: Sink
-    source_map: list[int] | None
-    read: hashlib._Hash = field(default_factory=hashlib.sha256)
-    written: hashlib._Hash = field(default_factory=hashlib.sha256)
-    lines_in: int = 0
-    lines_out: int = 0
-
-    @property
-    def growth(self) -> float | None:
-        """Blocks written for each one read; None where nothing was read."""
-        return self.lines_out / self.lines_in if self.lines_in else None
-
-    def put(self, text: bytes) -> None:
-        """Hand text on."""
-        self.written.update(text)
-        self.sink(text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,23 +61,43 @@ class Run:
 
     def __init__(self, pipeline: Pipeline, source: Source, verify: str) -> None:
         self.pipeline = pipeline
+        self.marks = pipeline.marks(source)
+        self.heads = self._heads()
         self.source = source
         self.verify = verify
         self.steps = pipeline.path_passes
         self.text = TextRun(pipeline.text_passes, pipeline.target, source.name)
         if not pipeline.copies:
-            self.source = written_out(source, pipeline.read_as, pipeline.machine_reading)
+            given = pipeline.read_as, pipeline.machine_reading, pipeline.target
+            self.source = written_out(source, *given)
         self.executes = self.source is not source
+        self.assumed = self.source.assumed
+        self.executed = getattr(self.source, "executed", None)
         self.source, self.dialect = pipeline.without_tip_codes(self.source)
+        self.ending = Ending(self.dialect, source.name)
+        self.books = Books(pipeline.context, frozenset())
+        self.account = Account()
+        self.frame = Frame()
         self.given = source
         self.reader = WindowReader(self.dialect)
         self.measured: dict[str, float] = {}
         self.added: dict[str, int] = {}
+        self.held: dict[int, Floats] = {}
         self.verifier: Verifier | None = None
         self.findings = Findings()
         self.interpreter: Interpreter | None = None
         if not pipeline.copies:
             self._prepare()
+
+    def _heads(self) -> Heads | None:
+        """Return what writes stamps; None where there are none, or every byte is copied."""
+        if not (self.marks.changes or self.marks.read) or (
+            self.pipeline.copies and not self.pipeline.text_passes
+        ):
+            return None
+        target = self.pipeline.target
+        lines = [comment_line(target, stamp.content) for stamp in self.marks.written]
+        return Heads(target, lines, bool(self.marks.read))
 
     def _prepare(self) -> None:
         pipeline = self.pipeline
@@ -100,21 +107,30 @@ class Run:
         reading = _with_assumed_start(pipeline, axes)
         self.axes = axes
         self.interpreter = Interpreter(self.dialect, reading, axes, self.source.name)
+        self.frame = self._frame()
         start = self.interpreter.state.position
         self.emitter = Emitter(pipeline.manner, start, self.source.name)
         self.emitter.believed.inch = int(_first_units(pipeline) == "in")
+        self.books = Books(pipeline.context, self._switches())
         if self.verify != "off":
             self.verifier = Verifier(
-                self._unresolved(),
+                self.steps[resolved(self.steps) :],
                 pipeline.context,
                 self._reading_of_output(reading),
                 axes,
-                (pipeline.limit(False), pipeline.limit(True)),
-                pipeline.angle_limits(),
+                pipeline.limit_of_written,
+                pipeline.angle_limits(written=True),
                 self.source.name,
                 any(step.folds for step in self.steps),
                 self._switches(),
             )
+
+    def _frame(self) -> Frame:
+        """Return the percent signs that the program lacks for the target."""
+        try:
+            return frame_for(self.source, self.dialect, self.pipeline.target)
+        except GcxformError as error:
+            raise located(error, self.source) from None
 
     def _reading_of_output(self, reading: Reading) -> Reading:
         """Return what is known of the text written, which may be for another machine."""
@@ -129,17 +145,19 @@ class Run:
             return frozenset()
         return frozenset(switches_of(self.pipeline.source, self.pipeline.machine_reading.control))
 
-    def _unresolved(self) -> tuple[Pass, ...]:
-        """Return the passes after the last one that gives the program another path on purpose."""
-        resolving = [number for number, step in enumerate(self.steps, 1) if step.resolves]
-        return self.steps[resolving[-1] :] if resolving else self.steps
-
     def over(self, out: Output, progress: Progress, size: int = 0) -> None:
         """Run over the program, `size` bytes at a time. Raises GcxformError."""
+        if self.heads is not None:
+            out.seal = Seal(self.pipeline.target, out.written, self.marks.seal)
+            out.proof = StampReader() if self.verify != "off" else None
         try:
             self._over(size, out, progress)
         except GcxformError as error:
             raise located(error, self.source) from None
+        if self.heads is not None:
+            out.close(self.heads)
+            if out.proof is not None and (self.findings.moves or not self.heads.waits):
+                check_stamps(out.proof.found, self.marks)
 
     def _over(self, size: int, out: Output, progress: Progress) -> None:
         """Run over the windows of a program.
@@ -174,10 +192,14 @@ class Run:
 
     def _counted(self, texts: Iterator[bytes], out: Output) -> Iterator[bytes]:
         """Yield texts; their hash is that of the program if that is what is executed."""
+        empty = self.frame.behind  # percent signs need a window
         for text in texts:
             if self.source is self.given:
                 out.read.update(text)
+            empty = False
             yield text
+        if empty:
+            yield b""
 
     def _write_all(
         self,
@@ -189,9 +211,12 @@ class Run:
         """Transform and write the windows; of several errors the first in the program is raised."""
         heap = Heap()
         try:
-            for apart in windows:
+            for apart, first, last in with_ends(windows, self.frame.behind):
                 one = self._transform(apart)
-                emitted = self.emitter.emit(one.window, one.table, one.read, one.path)
+                emitted = self._emitted(one, first, last)
+                if self.dialect.needs_end:
+                    self.ending.look(one.window, one.table)
+                self.books.add(one.window, one.table, one.read, len(one.path.given))
                 if proof.busy:
                     self.findings = proof.end()
                 if self.verifier is not None:
@@ -204,8 +229,32 @@ class Run:
             if any(step.feed_mode is not None for step in self.steps):
                 self._check_end()
         finally:
-            if proof.busy:
+            if proof.busy and not isinstance(sys.exception(), KeyboardInterrupt):
                 self.findings = proof.end()
+        if self.verifier is not None:
+            self._check_whole()
+
+    def _check_whole(self) -> None:
+        """Check that nothing is lost, and that the target takes the file if the source's did."""
+        self.account, wrong = self.books.close(self.findings.file, self.executed)
+        if wrong:
+            where = Location(self.source.name, max(self.reader.lines, 1))
+            raise VerificationError.one("GX601", wrong, where)
+        faulty = self.dialect.name == self.pipeline.target.name and self.ending.wrong
+        if self.findings.file.no_end and not faulty:
+            where = Location(self.source.name, max(self.reader.lines, 1))
+            raise VerificationError.one("GX601", self.findings.file.no_end, where)
+
+    def _emitted(self, one: Transformed, first: bool, last: bool) -> Emitted:
+        """Return the text of a window, with the stamps if they are due."""
+        emitted = self.emitter.emit(one.window, one.table, one.read, one.path)
+        emitted = emitted.framed(self.frame, first, last)
+        if self.heads is None:
+            return emitted
+        text, kept = self.heads.edit(emitted.text)
+        if kept is None:
+            return emitted
+        return Emitted(text, emitted.source[kept], emitted.nth[kept])
 
     def _check_end(self) -> None:
         """Refuse to leave the control in another feed mode than the source program does."""
@@ -218,32 +267,29 @@ class Run:
     def _hand_on(self, window: Window, emitted: Emitted, out: Output) -> None:
         out.lines_in += len(window)
         if out.source_map is None and not self.text.passes:
-            out.lines_out += len(emitted.source)
-            out.put(emitted.text)
+            out.put(emitted.text, emitted.source)
         else:
             self._put(emitted.text, emitted.source.tolist(), out)
 
     def _copy(self, text: bytes, out: Output) -> None:
         """Hand a window on as it is, but for passes that change text."""
-        first = self.reader.lines
         if out.source_map is None and not self.text.passes:
-            lines = lines_in(text)
-            out.lines_in, out.lines_out = out.lines_in + lines, out.lines_out + lines
-            out.put(text)
+            first, count = out.lines_in, lines_in(text)
+            out.lines_in += count
+            out.put(text, range(first, first + count))
             return
-        count = len(self.reader.read(text))
-        out.lines_in += count
-        self._put(text, list(range(first, first + count)), out)
+        lines = list(self.reader.read(text).lines)
+        out.lines_in += len(lines)
+        if self.heads is not None:
+            text, kept = self.heads.edit(text)
+            lines = lines if kept is None else [lines[k] for k in kept]
+        self._put(text, lines, out)
 
     def _put(self, text: bytes, lines: list[int], out: Output) -> None:
         text, lines = self.text.edit(text, lines)
-        out.lines_out += len(lines)
-        if out.source_map is not None:
-            line_of = self.source.line_of
-            out.source_map += (
-                lines if self.source is self.given else [line_of(k + 1) - 1 for k in lines]
-            )
-        out.put(text)
+        if out.source_map is not None and self.source is not self.given:
+            lines = [self.source.line_of(k + 1) - 1 for k in lines]
+        out.put(text, lines)
 
     def _transform(self, apart: Apart) -> Transformed:
         """Interpret one window and run the passes."""
@@ -252,13 +298,19 @@ class Run:
         table = self.reader.table
         read = self.interpreter.interpret(window, table)
         path = meant = read.path
-        for step in self.steps:
-            path = self._apply(step, path, window)
+        for number, step in enumerate(self.steps):
+            path = self._apply(step, self._held(number, path), window)
+            if len(path):
+                self.held[number] = path.end[-1].copy()
             if step.resolves:
                 self._prove(step, meant, path, window)
                 meant = path
         path = _in_words_of(self.pipeline.target, path)
         return Transformed(window, table, read, meant, path)
+
+    def _held(self, number: int, path: Toolpath) -> Toolpath:
+        """Return a path that knows where what a step has written before has left the axes."""
+        return path.replace(held=self.held.get(number, path.entry))
 
     def _prove(self, step: Pass, before: Toolpath, after: Toolpath, window: Window) -> None:
         """Let a pass that resolves prove its path, against the one that the program means."""
@@ -291,13 +343,14 @@ class Run:
     def check_growth(self, out: Output) -> None:
         """Refuse an output that has more blocks than the budget allows. Raises InputError."""
         limit = self.pipeline.growth
-        if limit is None or out.lines_out <= limit * out.lines_in:
+        if limit is None or out.blocks_out <= limit * out.blocks_in:
             return
         message = (
-            f"{out.lines_in} blocks became {out.lines_out}, {out.growth:.4g} times as many; "
+            f"{out.blocks_in} blocks became {out.blocks_out}, {out.growth:.4g} times as many; "
             f"the budget allows {limit:g} times"
         )
-        hint = "give a step that cuts moves a larger tolerance, or raise growth in [budget]"
+        enough = math.ceil(out.growth or 0)
+        hint = f"give a step that cuts moves a larger tolerance, or growth = {enough} in [budget]"
         raise InputError.one("GX507", message, Location(self.source.name, out.lines_in), hint)
 
 

@@ -8,6 +8,7 @@ from gcxform.contract import TextPass
 from gcxform.diagnostics import InputError, Location, VerificationError
 from gcxform.dialect import Dialect
 from gcxform.modal.limits import without_blanks
+from gcxform.stamp import is_stamp
 from gcxform.syntax.scan import scan
 from gcxform.syntax.shapes import ShapeTable, instantiate
 from gcxform.syntax.tree import BLANKS, Block, Number, Statement, Word
@@ -60,7 +61,7 @@ class TextRun:
         why = step.refuse(block)
         if why:
             raise InputError.one("GX212", f"{step.name}: {why}", where)
-        if block.error is not None:
+        if block.error is not None or is_stamp(block.text):
             return block.text
         new = step.edit(block, number)
         if new == block.text:

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import msgspec
 
+from gcxform import inputs
 from gcxform.diagnostics import Location, UsageError
 
 Keys = tuple[str | int, ...]
@@ -220,12 +221,20 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 def read_toml(path: Path, codes: Codes) -> TomlText:
     """Return a TOML file, or raise UsageError with the place where it is not one."""
     text = read_text(path, codes.unreadable, codes.not_toml)
+    if text.count(".") > MOST_PARTS and _DEEP.search(_STRING.sub("q", _COMMENT.sub("", text))):
+        message = f"a key has more than {MOST_PARTS} parts"
+        raise UsageError.one(codes.not_toml, message, Location(str(path)))
     try:
         return TomlText(str(path), text, tomllib.loads(text), codes)
     except (ValueError, RecursionError) as error:  # a plain ValueError: 5000 digits, month 13
         raise _not_toml(path, text, codes.not_toml, str(error)) from None
 
 
+_OURS = re.compile(r"^[ \t]*format[ \t]*=[ \t]*[0-9]", re.MULTILINE)
+"""What the files that we know begin with; lines of any others are not shown: they may be secret."""
+MOST_PARTS = 100  # of a dotted key: tomllib and whoever follows the tables go through all of them
+_COMMENT = re.compile(r"^[ \t]*#[^\n]*", re.MULTILINE)
+_DEEP = re.compile(rf"(?<![\w.-])[\w-]++(?:[ \t]*+\.[ \t]*+[\w-]++){{{MOST_PARTS}}}")
 _AT = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
 
 
@@ -238,14 +247,14 @@ def _not_toml(path: Path, text: str, code: str, message: str) -> UsageError:
         line, column = int(found[2]), int(found[3])
     elif found:
         line, column = _line_and_column(text, len(text.rstrip()))
-    where = _location(str(path), text, line, column)
+    where = _location(str(path), text if _OURS.search(text) else "", line, column)
     return UsageError.one(code, f"this is not TOML: {reason}", where)
 
 
 def read_text(path: Path, unreadable: str, not_utf8: str) -> str:
     """Return the text of a UTF-8 file without byte order mark, or raise UsageError."""
     try:
-        data = path.read_bytes()
+        data = inputs.read(path)
     except (OSError, ValueError) as error:  # ValueError: a null character in the name
         reason = getattr(error, "strerror", None) or str(error)
         raise UsageError.one(
@@ -256,8 +265,7 @@ def read_text(path: Path, unreadable: str, not_utf8: str) -> str:
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         column = error.start - data.rfind(b"\n", 0, error.start)
-        shown = data.split(b"\n")[line - 1].decode("utf-8", "replace")
-        where = Location(str(path), line, column, shown)
+        where = Location(str(path), line, column)
         raise UsageError.one(not_utf8, "the file is not UTF-8 text", where) from None
 
 

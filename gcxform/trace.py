@@ -39,8 +39,8 @@ class Trace:
         self._count = np.bincount(line, minlength=len(lines))
         self._row_of_line = np.where(self._count > 0, np.cumsum(self._count) - self._count, -1)
         self._first_line = lines.start
-        self.owner = self._owners(after)
-        self.written_owner = self.owner if after is written else self._owners(written)
+        self.owner = self.owners(after)
+        self.written_owner = self.owner if after is written else self.owners(written)
         self.through = self.written_owner
 
     def find_runs(self) -> Runs:
@@ -50,7 +50,8 @@ class Trace:
         self.through = (runs if same else runs_of(self.before, self.written_owner)).through
         return runs
 
-    def _owners(self, path: Toolpath) -> Ints:
+    def owners(self, path: Toolpath) -> Ints:
+        """Return the row of the input that each move belongs to, -1 if there is none."""
         written = path.source - self.first
         lines = self.source[written] - self._first_line
         first = self._row_of_line[lines]

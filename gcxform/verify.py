@@ -8,22 +8,26 @@ budget, with the same kinds of moves, feeds and events.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.centrepath import CentreProof
 from gcxform.contract import Pass, PassContext
 from gcxform.diagnostics import Diagnostic, GcxformError, Location, VerificationError
-from gcxform.dialect import INCH, LINEAR
+from gcxform.dialect import LINEAR
 from gcxform.feedproof import FeedProof
+from gcxform.inventoryproof import Whole, Written, assignments_differ, not_taken
+from gcxform.known import as_known, in_mm
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.meaning import FRAMING
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.sorting import only_for_cycles
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import PROBES
+from gcxform.spared import led_elsewhere, spared_rows, told
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.facts import IN_AIR, between_taps
 from gcxform.toolpath.path import WHOLE, Event, Kind, Toolpath
@@ -36,9 +40,6 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-LENGTHS = frozenset("XYZUVWIJKR")
-
-
 @dataclass(slots=True)
 class Findings:
     """What the verification has found so far: counts, and the worst places.
@@ -46,7 +47,13 @@ class Findings:
     deviation   mm; `source_line` and `output_line` count from 1
     angle       degrees, of rotary axes
     inch        whether a block in inches has been written
+    file        what the output is as a file
+    arcs        whether there was any arc or spline, on either side
+    contours    stretches under cutter compensation of which centre paths were compared
+    contour_only   moves under it of which only the contour was
     between_taps, aside   moves between taps that are off by more than the budget, and how far (mm)
+    spared      rapids left to go where the machine does, of which `spared_unknown` are off by what
+                nobody knows, and the others by up to `spared_by` (mm)
     """
 
     moves: int = 0
@@ -60,7 +67,14 @@ class Findings:
     between_taps: int = 0
     aside: float = 0.0
     lines_after_end: int = 0
+    contours: int = 0
+    contour_only: int = 0
+    spared: int = 0
+    spared_unknown: int = 0
+    spared_by: float = 0.0
     inch: bool = False
+    file: Written = field(default_factory=Written)
+    arcs: bool = False
 
 
 class Verifier:
@@ -72,7 +86,7 @@ class Verifier:
         context: PassContext,
         reading: Reading,
         axes: str,
-        budgets: tuple[float, float],
+        limit: Callable[[bool, bool, bool], float],
         angle_budgets: Mapping[str, float],
         file: str = "-",
         folded: bool = False,
@@ -84,7 +98,9 @@ class Verifier:
         self.context = context
         self.reader = WindowReader(context.target)
         self.interpreter = Interpreter(context.target, reading, axes, "output")
-        self.budgets = budgets
+        self.whole = Whole(context.target)
+        self.limit = limit
+        self.centres = CentreProof(context, file)
         self.feed_modes = [step.feed_mode for step in passes if step.feed_mode is not None]
         self.speeds = _speeds(context) if any(step.slows for step in passes) else {}
         self.angle_budgets = angle_budgets
@@ -94,8 +110,8 @@ class Verifier:
 
     @property
     def budget(self) -> float:
-        """What the path may deviate (mm): more once a block in inches has been written."""
-        return self.budgets[self.findings.inch]
+        """What the path may deviate (mm): more once there were blocks in inches, or arcs."""
+        return self.limit(self.findings.inch, False, self.findings.arcs)
 
     def check(
         self, read: Interpreted, lines: range, text: bytes, source: Ints, nth: Ints
@@ -111,37 +127,30 @@ class Verifier:
         try:
             back = self.interpreter.interpret(again, self.reader.table)
         except GcxformError as error:
-            raise VerificationError(error.diagnostics) from None
+            raise not_taken(error, self.context, self.file, again, source) from None
+        self.findings.file = self.whole.add(again, self.reader.table, back.live)
         path = back.path
         self.findings.inch |= bool(path.blocks.inch[path.block].any())
-        path = self._as_known(path, read.path, source[path.source - first], nth, first)
+        self.findings.arcs |= any(p.has_arcs or p.has_splines for p in (path, read.path))
+        written = path.source - first
+        line, which = source[written], path.nth + nth[written]
+        known = path = as_known(path, read.path, line, which, bool(self.switches))
         for step in reversed(self.passes):
             path = step.undo(path, self.context)
         trace = Trace(read.path, lines, back.path, path, source, nth, first)
         self._count(read, lines, trace)
-        self._compare(trace)
+        self._compare(trace, spared_rows(self.passes, read.path), known)
+        self._centres(trace)
         self._forms(trace, read, back)
         if self.feed_modes:
             for wrong in self._proof(trace).left_behind(read, back):
                 self._raise(*wrong)
         self._events(self._without_switches(read.path), self._told(back.path), trace)
+        lost = assignments_differ(read.assigned, back.assigned, trace, self.context)
+        if lost is not None:
+            self._raise(*lost)
         self._given(read.path, again, source)
         return self.findings
-
-    def _as_known(
-        self, path: Toolpath, read: Toolpath, line: Ints, nth: Ints, first: int
-    ) -> Toolpath:
-        """Return a path that was written with no more than is known of the source.
-
-        `line` (n,) are the lines of the source for its rows.
-        """
-        unknown = np.isnan(read.end).any()
-        if not len(read) or not (unknown or self.switches):
-            return path
-        row = _row_of(read, line, path.nth + nth[path.source - first])
-        if unknown:
-            path = _at_rest_unknown(path, (np.isnan(read.start) & np.isnan(read.end))[row])
-        return _followed(path, read, row) if self.switches else path
 
     def _count(self, read: Interpreted, lines: range, trace: Trace) -> None:
         found = self.findings
@@ -149,8 +158,11 @@ class Verifier:
         found.rapids += int((read.path.kind == Kind.RAPID).sum())
         found.lines_after_end += len(lines) - read.live
 
-    def _compare(self, trace: Trace) -> None:
-        """Compare moves; each of the output must belong to one of the input, or a run of them."""
+    def _compare(self, trace: Trace, spared: Flags, written: Toolpath) -> None:
+        """Compare moves; each of the output must belong to one of the input, or a run of them.
+
+        `spared` are the rows of the input that are left to the machine; `written` is not undone.
+        """
         before, after = trace.before, trace.after
         if len(trace.owner) and int(trace.owner.min()) < 0:
             row = int(np.argmin(trace.owner))
@@ -163,6 +175,9 @@ class Verifier:
         self.findings.unknown_starts += int(off.unknown_start.sum())
         self._start(trace)
         distance = self._but_between_taps(off.distance, trace)
+        if spared.any():
+            self._check_told(trace, spared, told(self.passes, written, self.context))
+            distance = self._but_spared(distance, trace, spared)
         worst = int(np.argmax(distance))
         if not distance[worst] <= self.findings.deviation:
             self._note_worst(float(distance[worst]), trace, worst)
@@ -208,6 +223,25 @@ class Verifier:
         self.findings.aside = max(self.findings.aside, float(distance[free].max()))
         return np.where(free, 0.0, distance)
 
+    def _check_told(self, trace: Trace, spared: Flags, path: Toolpath) -> None:
+        """Check that the control is told what the program says where the machine is left to it."""
+        owner = trace.owners(path)
+        row = led_elsewhere(trace.before, path, owner, spared, self.budget)
+        if row >= 0:
+            output = int(path.source[row])
+            message = "a move that is not compensated leads elsewhere than in the source"
+            self._raise(message, trace.line_of(output), output)
+
+    def _but_spared(self, distance: Floats, trace: Trace, spared: Flags) -> Floats:
+        """Return distances without those of rapids that are left to go where the machine does."""
+        free = spared[trace.owner]
+        size = distance[free]
+        known = size[np.isfinite(size)]
+        self.findings.spared += int(spared.sum())
+        self.findings.spared_unknown += int(len(size) - len(known))
+        self.findings.spared_by = max(self.findings.spared_by, float(known.max(initial=0.0)))
+        return np.where(free, 0.0, distance)
+
     def _proof(self, trace: Trace) -> FeedProof:
         speeds = self.speeds
         return FeedProof(trace, self.feed_modes, self.budget, self.angle_budget, speeds)
@@ -222,11 +256,12 @@ class Verifier:
         before, after = trace.before, trace.after
         begins = np.append(True, trace.owner[1:] != trace.owner[:-1])
         rows = np.flatnonzero(begins & (before.kind[trace.owner] != Kind.RAPID))
-        rows = rows[rows > 0]
         if not len(rows):
             return
-        gap = (after.start[rows] - before.start[trace.owner[rows]])[:, :3]
-        size = np.sqrt((np.nan_to_num(gap) ** 2).sum(axis=1))
+        start, old = after.start[rows, :3], before.start[trace.owner[rows], :3]
+        gap = np.nan_to_num(start - old)
+        gap[np.isnan(start).any(axis=1) & np.isfinite(old).all(axis=1)] = np.inf
+        size = np.sqrt((gap**2).sum(axis=1))
         worst = int(np.argmax(size))
         if size[worst] > self.findings.deviation:
             self._note_worst(float(size[worst]), trace, int(rows[worst]))
@@ -282,6 +317,16 @@ class Verifier:
         if changed.any():
             self._fail("cutter compensation has changed", trace, int(np.argmax(changed)))
 
+    def _centres(self, trace: Trace) -> None:
+        """Check where the control takes the centre of the tool, if it is left to compensate."""
+        found = self.findings
+        budget = self.limit(found.inch, True, found.arcs)
+        for off in self.centres.check(trace.before, trace.after, budget):
+            if off.distance > found.deviation:
+                found.deviation = off.distance
+                found.source_line, found.output_line = off.source_line + 1, off.output_line + 1
+        found.contours, found.contour_only = self.centres.compared, self.centres.unknown
+
     def _without_switches(self, path: Toolpath) -> tuple[Event, ...]:
         """Return the events of the source without those that a pass has taken over."""
         return tuple(event for event in self._told(path) if event.what not in self.switches)
@@ -290,7 +335,7 @@ class Verifier:
         """Return the events that have to be in the output too: not those that are folded away."""
         source, target = self.context.source, self.context.target
         events = tuple(
-            _in_mm(event, path)
+            in_mm(event, path)
             for event in path.events
             if not only_for_cycles(event.what, source, target)
         )
@@ -343,45 +388,3 @@ def _speeds(context: PassContext) -> dict[str, tuple[float, float]]:
             known = context.decimals.get(letter, numbers.mm if letter in LINEAR else numbers.angle)
             found[letter] = axis.max_speed, 10.0**-known
     return found
-
-
-def _row_of(read: Toolpath, line: Ints, nth: Ints) -> Ints:
-    """Return the rows (n,) of the source, by their lines and which of the moves there they are."""
-    first, last = (np.searchsorted(read.source, line, side) for side in ("left", "right"))
-    row = np.clip(first + nth, first, np.maximum(last, first + 1) - 1)
-    return np.asarray(np.minimum(row, len(read) - 1))
-
-
-def _at_rest_unknown(path: Toolpath, unknown: Flags) -> Toolpath:
-    """Return a path in which axes that do not move stand nowhere known where `unknown` (n, axes).
-
-    A tool change of the source may move axes, and another control knows that its own does not. The
-    source does not say where such an axis stands; all that can be asked is that it is left there.
-    `unknown` is where the source knows neither where a move starts nor where it ends: one that it
-    takes from a known place to a place of the machine must not rest.
-    """
-    end, rests = path.end.copy(order="F"), path.end == path.start
-    end[rests & unknown] = np.nan
-    return path.replace(end=end)
-
-
-def _followed(path: Toolpath, read: Toolpath, row: Ints) -> Toolpath:
-    """Return a path with what a pass has taken over: where the control follows the tip.
-
-    No code in the output says it, but the rows (n,) of the source that its rows came from.
-    """
-    pairs = np.stack([path.frame, read.frame[row]])
-    pairs, which = np.unique(pairs, axis=1, return_inverse=True)
-    frames = tuple(
-        replace(path.frames[mine], following=read.frames[its].following)
-        for mine, its in pairs.T.tolist()
-    )
-    return path.replace(frames=frames, frame=which.reshape(-1))
-
-
-def _in_mm(event: Event, path: Toolpath) -> Event:
-    """Return an event with the lengths among the words of its G code in mm."""
-    if event.what[0] != "G" or not path.blocks.inch[event.line - path.blocks.first]:
-        return event
-    values = tuple((a, v * INCH if a in LENGTHS else v) for a, v in event.values)
-    return replace(event, values=values)

@@ -9,6 +9,7 @@ result is needed.
 
 from __future__ import annotations
 
+import ctypes
 import io
 import os
 import pickle
@@ -34,6 +35,8 @@ Work = Callable[..., Result]
 LATER = 5  # niceness: the process that waits for all others goes first
 LINUX = sys.platform == "linux"
 PIECE = 1 << 30  # bytes; the system writes and reads less than two of these at once
+ENDING = (signal.SIGTERM, *((signal.SIGHUP,) if hasattr(signal, "SIGHUP") else ()))
+SET_DEATH_SIGNAL = 1  # of `prctl`: what this process gets when its parent ends
 STOP: list[int] = []  # no sizes: nothing more is to be done
 DIED = "a process that took part in this run has been ended"
 HINT = "was there enough memory? A long program is read and proved by processes of their own"
@@ -126,10 +129,10 @@ class Process(Worker[Result]):
         context = get_context("fork")
         self.shared = os.memfd_create("gcxform")
         self.here, there = context.Pipe()
-        given = work, there, self.here, self.shared
+        given = work, there, self.here, self.shared, os.getpid()
         self.process = context.Process(target=_serve, args=given, daemon=True)
-        # an interrupt is for the one who waits: in the copy it stays blocked
-        ours = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        # what ends a run is for the one who waits: an interrupt stays blocked in the copy
+        ours = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, *ENDING})
         try:
             self.process.start()
         except OSError:
@@ -153,8 +156,10 @@ class Process(Worker[Result]):
         found: Result = result
         return found
 
-    def __exit__(self, *_: object) -> None:
-        """End the process."""
+    def __exit__(self, *raised: object) -> None:
+        """End the process; at once, whatever it is at, if the run has been ended."""
+        if any(isinstance(one, KeyboardInterrupt) for one in raised):
+            self.process.kill()
         with suppress(ConnectionError):
             self.here.send(STOP)
         self.here.close()
@@ -162,15 +167,31 @@ class Process(Worker[Result]):
         self.process.join()
 
 
-def _serve(work: Work[Any], there: Connection, here: Connection, shared: int) -> None:
+def _serve(work: Work[Any], there: Connection, here: Connection, shared: int, parent: int) -> None:
     """Do what is asked for, until nobody is left who could ask."""
     here.close()
+    _end_with(parent)
     os.nice(LATER)
     heap = Heap()
     with suppress(EOFError, ConnectionError):
         while (sizes := there.recv()) != STOP:
             there.send(_answer(shared, _done(work, _pick_up(shared, sizes))))
             heap.give_back()
+
+
+def _end_with(parent: int) -> None:
+    """Let this process end when the one that waits for it does, whatever it is at then.
+
+    It would notice by itself, but not before it is done with a window. Signals that end a run are
+    for the other one, which has to clean up; here they do what they do by themselves.
+    """
+    for number in ENDING:
+        signal.signal(number, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
+    with suppress(AttributeError, OSError):
+        ctypes.CDLL(None).prctl(SET_DEATH_SIGNAL, signal.SIGKILL, 0, 0, 0)
+    if os.getppid() != parent:  # it had ended before
+        os._exit(1)
 
 
 def _done(work: Work[Any], given: tuple[object, ...]) -> tuple[BaseException | None, Any]:

@@ -1,19 +1,27 @@
 """Profiles of the property tests, and the folder of data that is not part of the repository.
 
 `HYPOTHESIS_PROFILE` chooses a profile: `dev` while writing, `ci` (the default, the same examples
-on every run), `long` over night.
+on every run), `long` over night; `faults` is `ci` for `tests/mutations.py`.
 """
 
 import os
 from pathlib import Path
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # processes have the processors; before numpy
+
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 
 SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_too_much]
 settings.register_profile("dev", max_examples=30, deadline=None, suppress_health_check=SLOW)
 settings.register_profile(
     "ci", max_examples=100, deadline=None, derandomize=True, suppress_health_check=SLOW
+)
+settings.register_profile(  # that it fails is enough: the least example is not looked for
+    "faults",
+    settings.get_profile("ci"),
+    phases=(Phase.explicit, Phase.generate),
+    report_multiple_bugs=False,
 )
 settings.register_profile("long", max_examples=20_000, deadline=None, suppress_health_check=SLOW)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))

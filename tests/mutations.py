@@ -1,23 +1,36 @@
 """Do the tests see a wrong gcxform? Each mutation is a small fault; a test must fail on it.
 
-    python tests/mutations.py [--jobs 2] [--every 1] [NAME ...]
+    python tests/mutations.py [--jobs N] [--every 1] [--remember] [NAME ...]
 
-The packages are copied to a temporary directory, one fault at a time is written into the copy, and
-a few fast tests are run on it. A fault that no test notices survives; then the exit code is 1. The
-faults are listed in `tests/faults/`.
+The packages are copied to temporary directories, as many as run at a time. A fault is written into
+a copy, and the tests of the fault run on it until one fails. A fault that no test notices survives;
+then the exit code is 1. Which test noticed is printed; in the end all these run on a copy without
+any fault, where they must pass. The faults are listed in `tests/faults/`.
+
+`--remember` writes into `tests/faults/noticed.txt` which test noticed, where that took long. Next
+time it is run first; if it passes, or is no more, all tests of the fault are run. So this file
+changes how long a verdict takes, and nothing else.
+
+Tests run in copies of this process, which has imported what others wrote and nothing of gcxform: a
+new one starts in milliseconds.
 """
 
 from __future__ import annotations
 
 import argparse
+import compileall
+import gc
+import importlib
 import os
-import queue
 import shutil
-import subprocess
+import signal
 import sys
 import tempfile
+import time
+from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from faults import MUTATIONS
@@ -25,11 +38,18 @@ from faults.mutation import Mutation
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("gcxform", "plugins/gcxform_plugins", "grammars/gcxform_grammars")
-FAILED = 1  # pytest's exit code for tests that failed
+IMPORTED = (
+    *("numpy", "lark", "pluggy", "click", "msgspec", "scipy.spatial.transform", "pytest"),
+    *("matplotlib.figure", "matplotlib.backends.backend_agg", "hypothesis.strategies"),
+)
+FAILED, BROKEN = 1, 99  # FAILED is pytest's exit code for tests that failed
 TIMEOUT = 180  # seconds for one set of tests; a mutant that hangs is noticed too
+REMEMBERED = ROOT / "tests" / "faults" / "noticed.txt"
+LONG = 3.0  # seconds
+SAID, NOTICED = "said.txt", "noticed.txt"  # what pytest prints, and which test failed
 
 
-# --- the copy ---
+# --- copies ---
 
 
 def problems() -> list[str]:
@@ -44,60 +64,162 @@ def problems() -> list[str]:
 
 
 def copied(folder: Path) -> Path:
-    """Copy the packages into a folder."""
+    """Copy the packages into a folder, and compile what is not compiled already."""
     for package in PACKAGES:
-        ignored = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(ROOT / package, folder / package, ignore=ignored)
+        shutil.copytree(ROOT / package, folder / package)
+        compileall.compile_dir(folder / package, quiet=2)
     return folder
 
 
-def run(folder: Path, *tests: str) -> int:
-    """Run tests on the packages in a folder; return pytest's exit code."""
-    places = [folder, *((folder / package).parent for package in PACKAGES[1:])]
-    environment = os.environ | {
-        "PYTHONPATH": os.pathsep.join(map(str, places)),
-        "PYTHONDONTWRITEBYTECODE": "1",
-        "HYPOTHESIS_PROFILE": "ci",
-    }
-    environment.pop("GCXFORM_MUTATIONS", None)
-    own = [sys.executable, "-P"]  # the current directory holds the packages without the fault
-    seen = subprocess.run(
-        [*own, "-c", "import gcxform; print(gcxform.__file__)"],
-        cwd=ROOT,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert seen.stdout.startswith(str(folder)), seen.stdout
-    command = [*own, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *tests]
-    try:
-        done = subprocess.run(
-            command,
-            cwd=ROOT,
-            env=environment,
-            capture_output=True,
-            text=True,
-            timeout=TIMEOUT * len(tests),
-        )
-    except subprocess.TimeoutExpired:
-        return FAILED
-    if done.returncode not in (0, FAILED):
-        print(done.stdout[-3000:], done.stderr[-1000:], sep="\n")
-    return done.returncode
-
-
-def verdict(mutation: Mutation, folder: Path) -> str:
-    """Run the tests of a mutation on a copy that has it; the copy is mended again."""
+def broken(mutation: Mutation, folder: Path) -> None:
+    """Write a fault into a copy."""
     file = folder / mutation.file
     text = file.read_text(encoding="utf-8")
     assert text.count(mutation.old) == 1, mutation.name
     file.write_text(text.replace(mutation.old, mutation.new), encoding="utf-8")
-    try:
-        code = run(folder, mutation.tests)
-    finally:
-        file.write_text(text, encoding="utf-8")
-    return {0: "SURVIVED", FAILED: "caught"}.get(code, f"BROKEN ({code})")
+
+
+def mended(mutation: Mutation, folder: Path) -> None:
+    """Take a fault out of a copy; with its old time the file fits what was compiled of it."""
+    shutil.copy2(ROOT / mutation.file, folder / mutation.file)
+
+
+# --- processes ---
+
+
+def started(folder: Path, tests: Iterable[str]) -> int:
+    """Run tests on the packages in a folder, in a copy of this process; return its number."""
+    (folder / NOTICED).write_text("", encoding="utf-8")
+    sys.stdout.flush()
+    number = os.fork()
+    if number == 0:
+        code = BROKEN
+        try:
+            code = tested(folder, list(tests))
+        finally:
+            os._exit(code)
+    return number
+
+
+def tested(folder: Path, tests: list[str]) -> int:
+    """Make this process one for the packages in a folder; return pytest's exit code."""
+    os.setsid()  # what it starts can be ended with it
+    signal.alarm(TIMEOUT * len(tests))
+    said = os.open(folder / SAID, os.O_CREAT | os.O_TRUNC | os.O_WRONLY)
+    os.dup2(said, 1)
+    os.dup2(said, 2)
+    os.chdir(ROOT)
+    places = [str(folder), *(str((folder / package).parent) for package in PACKAGES[1:])]
+    sys.path[:0] = places
+    sys.dont_write_bytecode = True
+    os.environ["PYTHONPATH"] = os.pathsep.join(places)
+    os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
+    os.environ["HYPOTHESIS_PROFILE"] = "faults"
+    package = importlib.import_module("gcxform")
+    assert str(package.__file__).startswith(str(folder)), package.__file__
+    pytest = importlib.import_module("pytest")
+    options = ["-x", "-q", "-p", "no:cacheprovider"]
+    options += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]  # of what is imported already
+    return int(pytest.main([*options, *tests], plugins=[Noticed(folder / NOTICED)]))
+
+
+@dataclass
+class Noticed:
+    """Writes down which test failed."""
+
+    file: Path
+
+    def pytest_runtest_logreport(self, report) -> None:  # type: ignore[no-untyped-def]
+        if report.failed:
+            self.file.write_text(report.nodeid, encoding="utf-8")
+
+
+def ended() -> tuple[int, int]:
+    """Wait for a process, end what it has started, and return its number and its exit code."""
+    number, status = os.wait()
+    with suppress(ProcessLookupError):
+        os.killpg(number, signal.SIGKILL)
+    code = os.waitstatus_to_exitcode(status)
+    return number, FAILED if code == -signal.SIGALRM else code
+
+
+# --- verdicts ---
+
+Job = tuple[Mutation | None, list[str]]  # a fault, or none, and the tests to run
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of a job; `test` is the one that failed, empty where none did or one hung."""
+
+    job: Job
+    code: int
+    test: str
+    said: str
+    seconds: float
+
+    @property
+    def word(self) -> str:
+        """Return what is printed."""
+        return {0: "SURVIVED", FAILED: "caught"}.get(self.code, f"BROKEN ({self.code})")
+
+
+def finished(jobs: list[Job], folders: list[Path]) -> Iterator[Verdict]:
+    """Do jobs, as many at a time as there are copies; yield the verdicts as they come."""
+    waiting, free = jobs[::-1], list(folders)
+    running: dict[int, tuple[Job, Path, float]] = {}
+    while waiting or running:
+        while waiting and free:
+            job, folder = waiting.pop(), free.pop()
+            if job[0]:
+                broken(job[0], folder)
+            running[started(folder, job[1])] = job, folder, time.monotonic()
+        number, code = ended()
+        job, folder, began = running.pop(number)
+        if job[0]:
+            mended(job[0], folder)
+        free.append(folder)
+        test, said = ((folder / name).read_text("utf-8", "replace") for name in (NOTICED, SAID))
+        yield Verdict(job, code, test, said[-3000:], time.monotonic() - began)
+
+
+def verdicts(chosen: list[Mutation], folders: list[Path]) -> Iterator[tuple[Mutation, Verdict]]:
+    """Yield the verdicts on mutations; the test that noticed last time is asked before all."""
+    before, again = remembered(), []
+    for one in finished([(m, [before.get(m.name, m.tests)]) for m in chosen], folders):
+        mutation, tests = one.job
+        assert mutation is not None
+        if one.code != FAILED and tests != [mutation.tests]:
+            again.append(mutation)
+        else:
+            yield mutation, one
+    for one in finished([(m, [m.tests]) for m in again], folders):
+        assert one.job[0] is not None
+        yield one.job[0], one
+
+
+def remembered() -> dict[str, str]:
+    """Return which test noticed a mutation last time, where its tests take long."""
+    lines = REMEMBERED.read_text("utf-8").splitlines() if REMEMBERED.is_file() else []
+    return dict(line.split("\t") for line in lines)
+
+
+def remember(found: list[tuple[Mutation, Verdict]]) -> None:
+    """Write down which tests noticed, where that took long; keep what is known of the others."""
+    known = remembered()
+    slow = {m.name: v.test for m, v in found if v.test and (v.seconds > LONG or m.name in known)}
+    known = {m.name: (known | slow).get(m.name, "") for m in MUTATIONS}
+    lines = [f"{name}\t{test}\n" for name, test in known.items() if test]
+    REMEMBERED.write_text("".join(lines), "utf-8")
+
+
+def failing(tests: set[str], folders: list[Path]) -> list[str]:
+    """Return what is said of tests that fail on copies without a fault, a file at a time."""
+    by_file: dict[str, list[str]] = defaultdict(list)
+    for test in sorted(tests):
+        by_file[test.partition("::")[0]].append(test)
+    jobs: list[Job] = [(None, some) for some in by_file.values()]
+    return [one.said for one in finished(jobs, folders) if one.code]
 
 
 # --- the script ---
@@ -106,8 +228,9 @@ def verdict(mutation: Mutation, folder: Path) -> str:
 def main(arguments: list[str] | None = None) -> int:
     """Run all mutations, or those named; return the exit code."""
     parser = argparse.ArgumentParser(description="Do the tests see a wrong gcxform?")
-    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--every", type=int, default=1, help="run one of so many")
+    parser.add_argument("--remember", action="store_true", help="write down what noticed")
     parser.add_argument("names", nargs="*", help="parts of names of mutations")
     asked = parser.parse_args(arguments)
     chosen = [m for m in MUTATIONS if not asked.names or any(n in m.name for n in asked.names)]
@@ -115,42 +238,32 @@ def main(arguments: list[str] | None = None) -> int:
     if found := problems():
         print("\n".join(found))
         return 1
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    for module in IMPORTED:
+        importlib.import_module(module)
+    gc.freeze()
     with tempfile.TemporaryDirectory() as temporary:
         folders = [copied(Path(temporary) / str(n)) for n in range(asked.jobs)]
-        tests = sorted({m.tests for m in chosen})
-        if run(folders[0], *tests):
-            print("the tests fail without any mutation")
-            return 1
-        verdicts = report(chosen, in_parallel(chosen, folders))
-    print(f"{verdicts.count('caught')} of {len(verdicts)} mutations are caught")
-    return int(any(v != "caught" for v in verdicts))
+        return judged(chosen, folders, asked.remember)
 
 
-def report(chosen: list[Mutation], verdicts: Iterable[str]) -> list[str]:
-    """Print the table row by row, as the verdicts come in; return them."""
+def judged(chosen: list[Mutation], folders: list[Path], writes: bool) -> int:
+    """Print a verdict on each mutation, and what fails without any; return the exit code."""
     width = max(len(mutation.name) for mutation in chosen)
     found = []
-    for mutation, one in zip(chosen, verdicts, strict=True):
-        print(f"{mutation.name:{width}}  {one}", flush=True)
-        found.append(one)
-    return found
-
-
-def in_parallel(chosen: list[Mutation], folders: list[Path]) -> Iterator[str]:
-    """Yield the verdicts on mutations, found as many at a time as there are copies."""
-    free: queue.Queue[Path] = queue.Queue()
-    for folder in folders:
-        free.put(folder)
-
-    def work(mutation: Mutation) -> str:
-        folder = free.get()
-        try:
-            return verdict(mutation, folder)
-        finally:
-            free.put(folder)
-
-    with ThreadPoolExecutor(len(folders)) as pool:
-        yield from pool.map(work, chosen)
+    for mutation, one in verdicts(chosen, folders):
+        name = f"{mutation.name:{width}}"
+        print(f"{name}  {one.word}  {one.seconds:5.1f} s  {one.test}", flush=True)
+        if one.code not in (0, FAILED):
+            print(one.said)
+        found.append((mutation, one))
+    caught = sum(one.code == FAILED for _, one in found)
+    print(f"{caught} of {len(found)} mutations are caught")
+    if wrong := failing({one.test for _, one in found} - {""}, folders):
+        print("without any mutation these fail as well:", *wrong, sep="\n")
+    elif writes:
+        remember(found)
+    return int(bool(wrong) or caught < len(found))
 
 
 if __name__ == "__main__":

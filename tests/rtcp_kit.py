@@ -44,7 +44,7 @@ def pipeline(folder, machine, decimals=3, before=SEGMENT, after="", **options):
     (folder / "p.toml").write_text(
         'format = 1\n[input]\ndialect = "fanuc"\n[machine]\nfile = "machine.toml"\n'
         f'[[pass]]\nuse = "absolute"\n{before}'
-        f'[[pass]]\nuse = "rtcp"\n{said}\n{after}[output]\ndecimals = {decimals}\n'
+        f'[[pass]]\nuse = "rtcp"\n{said}\n{after}[output]\nstamp = false\ndecimals = {decimals}\n'
     )
     return gx.Pipeline.load(folder / "p.toml")
 
@@ -63,7 +63,7 @@ def positions(text, letters):
     """Return where axes stand at the end of every line (n, 5), words kept from line to line."""
     here = {letter: 0.0 for letter in letters}
     found = []
-    for line in text.decode().splitlines():
+    for line in re.sub(r"\([^()]*\)", "", text.decode()).splitlines():
         here.update({a: float(v) for a, v in re.findall(r"([A-Z])(-?[\d.]+)", line) if a in here})
         found.append([here[letter] for letter in letters])
     return np.array(found)

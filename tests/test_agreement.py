@@ -14,7 +14,7 @@ from oracles.canon import parsed
 from oracles.toolpaths import difference, read
 
 BENCHMARK = Path(__file__).parents[1] / "benchmarks" / "agreement.py"
-AGREEING = 200  # programs of the corpus: fewer would mean that less can be read than before
+AGREEING = 50  # programs of each part of the corpus: fewer would mean that less can be read
 PROGRAM = b"""G21 G90 G17 G94 F100
 T1 M6
 M3 S500
@@ -87,9 +87,10 @@ def agreement():
     return module
 
 
-def test_nothing_real_is_read_otherwise_than_by_linuxcnc(shared):
+@pytest.mark.parametrize("first", range(4))
+def test_nothing_real_is_read_otherwise_than_by_linuxcnc(first, shared):
     module = agreement()
-    found = module.outcomes(shared / "corpus")
+    found = module.outcomes(shared / "corpus", slice(first, None, 4))
     assert [one for one in found if one.kind == module.DISAGREE] == []
     kinds = Counter(one.kind for one in found)
     assert kinds[module.AGREE] >= AGREEING, kinds

@@ -26,7 +26,8 @@ from test_verify import run as lie
 
 import gcxform as gx
 from gcxform.certifying import certificate
-from gcxform.run import Output, Run
+from gcxform.output import Output
+from gcxform.run import Run
 from gcxform.source import Source
 from gcxform.toolpath.runs import Runs, deviation_of_runs, runs_of
 

@@ -64,6 +64,19 @@ def test_check_asks_linuxcnc_programs_for_an_end(
     assert "GX222" not in call("check", "-f", "fanuc", "part.nc").stderr
 
 
+@pytest.mark.parametrize("chain", [(), ("-x", "absolute")])
+def test_check_finds_where_compensation_stops_the_control(
+    here: Path, chain: tuple[str, ...]
+) -> None:
+    text = "G21 G90 G17 G94 F100\nG0 X0 Y-5 Z0\nG41.1 D%s G1 Y0\nY20\nG40 X90\nM2\n"
+    (here / "good.ngc").write_text(text % "9.9")
+    (here / "bad.ngc").write_text(text % "50")
+    assert call("check", "-f", "linuxcnc", *chain, "good.ngc").exit_code == 0
+    found = call("check", "-f", "linuxcnc", *chain, "bad.ngc")
+    assert found.exit_code == 1
+    assert "bad.ngc:3:1: error[GX350]: the move that begins compensation is 5.0000" in found.stderr
+
+
 def test_check_finds_what_is_wrong_in_later_windows(here: Path) -> None:
     line = b"G1 F100 X1 (as long as a comment can be, so that a window is soon full)\n"
     text = b"G91.5\n" + line * (2 * WINDOW // len(line)) + b"G76 X1\n"

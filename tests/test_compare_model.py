@@ -131,5 +131,43 @@ def test_far_beyond_the_table_is_compared_as_it_was_compensated(here, tmp_path):
     assert (found.exit_code, "SAME" in found.stdout) == (0, True)
     found = run_and_compare(tmp_path, chain, *words)
     assert found.exit_code == 3
-    assert found.stderr.startswith("o.nc:3:1: error[GX310]")
-    assert "3 | G1 X239.976" in found.stderr
+    assert found.stderr.startswith("o.nc:4:1: error[GX310]")
+    assert "4 | G1 X239.976" in found.stderr
+
+
+EVERYWHERE = """\
+format = 1
+kind = "axis-functions"
+values = "error"
+convention = "relative"
+order = "XYZ"
+[Y]
+position = [-500.0, 500.0]
+EXY = [0.0, 0.0]
+EYY = [0.05, 0.05]
+EZY = [0.0, 0.0]
+"""
+OWN = "G21 G17 G90 G94\nG0 X0 Y{} Z5\nG53 G0 X10 Y20\nG0 X30 Y{}\nG1 X90 F100\nM2\n"
+FROM_OWN = "G21 G17 G90 G94\nG0 X0 Y{} Z5\nG53 G0 X10 Y20\nG1 X90 Y{} F100\nM2\n"
+
+
+@pytest.mark.parametrize(
+    ("source", "written", "same"),
+    [
+        (OWN.format(0, 20), OWN.format(-0.05, 19.95), True),
+        (OWN.format(0, 20), OWN.format(-0.05, 20), False),
+        (OWN.format(0, 20), OWN.format(-0.05, 19.95).replace("X10 Y20", "X10 Y19.95"), False),
+        (FROM_OWN.format(0, 20), FROM_OWN.format(-0.05, 19.95), False),
+    ],
+)
+def test_what_is_left_to_the_machine(here, source, written, same):
+    """Points of the machine are compared by what is told, and feed moves by where they begin."""
+    (here / "model.toml").write_text(EVERYWHERE)
+    mill = "format = 1\n[work-offset.G54]\nX = 0.0\nY = 0.0\nZ = 0.0\n"
+    (here / "mill.toml").write_text(mill)
+    (here / "part.nc").write_text(source)
+    (here / "out.nc").write_text(written)
+    words = ("--model", "model.toml", "--part-origin", "0,0,0", "-m", "mill.toml")
+    found = call("compare", "-f", "linuxcnc", *words, "part.nc", "out.nc")
+    assert found.exit_code == int(not same), found.output
+    assert "1 rapid of B left to the machine: off by up to 0.0500 mm" in found.stdout

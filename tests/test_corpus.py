@@ -22,6 +22,10 @@ PLACES = {"lddm": ROOT / "examples" / "lddm" / "model.toml"}
 LONGEST_PAGE = 60
 
 ELSEWHERE = {
+    "GX229": "test_assumptions.py",  # a warning
+    "GX241": "test_stamps.py",
+    "GX242": "test_stamps.py",
+    "GX748": "test_hints.py",  # a warning
     "GX453": "test_kinematics.py",
     "GX454": "test_controls.py",
     **dict.fromkeys(("GX470", "GX471", "GX472", "GX473", "GX474"), "test_diagonal_files.py"),
@@ -35,6 +39,7 @@ ELSEWHERE = {
     "GX492": "test_plan.py",
     "GX481": "format_kit.py",  # of writing tables, which no pipeline does
     "GX605": "test_table_verb.py",
+    "GX609": "test_stamps.py",
     "GX602": "test_corpus.py",  # a pass that does not ensure what it says
     "GX604": "test_cutter_comp.py",
     "GX606": "test_rtcp_choice.py",
@@ -42,9 +47,11 @@ ELSEWHERE = {
     "GX712": "test_pipelinefile.py",  # a chain on the command line
     "GX801": "test_plugin_dist.py",
     "GX802": "test_plugin_dist.py",
+    "GX760": "test_hostile.py",  # a policy of the command line
     "GX901": "test_corpus.py",
     "GX902": "test_corpus.py",
     "GX903": "test_corpus.py",
+    "GX904": "test_interference.py",
 }
 """Codes that no case can trigger, with the file of the test that does; those of the command line
 are looked for in any test."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -172,15 +173,31 @@ def test_linuxcnc_cuts_into_a_contour_that_is_refused_here() -> None:
 # --- what passes may not do ---
 
 
-def test_a_pass_may_move_no_contour() -> None:
-    assert refused(CONTOUR, "segment arcs=split max-length=5mm") == "GX233"
-    assert done(CONTOUR, "segment arcs=split max-length=12mm")[2].startswith("G41 D1")
+CUTS = (
+    "segment arcs=split max-length=5mm",
+    "segment arcs=split arc-step=90deg",
+    "segment chord-error=1um",
+)
 
 
-def test_pieces_of_a_contour_keep_their_side() -> None:
-    found = done(CONTOUR, "segment arcs=split arc-step=90deg")
-    assert "G2 X15. Y25. I5. J0." in found
-    assert "G41 D1 G1 X0 Y0" in found
+@pytest.mark.parametrize("chain", CUTS)
+@pytest.mark.parametrize("dialect", ["linuxcnc", "fanuc"])
+def test_a_pass_may_cut_no_contour(chain: str, dialect: str) -> None:
+    contour = (
+        CONTOUR if dialect == "linuxcnc" else CONTOUR.replace("D1 ", "D1 ").replace("M2", "M30")
+    )
+    chain_of_points = contour.replace("-10 ", "-10. ")
+    assert refused(pointed_numbers(chain_of_points), chain, dialect) == "GX233"
+
+
+def pointed_numbers(program: str) -> str:
+    """Return a program with a point in every distance."""
+    return re.sub(r"([XYZI]-?\d+)(?![\d.])", r"\1.", program)
+
+
+def test_a_pass_that_leaves_the_contour_may_cut_the_rest() -> None:
+    found = done(CONTOUR + "", "segment arcs=split max-length=12mm".replace("12", "40"))
+    assert found[2].startswith("G41 D1")
 
 
 # --- the proof ---
@@ -239,6 +256,7 @@ TAMPERED = {
     "the arc has another centre": column("centre", 6, (15.0, 20.001, -1.0)),
     "the arc is turned": column("kind", 6, 3),
     "the arc sweeps too far": column("sweep", 6, 6.0),
+    "the arc sweeps too little": column("sweep", 6, 1.0),
     "the arc sweeps a turn more": column("sweep", 6, 2.4614 + 6.2831853),
     "a corner is missing": without(4),
     "a corner is a point": pointed,

@@ -227,11 +227,13 @@ def folder(tmp_path_factory):
     return path
 
 
+@pytest.mark.xdist_group("newcomer")
 @pytest.mark.parametrize("block", blocks("console"), ids=lambda b: b[2:40].split("\n")[0])
 def test_console_snippets_print_what_is_shown(block, folder):
     assert check_block(block, folder)
 
 
+@pytest.mark.xdist_group("newcomer")
 def test_python_snippet_of_the_api_runs(folder, monkeypatch, capsys):
     monkeypatch.chdir(folder)
     snippet = next(b for b in blocks("python") if "Pipeline.load" in b)

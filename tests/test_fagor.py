@@ -11,8 +11,9 @@ import pytest
 from reference import fagor as reference
 
 import gcxform as gx
+from gcxform.output import Output
 from gcxform.registry import default_registry
-from gcxform.run import Output, Run
+from gcxform.run import Run
 from gcxform.source import Source
 from gcxform.tipcodes import with_switches
 
@@ -281,6 +282,7 @@ PIPELINE = """format = 1
 dialect = "{source}"
 [output]
 dialect = "linuxcnc"
+stamp = false
 [machine]
 file = "{machine}"
 [[pass]]

@@ -385,6 +385,7 @@ def five_axes(folder, source, passes=("segment", "rtcp")):
     options = {"segment": 'chord-error = "1 um"', "rtcp": 'tolerance = 0.01\ntip-codes = "read"'}
     steps = [f'[[pass]]\nuse = "{name}"\n{options.get(name, "")}\n' for name in passes]
     text = f'format = 1\n[input]\ndialect = "{source}"\n[output]\ndialect = "linuxcnc"\n'
+    text += "stamp = false\n"
     text += '[machine]\nfile = "machine.toml"\n[[pass]]\nuse = "absolute"\n'
     (folder / "p.toml").write_text(text + "".join(steps))
     return gx.Pipeline.load(folder / "p.toml")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import shutil
 import sys
 from collections.abc import Iterator
@@ -117,3 +118,46 @@ def test_nothing_is_kept_where_python_keeps_nothing(
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     kept.grammar("kept_here", "grbl")
     assert len(files(folder)) == 1
+
+
+class Planted:
+    """What, once it is unpickled, has made a file."""
+
+    def __init__(self, place: Path) -> None:
+        self.place = place
+
+    def __reduce__(self) -> tuple[object, tuple[object, ...]]:
+        return Path.touch, (self.place,)
+
+
+def test_what_somebody_has_planted_is_not_executed(folder: Path, made: list[str]) -> None:
+    """A pickle under the right digest, as whoever reads this file can make it."""
+    kept.grammar("kept_here", "grbl")
+    (place,) = folder.glob("__pycache__/*.lalr")
+    digest = kept._digest("kept_here")
+    assert place.read_bytes().startswith(digest)
+    place.write_bytes(digest + pickle.dumps(Planted(folder / "executed")))
+    assert Grammar("kept_here", "grbl").parse("G1 X1").error is None
+    assert not (folder / "executed").exists()
+    assert made == ["grbl", "grbl"]
+    pickle.loads(pickle.dumps(Planted(folder / "executed")))
+    assert (folder / "executed").exists()
+
+
+@pytest.mark.parametrize(
+    "name", sorted(path.stem for path in OURS.glob("*.lark") if "start" in path.read_text())
+)
+def test_every_grammar_is_kept_whole(folder: Path, made: list[str], name: str) -> None:
+    """Also where terminals have no end: their width is a number beyond 64 bits."""
+    first, second = (kept.grammar("kept_here", name) for _ in range(2))
+    assert made == [name]
+    for line in LINES:
+        assert parsed(first, line) == parsed(second, line)
+    assert [t.name for t in first.terminals] == [t.name for t in second.terminals]
+
+
+def parsed(grammar: lark.Lark, line: str) -> object:
+    try:
+        return grammar.parse(line)
+    except lark.exceptions.UnexpectedInput as error:
+        return error.pos_in_stream

@@ -46,7 +46,7 @@ class NoInitial(Plain):
 class StrangeCode(Plain):
     """A modal code that the core cannot follow."""
 
-    codes: ClassVar[Mapping[str, gx.Code]] = {**gx.Dialect.codes, "G16": gx.Code("polar")}
+    codes: ClassVar[Mapping[str, gx.Code]] = {**gx.Dialect.codes, "G316": gx.Code("polar")}
 
 
 class StrangeWord(Plain):
@@ -92,7 +92,7 @@ def test_a_good_dialect():
         (StrangeWord, "does not know"),
         (TooFine, "9 decimals"),
         (NoZ, "X, Y and Z come first"),
-        (NoRapid, "this program fails"),
+        (NoRapid, "there is G1 and no G0"),
     ],
     ids=lambda value: value.__name__ if isinstance(value, type) else "",
 )

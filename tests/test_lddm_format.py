@@ -55,6 +55,15 @@ def test_the_order_of_columns_their_case_and_blank_lines_are_free(tables):
     assert to_toml(model) == native()
 
 
+def test_headings_of_the_instrument_in_italian(tables):
+    for axis in "xyz":
+        path = tables / f"table_{axis}.txt"
+        header, rows = path.read_text().split("\n", 1)
+        path.write_text(header.lower().replace("position", "Posizione") + "\n" + rows)
+    assert "Posizione" in path.read_text()
+    assert to_toml(Lddm().read(tables)) == native()
+
+
 def test_what_is_recognised(tables):
     assert Lddm.recognises(tables)
     assert Lddm.recognises(tables / "table_x.txt")

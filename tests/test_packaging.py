@@ -19,6 +19,9 @@ JUNK = {"__pycache__"}
 PIP = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet"]
 
 
+pytestmark = pytest.mark.xdist_group("wheel")  # it is built once
+
+
 @pytest.fixture(scope="session")
 def wheel(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("wheel")

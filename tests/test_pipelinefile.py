@@ -341,7 +341,8 @@ def test_all_steps_of_a_chain_are_looked_at() -> None:
 def test_the_schema_of_pipelines() -> None:
     found = schema("pipeline", REGISTRY)
     json.dumps(found)
-    assert set(found["properties"]) == {"format", "input", "machine", "budget", "output", "pass"}
+    sections = {"format", "input", "machine", "budget", "output", "limits", "pass"}
+    assert set(found["properties"]) == sections
     steps = {
         step["properties"]["use"]["const"]: step
         for step in found["properties"]["pass"]["items"]["anyOf"]

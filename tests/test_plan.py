@@ -81,7 +81,7 @@ def test_the_conditioning_is_as_promised(here, count, linear):
     assert found.condition == pytest.approx(promised, rel=0.02, abs=0.06)
     for k, letter in enumerate("AC"):
         um, urad = map(float, re.search(rf"axis {letter}: \+- (\S+) um, (\S+) urad", said).groups())
-        sd = np.sqrt(np.diag(found.covariance))[4 * k : 4 * k + 4]
+        sd = np.sqrt(np.diag(found.covariance))[4 * k : 4 * k + 4] / found.scatter.factor
         assert um == pytest.approx(1e3 * sd[:2].max(), rel=0.06)
         assert urad == pytest.approx(1e6 * sd[2:].max(), rel=0.06)
     names = found.layout.names

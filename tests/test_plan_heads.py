@@ -181,7 +181,7 @@ def test_from_the_plan_to_the_true_axes(kind, dialect):
     done = call("calibrate", "bundle", *words)
     assert done.exit_code == 0, done.output
     found = bundle(chain(), read_poses(Path("c.csv"), chain().letters).poses, 0.002)
-    sd = np.sqrt(np.diag(found.covariance)[:8])
+    sd = np.sqrt(np.diag(found.covariance)[:8]) / found.scatter.factor
     assert np.abs((found.unknowns[:8] - STEPS.ravel()) / sd).max() < 4.0
     assert np.abs(STEPS.ravel() / sd).min() > 5.0  # none of them is taken for nothing
     for written, axis in zip(chain("found.toml").axes, found.chain.axes, strict=True):

@@ -46,6 +46,9 @@ M2
 """
 
 
+pytestmark = pytest.mark.xdist_group("plugin")  # it is built once
+
+
 def install(source: Path, folder: Path) -> Path:
     """Build a distribution and install it into a folder of its own, without any network."""
     command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index"]

@@ -185,5 +185,5 @@ def test_balls_beyond_the_error_model_are_refused(files):
     model = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"  # from 0 up
     true = Path("true.toml").read_text().replace("format = 1", f'format = 1\nerrors = "{model}"')
     Path("true.toml").write_text(true)
-    done = call("simulate", "balls", "--true", "true.toml", "plan.csv")
+    done = call("simulate", "balls", "--allow-outside", "--true", "true.toml", "plan.csv")
     assert (done.exit_code, "GX738" in done.stderr) == (2, True), done.output

@@ -11,6 +11,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from oracles import rs274
 from oracles.compare import difference
+from properties.contours import contour
+from properties.test_whole import drawn as whole
 from reference.interpreter import Move, Program, Refused, interpret
 from reference.words import blocks
 
@@ -114,7 +116,8 @@ def test_hypothesis_finds_no_disagreement(source: bytes) -> None:
 
 @installed
 def test_many_programs_in_one_process_answer_as_each_alone() -> None:
-    sources = [drawn(seed) for seed in range(40)] + [damaged(seed) for seed in range(20)]
+    sources = [drawn(seed) for seed in range(20)] + [damaged(seed) for seed in range(20)]
+    sources += [contour(seed) for seed in range(20)] + [whole(seed) for seed in range(20)]
     for source, together in zip(sources, rs274.run_many(sources), strict=True):
         if isinstance(together, rs274.CanonProgram):
             assert rs274.run(source) == together

@@ -59,10 +59,11 @@ def test_c3_the_covariance_with_angles_is_that_of_many(degrees):
     for points in every:
         found = locate(Centres(angles, points), NOISE, robust=False)
         away.append(np.concatenate([found.point - CENTRE, found.direction])[chosen])
-    inverse = np.linalg.inv(found.covariance[np.ix_(chosen, chosen)])
+    stated = found.covariance / found.scatter.factor**2
+    inverse = np.linalg.inv(stated[np.ix_(chosen, chosen)])
     chi = np.einsum("ni,ij,nj->n", away, inverse, away)
     assert chi.mean() / len(chosen) == pytest.approx(1.0, abs=4 * math.sqrt(2 / 5 / 400))
-    ratio = np.std(away, axis=0) / np.sqrt(np.diag(found.covariance)[chosen])
+    ratio = np.std(away, axis=0) / np.sqrt(np.diag(stated)[chosen])
     assert ratio == pytest.approx(np.ones(5), abs=4 * math.sqrt(0.5 / 400))
 
 
@@ -188,5 +189,5 @@ def test_the_covariance_of_the_point_of_a_head():
         noisy = exact + 0.002 * generator.standard_normal(exact.shape)
         found = locate(Centres(degrees, noisy), 0.002, tip, robust=False)
         away.append(found.point)
-    sd = np.sqrt(np.diag(found.covariance)[:3])
+    sd = np.sqrt(np.diag(found.covariance)[:3]) / found.scatter.factor
     assert np.std(away, axis=0) == pytest.approx(sd, rel=0.17)

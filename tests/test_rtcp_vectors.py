@@ -37,7 +37,8 @@ from vectors_kit import (
 
 import gcxform as gx
 from gcxform.cuts import whole_sections
-from gcxform.run import Output, Run
+from gcxform.output import Output
+from gcxform.run import Run
 from gcxform.source import Source
 
 EACH = settings(

@@ -349,6 +349,7 @@ def run(folder, dialect, machine, text, passes):
     """Return the result of a pipeline to LinuxCNC."""
     (folder / "machine.toml").write_text(machine)
     head = f'format = 1\n[input]\ndialect = "{dialect}"\n[output]\ndialect = "linuxcnc"\n'
+    head += "stamp = false\n"
     (folder / "p.toml").write_text(f'{head}[machine]\nfile = "machine.toml"\n{passes}')
     return gx.Pipeline.load(folder / "p.toml").run(text.encode(), verify="full")
 

@@ -36,7 +36,8 @@ PROGRAM += b"G2 X80. Y-30. I30. J0.\nG1 X400.\nM30\n"
 def pipeline(folder: Path, model: str, options: str, decimals: int = 6) -> gx.Pipeline:
     (folder / "p.toml").write_text(
         f'format = 1\n[input]\ndialect = "fanuc"\n[[pass]]\nuse = "volumetric"\nmodel = "{model}"\n'
-        f"part-origin = [0.0, 0.0, 0.0]\n{options}\n[output]\ndecimals = {decimals}\n"
+        f"part-origin = [0.0, 0.0, 0.0]\n{options}\n"
+        f"[output]\nstamp = false\ndecimals = {decimals}\n"
     )
     return gx.Pipeline.load(folder / "p.toml")
 

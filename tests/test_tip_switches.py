@@ -10,8 +10,9 @@ from gcxform_plugins.passes.rtcp_cutting import Cutting
 from rtcp_kit import LENGTH, axes, chain_of_kind, machine_text, pipeline, positions
 
 import gcxform as gx
+from gcxform.output import Output
 from gcxform.registry import default_registry
-from gcxform.run import Output, Run
+from gcxform.run import Run
 from gcxform.source import Source
 from gcxform.tipcodes import with_switches
 

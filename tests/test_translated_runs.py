@@ -10,7 +10,8 @@ import pytest
 from cli_kit import call, expanded
 
 import gcxform as gx
-from gcxform.run import Output, Run
+from gcxform.output import Output
+from gcxform.run import Run
 from gcxform.source import Source
 
 PROGRAM = b"""%PART

@@ -14,6 +14,7 @@ import gcxform as gx
 from gcxform import vocabulary as v
 from gcxform.flow import translation
 from gcxform.flow.translation import SLOT, translated
+from gcxform.limits import Limits, in_force
 from gcxform.modal.state import Reading
 from gcxform.registry import default_registry
 from gcxform.source import Source
@@ -185,11 +186,12 @@ def test_jumps_and_the_lines_of_what_is_executed(kind):
 
 
 @both
-def test_a_loop_without_an_end(kind, monkeypatch):
-    monkeypatch.setattr(translation, "STEPS_AT_MOST", 50)
-    found = refused(b"X1\nGO -1\n", kind)
-    assert (found.code, found.where.line) == ("GX224", 1)
-    assert len(read(b"X1\n" * 200, kind)[0]) == 200  # a long program is no loop
+def test_a_loop_without_an_end(kind):
+    with in_force(Limits(steps=12)):
+        found = refused(b"X1\nGO -1\n", kind)
+        assert (found.code, found.where.line) == ("GX224", 1)
+        assert "--limit steps=120" in found.hint
+        assert len(read(b"X1\n" * 200, kind)[0]) == 200  # a long program is no loop
 
 
 @both

@@ -24,7 +24,8 @@ from gcxform.machine.functions import AxisFunction
 from gcxform.machine.modeltext import to_toml
 from gcxform.machine.rigid import RigidBody
 from gcxform.machine.sums import Sum
-from gcxform.run import Output, Run
+from gcxform.output import Output
+from gcxform.run import Run
 from gcxform.source import Source
 
 HEADS = ["cb-fork", "c-table-b-head", "nutating-head"]
@@ -66,7 +67,7 @@ def steps_of(folder: Path, kind, model, options="", decimals=6) -> gx.Pipeline:
     (folder / "p.toml").write_text(
         'format = 1\n[input]\ndialect = "fanuc"\n[machine]\nfile = "machine.toml"\n'
         '[[pass]]\nuse = "absolute"\n[[pass]]\nuse = "volumetric"\nmodel = "model.toml"\n'
-        f'outside = "extrapolate"\n{options}\n[output]\ndecimals = {decimals}\n'
+        f'outside = "extrapolate"\n{options}\n[output]\nstamp = false\ndecimals = {decimals}\n'
     )
     return gx.Pipeline.load(folder / "p.toml")
 

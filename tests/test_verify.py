@@ -10,7 +10,8 @@ import pytest
 
 import gcxform as gx
 from gcxform.emit.emitter import Emitted
-from gcxform.run import Output, Run
+from gcxform.output import Output
+from gcxform.run import Run
 from gcxform.source import Source
 
 MODEL = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"

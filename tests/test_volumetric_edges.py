@@ -169,3 +169,25 @@ def test_v7_how_far_the_program_goes_beyond_the_tables_is_told(policy):
     )
     inside = pipeline.run((HEAD + "G1 X-170. F500.\nM2\n").encode())
     assert inside.certificate.measured == {}
+
+
+@pytest.mark.parametrize(("seed", "tolerance"), [(7, 0.01), (10, 0.001)])
+def test_nodes_that_are_met_one_after_the_other_of_a_steep_model(seed, tolerance):
+    """Commands may meet two near nodes in another order than the straight way to the end does."""
+    random = np.random.default_rng(seed)
+    random.choice([2, 3])
+    axes = []
+    for _ in range(3):
+        count = int(random.integers(4, 12))
+        position = np.linspace(-60.0, 260.0, count)
+        slope = random.uniform(-0.03, 0.03, (count - 1, 3)) / 1.7 * random.uniform(0.3, 1.0)
+        values = np.vstack([np.zeros(3), np.cumsum(slope * (position[1] - position[0]), axis=0)])
+        axes.append(AxisFunction(position, values - values[count // 4]))
+    random.choice(5)
+    points = random.uniform(0.0, 200.0, (8, 3)).round(3).tolist()
+    program = "G21 G90 G17 G94\nG0 X0 Y0 Z0\nF500\n"
+    program += "".join(f"G1 X{x:.3f} Y{y:.3f} Z{z:.3f}\n" for x, y, z in points) + "M2\n"
+    step = volumetric(AxisFunctions(tuple(axes)), tolerance=tolerance, max_correction=20.0)
+    dialect = default_registry().dialect("linuxcnc")
+    result = gx.Pipeline(dialect, dialect, (step,)).run(program.encode())
+    assert result.certificate.largest["deviation"] <= tolerance + 0.0001

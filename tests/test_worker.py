@@ -339,15 +339,11 @@ def test_the_command_line_says_that_one_has_died(tmp_path, monkeypatch, capsys):
     assert not out.exists()
 
 
-LONG = b"G21 G90 G94 G17\nG0 X0. Y0. Z5.\n" + b"".join(
-    b"G1 X%d.5 Y%d.25 F%d\n" % (n % 977, n % 613, 100 + n % 7) for n in range(400_000)
-)
-
-
 @pytest.fixture(scope="module")
 def long_program(tmp_path_factory):
+    moves = (b"G1 X%d.5 Y%d.25 F%d\n" % (n % 977, n % 613, 100 + n % 7) for n in range(400_000))
     file = tmp_path_factory.mktemp("long") / "a.nc"
-    file.write_bytes(LONG)
+    file.write_bytes(b"G21 G90 G94 G17\nG0 X0. Y0. Z5.\n" + b"".join(moves))
     return file
 
 
@@ -373,6 +369,7 @@ def all_gone(pids):
     return True
 
 
+@pytest.mark.xdist_group("long program")
 def test_an_interrupted_run_leaves_nothing(long_program, tmp_path):
     run, others = started(long_program, tmp_path / "b.nc")
     os.killpg(run.pid, signal.SIGINT)
@@ -382,6 +379,7 @@ def test_an_interrupted_run_leaves_nothing(long_program, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.xdist_group("long program")
 def test_a_killed_run_leaves_no_process(long_program, tmp_path):
     run, others = started(long_program, tmp_path / "b.nc")
     run.kill()

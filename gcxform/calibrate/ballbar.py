@@ -30,7 +30,7 @@ import numpy as np
 
 from gcxform.calibrate.bundle import across, moved
 from gcxform.calibrate.rotary import HOPELESS, REJECTED, arc, condition, distinct
-from gcxform.calibrate.solution import Solution, solve
+from gcxform.calibrate.solution import Scatter, Solution, solve
 from gcxform.diagnostics import InputError, Location
 from gcxform.machine.chain import Chain, Rotary, Triple
 from gcxform.machine.errors import FloatArray
@@ -39,6 +39,7 @@ LEVER: Final = 100.0
 """Unknown tilts are scaled by this length in mm, to be as large as shifts."""
 BAR: Final = 100.0  # mm
 QUARTERS: Final = np.array([0.0, 90.0, 180.0, 270.0])
+COEFFICIENTS: Final = 3  # of a trace: cosine, sine, constant
 ROUNDS: Final = 3
 """The second order is a thousandth of the first: three times leave nothing."""
 UNKNOWNS: Final = ("shift 1", "shift 2", "tilt 1", "tilt 2")
@@ -101,7 +102,7 @@ class Eccentricity:
     @property
     def rms(self) -> float:
         """The noise that the residuals show, mm; nan without redundancy."""
-        more = len(self.residuals) - 3
+        more = len(self.residuals) - COEFFICIENTS
         return math.sqrt(float(self.residuals @ self.residuals) / more) if more > 0 else math.nan
 
 
@@ -124,9 +125,20 @@ class Identified:
         return np.asarray(self.solution.value * self._scale)
 
     @cached_property
+    def scatter(self) -> Scatter:
+        """What the residuals of all traces, and of their eccentricities, say of the noise."""
+        traces = [test.residuals / self.noise for test in self.tests if test.trace is not None]
+        within = sum(float(each @ each) for each in traces)
+        freedom = sum(len(each) - COEFFICIENTS for each in traces)
+        between = self.solution
+        chi_square = within + between.chi_square
+        return Scatter(self.noise, chi_square, freedom + between.redundancy)
+
+    @cached_property
     def covariance(self) -> FloatArray:
-        """Their covariance (4 m, 4 m), for the stated noise."""
-        return np.asarray(self.solution.covariance * np.outer(self._scale, self._scale))
+        """Their covariance (4 m, 4 m), for the effective noise."""
+        scale = self.scatter.factor * self._scale
+        return np.asarray(self.solution.covariance * np.outer(scale, scale))
 
     @property
     def _scale(self) -> FloatArray:

@@ -125,6 +125,7 @@ def warnings(found: Identified) -> Iterator[str]:
             "the spindle ball is taken to be on the spindle: what it is off goes into the points "
             "of the axes (--spindle-ball)"
         )
+    yield from found.scatter.warnings
     for k, test in enumerate(found.tests, 1):
         poor = 0.0 if test.trace is None else condition(test.trace.degrees)
         if poor > ILL:
@@ -161,6 +162,7 @@ def report(found: Identified, file: str, conditions: Mapping[str, Any]) -> dict[
         "units": "mm; angles degrees; directions and errors of them rad",
         "file": file,
         "noise": found.noise,
+        "scatter": found.scatter.report(),
         "spindle-ball": list(found.spindle),
         "tests": [_reported(test) for test in found.tests],
         "axes": {letter: _of_axis(found, letter) for letter in found.letters},

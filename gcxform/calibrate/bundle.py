@@ -24,6 +24,7 @@ import numpy as np
 
 from gcxform.calibrate.circle import STEPS
 from gcxform.calibrate.rotary import CAUCHY, OUTLYING, REJECTED, Kept
+from gcxform.calibrate.solution import Scatter, belonging
 from gcxform.diagnostics import InputError, Location
 from gcxform.machine.chain import Chain, Rotary
 from gcxform.machine.errors import FloatArray
@@ -147,13 +148,21 @@ class Bundled:
     @cached_property
     def standardised(self) -> FloatArray:
         """The largest of the three residuals of each pose over its standard deviation, (n,)."""
-        return _standardised(self._design, self.residuals, self.kept.astype(float), self.noise)
+        weights, noise = self.kept.astype(float), self.scatter.effective
+        size = _standardised(self._design, self.residuals, weights, noise)
+        return np.asarray(size.max(axis=1))
+
+    @cached_property
+    def scatter(self) -> Scatter:
+        """What the residuals say of the noise."""
+        total = float((self.residuals[self.kept] ** 2).sum())
+        return Scatter(self.noise, total / self.noise**2, self.redundancy)
 
     @cached_property
     def covariance(self) -> FloatArray:
-        """The covariance (k, k) of the unknowns, for the stated noise."""
+        """The covariance (k, k) of the unknowns, for the effective noise."""
         kept = self._design[np.repeat(self.kept, 3)]
-        return np.asarray(self.noise**2 * np.linalg.inv(kept.T @ kept))
+        return np.asarray(self.scatter.effective**2 * np.linalg.inv(kept.T @ kept))
 
     @property
     def condition(self) -> float:
@@ -270,7 +279,7 @@ def _believed(layout: Layout, start: FloatArray, noise: float) -> Kept:
         unknowns = _fitted(layout, unknowns, weights)
     away = layout.poses.points - layout.readings(unknowns)
     design = layout.design(unknowns)
-    kept = np.asarray(_standardised(design, away, weights, noise) <= OUTLYING)
+    kept = belonging(_standardised(design, away, weights, noise), OUTLYING)
     few = 4 * (~kept).sum() <= len(kept)
     enough = few and rank(design[np.repeat(kept, 3)]) == len(unknowns)
     return kept if enough else np.ones(len(kept), dtype=bool)
@@ -284,7 +293,7 @@ def _standardised(
     inverse = np.linalg.pinv((weighted / lengths).T @ (design / lengths))
     taken = np.einsum("ni,ij,nj->n", design / lengths, inverse, weighted / lengths)
     spread = noise * np.sqrt(np.clip(1.0 - taken, 1e-6, None))
-    return np.asarray((np.abs(away.ravel()) / spread).reshape(-1, 3).max(axis=1))
+    return np.asarray((np.abs(away.ravel()) / spread).reshape(-1, 3))
 
 
 def moved(axis: Rotary, step: FloatArray) -> Rotary:

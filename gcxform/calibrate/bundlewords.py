@@ -43,7 +43,7 @@ def _warnings(found: Bundled) -> list[str]:
     before = found.layout.chain.axes
     axes = zip(found.chain.letters, before, found.chain.axes, strict=True)
     said = [line for a, was, own in axes for line in astray(a, was, np.array(own.point))]
-    return said + _outliers(found)
+    return said + found.scatter.warnings + _outliers(found)
 
 
 def check(found: Bundled, letter: str) -> Check:
@@ -87,7 +87,7 @@ def comments(found: Bundled, letter: str, file: str) -> list[str]:
         f"with all axes by {int(found.kept.sum())} ball centres of {name}; noise "
         f"{1e3 * found.noise:.3g} um (residuals {1e3 * found.rms:.3g} um)"
     )
-    said = [head, *_axis(found, letter)]
+    said = [head, *_axis(found, letter), *(f"warning: {w}" for w in found.scatter.warnings)]
     return [piece for line in said for piece in textwrap.wrap(line, WIDTH, subsequent_indent="  ")]
 
 
@@ -159,6 +159,7 @@ def report(found: Bundled, file: str, conditions: Mapping[str, Any]) -> dict[str
         "units": "mm; directions, squareness and scales rad or mm per mm",
         "file": file,
         "noise": found.noise,
+        "scatter": found.scatter.report(),
         "axes": axes,
         "linear": {name: {"value": value, "sd": sd} for name, (value, sd) in linear.items()},
         "unknowns": dict(zip(found.layout.names, found.unknowns.tolist(), strict=True)),

@@ -22,6 +22,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from gcxform import inputs
 from gcxform.diagnostics import Diagnostic, FileError, InputError, Location
 from gcxform.machine.errors import FloatArray
 from gcxform.tomltext import did_you_mean
@@ -145,7 +146,7 @@ class CsvTable:
 def read_csv(path: Path) -> CsvTable:
     """Return the table of a file. Raises FileError, and InputError for its form."""
     try:
-        data = path.read_bytes()
+        data = inputs.read(path)
     except (OSError, ValueError) as error:  # ValueError: a null character in the name
         reason = getattr(error, "strerror", None) or str(error)
         raise FileError.one("GX901", f"cannot read {path}: {reason}") from None

@@ -11,7 +11,8 @@ so the point that is given is c. A probe in a turning head goes round a fixed ba
 equation, and the axis is where the tip was at 0, plus a.
 
 A robust fit (Cauchy) finds readings that do not belong to the rest; the result is the least-squares
-fit of the rest, and those left out are named. The covariance is that of the stated noise.
+fit of the rest, and those left out are named. The covariance is that of the noise that the
+residuals show, or of the stated one if that is more.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gcxform.calibrate.circle import CONVERGED, STEPS, Circles, fit_circles, upright
+from gcxform.calibrate.solution import Scatter, belonging
 from gcxform.diagnostics import InputError, Location
 from gcxform.machine.chain import Triple, turned
 from gcxform.machine.errors import FloatArray
@@ -122,7 +124,8 @@ class Placed:
     @cached_property
     def standardised(self) -> FloatArray:
         """The largest of the three residuals of each centre over its standard deviation, (n,)."""
-        return standardised(self.centres, self.figure, self.noise, self.kept.astype(float))
+        weights, noise = self.kept.astype(float), self.scatter.effective
+        return np.asarray(standardised(self.centres, self.figure, noise, weights).max(axis=1))
 
     @property
     def redundancy(self) -> int:
@@ -141,8 +144,14 @@ class Placed:
         return condition(self.centres.degrees[self.kept])
 
     @cached_property
+    def scatter(self) -> Scatter:
+        """What the residuals say of the noise."""
+        total = float((self.residuals[self.kept] ** 2).sum())
+        return Scatter(self.noise, total / self.noise**2, self.redundancy)
+
+    @cached_property
     def covariance(self) -> FloatArray:
-        """The covariance (6, 6) of point (mm) and direction, for the stated noise."""
+        """The covariance (6, 6) of point (mm) and direction, for the effective noise."""
         moves = self.moves
         return np.asarray(moves @ self.of_unknowns @ moves.T)
 
@@ -150,7 +159,7 @@ class Placed:
     def of_unknowns(self) -> FloatArray:
         """The covariance (7, 7) of shift, turn (rad) and growth of the figure, mm."""
         design = jacobian(self.figure, self.centres.degrees[self.kept]).reshape(-1, UNKNOWNS)
-        return np.asarray(self.noise**2 * np.linalg.inv(design.T @ design))
+        return np.asarray(self.scatter.effective**2 * np.linalg.inv(design.T @ design))
 
     @property
     def moves(self) -> FloatArray:
@@ -201,7 +210,7 @@ def _believed(centres: Centres, start: Figure, noise: float) -> Kept:
         figure = fitted(centres, weights, figure)
         if np.abs(weights - before).max() < 1e-6:
             break
-    kept = np.asarray(standardised(centres, figure, noise, weights) <= OUTLYING)
+    kept = belonging(standardised(centres, figure, noise, weights), OUTLYING)
     enough = distinct(centres.degrees[kept]) >= 4 and 4 * (~kept).sum() <= len(centres)
     return kept if enough else np.ones(len(centres), dtype=bool)
 
@@ -334,13 +343,13 @@ def jacobian(figure: Figure, degrees: FloatArray) -> FloatArray:
 
 
 def standardised(centres: Centres, figure: Figure, noise: float, weights: FloatArray) -> FloatArray:
-    """Return of each centre its largest residual over the standard deviation of it, (n,)."""
+    """Return the residuals of each centre over the standard deviation of them, (n, 3)."""
     design = jacobian(figure, centres.degrees)
     weighted = design * weights[:, None, None]
     normal = np.einsum("nki,nkj->ij", weighted, design)
     taken = np.einsum("nki,ij,nkj->nk", design, np.linalg.inv(normal), weighted)
     spread = noise * np.sqrt(np.clip(1.0 - taken, 1e-6, None))
-    return np.asarray((np.abs(residuals(centres, figure)) / spread).max(axis=1))
+    return np.asarray(np.abs(residuals(centres, figure)) / spread)
 
 
 def crossing(vectors: FloatArray) -> FloatArray:

@@ -100,6 +100,7 @@ def warnings(found: Placed) -> Iterator[str]:
             "no redundancy: a circle goes through any three points, and nothing but the angles "
             "tests these; the result is unverified"
         )
+    yield from found.scatter.warnings
     if found.condition > ILL:
         yield (
             f"badly conditioned: {found.condition:.0f} (above {ILL:.0f} is poor, above "
@@ -139,7 +140,7 @@ def advice(found: Placed, limits: tuple[float, float] | None = None) -> Iterator
     room = TURN if limits is None else min(TURN, limits[1] - limits[0])
     across, tilt = _across(found), _tilt(found)
     if covered < min(270.0, room - GRID):
-        best = found.noise * math.sqrt(2.0 / len(degrees)) if room >= TURN else None
+        best = found.scatter.effective * math.sqrt(2.0 / len(degrees)) if room >= TURN else None
         gain = "" if best is None else f" (all around it would be {two_digits(1e3 * best)} um)"
         yield (
             f"the arc is {covered:.3g} of {room:.3g} degrees: a longer one helps most; across the "
@@ -190,7 +191,7 @@ def next_angle(found: Placed, limits: tuple[float, float] | None = None) -> floa
     worth[3:6, 3:6] = found.figure.radius**2 * across
     left = []
     for row in jacobian(found.figure, np.asarray(candidates, np.float64)):
-        more = np.linalg.inv(known + row.T @ row / found.noise**2)
+        more = np.linalg.inv(known + row.T @ row / found.scatter.effective**2)
         left.append(float(np.trace(worth @ more)))
     return float(candidates[int(np.argmin(np.round(left, 15)))])
 

@@ -9,6 +9,7 @@ from functools import partial
 
 import numpy as np
 
+from gcxform import inputs
 from gcxform.calibrate import bundlewords
 from gcxform.calibrate.bundle import Bundled
 from gcxform.calibrate.rotary import Centres, Placed, locate
@@ -74,7 +75,7 @@ def _check(found: Placed, letter: str, machine: Machine) -> None:
 def with_found(found: Placed, letter: str, machine: Machine | None, comments: list[str]) -> str:
     """Return the machine file with the axis that was found; without one, one of that axis alone."""
     if machine is not None:
-        text = machine.file.read_bytes().decode("utf-8")
+        text = inputs.read(machine.file).decode("utf-8")
         return with_axis(text, letter, axis_of(found), comments, str(machine.file))
     head = ["format = 1", f'table = ["{letter}"]', "", f"[axis.{letter}]"]
     marked = [f"{MARK} {comment}" for comment in comments]
@@ -112,7 +113,7 @@ def with_axes(
     axes: Sequence[Rotary], machine: Machine, comments: Callable[[str], list[str]]
 ) -> str:
     """Return the machine file with some axes; `comments` of a letter stand above its values."""
-    text = machine.file.read_bytes().decode("utf-8")
+    text = inputs.read(machine.file).decode("utf-8")
     for axis in axes:
         stated = Axis(direction=axis.direction, point=axis.point, sign=axis.sign)
         text = with_axis(text, axis.letter, stated, comments(axis.letter), str(machine.file))

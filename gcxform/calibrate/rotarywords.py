@@ -145,6 +145,7 @@ def report(
         "axis": letter,
         "turns": "table" if found.tip is None else "head",
         "noise": found.noise,
+        "scatter": found.scatter.report(),
         "direction": {"value": found.direction.tolist(), "sd": sd[3:].tolist()},
         "point": {"value": found.point.tolist(), "sd": sd[:3].tolist()},
         "sign": found.sign,
@@ -171,7 +172,7 @@ def report(
 def _free(found: Placed) -> dict[str, Any]:
     """Return the circle without the angles."""
     free = found.free
-    both, of_radius = spread(found.centres.points[found.kept], free, found.noise)
+    both, of_radius = spread(found.centres.points[found.kept], free, found.scatter.effective)
     sd = np.sqrt(np.diag(both).clip(0.0)).tolist()
     return {
         "centre": {"value": free.centre.tolist(), "sd": sd[:3]},

@@ -11,9 +11,11 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gcxform.machine.errors import FloatArray
 
+FEW: Final = 8  # one in so many may be an outlier
 RANK: Final = 1e-9  # of the largest singular value: below it a direction is not determined
 
 
@@ -50,6 +52,69 @@ class Solution:
         return math.sqrt(self.chi_square / self.redundancy) if self.redundancy > 0 else math.nan
 
 
+@dataclass(frozen=True)
+class Scatter:
+    """What residuals say of the stated noise (mm): their chi square, and degrees of freedom.
+
+    Deviations hold for the noise that there is. Where the residuals show more than was stated,
+    they are scaled by how many times more, as weighted least squares does it (Birge's ratio, Phys.
+    Rev. 40 (1932) 207); where they show less, the stated noise is believed.
+    """
+
+    noise: float
+    chi_square: float
+    redundancy: int
+
+    @property
+    def ratio(self) -> float:
+        """The scatter that the residuals show, over the stated one; nan without redundancy."""
+        return math.sqrt(self.chi_square / self.redundancy) if self.redundancy > 0 else math.nan
+
+    @property
+    def factor(self) -> float:
+        """By what deviations for the stated noise are multiplied, 1 and more."""
+        return max(1.0, self.ratio) if self.redundancy > 0 else 1.0
+
+    @property
+    def observed(self) -> float:
+        """The noise that the residuals show, mm; nan without redundancy."""
+        return self.noise * self.ratio
+
+    @property
+    def effective(self) -> float:
+        """The noise that deviations are for, mm."""
+        return self.noise * self.factor
+
+    @property
+    def plausible(self) -> bool:
+        """Whether the stated noise explains the residuals; it does once in a thousand times not."""
+        return self.redundancy <= 0 or self.chi_square <= plausible(self.redundancy)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What whoever believes the deviations has to know."""
+        if self.plausible:
+            return []
+        return [
+            f"the residuals show {1e3 * self.observed:.3g} um of noise where {1e3 * self.noise:.3g}"
+            f" um is stated: chi square {self.chi_square:.4g} with {self.redundancy} degrees of "
+            f"freedom, {plausible(self.redundancy):.4g} is plausible. Deviations are those of what "
+            f"the residuals show, {self.factor:.3g} times those of the stated noise; state the "
+            "noise that there is (--noise), or look for what else is in the readings"
+        ]
+
+    def report(self) -> dict[str, float | int | bool | None]:
+        """Return the figures as plain values, mm."""
+        return {
+            "stated": self.noise,
+            "observed": self.observed if self.redundancy > 0 else None,
+            "chi-square": self.chi_square,
+            "degrees-of-freedom": self.redundancy,
+            "plausible": self.plausible,
+            "deviations-scaled-by": self.factor,
+        }
+
+
 def solve(matrix: FloatArray, observed: FloatArray, deviation: FloatArray) -> Solution:
     """Return the solution x of matrix (m, n) @ x = observed (m,), standard deviations (m,)."""
     scaled = matrix / deviation[:, None]
@@ -64,10 +129,25 @@ def solve(matrix: FloatArray, observed: FloatArray, deviation: FloatArray) -> So
     return Solution(value, back @ back.T, right[~known].T, target - scaled @ value)
 
 
+def belonging(standardised: FloatArray, outlying: float) -> NDArray[np.bool_]:
+    """Return which readings (n,) belong to the rest, by their residuals over their deviations.
+
+    `standardised` (n, k) are for the stated noise, `outlying` is from where on one is an outlier.
+    Where more than a few are, they are not outliers but the noise is larger than was stated: that
+    which most of them show is the measure then. (The median of what is normal is 0.6745 of its
+    standard deviation.)
+    """
+    size = standardised.max(axis=1)
+    if np.count_nonzero(size > outlying) * FEW <= len(size):
+        return np.asarray(size <= outlying)
+    shown = max(1.0, float(np.median(standardised)) / 0.6745)
+    return np.asarray(size <= outlying * shown)
+
+
 def plausible(degrees: int) -> float:
     """Return what chi square with some degrees of freedom exceeds once in a thousand times.
 
-    By Wilson and Hilferty (Proc. Nat. Acad. Sci. 17 (1931) 684); within 3 % of the tables.
+    By Wilson and Hilferty (Proc. Nat. Acad. Sci. 17 (1931) 684); within 4 % of the tables.
     """
     part = 2.0 / (9.0 * degrees)
     return degrees * (1.0 - part + 3.0902 * math.sqrt(part)) ** 3

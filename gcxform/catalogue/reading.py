@@ -46,11 +46,15 @@ CODES: dict[str, tuple[str, str]] = {
     ),
     "GX205": (
         "A number without a decimal point",
-        "On this control a distance without a point counts in its least increment, so that X10 "
-        "may be 10 mm or 10 micrometres. The program does not say which, and a guess is wrong "
-        'by a factor of a thousand. Say `increment = "0.001 mm"` in [input], or --increment; 0 '
-        "needs neither. A feed without a point is refused where settings of the control decide "
-        "on its unit: write the point, or on a Haas say `feed-increment` in [input].",
+        "On this control a distance without a point counts in its least increment or in units, as "
+        "a setting has it: X10 is 10 micrometres or 10 mm. The program does not say which, and a "
+        'guess is wrong by a factor of a thousand. Say `increment = "IS-B"` in [input] (0.001 mm '
+        "in G21, 0.0001 inch in G20, 0.001 deg; IS-A, IS-C, IS-D and IS-E are known as well), or "
+        '`increment = "calculator"` where 1 is 1 mm, 1 inch, 1 deg; a length such as "1 um" is '
+        "that length whatever unit is in force, and says nothing of angles. 0 needs neither. What "
+        'is computed is rounded to the increment: "calculator IS-B" says both. A feed without a '
+        "point is refused where settings of the control decide on its unit: write the point, or "
+        "say `feed-increment` in [input].",
     ),
     "GX206": (
         "Code that would have to be run",
@@ -165,6 +169,21 @@ CODES: dict[str, tuple[str, str]] = {
         "taken for one that never ends. A loop that waits for an input, or that is left by a "
         "button, cannot be written out as plain blocks.",
     ),
+    "GX226": (
+        "Only a subprogram, which nothing in this file calls",
+        "What is transformed is what the control executes when it runs this file. A subprogram "
+        "that nothing in the file calls is not executed, so it would be left as it is, and what it "
+        "does depends on who calls it. Put it into the file of the program that calls it, and "
+        "transform that. Beside a program that moves, such subprograms are kept as they stand, "
+        "behind its end; the certificate says how many.",
+    ),
+    "GX229": (
+        "A way home that leads down first",
+        "G28 under G90 goes to the point that its words name, in the coordinates of the part, and "
+        "from there home: `G90 G28 Z0` drives the tool to Z0 of the part. The program is read and "
+        "written as it says; this is a warning. `G91 G28 Z0` goes home from where the tool "
+        "stands.",
+    ),
     "GX230": (
         "Cutter compensation that the control refuses",
         "G41, G42 or G40 stands where the control stops with an alarm, or a code stands between "
@@ -190,6 +209,27 @@ CODES: dict[str, tuple[str, str]] = {
         "Points of it that are moved for another reason would be offset as well, and the moves "
         "that begin and end compensation must stay whole. Put the pass `cutter-comp` before: then "
         "there is the path of the centre, and no compensation in the control.",
+    ),
+    "GX240": (
+        "A program that has been turned into commands already",
+        "A comment in the program says that a run has turned its positions into others: into "
+        "commands compensated for a machine's errors, or from tips to axes. The chain takes them "
+        "for what they were before, and would do the same twice, or to the wrong positions. Take "
+        "the program as it was posted. Where the comment is wrong, `--again`, or `again = true` "
+        "in [input], runs the chain all the same, and the certificate says so.",
+    ),
+    "GX241": (
+        "A program on which this pipeline has run",
+        "The stamp in the program is that of this very pipeline, with the same options, models and "
+        "machine, and nothing has been edited since. Nothing is left to be done: `post` leaves the "
+        "file as it is and exits with 0; `run` writes nothing. `--again` runs it once more.",
+    ),
+    "GX242": (
+        "A stamped program that has been edited",
+        "The seal near the end of a stamped program is a digest of its lines. They are others "
+        "now, or some are gone, or the seal itself is. What the stamp says may hold no longer, and "
+        "nobody has proved the program as it is. This is a warning where no step depends on what "
+        "positions are; otherwise the program is refused (GX240).",
     ),
     # --- 3xx: geometry ---
     "GX301": (
@@ -279,6 +319,14 @@ CODES: dict[str, tuple[str, str]] = {
         "turn the head in no time. Write such moves in inverse time (G93): `rtcp` does, and the "
         "pass `feed` before this one.",
     ),
+    "GX317": (
+        "A feed move that begins or ends where nothing is compensated",
+        "A machine errs everywhere: also at the points of the machine that G53 and G28 lead to, "
+        "and where it stands before the program. Rapids there are written as they stand, and the "
+        "certificate says how far off the machine is. A feed move that began or ended there would "
+        "be cut from a wrong place, slanting. Lead a rapid that names X, Y and Z to its beginning: "
+        "rapids to program positions are compensated.",
+    ),
     "GX320": (
         "A feed that cannot be converted",
         "Between G93 and G94 a feed is converted by the length of its move, as the control "
@@ -342,5 +390,12 @@ CODES: dict[str, tuple[str, str]] = {
         "corners, so that it would cut into the contour; or the move that begins compensation is "
         "not longer than the tool's radius. Use a smaller tool, or change the contour. LinuxCNC "
         "stops at most of these and cuts into the contour at some.",
+    ),
+    "GX351": (
+        "A rounded contour leads the tool elsewhere",
+        "Under G41 and G42 the control offsets the contour that it reads. To round a point of it "
+        "moves the centre of the tool by more: in the measure of both radii beside an arc, and by "
+        "the slant of a corner; or the tool no longer fits where it did by a hair. Write more "
+        "decimals, or put `cutter-comp` before: then the path of the centre is what is rounded.",
     ),
 }

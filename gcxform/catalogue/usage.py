@@ -22,6 +22,12 @@ CODES: dict[str, tuple[str, str]] = {
         "tool axis or time are not those of the program. Nothing was written. This is a bug of "
         "gcxform or of a plugin; please report it with the program.",
     ),
+    "GX609": (
+        "The output does not have the stamps that it should have",
+        "What was written is searched for stamps, as any program is before it is read. There is "
+        "another one than was meant to be written, or none, or the seal does not fit; so the same "
+        "could be done to the program twice. Nothing was written. This is a bug of gcxform.",
+    ),
     "GX701": (
         "Unknown key in a pipeline",
         "A pipeline file, or an option of a pass, has a key which means nothing there; a misspelt "
@@ -226,6 +232,26 @@ CODES: dict[str, tuple[str, str]] = {
         "Its programs are not written in words. They are turned into blocks that are, and what is "
         "written has to be a program of another control: name it in [output], or with -t.",
     ),
+    "GX748": (
+        "A tolerance without a unit, and a large one",
+        "A length without a unit is in mm, so `chord-error = 5` allows 5 mm. Above 0.1 mm that is "
+        'rarely meant. Write the unit: `chord-error = "5 um"`, or "5 mm" if it is so; this is '
+        "a warning, and the pipeline runs as it stands.",
+    ),
+    "GX760": (
+        "A file names another that lies elsewhere",
+        "A pipeline, machine or model file may name files in its own folder and below, or below "
+        "the folder in which gcxform is called. What comes with a job could otherwise make it "
+        "read any file of the computer. Copy the file there, name it on the command line (-m, or "
+        "model=... in -x), or allow it with --allow-outside.",
+    ),
+    "GX761": (
+        "A limit is reached",
+        "A line, an expression, a number of moves or the parts of an error model are larger than "
+        "any machine has use for; usually a unit is missing or a file is not what it is taken "
+        "for. If it is meant, raise the limit: KEY = N in [limits] of the pipeline, or "
+        "--limit KEY=N. What is said on the command line replaces [limits].",
+    ),
     "GX801": (
         "Two plugins offer the same name",
         "Which one a pipeline means would depend on the order of installation. Uninstall one of "
@@ -254,5 +280,11 @@ CODES: dict[str, tuple[str, str]] = {
         "The operating system refused to read or to write, and the message is its own; or it ended "
         "a process that took part in a run, as it does when memory runs out. Results are renamed "
         "into place only when they are complete.",
+    ),
+    "GX904": (
+        "A file changed while it was read",
+        "Somebody writes into it at this moment: a CAM system that has not finished, or a copy "
+        "that is under way. What was read would be a mixture. Nothing was written; run it again "
+        "when the file is complete.",
     ),
 }

@@ -3,7 +3,7 @@
 A verb's file is imported when the verb is called, so that `gcxform --help` waits for click alone.
 stdout carries data only; what is said to a person goes to stderr. Exit codes: 0 done; 1 findings;
 2 usage, pipeline or machine file; 3 program refused; 4 verification failed; 5 input or output
-failed; 70 a bug; 130 interrupted.
+failed; 70 a bug; 128 and the signal that ended it: 130 interrupted, 143 terminated.
 """
 
 from __future__ import annotations
@@ -15,9 +15,13 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, Final, NoReturn
 
-import click
+from gcxform.cli.signals import end_quietly
 
-from gcxform.version import VERSION
+end_quietly()  # before the first import that takes time
+
+import click  # noqa: E402
+
+from gcxform.version import VERSION  # noqa: E402
 
 VERBS: Final = {
     "run": "Transform a program, prove the result, and write it.",
@@ -59,8 +63,7 @@ class Verbs(click.Group):
         gc.freeze()  # looking at modules again and again costs a twentieth of a run
         gc.set_threshold(OBJECTS_BETWEEN)
         gc.enable()
-        if not command.params or command.params[-1].name != DEBUG:
-            command.params.append(_debug_option())
+        _equip(command)
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -84,6 +87,54 @@ class Verbs(click.Group):
 
         words = list(sys.argv[1:] if args is None else args)
         sys.exit(guarded(self, prog_name or "gcxform", words, extra))
+
+
+def _equip(command: click.Command) -> None:
+    """Give a verb, and what stands under it, the options that every verb takes."""
+    if not command.params or command.params[-1].name != DEBUG:
+        command.params += [_limit_option(), _outside_option(), _debug_option()]
+    for under in getattr(command, "commands", {}).values():
+        _equip(under)
+
+
+def _limit_option() -> click.Option:
+    """Return the option that raises a limit of what a run may take."""
+    return click.Option(
+        ["--limit", "limit"],
+        metavar="KEY=N",
+        multiple=True,
+        expose_value=False,
+        is_eager=True,
+        help="Raise a limit that a message names; replaces [limits] of the pipeline.",
+        callback=_set_limits,
+    )
+
+
+def _set_limits(ctx: click.Context, _: click.Parameter, given: Sequence[str]) -> None:
+    if given:
+        from gcxform.cli.described import limits_of
+        from gcxform.limits import in_force
+
+        ctx.with_resource(in_force(limits_of(given)))
+
+
+def _outside_option() -> click.Option:
+    """Return the option that lets files name others anywhere."""
+    return click.Option(
+        ["--allow-outside"],
+        is_flag=True,
+        expose_value=False,
+        is_eager=True,
+        help="Let pipeline, machine and model files name files outside of their folder.",
+        callback=_allow_outside,
+    )
+
+
+def _allow_outside(ctx: click.Context, _: click.Parameter, said: bool) -> None:
+    if said:
+        from gcxform.inputs import allow_outside
+
+        allow_outside()
 
 
 def _debug_option() -> click.Option:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any, Final
 
 from gcxform.cli.options import ENVIRONMENT
 from gcxform.diagnostics import Location, UsageError
@@ -14,7 +16,15 @@ from gcxform.machine.machinefile import load_machine
 from gcxform.modal.state import Reading
 from gcxform.options import Argument, build
 from gcxform.pipeline import Pipeline
-from gcxform.pipelinefile import InputSpec, PipelineSpec, load, parse_chain
+from gcxform.pipelinefile import (
+    SECTIONS,
+    InputSpec,
+    OutputSpec,
+    PipelineSpec,
+    chain_doubts,
+    load,
+    parse_chain,
+)
 from gcxform.registry import Registry, default_registry
 
 
@@ -31,6 +41,14 @@ class Asked:
     increment: str | None = None
     block_delete: str | None = None
     feed_increment: str | None = None
+    feed: str | None = None
+    units: str | None = None
+    parameters: str | None = None
+    budget: str | None = None
+    growth: str | None = None
+    decimals: str | None = None
+    no_stamp: bool = False
+    again: bool = False
 
     @property
     def file(self) -> str | None:
@@ -54,7 +72,8 @@ class Asked:
         """Return the pipeline. Raises UsageError."""
         registry = registry or default_registry()
         spec = self._spec(registry)
-        spec = replace(spec, input=self._merged(spec.input))
+        output = replace(spec.output, stamp=spec.output.stamp and not self.no_stamp)
+        spec = self._limited(replace(spec, input=self._merged(spec.input), output=output))
         machine = Path(self.machine) if self.machine else None
         return Pipeline.of_spec(spec, registry, self.dialect or "", self.to or "", machine)
 
@@ -70,42 +89,60 @@ class Asked:
                 hint=f"-p FILE, -x 'absolute | ...', or set {ENVIRONMENT}; "
                 "-x '' -f DIALECT is the pipeline that changes nothing",
             )
-        return PipelineSpec(passes=tuple(parse_chain(self.chain, Path.cwd(), registry)))
+        passes = tuple(parse_chain(self.chain, Path.cwd(), registry))
+        return PipelineSpec(passes=passes, warnings=chain_doubts(self.chain))
 
     def _merged(self, given: InputSpec) -> InputSpec:
         """Return the section `[input]` of the file with what the command line says instead."""
         said = self.input()
-        return replace(
-            given,
-            start={**given.start, **said.start},
-            increment=given.increment if said.increment is None else said.increment,
-            feed_increment=(
-                given.feed_increment if said.feed_increment is None else said.feed_increment
-            ),
-            block_delete=said.block_delete or given.block_delete,
-        )
+        named = {key.replace("-", "_") for key in self._given()}
+        changes = {name: getattr(said, name) for name in named}
+        for name in named & {"start", "parameters"}:
+            changes[name] = {**getattr(given, name), **changes[name]}
+        return replace(given, again=given.again or self.again, **changes)
+
+    def _limited(self, spec: PipelineSpec) -> PipelineSpec:
+        """Return what a file says with the budget and the decimals of the command line."""
+        limits = {"deviation": self.budget, "growth": self.growth}
+        raw = {key: Argument(value) for key, value in limits.items() if value is not None}
+        said = self._built(SECTIONS["budget"], raw)
+        if said.deviation is not None:
+            spec = replace(spec, budget=said.deviation)
+        if said.growth is not None:
+            spec = replace(spec, growth=said.growth)
+        if self.decimals is None:
+            return spec
+        several = "=" in self.decimals
+        decimals = _pairs(self.decimals, "decimals") if several else Argument(self.decimals)
+        written = self._built(OutputSpec, {"decimals": decimals})
+        return replace(spec, output=replace(spec.output, decimals=written.decimals))
 
     def input(self) -> InputSpec:
         """Return what the command line says as the section `[input]`. Raises UsageError."""
-        raw: dict[str, object] = {}
+        said: InputSpec = self._built(InputSpec, self._given())
+        return said
+
+    def _given(self) -> dict[str, object]:
+        """Return what is said of the program, by the keys of `[input]`."""
+        keys = ("increment", "feed-increment", "block-delete", "feed", "units")
+        said = {key: getattr(self, key.replace("-", "_")) for key in keys}
+        raw: dict[str, object] = {key: Argument(v) for key, v in said.items() if v is not None}
         if self.start:
-            raw["start"] = _pairs(self.start)
-        if self.increment is not None:
-            raw["increment"] = Argument(self.increment)
-        if self.feed_increment is not None:
-            raw["feed-increment"] = Argument(self.feed_increment)
-        if self.block_delete:
-            raw["block-delete"] = self.block_delete
-        where = {key: f"--{key}" for key in ("start", "increment", "feed-increment")}
-        return build(
-            InputSpec, raw, Path.cwd(), (), lambda key: Location(where.get(key, key)), "input"
-        )
+            raw["start"] = _pairs(self.start, "start")
+        if self.parameters:
+            raw["parameters"] = _pairs(self.parameters, "parameters")
+        return raw
+
+    @staticmethod
+    def _built(section: type[Any], raw: Mapping[str, object]) -> Any:
+        """Return a section of what was said. Raises UsageError."""
+        return build(section, raw, Path.cwd(), (), lambda key: Location(f"--{key}"), "input")
 
     def reading(self) -> Reading:
         """Return what the command line says for reading a program without a pipeline."""
         said = self.input()
-        given = (dict(said.start), said.increment, None, said.block_delete, said.units)
-        reading = Reading(*given, said.feed_increment)
+        given = (dict(said.start), said.increment, said.feed, said.block_delete, said.units)
+        reading = Reading(*given, said.feed_increment, said.parameters)
         return reading.on(self.loaded_machine) if self.loaded_machine else reading
 
 
@@ -125,18 +162,27 @@ def needed_dialect(name: str | None, option: str = "-f") -> str:
     )
 
 
-def _pairs(text: str) -> dict[str, Argument]:
-    """Return `X=4,Y=-2` as a table."""
+WHAT: Final = {
+    "start": "axis and its position",
+    "decimals": "address and its decimals",
+    "parameters": "parameter and its value",
+}
+EXAMPLES: Final = {"start": "X=4,Y=-2", "decimals": "X=4,A=3", "parameters": "100=1.5,<depth>=2"}
+
+
+def _pairs(text: str, option: str) -> dict[str, Argument]:
+    """Return `X=4,Y=-2` as a table; letters are those of axes or addresses."""
     pairs: dict[str, Argument] = {}
     for part in text.split(","):
         axis, equals, value = part.strip().partition("=")
-        axis = axis.strip().upper()
+        axis = axis.strip()
+        axis = axis if option == "parameters" else axis.upper()
         if not equals or not axis or axis in pairs:
             raise UsageError.one(
                 "GX702",
-                f"{part.strip()!r} is not one axis and its position",
-                Location("--start"),
-                "write --start X=4,Y=-2",
+                f"{part.strip()!r} is not one {WHAT[option]}",
+                Location(f"--{option}"),
+                f"write --{option} {EXAMPLES[option]}",
             )
         pairs[axis] = Argument(value.strip())
     return pairs

@@ -8,13 +8,15 @@ from typing import Any
 import click
 import numpy as np
 
+from gcxform.centrepath import CentreProof
+from gcxform.certifying import assumptions
 from gcxform.chain import facts_after
 from gcxform.cli import VERBS, options
 from gcxform.cli.asked import Asked
 from gcxform.cli.failures import warn
 from gcxform.cli.programs import opened
 from gcxform.contract import Pass
-from gcxform.diagnostics import PRINTED_AT_MOST, Diagnostic, InputError
+from gcxform.diagnostics import PRINTED_AT_MOST, Diagnostic, InputError, Severity
 from gcxform.flow.written_out import located, written_out
 from gcxform.modal.ending import Ending
 from gcxform.modal.interpreter import Interpreter
@@ -22,6 +24,8 @@ from gcxform.modal.reader import windows_of
 from gcxform.pipeline import Pipeline
 from gcxform.registry import default_registry
 from gcxform.source import Source
+from gcxform.stamp import stamps_in
+from gcxform.stamped import edited, told
 from gcxform.toolpath.facts import Fact
 
 STATELESS = frozenset({"GX101", "GX201", "GX202", "GX205", "GX206", "GX210", "GX211"})
@@ -38,7 +42,7 @@ def command(file: str | None, **asked: Any) -> int:
     if not what.says_chain and file is not None and what.dialect:
         what = Asked(**{**asked, "chain": ""})
     pipeline = what.build()
-    warn(default_registry().diagnostics)
+    warn((*default_registry().diagnostics, *pipeline.warnings))
     text = "\n".join(chain(pipeline))
     if file is None:
         click.echo(text)
@@ -65,8 +69,8 @@ def chain(pipeline: Pipeline) -> list[str]:
             if facts := getattr(step, name):
                 lines.append(f"       {name:8} {_names(facts)}")
         lines.append(f"       then     {_names(facts_after(pipeline.path_passes, done))}")
-        proved = "proved by itself, and then exact"
-        lines.append(f"       promise  {proved if step.resolves else _length(step.promise)}")
+        proved = ", proved by itself" if step.resolves else ""
+        lines.append(f"       promise  {_length(step.promise)}{proved}")
     return [*lines, f"write  {pipeline.target.name}", *_budget(pipeline)]
 
 
@@ -87,9 +91,15 @@ def _budget(pipeline: Pipeline) -> list[str]:
     return [
         f"steps     {_length(pipeline.promised())}",
         f"rounding  {pipeline.rounding() * 1000:.3g} um",
-        f"budget    {pipeline.limit() * 1000:.4g} um, {kind}",
+        f"budget    {_limits(pipeline)}, {kind}",
         *growth,
     ]
+
+
+def _limits(pipeline: Pipeline) -> str:
+    """Return the budget, and that of a program with arcs where it is another."""
+    plain, arcs = (pipeline.limit(arcs=arcs) * 1000 for arcs in (False, True))
+    return f"{plain:.4g} um" + (f" ({arcs:.4g} um if there are arcs)" if arcs > plain else "")
 
 
 # --- the program ---
@@ -97,22 +107,44 @@ def _budget(pipeline: Pipeline) -> list[str]:
 
 def _check(pipeline: Pipeline, source: Source) -> int:
     """Say what speaks against a program; return the exit code."""
-    found = list(_first(_reading(pipeline, source))) or _refusals(pipeline, source)
+    stamps = stamps_in(source)
+    for line in told(stamps):
+        click.echo(f"stamp     {line}")
+    warn(edited(stamps.edited, source.name, stamps.line))
+    taken: list[str] = []
+    found = _again(pipeline, source) or list(_first(_reading(pipeline, source, taken)))
+    found = found or _refusals(pipeline, source, taken)
     lines = sum(len(window) for window, _ in windows_of(source, pipeline.read_as))
     warn(found)
+    found = [each for each in found if each.severity is Severity.ERROR]
+    for line in dict.fromkeys(taken):
+        click.echo(f"assumed   {line}")
     count = f"{len(found)}{'+' if len(found) >= ENOUGH else ''}" if found else "no"
     click.echo(f"{source.name}: {lines} lines, {count} finding{'' if len(found) == 1 else 's'}")
     return 1 if found else 0
 
 
-def _reading(pipeline: Pipeline, source: Source) -> Iterator[Diagnostic]:
-    """Yield what speaks against reading a program, or the blocks that it executes."""
+def _again(pipeline: Pipeline, source: Source) -> list[Diagnostic]:
+    """Return why the chain must not run on a program to which something has been done."""
     try:
-        executed = written_out(source, pipeline.read_as, pipeline.machine_reading)
+        pipeline.marks(source)
+    except InputError as error:
+        return list(error.diagnostics)
+    return []
+
+
+def _reading(pipeline: Pipeline, source: Source, taken: list[str]) -> Iterator[Diagnostic]:
+    """Yield what speaks against reading a program, or the blocks that it executes.
+
+    `taken` gets what was assumed on the way.
+    """
+    try:
+        told = pipeline.machine_reading, None if pipeline.copies else pipeline.target
+        executed = written_out(source, pipeline.read_as, *told)
     except InputError as error:
         yield from error.diagnostics
         return
-    for diagnostic in reading_findings(pipeline, executed):
+    for diagnostic in reading_findings(pipeline, executed, taken):
         yield from located(InputError((diagnostic,)), executed).diagnostics
 
 
@@ -121,33 +153,40 @@ def _first(found: Iterator[Diagnostic]) -> Iterator[Diagnostic]:
         yield diagnostic
 
 
-def reading_findings(pipeline: Pipeline, source: Source) -> Iterator[Diagnostic]:
-    """Yield what speaks against reading a program.
+def reading_findings(
+    pipeline: Pipeline, source: Source, taken: list[str] | None = None
+) -> Iterator[Diagnostic]:
+    """Yield what speaks against reading a program; `taken` gets what was assumed on the way.
 
     After the first window that is refused nothing is known of the state any more, so from there on
     only those findings count that are about a block by itself.
     """
     axes = source.axes(pipeline.source.axes)
+    chosen = source.assumed
     source, dialect = pipeline.without_tip_codes(source)
     interpreter = Interpreter(dialect, pipeline.machine_reading, axes, source.name)
     ending = Ending(pipeline.source, source.name)
+    centres = CentreProof(pipeline.context, source.name)
+    stays = not any(step.resolves for step in pipeline.path_passes)
     refused = False
     for window, reader in windows_of(source, dialect):
         try:
-            interpreter.interpret(window, reader.table)
+            path = interpreter.interpret(window, reader.table).path
+            yield from centres.stops(path) if stays else ()
         except InputError as error:
             yield from (d for d in error.diagnostics if not refused or d.code in STATELESS)
             refused = True
         ending.look(window, reader.table)
-    ending.close()
-    if ending.finding is not None:
-        yield ending.finding
+    yield from ending.wrong
+    if taken is not None and not refused:
+        taken += assumptions(interpreter, pipeline.source, chosen)
 
 
-def _refusals(pipeline: Pipeline, source: Source) -> list[Diagnostic]:
-    """Return why the passes or the writing refuse a program that can be read."""
+def _refusals(pipeline: Pipeline, source: Source, taken: list[str]) -> list[Diagnostic]:
+    """Return why the passes or the writing refuse a program that can be read, or warnings."""
     try:
-        pipeline.run_stream(source, len)
+        done = pipeline.run_stream(source, len)
     except InputError as error:
         return list(error.diagnostics)
-    return []
+    taken += done.assumed
+    return done.warnings

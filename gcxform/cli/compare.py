@@ -119,6 +119,10 @@ def report(found: Comparison, a: Program, b: Program) -> str:
             lines.append(f"largest difference of a rotary axis {found.angle:.6f} degrees")
     if found.ends_only:
         lines.append(f"{found.ends_only} moves only at their ends: rapids, unknown starts")
+    if found.spared:
+        off = f"off by up to {found.spared_by:.4f} mm, and compared by what the control is told"
+        rapids = f"{found.spared} rapid{'s' if found.spared != 1 else ''}"
+        lines.append(f"{rapids} of B left to the machine: {off}")
     for name, all_ in (("feeds", found.feeds), ("events", found.events)):
         lines.append(f"{name}: {'differ' if all_ else 'the same'}")
         lines += [f"  {d.what} (line {d.line_a} of A, line {d.line_b} of B)" for d in all_[:SHOWN]]

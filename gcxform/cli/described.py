@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
-from gcxform.diagnostics import Location
+from gcxform.diagnostics import Location, UsageError
+from gcxform.limits import Limits
 from gcxform.options import Argument, OptionDoc, build, describe
 from gcxform.registry import default_registry
 
@@ -37,6 +38,17 @@ def _metavar(doc: OptionDoc) -> str:
 def _help(doc: OptionDoc) -> str:
     text = f"{doc.help[:1].upper()}{doc.help[1:]}."
     return f"{text}  [default: {doc.default}]" if doc.default else text
+
+
+def limits_of(given: Sequence[str]) -> Limits:
+    """Return the limits of words like `rows=2000000`. Raises UsageError."""
+    where = Location("--limit")
+    pairs = [text.partition("=") for text in given]
+    if wrong := [text for text, (key, equals, _) in zip(given, pairs, strict=True) if not equals]:
+        hint = "write --limit rows=2000000"
+        raise UsageError.one("GX702", f"{wrong[0]!r} is not a limit and its value", where, hint)
+    raw = {key.strip(): Argument(value.strip()) for key, _, value in pairs}
+    return build(Limits, raw, Path.cwd(), (), lambda key: where, "--limit")
 
 
 def built(target: type[Built], given: Mapping[str, Any], owner: str) -> Built:

@@ -10,18 +10,24 @@ import tempfile
 import traceback
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any, Final, TextIO
 
 import click
 
 from gcxform.cli import DEBUG
+from gcxform.cli.options import ENVIRONMENT
+from gcxform.cli.signals import Ended, ending
 from gcxform.diagnostics import Diagnostic, FileError, GcxformError, render_all
+from gcxform.inputs import visit
 from gcxform.version import VERSION
+from gcxform.wayout import for_chain
 
 USAGE: Final = 2
 FAILED: Final = 5
 BUG: Final = 70
 INTERRUPTED: Final = 130
+WORDS: Final = "gcxform.words"
 
 _HEAD = re.compile(r"\b(error|warning|note)\[(GX\d+)\]:")
 _COLOUR = {"error": "31;1", "warning": "33;1", "note": "36;1"}
@@ -29,11 +35,21 @@ _COLOUR = {"error": "31;1", "warning": "33;1", "note": "36;1"}
 
 def guarded(group: click.Command, name: str, words: list[str], extra: Mapping[str, Any]) -> int:
     """Run a command and return its exit code; whatever goes wrong is said on stderr."""
-    meta: dict[str, Any] = {}
     _tolerate_names()
+    try:
+        with ending(), visit():
+            return _run(group, name, words, extra)
+    except Ended as stopped:
+        say(str(stopped))
+        return stopped.exit_code
+
+
+def _run(group: click.Command, name: str, words: list[str], extra: Mapping[str, Any]) -> int:
+    meta: dict[str, Any] = {}
     try:
         with group.make_context(name, words, **extra) as context:
             meta = context.meta
+            meta[WORDS] = words
             code = group.invoke(context)
         if sys.stdout is not None:
             sys.stdout.flush()
@@ -44,12 +60,12 @@ def guarded(group: click.Command, name: str, words: list[str], extra: Mapping[st
         error.show()
         return USAGE
     except GcxformError as error:
-        say(paint(error.render(), sys.stderr))
+        say(paint(render_all(_typed(error.diagnostics, words)), sys.stderr))
         return error.exit_code
-    except (KeyboardInterrupt, click.Abort):
+    except click.Abort:
         say("interrupted")
         return INTERRUPTED
-    except OSError as error:
+    except (OSError, MemoryError) as error:
         return _system_failure(error)
     except Exception:
         return _bug(words, bool(meta.get(DEBUG)))
@@ -64,8 +80,23 @@ def say(text: str) -> None:
 
 def warn(diagnostics: Iterable[Diagnostic]) -> None:
     """Write findings that stop nothing to stderr."""
-    if text := render_all(diagnostics):
+    context = click.get_current_context(silent=True)
+    words = [] if context is None else context.meta.get(WORDS, [])
+    if text := render_all(_typed(diagnostics, words)):
         say(paint(text, sys.stderr))
+
+
+def _typed(diagnostics: Iterable[Diagnostic], words: Iterable[str]) -> list[Diagnostic]:
+    """Return diagnostics with hints for who has no pipeline file: as the command line takes them.
+
+    Who named one, or has one in the environment, can write into it what a hint gives.
+    """
+    options = [word.partition("=")[0] for word in words]
+    chain = any(word == "--chain" or word.startswith("-x") for word in options)
+    file = any(word == "--pipeline" or word.startswith("-p") for word in options)
+    if file or (os.environ.get(ENVIRONMENT) and not chain):
+        return list(diagnostics)
+    return [replace(each, hint=for_chain(each.hint)) for each in diagnostics]
 
 
 def paint(text: str, stream: TextIO) -> str:
@@ -82,9 +113,11 @@ def _tolerate_names() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
-def _system_failure(error: OSError) -> int:
+def _system_failure(error: OSError | MemoryError) -> int:
     """Report what the operating system refused; a reader that went away is no news."""
     _abandon_stdout()
+    if isinstance(error, MemoryError):
+        error = OSError(errno.ENOMEM, "there is not enough memory")
     if error.errno == errno.EPIPE:
         return FAILED
     what = f"{error.filename}: " if error.filename else ""

@@ -27,6 +27,8 @@ from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.registry import default_registry
 from gcxform.source import Source
+from gcxform.stamp import stamps_in
+from gcxform.stamped import told
 from gcxform.syntax.scan import Window
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Number, Statement
@@ -54,6 +56,7 @@ def command(file: str, dialect: str | None, as_json: bool, **asked: Any) -> None
     kind = default_registry().dialect(dialect) if dialect else None
     with opened(file) as source:
         found: dict[str, Any] = {"file": source.name, "bytes": source.size}
+        found |= {"stamps": said} if (said := told(stamps_in(source))) else {}
         if kind is None:
             found |= _words(source, Dialect) | _guess(source)
         elif kind.translator is not None:
@@ -130,7 +133,7 @@ def _text(found: dict[str, Any]) -> Iterator[str]:
         elif isinstance(value, dict):
             yield f"{name:>15}  {'  '.join(f'{k} {_number(n)}' for k, n in value.items()) or '-'}"
         elif isinstance(value, list):
-            yield f"{name:>15}  {' '.join(value) or '-'}"
+            yield f"{name:>15}  {('; ' if key == 'stamps' else ' ').join(value) or '-'}"
         else:
             yield f"{name:>15}  {value}"
 

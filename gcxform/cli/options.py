@@ -29,19 +29,39 @@ _PIPELINE = (
         "-p", "--pipeline", metavar="FILE", help=f"Pipeline (TOML).  [env: {ENVIRONMENT}]"
     ),
     click.option("-x", "--chain", metavar="CHAIN", help="Passes: 'absolute | metric'."),
+    click.option("--budget", metavar="LENGTH", help="What all steps together may deviate."),
+    click.option("--growth", metavar="NUMBER", help="Blocks that may be written for each one."),
+    click.option("--decimals", metavar="X=4,A=3", help="Decimals of numbers, or one for all."),
 )
 _READING = (
     click.option("-m", "--machine", metavar="FILE", help="Machine file (TOML)."),
     click.option("--start", metavar="X=4,Y=-2", help="Where axes stand before the first block."),
-    click.option("--increment", metavar="LENGTH", help="What 1 means in a distance without point."),
     click.option(
-        "--feed-increment", metavar="NUMBER", help="What 1 means in an F without point, a minute."
+        "--increment",
+        metavar="IS-B",
+        help="What 1 means in a distance without point: IS-A to IS-E, calculator, or a length.",
+    ),
+    click.option(
+        "--feed-increment",
+        metavar="NUMBER",
+        help="What 1 means in an F without point: a number a minute, calculator, or IS-B.",
     ),
     click.option(
         "--block-delete",
         type=click.Choice(["execute", "skip"]),
         help="What the control does with / blocks.",
     ),
+    click.option("--feed", metavar="NUMBER", help="The feed before the first F word, a minute."),
+    click.option(
+        "--units", type=click.Choice(["mm", "in"]), help="Units before the first G20 or G21."
+    ),
+    click.option("--parameters", metavar="100=1.5", help="Values that the program does not set."),
+)
+
+
+_STAMPS = (
+    click.option("--no-stamp", is_flag=True, help="Write no comment that says what was done."),
+    click.option("--again", is_flag=True, help="Run on stamped programs too."),
 )
 
 
@@ -55,6 +75,6 @@ def reading_options(command: Command) -> Command:
 def pipeline_options(command: Command) -> Command:
     """Add the options that make a pipeline."""
     command = reading_options(command)
-    for option in (TO, FROM, *reversed(_PIPELINE)):
+    for option in (*reversed(_STAMPS), TO, FROM, *reversed(_PIPELINE)):
         command = option(command)
     return command

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import IO
 
 from gcxform.cli.asked import excluding
-from gcxform.cli.programs import IN_MEMORY
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.files import write_atomically
+from gcxform.source import IN_MEMORY
 
 STDOUT = "-"
 
@@ -41,6 +41,8 @@ def destination(name: str) -> Iterator[Callable[[bytes], object]]:
 
 def _hand_on(copy: IO[bytes], name: str) -> None:
     """Copy a finished result to stdout, a pipe or a device."""
+    if name == STDOUT and sys.stdout is None:
+        raise FileError.one("GX902", "cannot write stdout: it is closed")
     try:
         if name == STDOUT:
             shutil.copyfileobj(copy, sys.stdout.buffer)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from gcxform import inputs
 from gcxform.cli.asked import Asked
 from gcxform.cli.measured import any_length, check_axis, length_of, path_of, three_lengths, write
 from gcxform.cli.outputs import STDOUT, check_places
@@ -187,7 +188,7 @@ def centres(
     check_axis(axis, chain.letters, believed.name)
     size = any_length(radius, "--radius")
     try:
-        text = path_of(touches).read_text("ascii")
+        text = inputs.read(path_of(touches)).decode("ascii")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not plain text"
         raise FileError.one("GX901", f"cannot read {touches}: {reason}") from None

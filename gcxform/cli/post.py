@@ -14,8 +14,9 @@ import click
 from gcxform.cli import VERBS, options
 from gcxform.cli.asked import Asked, excluding
 from gcxform.cli.outputs import STDOUT, check_places
-from gcxform.cli.transform import Job, transform
+from gcxform.cli.transform import Job, edited_since, transform
 from gcxform.diagnostics import GcxformError
+from gcxform.stamped import DONE
 
 SHOWN: Final = 4  # findings that fit into a dialog box
 
@@ -37,6 +38,9 @@ def command(
     try:
         _post(Asked(**asked), Job(file, file, certificate, source_map, verify, quiet=True))
     except GcxformError as error:
+        if error.diagnostics[0].code == DONE:  # the file is what was asked for
+            print(f"{file}: {error.diagnostics[0].message}", file=sys.stderr, flush=True)
+            return 0
         print(_plain(error), file=sys.stderr, flush=True)
         return error.exit_code
     return 0
@@ -47,7 +51,9 @@ def _post(asked: Asked, job: Job) -> None:
         raise excluding("post, which edits a file, and stdin")
     written = {"--certificate": job.certificate, "--map": job.source_map}
     check_places(written, (job.file, asked.file, asked.machine))
-    transform(asked.build(), job)
+    done = transform(asked.build(), job)
+    for warning in edited_since(done.certificate):
+        print(warning.render(), file=sys.stderr, flush=True)
 
 
 def _plain(error: GcxformError) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator
 from typing import Any
 
@@ -14,9 +15,13 @@ from gcxform.cli.preamble import Preamble
 from gcxform.cli.programs import opened
 from gcxform.cli.restart import Restart
 from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
+from gcxform.dialect import Dialect
 from gcxform.machine.quantities import LENGTH
 from gcxform.pipeline import check_written
 from gcxform.registry import default_registry
+from gcxform.source import lines_in
+from gcxform.stamp import Stamps, stamps_in, without_lines
+from gcxform.stamping import Seal, comment_line
 
 
 @click.command("resume", help=VERBS["resume"], short_help=VERBS["resume"])
@@ -51,14 +56,30 @@ def command(
         preamble = restart.preamble(height, plunge, not tool_loaded)
         end = b"\r\n" if b"\r\n" in restart.rest[0] else b"\n"
         frame = ["%"] if rest and restart.state.percents == 1 else []
-        said = [*frame, *_blocks(preamble, line), *_standing(restart)]
+        stamps = stamps_in(source)
+        heads = [comment_line(kind, stamp.content).decode() for stamp in stamps.stamps]
+        said = [*frame, *heads, *_blocks(preamble, line), *_standing(restart)]
         text = b"".join(block.encode("latin-1") + end for block in said)
         if open_end := restart.prove(preamble, text):
             warn([_as_note(open_end)])
-        click.echo(text, nl=False)
-        if rest:
-            for part in restart.rest:
-                click.echo(part, nl=False)
+        whole = _sealed([text, *restart.rest], kind, stamps, end) if rest else [text]
+        for part in whole:
+            click.echo(part, nl=False)
+
+
+def _sealed(texts: list[bytes], kind: type[Dialect], stamps: Stamps, end: bytes) -> Iterator[bytes]:
+    """Yield a program with a seal of its own if it is stamped; one that did not fit stays."""
+    if not stamps:
+        yield from texts
+        return
+    first, *rest = texts
+    digest = hashlib.sha256()
+    seal = Seal(kind, digest, None if stamps.fits else "".join(stamps.seals[:1]))
+    for text in (first, *(without_lines(part) for part in rest)):
+        part, _ = seal.let_through(text, range(lines_in(text)) if text else ())
+        digest.update(part)
+        yield part
+    yield seal.close(end, True)[0]
 
 
 def _height(text: str | None) -> float | None:

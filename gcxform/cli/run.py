@@ -12,7 +12,7 @@ from gcxform.cli import VERBS, options
 from gcxform.cli.asked import Asked, excluding
 from gcxform.cli.failures import say, warn
 from gcxform.cli.outputs import STDOUT, check_places, same
-from gcxform.cli.transform import Done, Job, transform
+from gcxform.cli.transform import Done, Job, edited_since, transform
 from gcxform.pipeline import Pipeline
 from gcxform.registry import default_registry
 
@@ -44,9 +44,10 @@ def command(
     check_places({"-o": None if in_place else out, **written}, read)
     pipeline = what.build()
     if not quiet:
-        warn(default_registry().diagnostics)
+        warn((*default_registry().diagnostics, *pipeline.warnings))
     done = transform(pipeline, Job(file, out, certificate, source_map, verify, quiet))
     if not quiet:
+        warn((*edited_since(done.certificate), *done.certificate.warnings))
         say(summary(pipeline, done))
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 import time
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 
 from gcxform.certificate import Certificate
@@ -10,8 +12,10 @@ from gcxform.cli.outputs import destination
 from gcxform.cli.programs import opened
 from gcxform.cli.progress import Progress
 from gcxform.cli.sourcemap import SourceMap
+from gcxform.diagnostics import Diagnostic
 from gcxform.heap import keep
 from gcxform.pipeline import Pipeline
+from gcxform.stamped import edited
 
 
 @dataclass(frozen=True)
@@ -45,11 +49,18 @@ def transform(pipeline: Pipeline, job: Job) -> Done:
     with opened(job.file) as source, destination(job.out) as put:
         progress = Progress(source.size, job.quiet)
         try:
-            certificate = pipeline.run_stream(source, put, job.verify, lines, progress)
+            with redirect_stdout(sys.stderr):  # stdout is for the program: plugins may print
+                certificate = pipeline.run_stream(source, put, job.verify, lines, progress)
         finally:
             progress.close()
         _write_beside(job, certificate, lines)
     return Done(certificate, time.perf_counter() - began)
+
+
+def edited_since(certificate: Certificate) -> list[Diagnostic]:
+    """Return the warning about a source that is not what it was when it was stamped, if any."""
+    said = certificate.stamps
+    return [*edited(said["edited"], certificate.source["name"], said["line"])]
 
 
 def _write_beside(job: Job, certificate: Certificate, lines: SourceMap | None) -> None:

@@ -52,9 +52,10 @@ class Centres:
         start = self.path.local(self.path.start[:, :3])
         if not self.path.refit_centres:
             return start
-        exact = np.append(self.copying.believed_exact, self.copying.exact[:-1])
         before = self.positions.local(self.positions.before[:, :3])
-        return np.where(exact[:, None], start, before)
+        first = self.copying.believed_said | self.copying.believed_exact
+        exact = np.vstack([first, self.copying.said_exactly()[:-1]])
+        return np.where(exact, start, before)
 
     def _in_plane(self, plane: Plane, rows: Ints, start: Floats) -> None:
         manner = self.task.manner

@@ -8,14 +8,20 @@ not, or takes otherwise, is refused.
 
 from __future__ import annotations
 
+from typing import Final, NoReturn
+
 from gcxform.emit.draft import Draft
 from gcxform.emit.fields import Key, Role
 from gcxform.emit.manner import Manner
-from gcxform.emit.saying import STATED, like, other_in, same_m
+from gcxform.emit.saying import STATED, TAPPING, like, other_in, same_m
 from gcxform.modal.meaning import Meaning
 from gcxform.modal.sorting import only_for_cycles
+from gcxform.modal.tables import CYCLES
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import Number, Word
+
+EXPANDED: Final = frozenset(f"G{number}" for number in CYCLES) - frozenset(TAPPING)
+"""Cycles whose moves can be written one by one."""
 
 
 class CodeWords:
@@ -55,8 +61,16 @@ class CodeWords:
         if self.source is not self.target and code is not None:
             what = other_in(self.source, self.target, name, code, self.meaning.dwell)
             if what:
-                self.draft.refuse(word, what)
+                self._refuse(word, name, what)
         self.draft.literal(lead, text)
+
+    def _refuse(self, word: Word, name: str, what: str) -> NoReturn:
+        """Refuse a G code; one of a cycle that can be expanded has a way out."""
+        if name not in EXPANDED:
+            self.draft.refuse(word, what)
+        if name in self.target.codes:
+            what += f" as {self.source.name} means it"
+        self.draft.refuse(word, what, 'put the pass "cycles" before')
 
     def _states(self, word: Word, name: str, group: str, lead: bytes) -> bool:
         """Write the code that has to be stated for a group; return whether this settles it."""

@@ -13,6 +13,8 @@ from gcxform.distinct import distinct
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, as_written
+from gcxform.modal.arcs import TURN
+from gcxform.modal.lines import fill
 from gcxform.modal.meaning import FRAMING
 from gcxform.modal.tables import GROUPS
 from gcxform.toolpath.frames import Frame, by_frame
@@ -35,6 +37,7 @@ WHAT = {
 HINTS = {
     Form.CYCLE: 'put the pass "cycles" before',
     Form.SPLINE: 'put the pass "segment" before',
+    Form.PROBE: "leave the pass out that changes its coordinates: what it finds counts in them",
 }
 
 
@@ -55,6 +58,7 @@ class Copying:
         old_count = np.bincount(self.original.block, minlength=live)
         self.exact = np.zeros(len(self.path), np.bool_)
         self.believed_exact = believed.exact
+        self.believed_said = believed.said
         self.believed_position = believed.position
         self.lines = (old_count == 0) & (pieces.count == 0) & ~pieces.expanded_line
         stands = self._standing(old_count, pieces)
@@ -295,8 +299,12 @@ class Copying:
         good &= self._same_diameters(rows, others)
         words, before = self.positions.end[rows], self.original.words[others]
         alike = (np.abs(words - before) <= EXACT) | (np.isnan(words) & np.isnan(before))
+        one_move = np.isin(self.path.form[rows], (Form.PROBE, Form.SYNCHRONISED))
+        alike |= one_move[:, None] & ~self.positions.programmed[rows]
         framed = (self.path.form[rows] == Form.HOME) & (self.path.nth[rows] == 0)
-        return np.asarray(good & (alike.all(axis=1) | incremental[:, 0] | ~(framed | cycle[:, 0])))
+        framed |= one_move | cycle[:, 0]
+        as_far = incremental[:, 0] & self._same_frames(rows, others)
+        return np.asarray(good & (alike.all(axis=1) | as_far | ~framed))
 
     def _other_axes(self, rows: Ints, others: Ints) -> Flags | bool:
         """Return which axes of rows are those of another machine, and neither named nor moved."""
@@ -347,6 +355,30 @@ class Copying:
         alike = ((end == old) | (np.isnan(end) & np.isnan(old))).all(axis=1) & good
         self.exact = np.logical_and.accumulate(alike)
         return np.append(True, self.exact[:-1])
+
+    def said_exactly(self) -> Flags:
+        """Return whether the control stands exactly where the path is (rows, 3), after each row.
+
+        It does in an axis that a block in G90 has named which was copied, perhaps with more
+        decimals than are written, until one that is written anew names the axis.
+        """
+        path, believed = self.path, self.believed_said
+        copied = self.lines[path.block]
+        if not copied.any() and not believed.any():
+            return np.broadcast_to(False, (len(path), 3))
+        plain = (path.form == Form.PLAIN) & ~path.blocks.incremental[path.block]
+        whole = np.mod(path.sweep + 1e-9, TURN) < 2e-9  # a circle leaves the axes where they are
+        shifts = [frame.matrix is None and not frame.polar for frame in path.frames]
+        by_axis = np.array(shifts, np.bool_)[path.frame]
+        found = np.empty((len(path), 3), np.bool_)
+        for axis in range(3):
+            named = np.where(
+                copied, self.positions.programmed[:, axis], self.positions.write[:, axis]
+            )
+            named &= ~(path.is_arc & whole) | copied
+            exact = copied & plain & by_axis
+            found[:, axis] = fill(exact, named, bool(believed[axis]))
+        return found | self.exact[:, None]
 
     def _same_arcs(self, rows: Ints, others: Ints, starts_exact: Flags) -> Flags:
         """Return which arcs have centre and sweep of their source, seen from where they start."""

@@ -41,10 +41,10 @@ class Draft:
         """Whether something other than blanks has been written."""
         return any(not isinstance(f, Literal) or f.text.strip() for f in self.fields)
 
-    def refuse(self, item: Item, what: str) -> NoReturn:
+    def refuse(self, item: Item, what: str, hint: str = "") -> NoReturn:
         """Raise CannotSayError for what an item of the block says."""
-        self.raise_at(item, f"{self.target.name} cannot say {what}")
+        self.raise_at(item, f"{self.target.name} cannot say {what}", hint)
 
-    def raise_at(self, item: Item, message: str) -> NoReturn:
+    def raise_at(self, item: Item, message: str, hint: str = "") -> NoReturn:
         """Raise CannotSayError at an item of the block."""
-        raise CannotSayError(item.start, item.end - item.start, message)
+        raise CannotSayError(item.start, item.end - item.start, message, hint)

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.diagnostics import InputError
 from gcxform.emit.centres import Centres
 from gcxform.emit.copying import Copying
 from gcxform.emit.fields import Role
@@ -22,21 +23,27 @@ from gcxform.emit.manner import Believed, Manner, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, motion_kinds
 from gcxform.emit.render import interleave
-from gcxform.emit.saying import left_out, nothing_left
+from gcxform.emit.saying import left_out, nothing_left, same_dwell, seconds_of_p
 from gcxform.emit.tapping import Taps
 from gcxform.emit.writing import Style, Writing
+from gcxform.inventory import defines
+from gcxform.modal.ending import Frame
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.meaning import Meaning
 from gcxform.modal.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
-from gcxform.syntax.tree import Comment, Item
-from gcxform.toolpath.path import FeedMode, Kind, Toolpath
+from gcxform.syntax.tree import Comment, Item, Word
+from gcxform.toolpath.path import FeedMode, Form, Kind, Toolpath
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 LOST = 1e-3  # relative; of the time of a block that pieces without words would take along
+
+ENDS_EXACTLY = (
+    "moves of expanded cycles end exactly (G61): no path mode is stated, and G64 would round them"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +57,16 @@ class Emitted:
     source: Ints
     nth: Ints
 
+    def framed(self, frame: Frame, first: bool, last: bool) -> Emitted:
+        """Return the text with the percent signs that go before and behind a whole program."""
+        text, before, behind = frame.put(self.text, first, last)
+        if not before and not behind:
+            return self
+        lines = (0, self.source[-1] if len(self.source) else 0)
+        source = np.concatenate([[lines[0]] * before, self.source, [lines[1]] * behind])
+        nth = np.concatenate([[0] * before, self.nth, [0] * behind])
+        return Emitted(text, source.astype(np.int64), nth.astype(np.int64))
+
 
 class Emitter:
     """Writes the windows of one program in order."""
@@ -60,6 +77,8 @@ class Emitter:
         self.believed = Believed.at_start(manner, start)
         self.style = Style()
         self.path_mode = ""
+        self.over = False
+        self.assumed: dict[str, None] = {}
 
     def emit(
         self, window: Window, table: MeaningTable, read: Interpreted, path: Toolpath
@@ -86,6 +105,9 @@ class _Job:
     def run(self) -> Emitted:
         copied = self.copying.lines
         self._refuse_rounding()
+        self._refuse_lost()
+        self._refuse_behind_end()
+        self._refuse_dwells()
         centre = Centres(self.task, self.kind, self.positions, self.copying).write()
         empty = self._without_words() | self._foreign() | self._gone() | self._only_compensates()
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
@@ -140,17 +162,74 @@ class _Job:
             here[number] = says(items, table.meanings[number])
         return here[shape]
 
+    def _refuse_lost(self) -> None:
+        """Refuse to leave out a subprogram behind the end, which another dialect cannot keep."""
+        task = self.task
+        if not task.manner.crossing:
+            return
+        shapes = task.window.shape[task.read.live :]
+        for number in np.unique(shapes).tolist():
+            if defines(task.table.shapes.shapes[number].block):
+                line = task.read.live + int(np.argmax(shapes == number))
+                message = "nothing calls this subprogram, and in another dialect it would be lost"
+                hint = "take it out of the file, or call it"
+                raise InputError.one("GX226", message, task.location(line), hint)
+
+    def _refuse_behind_end(self) -> None:
+        """Refuse blocks behind an end at which the target stops, and the source does not."""
+        task = self.task
+        source, target = task.manner.source, task.manner.target
+        if source.stops_at_end or not target.stops_at_end:
+            return
+        over = np.logical_or.accumulate(
+            np.append(self.emitter.over, task.table.flag("ends", task.shape))
+        )
+        self.emitter.over = bool(over[-1])
+        wrong = over[:-1] & self._of_shapes(
+            lambda items, _: any(isinstance(i, Word) for i in items)
+        )
+        if wrong.any():
+            message = f"{target.name} stops at the end before, and {source.name} goes on here"
+            where = task.location(int(np.argmax(wrong)))
+            raise InputError.one(
+                "GX501", message, where, "take out M2 or M30, or what is behind it"
+            )
+
+    def _refuse_dwells(self) -> None:
+        """Refuse cycles that stand as they are, and would wait for another time in the target."""
+        task = self.task
+        source, target = task.manner.source, task.manner.target
+        if not task.manner.crossing or same_dwell(source, target):
+            return
+        waits = task.table.slots[task.shape, ord("P") - 65]
+        cycles = self.path.block[self.path.form == Form.CYCLE]
+        for line in np.unique(cycles[waits[cycles] >= 0]).tolist():
+            number = int(task.window.first_number[line] + waits[line])
+            pointed = bool(task.window.decimals[number] >= 0)
+            was, now = (seconds_of_p(dialect, pointed) for dialect in (source, target))
+            if was != now and task.window.value[number]:
+                wait = float(task.window.value[number])
+                message = (
+                    f"{target.name} would wait {wait * now:g} s here, and not {wait * was:g} s"
+                )
+                hint = 'put the pass "cycles" before'
+                raise InputError.one("GX501", message, task.location(line), hint)
+
     def _refuse_rounding(self) -> None:
         """Refuse moves of cycles where corners are rounded: the bottom would not be reached."""
         manner, path = self.task.manner, self.path
         coded = {code for code, what in manner.source.codes.items() if what.group == "path"}
         modes = [event for event in path.events if event.what in coded]
-        if manner.source.cycles_stop and self.pieces.expanded_line.any():
+        rounding = manner.source.cycles_stop or manner.target.rounds_corners
+        if rounding and self.pieces.expanded_line.any():
             rows = np.flatnonzero(self.pieces.expanded_line[path.block])
             last = np.searchsorted([event.row for event in modes], rows, "right")
             rounds = np.array(
                 [e == "G64" for e in [self.emitter.path_mode, *(e.what for e in modes)]]
             )
+            silent = np.array([not e for e in [self.emitter.path_mode, *(e.what for e in modes)]])
+            if silent[last].any() and manner.target.rounds_corners:
+                self.emitter.assumed[ENDS_EXACTLY] = None
             if rounds[last].any():
                 message = "the moves of a cycle end exactly, and G64 would round their ends"
                 first = rows[rounds[last]][:1]
@@ -203,6 +282,7 @@ class _Job:
             held = self.path.end[-1] if exact else self.positions.after[-1]
             believed.position = np.array(held)
             believed.exact = exact
+            believed.said = np.array(self.copying.said_exactly()[-1])
         if len(pieces.line):
             believed.motion = int(pieces.motion_after[-1])
             believed.feed = float(pieces.feed_after[-1])

@@ -17,6 +17,7 @@ from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Toolpath
 
 Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 WORDS = ("changed", "programmed", "all")
 
@@ -69,6 +70,7 @@ class Believed:
     """What the control believes after the text written so far.
 
     `exact`: its position is that of the source to the last bit, because all was copied.
+    `said` (3,): in which of X, Y and Z it is, because a block that was copied named them.
     `level`: from where the canned cycle in force has begun, along its axis; nan: there is none, or
     it has no moves. `tapping`: its taps have moved, so that each needs words of its own.
     `aside`: how far (mm) it stands from where it shall be, after a tap.
@@ -83,6 +85,7 @@ class Believed:
     feed: float = np.nan
     feed_unit: float = 1.0
     exact: bool = True
+    said: Flags = field(default_factory=lambda: np.zeros(3, np.bool_))
     level: float = np.nan
     tapping: bool = False
     aside: float = 0.0

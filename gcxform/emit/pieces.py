@@ -243,7 +243,7 @@ class Pieces:
         held = np.where(has_unit, number * size / unit_here, number)
         held = np.where(lost, np.nan, held)
         changes = feeding & (~_close(held, need) | timed)
-        kept = word & _close(need, modes.feed[self.line]) & ~self._must_have_point()
+        kept = word & _close(need, modes.feed[self.line]) & self._reads_alike(slot)
         self.feed = np.where(
             kept,
             Feed.KEEP,
@@ -252,11 +252,18 @@ class Pieces:
         self.repaired |= (self.feed == Feed.WRITE) | (word & (self.feed == Feed.NONE))
         self.feed_value = need
 
-    def _must_have_point(self) -> bool:
-        """Whether feed words cannot be copied, because a point decides on their unit."""
-        manner = self.task.manner
-        asks = manner.target.point_required or manner.source.feed_point_required
-        return manner.crossing and asks
+    def _reads_alike(self, slot: NDArray[np.int64]) -> Flags:
+        """Return, per piece, whether its feed word is the same number to the target.
+
+        It is not where a point decides on the unit, to the target or in the word as it stands.
+        """
+        manner, task = self.task.manner, self.task
+        if not (manner.crossing and manner.source.point_required and (slot >= 0).any()):
+            keeps = not (manner.crossing and manner.target.point_required)
+            return np.full(len(self.line), keeps)
+        number = np.where(slot >= 0, task.window.first_number[: len(slot)] + slot, 0)
+        alike = _close(task.window.value[number], task.read.modes.feed)
+        return np.asarray(alike & (not manner.target.point_required))[self.line]
 
     def _feed_lost(self) -> Flags:
         """Return the pieces at which the target forgets the feed."""

@@ -10,7 +10,7 @@ from gcxform.emit.manner import Believed, Task
 from gcxform.emit.numbers import quantise
 from gcxform.modal.lines import fill
 from gcxform.modal.moves import SAME_PLACE
-from gcxform.toolpath.path import Kind, Small, Toolpath, column_major
+from gcxform.toolpath.path import Form, Kind, Small, Toolpath, column_major
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -99,7 +99,8 @@ class Positions:
         if words == "programmed":
             self.write[:, column] = programmed & known
         elif words == "all":
-            self.write[:, column] = known & ~self.stays[:, column]
+            beside = (self.task.path.form == Form.SYNCHRONISED) & (column > 2)  # X, Y, Z alone tap
+            self.write[:, column] = known & ~self.stays[:, column] & ~beside
         else:
             moved = ~(np.abs(held - self.before[:, column]) < 0.5 * self.step[column])
             said = programmed & self._last & (self.task.path.nth == 0)

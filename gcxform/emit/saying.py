@@ -9,6 +9,7 @@ from gcxform.dialect import Dialect
 from gcxform.emit.manner import Manner
 from gcxform.machine.machine import SWITCHES
 from gcxform.modal.codes import Code, MCode
+from gcxform.modal.expressions import key_set, sets_number, written
 from gcxform.modal.meaning import FRAMING, Meaning
 from gcxform.modal.sorting import only_for_cycles
 from gcxform.syntax.shapes import CODES, Shape
@@ -27,13 +28,14 @@ TAPPING = ("G74", "G84")
 
 
 class CannotSayError(Exception):
-    """The target dialect has no words for something: column from 0, width, message."""
+    """The target dialect has no words for something: column from 0, width, message, hint."""
 
-    def __init__(self, column: int, width: int, message: str) -> None:
+    def __init__(self, column: int, width: int, message: str, hint: str = "") -> None:
         super().__init__(message)
         self.column = column
         self.width = width
         self.message = message
+        self.hint = hint
 
 
 def code_of(word: Word) -> str:
@@ -64,10 +66,34 @@ def gaps_between(text: str, words: list[Word]) -> Iterator[bool]:
             yield bool(between)
 
 
+def lasts_in(statement: Statement, target: type[Dialect]) -> bool:
+    """Whether a control takes an assignment, of a number, to a parameter that outlives programs."""
+    key, known = key_set(statement), target.arithmetic
+    return known is not None and sets_number(statement) and key is not None and known.can_say(key)
+
+
+def needs_assignment(statement: Statement, source: type[Dialect], target: type[Dialect]) -> str:
+    """Return what is lost without an assignment that another control cannot be told, or nothing.
+
+    Nothing is lost where parameters end with the program, and on a control that has none: nobody
+    there could read them. Which they are is known by now, but for dialects without flow words.
+    """
+    key, known = key_set(statement), source.arithmetic
+    if target.arithmetic is None or known is None or (key is None and source.flow):
+        return ""
+    if key is not None and not known.outlives(key):
+        return ""
+    name = "a parameter" if key is None else written(key)
+    return f"the assignment to {name}, which lasts longer than the program"
+
+
 def is_foreign(item: Item, target: type[Dialect]) -> bool:
-    """Whether an item has no place in another dialect: assignments, frames that it has not."""
+    """Whether an item has no place in another dialect: assignments, frames that it has not.
+
+    An assignment of a number to a parameter that lasts, in a control that has it, is no such item.
+    """
     if isinstance(item, Statement):
-        return item.kind == "assignment"
+        return item.kind == "assignment" and not lasts_in(item, target)
     if not isinstance(item, Mark):
         return False
     if item.kind == "percent":
@@ -105,7 +131,9 @@ def nothing_left(items: tuple[Item, ...], meaning: Meaning, manner: Manner, work
             idle = only_for_cycles(name, manner.source, manner.target)
             return name == "N" or name in unsaid or idle
         slash = isinstance(item, Mark) and item.kind == "block_delete"
-        return slash or is_foreign(item, manner.target)
+        if isinstance(item, Statement) and needs_assignment(item, manner.source, manner.target):
+            return False
+        return slash or (manner.crossing and is_foreign(item, manner.target))
 
     kept = [item for item in items if not (isinstance(item, Word) and item.address == "N")]
     kept = [item for item in kept if not (isinstance(item, Mark) and item.kind == "block_delete")]
@@ -124,6 +152,11 @@ def left_out(item: Item, meaning: Meaning) -> bool:
 def same_dwell(one: type[Dialect], other: type[Dialect]) -> bool:
     """Whether a dwell of one dialect is as long in the other, however it is written."""
     return one.dwell == other.dwell and one.dwell_point_is_seconds == other.dwell_point_is_seconds
+
+
+def seconds_of_p(dialect: type[Dialect], pointed: bool) -> float:
+    """Return how long (s) a P of 1 in a canned cycle waits, with a point or without."""
+    return 1.0 if pointed and dialect.dwell_point_is_seconds else dialect.dwell.get("P", 1.0)
 
 
 def like(text: str, code: str) -> str:

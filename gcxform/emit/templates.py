@@ -29,7 +29,9 @@ from gcxform.emit.saying import (
     code_of,
     comment_in,
     is_foreign,
+    lasts_in,
     left_out,
+    needs_assignment,
     own_gap,
     unsaid_words,
 )
@@ -139,11 +141,14 @@ class TemplateWriter:
             self._statement(item, lead)
 
     def _statement(self, item: Statement, lead: bytes) -> None:
-        """Write an assignment; another dialect needs none, for its blocks hold plain numbers."""
-        if self.source is not self.target and is_foreign(item, self.target):
-            return
-        self._check_same(item, f"{item.kind.replace('_', ' ')}")
-        self.draft.literal(lead, self.text[item.start : item.end])
+        """Write an assignment; another dialect needs only those that last, as plain numbers."""
+        crossing = self.source is not self.target
+        if crossing and item.kind != "assignment":
+            self.draft.refuse(item, item.kind.replace("_", " "))
+        if not crossing or lasts_in(item, self.target):
+            self.draft.literal(lead, self.text[item.start : item.end])
+        elif lost := needs_assignment(item, self.source, self.target):
+            self.draft.refuse(item, lost)
 
     def _check_same(self, item: Item, name: str) -> None:
         """Raise CannotSayError where the target is another dialect."""

@@ -176,7 +176,7 @@ class Writing:
             return writer.write(key)
         except CannotSayError as error:
             where = self.task.location(line, error.column, error.width)
-            raise InputError.one("GX501", error.message, where) from None
+            raise InputError.one("GX501", error.message, where, error.hint) from None
 
     def _event_text(self, piece: int) -> tuple[Field, ...]:
         """Return the block of what a canned cycle does between its moves, or one that is given."""

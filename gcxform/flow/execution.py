@@ -7,28 +7,29 @@ blocks that were executed. What a flow word or a call does is that of a subclass
 from __future__ import annotations
 
 import math
-import re
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from gcxform.diagnostics import InputError
+from gcxform.flow.keeping import Definition, kept
+from gcxform.flow.lasting import Lasting
 from gcxform.flow.listing import CODES_OF_CALLS, STORED_MODES, Listing, bare
 from gcxform.flow.text import DECIMALS, decimal
+from gcxform.limits import how_to_raise, limits
 from gcxform.modal.arithmetic import Arithmetic, Key, NoValueError, whole
 from gcxform.modal.expressions import Evaluator, LocatedError, parameter_key, settable
 from gcxform.modal.lines import DISTANCES
+from gcxform.modal.pointless import assumed_rounding, hint_of_rounding
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statement, Word
 
-STEPS_AT_MOST = 500_000  # lines that are executed one by one: a minute
 BYTES_AT_MOST = 1 << 28  # of executed blocks
 NAMED = 5  # of the calls that a refusal stands in
 UNKNOWN = math.nan
-REFERENCE = re.compile(r"#(?:<[^<>]*>|[0-9]+)")
 HINT = "let the CAM write plain blocks, or use passes that keep positions"
 
 
@@ -55,17 +56,19 @@ class Call:
 class Execution:
     """One run of a program; `text` and `origin` are the executed blocks and their lines.
 
-    `deepest` are the calls that may be inside each other.
+    `deepest` are the calls that may be inside each other. `keeps`: the blocks are to be written, so
+    what lasts in parameters and what nothing calls stands in them; otherwise they are only read.
     """
 
     deepest: ClassVar[int] = 100
 
-    def __init__(self, listing: Listing, reading: Reading) -> None:
+    def __init__(self, listing: Listing, reading: Reading, keeps: bool = False) -> None:
         assert listing.dialect.arithmetic is not None
         self.listing = listing
         self.dialect = listing.dialect
         self.arithmetic: Arithmetic = listing.dialect.arithmetic
         self.reading = reading
+        self.keeps = keeps
         given = {parameter_key(name): v for name, v in reading.parameters.items()}
         self.parameters = {k: v for k, v in given.items() if self.arithmetic.owns(k)}
         self.calls: list[Call] = []
@@ -77,6 +80,12 @@ class Execution:
         self.origin: list[np.ndarray[Any, np.dtype[np.int64]]] = []
         self.steps = self.size = self.changes = 0
         self.rounds: dict[int, int] = {}
+        self.assumed: dict[str, None] = {}
+        self.inch = (reading.units or self.dialect.initial["units"]) in ("in", "G20")
+        self.seen = 0
+        self.lasting = Lasting(self)
+        self.times = np.zeros(len(listing), np.int64)
+        self.kept: tuple[Definition, ...] = ()
 
     # --- the walk ---
 
@@ -95,11 +104,13 @@ class Execution:
     def _copy(self, stop: int) -> None:
         """Take plain lines over as they stand."""
         self._put(self.listing.raw(self.at, stop), np.arange(self.at, stop))
+        self.times[self.at : stop] += 1
         self.at = stop
 
     def _step(self) -> None:
         """Execute one line that is more than a plain block."""
         self.line, self.at = self.at, self.at + 1
+        self.times[self.line] += 1
         self._count()
         self._refuse_lone_cr()
         block = self.listing.block(self.line)
@@ -127,7 +138,7 @@ class Execution:
         policy = self.reading.block_delete or self.dialect.block_delete
         if not policy:
             message = "a switch of the control decides whether this block is executed"
-            hint = 'say which: block-delete = "execute" or "skip" in [input]'
+            hint = 'block-delete = "execute" in [input], or block-delete = "skip" in [input]'
             raise self.listing.refusal(self.line, "GX211", message, hint)
         return policy == "skip"
 
@@ -150,9 +161,9 @@ class Execution:
     def _count(self) -> None:
         """Count executed lines. Raises InputError for a program that does not end."""
         self.steps += 1
-        if self.steps > STEPS_AT_MOST or self.size > BYTES_AT_MOST:
+        if self.steps > limits().steps or self.size > BYTES_AT_MOST:
             message = f"the program is not over after {self.steps} lines that decide something"
-            raise self.refusal("GX224", message, "does this loop end?")
+            raise self.refusal("GX224", message, f"does this loop end? {how_to_raise('steps')}")
 
     def back_to(self, line: int) -> None:
         """Go back to a line. Raises InputError if nothing has changed since the last time."""
@@ -168,7 +179,15 @@ class Execution:
         self.parameters.update(values)
 
     def _closing(self) -> None:
-        """Write the last percent sign, which the control reads behind the end of the program."""
+        """Write what stands behind the end of the program.
+
+        That are the definitions that nothing has called, which other programs may call, and the
+        last percent sign, which the control reads.
+        """
+        self.kept = kept(self) if self.acted and self.keeps else ()
+        for each in self.kept:
+            lines = np.arange(each.first, each.last + 1)
+            self._put(self.listing.raw(each.first, each.last + 1), lines)
         last = len(self.listing) - 1
         while last > 0 and not self.listing.window.line(last).strip():
             last -= 1
@@ -176,6 +195,18 @@ class Execution:
             self._put(self.listing.raw(last, last + 1), np.array([last]))
 
     # --- what differs between controls ---
+
+    def entered(self) -> Iterator[tuple[int, int]]:
+        """Yield first and last line of the loops and branches, whether they were entered or not."""
+        return iter(())
+
+    def leaves(self, line: int, first: int, last: int) -> bool:
+        """Whether a line of a loop or branch may go on elsewhere than behind it."""
+        return self._ends(self.listing.block(line))
+
+    def definitions(self) -> Iterator[Definition]:
+        """Yield the subprograms of the file that a call can name, in order."""
+        return iter(())
 
     @abstractmethod
     def act(self, block: Block) -> bool:
@@ -208,12 +239,16 @@ class Execution:
             raise self.refusal(refusal.code, refusal.message, refusal.hint, place)
         edits = self.edits(block)
         self.acted |= self.becomes_other(block)
-        changes = [self._assigned(i) for i in block.items if isinstance(i, Statement)]
-        if edits or changes:
+        statements = _statements(block)
+        changes = [self._assigned(statement) for statement in statements]
+        self.set(dict(changes))
+        for statement, change in zip(statements, changes, strict=True):
+            edits.append((statement.start, statement.end, self.lasting.account(*change)))
+        edits += self.lasting.messages(block)
+        if edits:
             self._write_changed(block, edits)
         else:
             self._copy_line()
-        self.set(dict(changes))
         if meaning.runs_macro and not meaning.lost_by <= self.reading.inert_m:
             self._forget()
         self.percents += meaning.percent
@@ -245,16 +280,12 @@ class Execution:
         return over and self.dialect.stops_at_end
 
     def _write_changed(self, block: Block, edits: list[Edit]) -> None:
-        """Write a block whose expressions have become numbers and whose assignments are gone."""
+        """Write a block whose expressions have become numbers; one of which nothing is left not."""
         words = [item for item in bare(block) if isinstance(item, Word)]
         active = [i for i in block.items if isinstance(i, Comment) and self._executes(block, i)]
-        if not words and not active:
+        kept = [new for start, _, new in edits if any(start == i.start for i in _statements(block))]
+        if not words and not active and not any(kept):
             return
-        edits = [
-            *edits,
-            *((i.start, i.end, "") for i in block.items if isinstance(i, Statement)),
-            *((i.start, i.end, self._told(block.text[i.start : i.end])) for i in active),
-        ]
         text = block.text
         for start, end, new in sorted(edits, reverse=True):
             text = text[:start] + new + text[end:]
@@ -262,15 +293,6 @@ class Execution:
 
     def _executes(self, block: Block, comment: Comment) -> bool:
         return self.dialect.executes(block.text[comment.start : comment.end])
-
-    def _told(self, comment: str) -> str:
-        """Return a message with the values of its parameters, where they are known."""
-
-        def value(reference: re.Match[str]) -> str:
-            known = self.parameters.get(parameter_key(reference[0]), UNKNOWN)
-            return reference[0] if math.isnan(known) else f"{known:.6f}"
-
-        return REFERENCE.sub(value, comment)
 
     # --- values ---
 
@@ -301,7 +323,8 @@ class Execution:
         evaluator = Evaluator(self.arithmetic, self.parameters, in_word=True)
         try:
             value = evaluator.value(word.value.tree)
-            if word.address in self.arithmetic.whole:
+            length = self.listing.meaning(self.line).is_length(word.address)
+            if word.address in self.arithmetic.whole and not length:
                 value = float(whole(value, self.arithmetic.whole_slip))
             if word.address in "GM":
                 value = whole(value * 10) / 10
@@ -319,7 +342,10 @@ class Execution:
         return decimal(value).removesuffix(".")
 
     def _refuse_flow(self, word: Word, value: float) -> None:
-        """Refuse a computed M code that decides what is executed next."""
+        """Refuse a computed M code that decides what is executed next, and a computed unit."""
+        if word.address == "G" and value in (20, 21) and self.dialect.point_required:
+            message = f"G{value:g} is the unit of what is computed, and is computed itself"
+            raise self.refusal("GX206", message, "write the code", (word.start, word.end))
         code = self.dialect.m_codes.get(int(value)) if word.address == "M" else None
         if code is not None and (code.ends or value in CODES_OF_CALLS or value in STORED_MODES):
             message = f"M{value:g} decides what is executed, and is computed: it must be written"
@@ -327,13 +353,24 @@ class Execution:
 
     def _on_increment(self, word: Word, value: float) -> str:
         """Return a distance as the control rounds it."""
-        increment = self.reading.increment
-        if increment is None:
+        inch, said = self._inch(), self.reading.increments
+        steps = None if said is None else said.per_unit(word.address, inch)
+        if said is None or steps is None:
             message = f"{word.address} is computed: to what it is rounded depends on the control"
-            hint = 'say what 1 is worth: increment = "0.001 mm" in [input]'
+            hint = hint_of_rounding(word.address, inch)
             raise self.refusal("GX205", message, hint, (word.start, word.end))
-        steps = math.floor(abs(value) / increment + 0.5)
-        return decimal(math.copysign(round(steps * increment, DECIMALS), value))
+        self.assumed[assumed_rounding(word.address, inch, said)] = None
+        count = math.floor(abs(value) * steps + 0.5)
+        return decimal(math.copysign(round(count / steps, DECIMALS), value))
+
+    def _inch(self) -> bool:
+        """Whether the line is in inches, behind the blocks that have been written."""
+        fresh, self.seen = self.origin[self.seen :], len(self.origin)
+        for lines in (*fresh, np.array([self.line])):
+            said = self.listing.units[lines]
+            said = said[said >= 0]
+            self.inch = bool(said[-1]) if len(said) else self.inch
+        return self.inch
 
     def _assigned(self, statement: Statement) -> tuple[Key, float]:
         """Return a parameter and its new value."""
@@ -372,6 +409,10 @@ class Execution:
         inside = " in ".join(names[:NAMED] + ["..."] * (len(names) > NAMED))
         found = tuple(replace(d, context=f"called by {inside}") for d in error.diagnostics)
         return InputError(found)
+
+
+def _statements(block: Block) -> list[Statement]:
+    return [item for item in block.items if isinstance(item, Statement)]
 
 
 def _computed(word: Word) -> bool:

@@ -6,6 +6,7 @@ import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect import Dialect
+from gcxform.flow.messages import prints_values
 from gcxform.modal.meaning import Meaning
 from gcxform.modal.reader import WindowReader
 from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statement, Word
@@ -18,7 +19,8 @@ class Listing:
     """The lines of a program; numbers of lines count from 0.
 
     `special` (m,) are the lines, ascending, that may do more than be executed once as they stand:
-    those with expressions, statements, calls, labels, or an end.
+    those with expressions, statements, calls, labels, or an end. `units` (n,) is 1 where a line
+    has G20, 0 where it has G21, -1 where it has neither.
     """
 
     def __init__(self, text: bytes, dialect: type[Dialect], file: str) -> None:
@@ -32,6 +34,9 @@ class Listing:
         odd = [self._is_special(n, shape.block) for n, shape in enumerate(shapes)]
         self.special = np.flatnonzero(np.array(odd, np.bool_)[self.window.shape])
         self._blocks: dict[int, Block] = {}
+        number = {"G20": 1, "G21": 0}
+        said = [number.get(m.groups.get("units", ""), -1) for m in self.table.meanings]
+        self.units = np.array(said, np.int8)[self.window.shape]
 
     def __len__(self) -> int:
         return len(self.window)
@@ -44,6 +49,8 @@ class Listing:
             if isinstance(item, Statement) or (
                 isinstance(item, Mark) and item.kind in ("program_id", "program_name")
             ):
+                return True
+            if isinstance(item, Comment) and prints_values(block.text[item.start : item.end]):
                 return True
             if isinstance(item, Word) and (
                 isinstance(item.value, Expression) or item.address in "O@^" or _calls(item)
@@ -61,6 +68,16 @@ class Listing:
             text = self.window.line(line).decode("latin-1")
             self._blocks[line] = self.dialect.load_grammar().parse(text)
         return self._blocks[line]
+
+    def last_of(self, first: int, after: int | None) -> int:
+        """Return the last line of a part that ends before another, or with the file.
+
+        Empty lines at its end, and the last percent sign, are no part of it.
+        """
+        last = len(self) - 1 if after is None else after - 1
+        while last > first and (not self.window.line(last).strip() or self.meaning(last).percent):
+            last -= 1
+        return last
 
     def raw(self, first: int, last: int) -> bytes:
         """Return the text of lines up to one, with their line ends."""

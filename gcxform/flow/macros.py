@@ -8,19 +8,22 @@ known value on the other. G65 gives variables by letters, which is not resolved.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 from lark import Token
 
 from gcxform.flow.execution import HINT, UNKNOWN, Call, Execution, whole_number
+from gcxform.flow.keeping import Definition
 from gcxform.flow.listing import Listing, bare
-from gcxform.modal.arithmetic import Arithmetic, NoValueError
+from gcxform.modal.arithmetic import MACRO_B, Arithmetic, NoValueError
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import BLANKS, Block, Mark, Statement, Word
 
-LOCALS = range(1, 34)
+LOCALS = MACRO_B.local
 LOOPS = ("1", "2", "3")
 NEAR = 1e-6
 SEQUENCE = re.compile(rb"(?:\([^()]*\))*(?:/[1-9]?)?(?:\([^()]*\))*[Nn]([0-9]+)")
@@ -55,8 +58,8 @@ class Loop:
 class MacroB(Execution):
     """Runs programs of Fanuc, Haas and their relatives."""
 
-    def __init__(self, listing: Listing, reading: Reading) -> None:
-        super().__init__(listing, reading)
+    def __init__(self, listing: Listing, reading: Reading, keeps: bool = False) -> None:
+        super().__init__(listing, reading, keeps)
         self.loops: dict[int, Loop] = {}
         self.starts: dict[int, int] = {}
         self.twice: set[int] = set()
@@ -152,9 +155,33 @@ class MacroB(Execution):
         if 99 in codes and self.calls:
             self._return(block, items)
             return True
+        if codes == {99} and len(items) == 1:
+            message = "M99 outside a call: this is a subprogram, or a program that begins anew"
+            hint = "transform the program that calls it, with this one in the same file"
+            raise self.refusal("GX226", message, hint)
         return False
 
     # --- subprograms ---
+
+    def entered(self) -> Iterator[tuple[int, int]]:
+        """Yield the lines of DO and END of the loops."""
+        return ((loop.first, loop.last) for loop in self.loops.values())
+
+    def leaves(self, line: int, first: int, last: int) -> bool:
+        """Whether a line jumps, returns, or ends the program."""
+        block = self.listing.block(line)
+        statement = _statement(block)
+        jumps = statement is not None and statement.kind in ("goto", "if_goto")
+        returns = any(w.address == "M" and whole_number(w) == 99 for w in block.words)
+        return jumps or returns or super().leaves(line, first, last)
+
+    def definitions(self) -> Iterator[Definition]:
+        """Yield the programs of the file behind the first, which is the one that runs."""
+        for line, after in pairwise([*self.bounds[1:], None]):
+            assert line is not None
+            number = _program_number(self.listing.block(line))
+            name = "a program without a number" if number is None else f"O{number}"
+            yield Definition(name, line, self.listing.last_of(line, after))
 
     def _call(self, block: Block, items: list[Word | Statement], own: bool) -> None:
         self.refuse_more(items, "MPL")
@@ -180,7 +207,11 @@ class MacroB(Execution):
         packed = number >= PACKED and number % PACKED in self.starts
         if packed and (number in self.starts or any(w.address == "L" for w in block.words)):
             raise self.refusal("GX210", "P can be read as a program, or as a count and a program")
-        return (number % PACKED, number // PACKED) if packed else (number, times)
+        if not packed:
+            return number, times
+        target, times = number % PACKED, number // PACKED
+        self.assumed[f"M98 P{number} calls O{target}, {times} times"] = None
+        return target, times
 
     def _start(self, number: int) -> int:
         if number in self.twice:
@@ -277,6 +308,8 @@ class MacroB(Execution):
             tree = statement.tree.children[-1]
             key, value = self.assignment(tree, (statement.start, statement.end))
             self.set({key: value})
+            if text := self.lasting.account(key, value):
+                self.write_line(text)
 
     # --- loops ---
 

@@ -9,18 +9,20 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
 
 from gcxform.diagnostics import InputError
 from gcxform.flow.constructs import Construct, Constructs, OWord
 from gcxform.flow.execution import HINT, Call, Edit, Execution, whole_number
+from gcxform.flow.keeping import Definition
 from gcxform.flow.listing import Listing, bare
 from gcxform.flow.modes import StoredModes
 from gcxform.flow.places import FIRST, Places
-from gcxform.modal.arithmetic import Key
+from gcxform.modal.arithmetic import RS274, Key
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import Block, Statement, Word
 
-LOCALS = range(1, 31)
+LOCALS = RS274.local
 LEAVES = frozenset({"break", "continue"})
 POSITIONS = range(FIRST, FIRST + 9)
 NAMES_POSITION = re.compile(r"#[ \t]*5[ \t]*4[ \t]*2")
@@ -31,8 +33,8 @@ class OWords(Execution):
 
     deepest = 9
 
-    def __init__(self, listing: Listing, reading: Reading) -> None:
-        super().__init__(listing, reading)
+    def __init__(self, listing: Listing, reading: Reading, keeps: bool = False) -> None:
+        super().__init__(listing, reading, keeps)
         self.ahead: set[str] = set()
         self.jumped = False
         self.modes = StoredModes(self)
@@ -84,6 +86,36 @@ class OWords(Execution):
         return self.value(word.values[0]) != 0
 
     # --- subprograms ---
+
+    def entered(self) -> Iterator[tuple[int, int]]:
+        """Yield first and last line of the loops and branches."""
+        return ((c.lines[0], c.last) for c in self.construct.values() if c.kind != "sub")
+
+    def leaves(self, line: int, first: int, last: int) -> bool:
+        """Whether a line returns, leaves a loop around this one, or ends the program."""
+        word, block = self.words.get(line), self.listing.block(line)
+        if word is not None and word.keyword == "return":
+            return True
+        if word is not None and word.keyword in LEAVES:
+            return self.construct[line].lines[0] != first
+        over = self.listing.meaning(line).percent or super().leaves(line, first, last)
+        return over or _returns(block)
+
+    def definitions(self) -> Iterator[Definition]:
+        """Yield the subprograms, those of numbers up to the next or to the end of the file."""
+        begins = sorted({line for lines in self.labels.values() for line in lines})
+        begins += [construct.lines[0] for construct in self.subs.values()]
+        found = [
+            Definition(f"o<{name}>" if not name.isdigit() else f"O{name}", c.lines[0], c.last)
+            for name, c in self.subs.items()
+        ]
+        for number, lines in self.labels.items():
+            for line in lines:
+                after = min((other for other in begins if other > line), default=None)
+                last = self.listing.last_of(line, after)
+                if not self.times[line]:
+                    found.append(Definition(f"O{number}", line, last))
+        yield from sorted(found, key=lambda each: each.first)
 
     def _sub(self, word: OWord) -> None:
         if word.label in self.ahead:
@@ -286,6 +318,11 @@ class OWords(Execution):
         self.at = construct.last + 1
 
 
+def _returns(block: Block) -> bool:
+    """Whether a block has M99."""
+    return any(w.address == "M" and whole_number(w) == 99 for w in block.words)
+
+
 def _within(edit: Edit, others: list[Edit]) -> bool:
     """Whether a piece of a block is part of another."""
     return any(start <= edit[0] and edit[1] <= end for start, end, _ in others)
@@ -293,4 +330,4 @@ def _within(edit: Edit, others: list[Edit]) -> bool:
 
 def _is_local(key: Key) -> bool:
     """Whether a parameter belongs to its call."""
-    return key in LOCALS if isinstance(key, int) else not key.startswith("_")
+    return not RS274.outlives(key)

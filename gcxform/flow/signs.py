@@ -16,7 +16,7 @@ from gcxform.source import COMMENT, Source
 TO_THE_END = re.compile(rb";[^\r\n]*")
 NUMBERED = rb"(?:N[ \t]*[0-9.]+[ \t]*)?"
 MODES = rb"M[ \t]*0*(?:98|7[0-3])(?![0-9])"
-CALLS = rb"M[ \t]*0*9[78](?![0-9])"
+CALLS = rb"M[ \t]*0*9[789](?![0-9])"
 COMPUTED = (
     (b"#", rb"G[ \t]*#"),
     (b"#", rb"M[ \t]*#"),

@@ -1,6 +1,11 @@
-"""Numbers as the executed blocks write them."""
+"""Numbers and assignments as the executed blocks write them."""
 
 from __future__ import annotations
+
+from decimal import Decimal
+
+from gcxform.modal.arithmetic import Arithmetic, Key
+from gcxform.modal.expressions import written
 
 DECIMALS = 8
 """Of mm or inch: far below what any control resolves, and what is read as fast as any number."""
@@ -10,3 +15,11 @@ def decimal(value: float) -> str:
     """Return a number with a point and the decimals that it needs, never an exponent."""
     text = f"{value:.{DECIMALS}f}".rstrip("0")
     return text[1:] if text.startswith("-") and not text.strip("-0.") else text
+
+
+def assignment(key: Key, value: float, arithmetic: Arithmetic) -> str:
+    """Return an assignment of a number, in all the digits that the control takes."""
+    digits = repr(value) if arithmetic.digits >= 17 else f"{value:.{arithmetic.digits}g}"
+    text = f"{Decimal(digits):f}"
+    whole, _, rest = text.partition(".")
+    return f"{written(key)}={whole}.{rest.rstrip('0')}"

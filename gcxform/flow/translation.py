@@ -24,10 +24,11 @@ from lark.exceptions import UnexpectedInput
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect import Dialect
 from gcxform.flow.written_out import WrittenOut
+from gcxform.limits import how_to_raise, limits
 from gcxform.modal.state import Reading
 from gcxform.source import Source
 from gcxform.syntax import kept
-from gcxform.syntax.grammar import refusal_of, rule_of, span_of
+from gcxform.syntax.grammar import parsed, refusal_of, rule_of, span_of
 
 NUMBER = "NUMBER"
 """The terminal of a grammar that stands for numbers."""
@@ -36,7 +37,7 @@ LEADER = b"\0\x7f"  # NUL and DEL, as in `iso.lark`
 COMMENT, BLOCK_DELETE = "comment", "block_delete"
 LINE_END = re.compile(rb"\r\n|\n|\r")
 HINT = "let the CAM write plain moves, or take this out of the program"
-STEPS_AT_MOST = 2_000_000  # lines executed more than once: more is taken for an endless loop
+QUICK = 4  # lines that are only translated, in the time of one that is executed
 BRACKETS = str.maketrans("()", "[]")
 SLOT = "\uffff"  # stands for a number in a shape: no program, read as bytes, has it
 
@@ -181,7 +182,7 @@ class Translator(ABC):
         """Return the numbers of a line, and its parts."""
         text = self.lines[line]
         try:
-            tree = self._lark.parse(text)
+            tree = parsed(self._lark, text)
         except UnexpectedInput as error:
             column, message = refusal_of(error, text)
             what = f"this is not a program for {self.dialect.name}: {message}"
@@ -193,13 +194,13 @@ class Translator(ABC):
 
     def run(self) -> Iterator[tuple[int, str]]:
         """Yield blocks with the line that each is for, from 0. Raises InputError."""
-        left = STEPS_AT_MOST + len(self.lines)
+        left = most = QUICK * limits().steps + len(self.lines)
         while self.at < len(self.lines):
             self.line, self.at = self.at, self.at + 1
             left -= 1
             if left < 0:
-                most = STEPS_AT_MOST + len(self.lines)
-                raise self.refusal("GX224", f"the program is not over after {most} lines")
+                message = f"the program is not over after {most} lines"
+                raise self.refusal("GX224", message, hint=f"does it end? {how_to_raise('steps')}")
             shape, numbers = self._shape(self.line)
             if shape.template and self.plainly:
                 yield self.line, shape.template % (*numbers,)
@@ -232,7 +233,7 @@ class Translator(ABC):
         policy = self.reading.block_delete or self.dialect.block_delete
         if not policy:
             message = "a switch of the control decides whether this block is executed"
-            hint = 'say which: block-delete = "execute" or "skip" in [input]'
+            hint = 'block-delete = "execute" in [input], or block-delete = "skip" in [input]'
             raise self.refusal("GX211", message, slash, hint)
         return policy == "skip"
 

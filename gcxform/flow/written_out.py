@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +12,8 @@ from numpy.typing import NDArray
 from gcxform.diagnostics import GcxformError
 from gcxform.dialect import Dialect
 from gcxform.flow.signs import has_flow
+from gcxform.inventory import Account, Ints, Tally, nothing_held
+from gcxform.modal.arithmetic import Key
 from gcxform.modal.state import Reading
 from gcxform.source import Source
 
@@ -20,12 +24,56 @@ EXECUTED = {"o-words": (70, 71, 72, 73, 98, 99), "macro-b": (97, 98, 99)}
 """M codes that are executed, and do not stand in what is written; M97 where a dialect has it."""
 
 
+NEAR = 1e-11  # of a value: as many digits as are written
+
+
+@dataclass(frozen=True, slots=True)
+class Executed:
+    """What calls and loops did with what the lines of a program hold, as counts (kinds,).
+
+    held        in the lines of the program as they stand
+    idle        in lines that are not executed, and are not kept either
+    locals_set  how often a parameter was set that ends with its call, or with the program
+    assigned    the others, with their values, in order
+    kept        how many subprograms nothing calls
+    """
+
+    held: Ints
+    idle: Ints
+    locals_set: int
+    assigned: tuple[tuple[Key, float], ...]
+    kept: int
+
+    def explain(self, account: Account, written: Ints) -> None:
+        """Say by which rules the lines became the blocks that were written out."""
+        account.rule("not executed: behind the end, or in a branch not taken", -self.idle)
+        ended = "parameters that end with the program: their values are in the words"
+        account.rule_of(ended, "assignments", -self.locals_set)
+        rest = written - account.source - sum(account.rules.values(), nothing_held())
+        account.rule("calls and loops written out", rest)
+
+    def agrees(self, read: Sequence[tuple[Key, float]]) -> bool:
+        """Whether the blocks, read again, set the same parameters."""
+        return len(read) == len(self.assigned) and all(
+            key == other and abs(value - now) <= NEAR * abs(value)
+            for (key, value), (other, now) in zip(self.assigned, read, strict=True)
+        )
+
+
 class WrittenOut(Source):
     """The blocks a program executes, in their order; `origin` are their lines, from 0."""
 
-    def __init__(self, source: Source, text: bytes, origin: NDArray[np.int64]) -> None:
+    def __init__(
+        self,
+        source: Source,
+        text: bytes,
+        origin: NDArray[np.int64],
+        assumed: Iterable[str] = (),
+    ) -> None:
         super().__init__(Source.of_bytes(text).stream, source.name)
         self.origin = origin
+        self.assumed = tuple(assumed)
+        self.executed: Executed | None = None
 
     def line_of(self, line: int) -> int:
         """Return the line of the program that an executed line stands for."""
@@ -33,34 +81,69 @@ class WrittenOut(Source):
         return int(self.origin[line - 1]) + 1 if inside else line
 
 
-def written_out(source: Source, dialect: type[Dialect], reading: Reading) -> Source:
+def written_out(
+    source: Source,
+    dialect: type[Dialect],
+    reading: Reading,
+    target: type[Dialect] | None = None,
+) -> Source:
     """Return a source with the blocks that the control executes.
 
-    That is the source itself if it has neither calls nor loops. Raises InputError where what is
-    executed is not known before the control runs.
+    That is the source itself if it has neither calls nor loops. With a `target` the blocks are to
+    be written for it: parameters that last are set in them, and subprograms that nothing calls
+    stand behind the end. Raises InputError where what is executed is not known before the control
+    runs.
     """
     if dialect.translator is not None:
         from gcxform.flow.translation import translated
 
         return translated(source, dialect, reading)
-    if not has_flow(source, dialect):
+    assigns = target is not None and _assigns_for(source, dialect, target)
+    if not assigns and not has_flow(source, dialect):
         return source
-    run = _executed(b"".join(source.windows()), source.name, dialect, reading)
-    if not run.acted:
+    keeps = target is not None
+    run = _executed(b"".join(source.windows()), source.name, dialect, reading, keeps)
+    if not run.acted and not (assigns and run.lasting.assigned):
         return source
     lines = np.concatenate([np.empty(0, np.int64), *run.origin])
-    return WrittenOut(source, b"".join(run.text), lines)
+    found = WrittenOut(source, b"".join(run.text), lines, run.assumed)
+    found.executed = _account(run)
+    return found
 
 
-def _executed(text: bytes, file: str, dialect: type[Dialect], reading: Reading) -> Execution:
+def _account(run: Execution) -> Executed:
+    """Return what an execution did with what the lines hold."""
+    shapes, table = run.listing.window.shape, run.listing.table
+    idle = run.times == 0
+    for each in run.kept:
+        idle[each.first : each.last + 1] = False
+    for definition in run.definitions():
+        idle[definition.first] &= not run.times[definition.lines].any()
+    made = tuple((key, value) for _, key, value in run.lasting.assigned)
+    held, left = Tally().add(table, shapes), Tally().add(table, shapes[idle])
+    return Executed(held, left, run.lasting.locals_set, made, len(run.kept))
+
+
+def _assigns_for(source: Source, dialect: type[Dialect], target: type[Dialect]) -> bool:
+    """Whether assignments of a program are to be written for another control."""
+    if dialect.name == target.name or not dialect.flow or target.arithmetic is None:
+        return False
+    return any(b"#" in text and b"=" in text for text in source.windows())
+
+
+def _executed(
+    text: bytes, file: str, dialect: type[Dialect], reading: Reading, keeps: bool
+) -> Execution:
     """Execute a program; what does that is loaded for programs that need it."""
     from gcxform.flow.listing import Listing
     from gcxform.flow.macros import MacroB
     from gcxform.flow.owords import OWords
+    from gcxform.flow.walk import check_walk
 
     kind: type[Execution] = OWords if dialect.flow == "o-words" else MacroB
-    run = kind(Listing(text, dialect, file), reading)
+    run = kind(Listing(text, dialect, file), reading, keeps)
     run.run()
+    check_walk(run)
     return run
 
 

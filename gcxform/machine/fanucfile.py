@@ -29,6 +29,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
+from gcxform import inputs
 from gcxform.diagnostics import Diagnostic, FileError, Location, UsageError
 from gcxform.machine.machine import Axis, Machine
 
@@ -53,7 +54,7 @@ def read_fanuc(path: Path) -> Machine:
     Parameters of other numbers are passed over. Raises FileError, and UsageError with the line.
     """
     try:
-        lines = path.read_text("latin-1").splitlines()
+        lines = inputs.read(path).decode("latin-1").splitlines()
     except OSError as error:
         raise FileError.one("GX901", f"cannot read {path}: {error.strerror}") from None
     values: dict[int, float] = {}

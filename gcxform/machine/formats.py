@@ -9,7 +9,8 @@ from dataclasses import MISSING
 from pathlib import Path
 from typing import ClassVar
 
-from gcxform.diagnostics import UsageError
+from gcxform import inputs
+from gcxform.diagnostics import Location, UsageError
 from gcxform.machine.errors import ErrorModel
 
 HEAD = 4096  # bytes: enough to tell formats apart by what they begin with
@@ -61,12 +62,23 @@ def unsaid(form: type[ErrorFormat]) -> list[str]:
 
 def chosen_format(path: Path, formats: Iterable[type[ErrorFormat]]) -> type[ErrorFormat] | None:
     """Return the format that recognises a path, None if none does. Raises UsageError if two do."""
+    check_readable(path)
     found = [form for form in formats if form.recognises(path)]
     if len(found) > 1:
         names = " and ".join(form.name for form in found)
         hint = "say which with `gcxform table convert --from FORMAT`"
         raise UsageError.one("GX416", f"{path} fits the formats {names}", hint=hint)
     return found[0] if found else None
+
+
+def check_readable(path: Path) -> None:
+    """Raise UsageError for a file that nobody should open to look at it: a pipe, a device."""
+    try:
+        if not path.is_dir():
+            inputs.check_kind(path)
+    except OSError as error:
+        message = f"the file cannot be read: {error.strerror}"
+        raise UsageError.one("GX401", message, Location(str(path))) from None
 
 
 def head_of(path: Path) -> str:

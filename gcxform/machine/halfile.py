@@ -20,6 +20,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from gcxform import inputs
 from gcxform.diagnostics import Diagnostic, FileError, Location, UsageError
 from gcxform.machine.machine import Axis, Machine
 from gcxform.machine.quantities import LENGTH
@@ -48,7 +49,7 @@ def read_hal(path: Path, unit: str) -> Machine:
     cannot be taken over.
     """
     try:
-        lines = path.read_text("utf-8").splitlines()
+        lines = inputs.read(path).decode("utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
         raise FileError.one("GX901", f"cannot read {path}: {reason}") from None

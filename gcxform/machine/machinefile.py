@@ -18,11 +18,10 @@ from typing import Any
 import msgspec
 
 from gcxform.diagnostics import Diagnostic, Location, UsageError
-from gcxform.machine import presets
+from gcxform.inputs import referred
+from gcxform.machine import control, presets
 from gcxform.machine.machine import (
     MARK,
-    SWITCHES,
-    TIP_AT_START,
     Axis,
     Machine,
     MachineFile,
@@ -43,8 +42,6 @@ from gcxform.tomltext import TomlText, convert, did_you_mean, read_toml
 
 NONE: presets.Known = MappingProxyType({})
 EXAMPLES = {"axis": "X", "work-offset": "G54", "home": "G28", "tool": "1"}
-INERT = "inert-m"
-"""The setting of the control that lists M codes which move nothing."""
 Keys = tuple[str | int, ...]
 _HOME = re.compile(r"G28|G30( P[0-9]+)?")
 _WORK_OFFSET = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?|G154 P[0-9]+")
@@ -68,31 +65,38 @@ def load_machine(path: Path, kinematics: presets.Known = NONE) -> Machine:
         table=tuple(file.table),
         head=tuple(file.head),
         gauge_point=file.gauge_point,
-        errors=None if file.errors is None else path.parent / file.errors,
+        errors=_named(document, "errors", file.errors),
         axes={letter: _normalised(axis) for letter, axis in file.axis.items()},
         work_offsets={code: _given(offset) for code, offset in file.work_offset.items()},
         homes={code: _given(place) for code, place in file.home.items()},
-        tools=_tools(document, file, path),
-        control={k: v for k, v in file.control.items() if not isinstance(v, list)},
-        inert_m=_listed(file.control.get(INERT, [])),
+        tools=_tools(document, file),
+        control=control.settings_of(file.control),
+        inert_m=control.inert_of(file.control),
     )
 
 
-def _tools(document: TomlText, file: MachineFile, path: Path) -> dict[int, Tool]:
+def _named(document: TomlText, key: str, name: str | None) -> Path | None:
+    """Return a file that the machine file names. Raises UsageError if it lies elsewhere."""
+    if name is None:
+        return None
+    if "\0" in name:
+        message = f"{key}: no file is called {name!r}"
+        raise UsageError.one(document.codes.wrong_value, message, document.where(key))
+    return referred(Path(document.file).parent, name, document.where(key))
+
+
+def _tools(document: TomlText, file: MachineFile) -> dict[int, Tool]:
     """Return the tools of the file, and before them those of the table it names."""
     tools: dict[int, Tool] = {}
-    if file.tool_table is not None and file.tool_table_units is not None:
-        table = read_tools(path.parent / file.tool_table, file.tool_table_units)
+    place = _named(document, "tool-table", file.tool_table)
+    if place is not None and file.tool_table_units is not None:
+        table = read_tools(place, file.tool_table_units)
         tools = {number: Tool(**values) for number, values in table.items()}
     twice = [number for number in file.tool if int(number) in tools]
     if twice:
         message = f"the tool {twice[0]} stands in {file.tool_table} as well"
         raise UsageError.one("GX437", message, document.where("tool", twice[0]))
     return tools | {int(number): tool for number, tool in file.tool.items()}
-
-
-def _listed(codes: str | float | list[int]) -> frozenset[int]:
-    return frozenset(codes) if isinstance(codes, list) else frozenset()
 
 
 def _given(offset: Offset) -> dict[str, float]:
@@ -104,6 +108,7 @@ def schema() -> dict[str, Any]:
     """Return the JSON Schema of machine files."""
     found: dict[str, Any] = msgspec.json.schema(MachineFile)
     _admit_strings(found)
+    found["$defs"]["MachineFile"]["properties"]["control"] = control.schema()
     return found
 
 
@@ -216,35 +221,7 @@ def _findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
     yield from _chain_findings(document, file)
     yield from _offset_findings(document, file)
     yield from _tool_findings(document, file)
-    yield from _switch_findings(document, file)
-    yield from _start_findings(document, file)
-    for name, value in file.control.items():
-        if isinstance(value, list) != (name == INERT):
-            wanted = "a list of M codes, such as [100, 101]" if name == INERT else "one value"
-            message = f"{name}: expected {wanted}"
-            yield Diagnostic(document.codes.wrong_value, message, document.where("control", name))
-
-
-def _switch_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
-    """Yield what is wrong with the codes that let the control follow the tip, and leave it."""
-    given = {name: file.control[name] for name in SWITCHES if name in file.control}
-    for name, code in given.items():
-        message = ""
-        if not isinstance(code, str) or not re.fullmatch("M[1-9][0-9]{2,3}", code):
-            message = f'{name}: expected an M code of the machine\'s own, such as "M428"'
-        elif len(given) < len(SWITCHES):
-            message = f"{name}: {' and '.join(SWITCHES)} are given together"
-        elif len(set(given.values())) == 1:
-            message = f"{name}: one code cannot say both"
-        if message:
-            yield Diagnostic(document.codes.wrong_value, message, document.where("control", name))
-
-
-def _start_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
-    if file.control.get(TIP_AT_START, "off") not in ("off", "on"):
-        message = f'{TIP_AT_START}: expected "off", or "on"'
-        where = document.where("control", TIP_AT_START)
-        yield Diagnostic(document.codes.wrong_value, message, where)
+    yield from control.findings(document, file.control)
 
 
 def _axis_findings(

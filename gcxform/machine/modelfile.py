@@ -12,9 +12,11 @@ from typing import Any
 
 import msgspec
 
+from gcxform import inputs
 from gcxform.diagnostics import Location, UsageError
+from gcxform.limits import how_to_raise, limits
 from gcxform.machine.errors import ErrorModel, check_contraction
-from gcxform.machine.formats import ErrorFormat, chosen_format, unsaid
+from gcxform.machine.formats import ErrorFormat, check_readable, chosen_format, unsaid
 from gcxform.machine.functionsfile import AxisFunctionsFile, axis_functions
 from gcxform.machine.gridfile import (
     HeightMapFile,
@@ -40,17 +42,71 @@ def load_model(path: Path, formats: Formats = ()) -> ErrorModel:
 
     Raises UsageError, with the place in the file, for all that is wrong with it.
     """
-    return _load(path, formats, ())
+    return _Loading(formats).load(path, ())
 
 
-def _load(path: Path, formats: Formats, above: tuple[Path, ...]) -> ErrorModel:
-    """Return the model of a file which is part of the files above it."""
-    if path.suffix.lower() == SUFFIX:
-        model = _native(path, formats, above)
-    else:
-        model = _foreign(path, formats)
-    check_contraction(model, Location(str(path)))
-    return model
+class _Loading:
+    """Loads one model with all its parts, which are counted: few files can name very many."""
+
+    def __init__(self, formats: Formats) -> None:
+        self.formats = formats
+        self.files = 0
+
+    def load(self, path: Path, above: tuple[Path, ...]) -> ErrorModel:
+        """Return the model of a file which is part of the files above it."""
+        self.files += 1
+        if path.suffix.lower() == SUFFIX:
+            model = self._native(path, above)
+        else:
+            model = _foreign(path, self.formats)
+        check_contraction(model, Location(str(path)))
+        return model
+
+    def _native(self, path: Path, above: tuple[Path, ...]) -> ErrorModel:
+        document = read_toml(path, CODES)
+        check_version(document, "error models")
+        kind = document.values.get("kind")
+        if kind is None:
+            raise document.missing_key(("kind",))
+        if kind == Sum.kind:
+            return self._sum(document, path, (*above, path.resolve()))
+        if not isinstance(kind, str) or kind not in KINDS:
+            raise UsageError.one(
+                "GX407",
+                f"error models of the kind {kind!r} are not known",
+                document.where("kind"),
+                did_you_mean(str(kind), [*KINDS, Sum.kind]),
+            )
+        return KINDS[kind](document)
+
+    def _sum(self, document: TomlText, path: Path, above: tuple[Path, ...]) -> Sum:
+        """Return the sum of the models of the files that a file names."""
+        file = convert(document, SumFile)
+        models = []
+        for k, name in enumerate(file.models):
+            where = document.where("models", k)
+            self._check_limits(where, above)
+            models.append(self.load(_part(path, name, where, above), above))
+        return checked_sum(document, models)
+
+    def _check_limits(self, where: Location, above: tuple[Path, ...]) -> None:
+        """Refuse one more part than a model may have, and one in too many others."""
+        limit = "parts" if self.files > limits().parts else "nesting"
+        if limit == "parts" or len(above) > limits().nesting:
+            message = f"the model is made of {self.files} files, and of more"
+            raise UsageError.one("GX761", message, where, how_to_raise(limit))
+
+
+def _part(path: Path, name: str, where: Location, above: tuple[Path, ...]) -> Path:
+    """Return the file of a part of a sum. Raises UsageError if there is none."""
+    if "\0" in name:
+        raise UsageError.one("GX401", f"no file is called {name!r}", where)
+    part = inputs.referred(path.parent, name, where)
+    if part.resolve() in above:
+        raise UsageError.one("GX424", f"the sum {name} is a part of itself", where)
+    if not part.exists():
+        raise UsageError.one("GX401", f"there is no file {name}", where)
+    return part
 
 
 def _foreign(path: Path, formats: Sequence[type[ErrorFormat]]) -> ErrorModel:
@@ -75,45 +131,8 @@ def read_foreign(path: Path, form: type[ErrorFormat]) -> ErrorModel:
         hint = f"gcxform table convert {path.name} model.toml --from '{form.name} {options}'"
         message = f"the format {form.name!r} does not say {' and '.join(missing)}"
         raise UsageError.one("GX480", message, Location(str(path)), hint)
+    check_readable(path)
     return form().read(path)
-
-
-def _native(path: Path, formats: Formats, above: tuple[Path, ...]) -> ErrorModel:
-    document = read_toml(path, CODES)
-    check_version(document, "error models")
-    kind = document.values.get("kind")
-    if kind is None:
-        raise document.missing_key(("kind",))
-    if kind == Sum.kind:
-        return _sum(document, path, formats, above)
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise UsageError.one(
-            "GX407",
-            f"error models of the kind {kind!r} are not known",
-            document.where("kind"),
-            did_you_mean(str(kind), [*KINDS, Sum.kind]),
-        )
-    return KINDS[kind](document)
-
-
-def _sum(document: TomlText, path: Path, formats: Formats, above: tuple[Path, ...]) -> Sum:
-    """Return the sum of the models of the files that a file names."""
-    file = convert(document, SumFile)
-    above = (*above, path.resolve())
-    models = []
-    for k, name in enumerate(file.models):
-        if "\0" in name:
-            message = f"no file is called {name!r}"
-            raise UsageError.one("GX401", message, document.where("models", k))
-        part = path.parent / name
-        if part.resolve() in above:
-            message = f"the sum {name} is a part of itself"
-            raise UsageError.one("GX424", message, document.where("models", k))
-        if not part.exists():
-            message = f"there is no file {name}"
-            raise UsageError.one("GX401", message, document.where("models", k))
-        models.append(_load(part, formats, above))
-    return checked_sum(document, models)
 
 
 def check_version(document: TomlText, what: str) -> None:

@@ -50,6 +50,13 @@ class Quantity:
         # Decimal, so that "7 um" is the double nearest to 0.007
         return float(Decimal(number) * self.worth[unit or self.base])
 
+    def of(self, text: str) -> float | None:
+        """Return a string with or without a unit, in the base unit; None where it is none."""
+        try:
+            return self.parse(text, bare=True)
+        except ValueError:
+            return None
+
     @property
     def article(self) -> str:
         """The name with its article."""

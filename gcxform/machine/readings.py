@@ -14,7 +14,7 @@ import bisect
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 from typing import NamedTuple
@@ -160,7 +160,9 @@ def _sensors(path: Path, number: int, header: str, separator: str) -> dict[str, 
         where = Location(str(path), number, cell.column, header, max(1, len(cell.text)))
         if not column:
             if cell.text != TIME:
-                message = f"the first column is {cell.text!r}, needed is {TIME!r}"
+                message = f"the first column is not {TIME!r}"
+                ours = any(other.text == TIME for other in _cells(header, separator))
+                where = where if ours else replace(where, text="")  # others may be secret
                 raise UsageError.one("GX417", message, where)
             continue
         name, _, unit = cell.text.removesuffix("]").partition("[")

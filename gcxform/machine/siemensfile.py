@@ -27,6 +27,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from gcxform import inputs
 from gcxform.diagnostics import Diagnostic, FileError, Location, UsageError
 from gcxform.machine.machine import Axis, Machine
 from gcxform.machine.quantities import ROTARY_AXES
@@ -62,7 +63,7 @@ def read_siemens(path: Path, letters: tuple[str, str]) -> Machine:
     """
     where = Location(str(path))
     try:
-        text = path.read_text("latin-1")
+        text = inputs.read(path).decode("latin-1").replace("\r\n", "\n")
     except OSError as error:
         raise FileError.one("GX901", f"cannot read {path}: {error.strerror}") from None
     try:

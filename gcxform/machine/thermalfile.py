@@ -16,6 +16,7 @@ import msgspec
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, UsageError
+from gcxform.inputs import referred
 from gcxform.machine.errors import AXES, BORDER, FloatArray, State
 from gcxform.machine.functions import faults
 from gcxform.machine.readings import Readings, Row, read_readings, unknown_sensor
@@ -119,10 +120,11 @@ def thermal_screw(document: TomlText) -> ThermalScrew:
 
 def _readings_of(document: TomlText, file: ThermalScrewFile) -> Path:
     """Return the place of the readings. Raises UsageError, where it is said, if none are there."""
-    place = Path(document.file).parent / file.readings
-    if "\0" in file.readings or place.is_dir() or not place.exists():
+    where, folder = document.where("readings"), Path(document.file).parent
+    place = folder if "\0" in file.readings else referred(folder, file.readings, where)
+    if place.is_dir() or not place.exists():
         message = f"there is no file {file.readings!r}"
-        raise UsageError.one("GX401", message, document.where("readings"))
+        raise UsageError.one("GX401", message, where)
     return place
 
 

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from gcxform import inputs
 from gcxform.diagnostics import Diagnostic, FileError, Location, UsageError
 
 UNITS = {"mm": 1.0, "in": 25.4}
@@ -18,6 +19,7 @@ NUMBERS = {"T", "P"}
 KEPT = {"X": "x", "Y": "y", "Z": "length", "D": "radius"}
 ZERO = set("UVWABC")
 IGNORED = set("IJQ")
+_TOOL = re.compile(r"[ \t]*T[0-9]+(?![^ \t;])", re.IGNORECASE)
 _WORD = re.compile(r"([A-Za-z])([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
 
 
@@ -27,21 +29,26 @@ def read_tools(path: Path, unit: str) -> dict[int, dict[str, float]]:
     `unit` is that of the table, "mm" or "in". Raises FileError, and UsageError for its lines.
     """
     try:
-        lines = path.read_text("latin-1").splitlines()
+        lines = inputs.read(path).decode("latin-1").splitlines()
     except OSError as error:
         raise FileError.one("GX901", f"cannot read {path}: {error.strerror}") from None
     tools: dict[int, dict[str, float]] = {}
+    first = 0
     found: list[Diagnostic] = []
     for number, line in enumerate(lines, 1):
         words = line.partition(";")[0].split()
         if not words:
             continue
         problems = [*_problems(words, tools)]
+        first = first or number
         where = Location(str(path), number, 1, line, max(1, len(line)))
         found += [Diagnostic("GX438", problem, where) for problem in problems]
         if not problems:
             tool, values = _tool(words, UNITS[unit])
             tools[tool] = values
+    if found and not any(_TOOL.match(line) for line in lines):  # whatever it is, it is not shown
+        message = "no line of the file is one of a tool table, such as T1 P1 Z100"
+        raise UsageError.one("GX438", message, Location(str(path), first or 1))
     if found:
         raise UsageError(tuple(found))
     return tools

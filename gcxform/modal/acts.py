@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from gcxform.modal import lengths, offsets, turns
-from gcxform.modal.asking import Act
+from gcxform.modal.asking import Act, Asked
 
 ACTS: Mapping[str, Act] = {
     "change-tool": lengths.change_tool,
@@ -38,3 +38,25 @@ ACTS: Mapping[str, Act] = {
     "preset-restore": offsets.preset_restore,
     "store-home": offsets.store_home,
 }
+
+WORDS: Mapping[str, str] = {
+    "length": "H",
+    "length-negative": "H",
+    "length-add": "H",
+    "vectors": "H",
+    "set-tool": "Q",
+    "set-work": "LPRQIJK",
+    "rotate": "RIJK",
+    "scale": "PIJK",
+    "user-code": "PQ",
+}
+"""The words, besides axes, by which an act says what it does. Work offsets have any."""
+
+
+def unheard(act: str, asked: Asked) -> str:
+    """Return a word of the block that its code takes and its act does not look at, if there is one.
+
+    Two blocks that differ in such a word alone would be taken for the same.
+    """
+    heard = asked.numbers if act == "work" else WORDS.get(act, "")
+    return next((a for a in asked.written if a not in asked.dialect.axes and a not in heard), "")

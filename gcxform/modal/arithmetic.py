@@ -48,6 +48,8 @@ class Arithmetic:
     not_in_words  functions that do something else in a word than in an assignment
     beside_words  an assignment may stand beside words and other assignments; all of them take
                   effect after their block
+    local         numbers of the parameters that end with their call, or with the program
+    digits        significant digits of a number that may be written; 17 are all there are
     """
 
     operators: Mapping[str, Operator]
@@ -59,12 +61,22 @@ class Arithmetic:
     whole_slip: float
     not_in_words: frozenset[str] = frozenset()
     beside_words: bool = True
+    local: range = range(0)
+    digits: int = 17
 
     def owns(self, key: Key) -> bool:
         """Return whether a parameter belongs to programs, and not to the control."""
         if isinstance(key, int):
             return any(key in numbers for numbers in self.own)
         return self.named and key.split("[")[0] not in self.system
+
+    def outlives(self, key: Key) -> bool:
+        """Return whether a parameter keeps its value when the program that has set it is over."""
+        return key not in self.local if isinstance(key, int) else key.startswith("_")
+
+    def can_say(self, key: Key) -> bool:
+        """Return whether an assignment to a parameter can be written, and lasts as long here."""
+        return self.owns(key) and self.outlives(key)
 
 
 def whole(value: float, slip: float = INTEGER) -> int:
@@ -197,6 +209,7 @@ RS274 = Arithmetic(
     system=frozenset(SYSTEM_NAMES.split()),
     whole="DHLT",
     whole_slip=INTEGER,
+    local=range(1, 31),
 )
 
 
@@ -281,4 +294,6 @@ MACRO_B = Arithmetic(
     whole_slip=0.0,
     not_in_words=frozenset({"ROUND"}),
     beside_words=False,
+    local=range(1, 34),
+    digits=12,
 )

@@ -54,5 +54,11 @@ class Asked:
         """Return the index of an axis."""
         return state.axes.index(axis)
 
+    @property
+    def numbers(self) -> str:
+        """The letters, besides axes, of the words that the code takes: with these it says which."""
+        code = self.dialect.codes.get(self.code)
+        return "".join(a for a in (code.takes if code else "") if a not in self.dialect.axes)
+
 
 Act = Callable[[FrameState, Asked], FrameState]

@@ -15,7 +15,7 @@ from gcxform.diagnostics import Diagnostic
 from gcxform.modal.arithmetic import Key, NoValueError, whole
 from gcxform.modal.expressions import Evaluator, LocatedError, settable
 from gcxform.modal.findings import Findings
-from gcxform.modal.lines import Lines
+from gcxform.modal.lines import Assigned, Lines
 from gcxform.syntax.tree import Expression, Statement, Word
 
 UNKNOWN = float("nan")
@@ -55,7 +55,10 @@ class _Block:
         for slot, word in self.meaning.expressions:
             self.value[first + slot] = self._word(word)
         changes = [self._assigned(statement) for statement in self.meaning.assignments]
-        self.lines.parameters.update(change for change in changes if change is not None)
+        made = [change for change in changes if change is not None]
+        self.lines.parameters.update(made)
+        line = self.lines.window.first_line + self.line
+        self.lines.assigned += [Assigned(line, key, value) for key, value in made]
         if self.meaning.runs_macro and not self.meaning.lost_by <= self.lines.reading.inert_m:
             self.lines.parameters = dict.fromkeys(self.lines.parameters, UNKNOWN)
 
@@ -65,7 +68,7 @@ class _Block:
         evaluator = Evaluator(self.arithmetic, self.lines.parameters, in_word=True)
         try:
             value = evaluator.value(word.value.tree)
-            if word.address in self.arithmetic.whole:
+            if word.address in self.arithmetic.whole and not self.meaning.is_length(word.address):
                 value = float(whole(value, self.arithmetic.whole_slip))
         except LocatedError as why:
             self._refuse(why, why.start, why.end)

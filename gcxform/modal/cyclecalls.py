@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from gcxform.dialect import INCH
 from gcxform.modal.cycles import UNKNOWN, Calls
+from gcxform.modal.findings import Findings
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.modal.track import Track
 from gcxform.toolpath.path import Plane, constant
@@ -91,14 +92,26 @@ class CallColumns:
         return value * np.where(self.modes.inch, INCH, 1.0) if inches else value
 
     def _seconds(self, plain: Floats) -> Floats:
-        """Return P words as seconds."""
-        dialect, lines = self.lines.dialect, self.lines
-        if not dialect.dwell_point_is_seconds:
-            return plain * dialect.dwell["P"]
+        """Return P words as seconds; those that count what is not known are refused."""
+        lines = self.lines
         slot = lines.table.slots[lines.shape, ord("P") - 65]
-        number = np.where(slot >= 0, lines.first + slot, 0)
-        pointed = (slot >= 0) & (lines.window.decimals[number] >= 0)
-        return np.where(pointed, plain, plain * dialect.dwell["P"])
+        decimals = lines.window.decimals[np.where(slot >= 0, lines.first + slot, 0)]
+        seconds = plain.copy()
+        for pointed in (False, True):
+            here = (plain != 0) & ~np.isnan(plain) & ((decimals >= 0) == pointed)
+            unit = lines.pointless.dwell("P", 0 if pointed else -1) if here.any() else 1.0
+            if unit is None:
+                self._refuse_dwells(here)
+            else:
+                seconds[here] *= unit
+        return seconds
+
+    def _refuse_dwells(self, here: Flags) -> None:
+        """Refuse dwells on lines: the increment system alone does not tell what they count."""
+        for line in np.flatnonzero(here)[: Findings.enough].tolist():
+            message = "P has no decimal point: its unit depends on the control"
+            hint = "give the increment as a length: P counts ms then"
+            self.lines.findings.add(line, "GX205", message, "P", hint)
 
     def last(self, address: str, line: int) -> int:
         """Return the last call with a word, on a line or before it; -1 for none.

@@ -160,7 +160,8 @@ class Checks:
         ):
             codes = [code for code, pecks in rule.pecks.items() if pecks == way]
             deep = self.drilled & self._with_code(codes) & (self.pecks > 1)
-            hint = f"give {name}, the parameter of the machine"
+            key = name.replace("_", "-")
+            hint = f'{key} = "0.5 mm" in [control] of the machine file, as the machine has it'
             message = "{code}: how far it goes back between pecks is a parameter of the control"
             yield deep & (needed is None), message, hint
 

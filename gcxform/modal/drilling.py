@@ -218,7 +218,8 @@ class Drilling:
             here = drills & (self.modes.plane == plane) & (has[normal] | has["R"])
             for line in np.flatnonzero(here & ~has[first] & ~has[second]).tolist():
                 message = f"a cycle without {first} and {second}: a setting decides if it drills"
-                hint = f'give {first} or {second}, or say [control] {rule.alone} = "drills"'
+                say = f'{rule.alone} = "drills" in [control] of the machine file'
+                hint = f"give {first} or {second}, or say {say}"
                 self.track.findings.add(line, "GX215", message, hint=hint)
 
     def _stretches(self, followed: list[_Followed], line: Ints, bounds: Ints) -> list[Stretch]:

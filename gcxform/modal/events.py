@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.modal.lines import LENGTHS, Lines
+from gcxform.modal.lines import Lines
 from gcxform.toolpath.path import Event
 
 Ints = NDArray[np.int64]
@@ -49,9 +49,5 @@ def _value(lines: Lines, what: str, address: str, number: int) -> tuple[str, flo
     value = float(lines.window.value[number])
     if what != "DWELL":
         return address, value
-    pointless = lines.window.decimals[number] < 0 and address in LENGTHS
-    if pointless and value and lines.dialect.point_required:
-        return "increments", value
-    if lines.dialect.dwell_point_is_seconds and lines.window.decimals[number] >= 0:
-        return "seconds", value
-    return "seconds", value * lines.dialect.dwell[address]
+    unit = lines.pointless.dwell(address, int(lines.window.decimals[number])) if value else 1.0
+    return ("increments", value) if unit is None else ("seconds", value * unit)

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
-from lark import Token
+from lark import Token, Tree
 
-from gcxform.modal.arithmetic import Arithmetic, Key, NoValueError, whole
+from gcxform.modal.arithmetic import RS274, Arithmetic, Key, NoValueError, whole
 from gcxform.syntax.grammar import rule_of, span_of
-from gcxform.syntax.tree import BLANKS
+from gcxform.syntax.tree import BLANKS, Statement
 
 Parameters = Mapping[Key, float]
 """Values by parameter; nan for one that is no longer known."""
@@ -142,6 +143,28 @@ class Evaluator:
                 f"only the control knows whether {written(key)} exists", code="GX220"
             )
         return 0.0
+
+
+def key_set(statement: Statement) -> Key | None:
+    """Return the parameter that an assignment sets; None where it is computed which."""
+    parameter = statement.tree.children[0]
+    return Evaluator(LITERAL, {}).key(parameter) if _is_literal(parameter.children[0]) else None
+
+
+def sets_number(statement: Statement) -> bool:
+    """Return whether an assignment sets a parameter that is named to a number as written."""
+    value = statement.tree.children[1]
+    if isinstance(value, Tree) and rule_of(value) == "negated":
+        value = value.children[1]
+    return key_set(statement) is not None and _is_literal(value)
+
+
+def _is_literal(node: Any) -> bool:
+    return isinstance(node, Token)
+
+
+LITERAL = replace(RS274, operators={}, functions={})
+"""For what is written out already: no dialect's own."""
 
 
 def settable(arithmetic: Arithmetic, key: Key) -> Key:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.diagnostics import Diagnostic, Severity
 from gcxform.modal.meaning import OWN_MOVES, Act
 from gcxform.modal.rows import Rows
 from gcxform.modal.tied import probe
@@ -64,6 +65,7 @@ def _home(track: Track, line: int, code: str) -> Rows:
     moves: list[tuple[int, Floats]] = []
     if words:
         moves.append((Kind.RAPID, _reached(track, line, words)))
+        _warn_of_plunge(track, line, code, float(moves[0][1][2]))
     elif not track.dialect.g28_without_axes:
         track.findings.add(
             line,
@@ -79,6 +81,18 @@ def _home(track: Track, line: int, code: str) -> Rows:
         if axis in words or not words:
             home[k] = _in_frame(track, k, place.get(axis, np.nan))
     return _rows(track, line, Form.HOME, [*moves, (Kind.RAPID, home)])
+
+
+def _warn_of_plunge(track: Track, line: int, code: str, by_way: float) -> None:
+    """Note a way home that leads down first: `G90 G28 Z0` goes to Z0 of the part, then home."""
+    stands = float(track.state.position[2])
+    if track.modes.incremental[line] or not by_way < stands:
+        return
+    message = f"{code} under G90 goes by way of the point it names: down by {stands - by_way:g} mm"
+    where = track.findings.location(line, 1, 1)
+    hint = f"G91 {code} Z0 goes home from where the tool stands"
+    warning = Diagnostic("GX229", message, where, hint, severity=Severity.WARNING)
+    track.state.assumed[message] = warning
 
 
 def _refuse_one_of_turned(track: Track, line: int, code: str, words: dict[str, float]) -> None:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.diagnostics import UsageError
 from gcxform.dialect import INCH, Dialect
 from gcxform.machine.quantities import LENGTH
 from gcxform.modal.arithmetic import Key
@@ -22,7 +23,7 @@ from gcxform.modal.cycles import Cycles
 from gcxform.modal.expressions import parameter_key
 from gcxform.modal.frames import FrameState
 from gcxform.modal.limits import refuse_limits
-from gcxform.modal.lines import Lines
+from gcxform.modal.lines import Assigned, Lines
 from gcxform.modal.moves import Moves
 from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, State
 from gcxform.modal.tables import GROUPS, NUMBER, SPLINES, MeaningTable
@@ -35,7 +36,8 @@ class Interpreted:
     """A window's toolpath and the modes of its lines; `live` lines are those the control runs.
 
     `shape` (live,) are their shapes: that of an empty line for blocks that are skipped. `value`
-    are the window's numbers, those that were computed among them.
+    are the window's numbers, those that were computed among them; `assigned` are the parameters
+    that the lines set, in order.
     """
 
     path: Toolpath
@@ -44,6 +46,7 @@ class Interpreted:
     shape: NDArray[np.int64]
     before: State
     value: NDArray[np.float64]
+    assigned: tuple[Assigned, ...] = ()
 
 
 PECKS = ("peck-return", "peck-clearance")
@@ -54,6 +57,14 @@ def _length(control: Mapping[str, str | float], name: str) -> float | None:
     """Return a length (mm) among the settings of the control."""
     value = control.get(name)
     return LENGTH.parse(value) if isinstance(value, str) else value
+
+
+def _key_of(parameter: str) -> Key:
+    """Return the key of a parameter. Raises UsageError for what is none."""
+    try:
+        return parameter_key(parameter)
+    except ValueError as error:
+        raise UsageError.one("GX701", f"parameters: {error}") from None
 
 
 class Interpreter:
@@ -103,7 +114,7 @@ class Interpreter:
     def _given(self) -> dict[Key, float]:
         """Return the parameters whose values are given, but for those the control changes."""
         arithmetic = self.dialect.arithmetic
-        given = {parameter_key(name): v for name, v in self.reading.parameters.items()}
+        given = {_key_of(name): value for name, value in self.reading.parameters.items()}
         return {k: v for k, v in given.items() if arithmetic is not None and arithmetic.owns(k)}
 
     def interpret(self, window: Window, table: MeaningTable) -> Interpreted:
@@ -118,7 +129,8 @@ class Interpreter:
         refuse_limits(lines, modes, path.events)
         lines.findings.raise_if_any()
         self._carry(lines, modes)
-        return Interpreted(path, modes, lines.live, lines.shape, before, lines.window.value)
+        value, assigned = lines.window.value, tuple(lines.assigned)
+        return Interpreted(path, modes, lines.live, lines.shape, before, value, assigned)
 
     def _carry(self, lines: Lines, modes: Modes) -> None:
         """Leave the state in which the window ends."""

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, LINEAR, Dialect
+from gcxform.modal.arithmetic import Key
 from gcxform.modal.findings import Findings
+from gcxform.modal.pointless import Pointless
 from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
 from gcxform.modal.tables import (
     COLUMNS,
@@ -21,7 +24,6 @@ from gcxform.modal.tables import (
     of_splines,
 )
 from gcxform.syntax.scan import Window
-from gcxform.syntax.tree import COMPUTED
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -29,6 +31,16 @@ Small = NDArray[np.int8]
 Flags = NDArray[np.bool_]
 
 DISTANCES = "XYZABCUVWIJKR"
+
+
+class Assigned(NamedTuple):
+    """A parameter that a line of the program, from 0, has set, and its value."""
+
+    line: int
+    key: Key
+    value: float
+
+
 LENGTHS = LINEAR + "IJKR"
 NOTHING = 0  # the shape of an empty line
 
@@ -49,6 +61,7 @@ class Lines:
     shape    (live,) their shapes; blocks that are skipped have that of an empty line
     first    (live,) index of the first number of each
     parameters   what the program has set, before the window and, once computed, after it
+    assigned     what the window has set, in order, once computed
     """
 
     def __init__(
@@ -66,7 +79,9 @@ class Lines:
         self.window = window
         self.table = table
         self.findings = Findings(file, window, table)
+        self.pointless = Pointless(dialect, reading, self.findings, state.assumed)
         self.parameters = dict(state.parameters)
+        self.assigned: list[Assigned] = []
         self.live = self._live()
         self.shape = window.shape[: self.live]
         self.first = window.first_number[: self.live]
@@ -74,6 +89,8 @@ class Lines:
         self._used = table.slots[used].max(axis=0, initial=-1) >= 0
         self._stated = table.groups[used].max(axis=0, initial=-1) >= 0
         self._flagged = np.asarray(table.flags[used].any(axis=0))
+        for number in used.tolist() if dialect.chosen or dialect.m_order_chosen else ():
+            state.assumed.update(dict.fromkeys(table.meanings[number].choices))
 
     def flag(self, name: str) -> Flags:
         """Return a flag of the meaning of each line."""
@@ -88,6 +105,11 @@ class Lines:
             return lost
         known = np.array([meaning.lost_by <= inert for meaning in self.table.meanings], np.bool_)
         return np.asarray(lost & ~known[self.shape])
+
+    @cached_property
+    def inch(self) -> Flags:
+        """The lines in inches."""
+        return np.asarray(self._group("units") == 1)
 
     def stated(self, group: str) -> Flags:
         """Return which lines have a code of a group."""
@@ -124,6 +146,9 @@ class Lines:
         """Execute or silence blocks with a slash, or refuse them."""
         deleted = np.flatnonzero(self.flag("deleted"))
         policy = self.reading.block_delete or self.dialect.block_delete
+        if len(deleted) and self.reading.block_delete:
+            done = {"execute": "executed", "skip": "skipped"}[self.reading.block_delete]
+            self.state.assumed[f"blocks with a slash are {done}"] = None
         if not len(deleted) or policy == "execute":
             return
         if policy == "skip":
@@ -135,7 +160,7 @@ class Lines:
                 line,
                 "GX211",
                 "a switch of the control decides whether this block is executed",
-                hint='say which: block-delete = "execute" or "skip" in [input]',
+                hint='block-delete = "execute" in [input], or block-delete = "skip" in [input]',
             )
 
     def _lone_line_ends(self) -> None:
@@ -173,31 +198,9 @@ class Lines:
         if distance is None:
             distance = address in DISTANCES
         if self.dialect.point_required and distance:
-            value = self._with_increment(address, value, present, number)
+            decimals = self.window.decimals[number]
+            value = self.pointless.distances(address, value, present, decimals, self.inch)
         return value, present
-
-    def _with_increment(self, address: str, value: Floats, present: Flags, number: Ints) -> Floats:
-        """Return distances with those that have no point scaled by the increment."""
-        decimals, increment = self.window.decimals[number], self.reading.increment
-        pointless = present & (decimals < 0) & (value != 0)
-        if not pointless.any():
-            return value
-        computed = pointless & (decimals == COMPUTED)
-        if increment is None:
-            for line in np.flatnonzero(pointless).tolist():
-                why = "has no decimal point: its unit"
-                if computed[line]:
-                    why = "is computed: to what it is rounded"
-                self.findings.add(
-                    line,
-                    "GX205",
-                    f"{address} {why} depends on the control",
-                    address,
-                    'say what 1 is worth: increment = "0.001 mm" in [input]',
-                )
-            return value
-        rounded = np.copysign(np.floor(np.abs(value) / increment + 0.5) * increment, value)
-        return np.where(computed, rounded, np.where(pointless, value * increment, value))
 
     def refuse_pointless(self, line: int, address: str, number: int) -> None:
         """Refuse a distance without a point in a word that a code takes for itself."""
@@ -321,7 +324,10 @@ class Lines:
         present = np.zeros(self.live, np.bool_)
         if word is not None:
             value, present = np.where(word[1], word[0], np.nan), word[1]
-            value = self._with_feed_increment(value, present, feed_mode, inch)
+            if self.dialect.point_required:
+                slot = self.table.slots[self.shape, ord("F") - 65]
+                decimals = self.window.decimals[np.where(present, self.first + slot, 0)]
+                value = self.pointless.feeds(value, present, decimals, feed_mode, inch)
         present = present | self._cleared(feed_mode, inch)
         if self.dialect.feed_before_units:
             inch = np.append(self.state.groups["units"] == 1, inch[:-1])[: self.live]
@@ -342,32 +348,3 @@ class Lines:
             unit = np.append(self.state.groups["units"] == 1, inch)
             cleared |= unit[1:] != unit[:-1]
         return cleared
-
-    def _with_feed_increment(
-        self, value: Floats, present: Flags, feed_mode: Small, inch: Flags
-    ) -> Floats:
-        """Return feeds with those that have no point scaled, or refuse them.
-
-        Their unit depends on the control: of every F where the dialect says so, else in inches and
-        in feed per turn.
-        """
-        if not self.dialect.point_required:
-            return value
-        slot = self.table.slots[self.shape, ord("F") - 65]
-        number = np.where(present, self.first + slot, 0)
-        odd = present & (self.window.decimals[number] < 0)
-        per_minute = feed_mode == NUMBER["G94"]
-        increment = self.reading.feed_increment
-        if not self.dialect.feed_point_required:
-            odd &= inch | (feed_mode == NUMBER["G95"])
-        elif increment is not None:
-            counted = odd & per_minute & (self.window.decimals[number] != COMPUTED)
-            value = np.where(counted, value * increment, value)
-            odd &= ~counted
-        hint = "write the feed with a point"
-        if self.dialect.feed_point_required:
-            hint += ", or say what 1 is worth in G94: feed-increment = 1.0 in [input]"
-        for line in np.flatnonzero(odd)[: Findings.enough].tolist():
-            message = "F has no decimal point: its unit depends on the control"
-            self.findings.add(line, "GX205", message, "F", hint)
-        return value

@@ -103,7 +103,7 @@ class Meaning:
 
     `lengths` are the words that codes take for themselves and that are in the unit of the program:
     code, address, slot. `lent` are words that codes take which a move of the block may want as
-    well: the code by address.
+    well: the code by address. `choices` are what was chosen among several meanings, in sentences.
     """
 
     groups: dict[str, str] = field(default_factory=dict)
@@ -128,6 +128,11 @@ class Meaning:
     drill_words: str = ""
     lent: dict[str, str] = field(default_factory=dict)
     refusal: Refusal | None = None
+    choices: tuple[str, ...] = ()
+
+    def is_length(self, address: str) -> bool:
+        """Whether a code takes a word as a length: D of G41.1, where D of G41 is a number."""
+        return any(taken == address for _, taken, _ in self.lengths)
 
     @property
     def compensates(self) -> bool:

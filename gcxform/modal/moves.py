@@ -142,10 +142,24 @@ class Moves:
         self._refuse_lent(moves | self.drilling.calls, arc)
         self.tied.check(moves, own)
         in_machine = self.lines.flag("in_machine") & (self.modes.motion == Kind.LINE)
-        feeding = (moves & ~self.tied.paced) | in_machine
+        feeding = (moves & ~self.tied.paced) | in_machine | self._lone_codes(moves, drilling)
         calls = self.drilling.calls | self.lines.flag("probes")
         self._check_feed(feeding, calls)
         return moves
+
+    def _lone_codes(self, moves: Flags, drilling: Flags) -> Flags:
+        """Return the lines that state a code of feed moves and move nothing, where that counts.
+
+        A control that executes them asks for a feed, and an arc for its words.
+        """
+        if not self.dialect.lone_codes_count:
+            return np.zeros(len(moves), np.bool_)
+        lone = self.lines.stated("motion") & ~moves & ~drilling
+        arc = (self.modes.motion == Kind.ARC_CW) | (self.modes.motion == Kind.ARC_CCW)
+        for line in np.flatnonzero(lone & arc)[: Findings.enough].tolist():
+            message = f"{self.dialect.name} refuses an arc without any word"
+            self.findings.add(line, "GX302", message, hint="write the code where the arc is")
+        return np.asarray(lone & (self.modes.motion == Kind.LINE))
 
     def _refuse_lent(self, moves: Flags, arc: Flags) -> None:
         """Refuse words of other codes that the move of their block would take as well."""
@@ -309,6 +323,7 @@ class Moves:
                 self.modes.feed_mode,
                 self.lines.flag("ends") | self.lines.flag("loses_position"),
                 self.lines.flag("marked"),
+                self.track.named(self.lines.flag("own_moves")),
             ),
             events_of(self.lines, line, self.drilling.events),
             first=self.state.frames.first,

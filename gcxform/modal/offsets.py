@@ -19,19 +19,23 @@ def moved_to_names(state: FrameState, asked: Asked, values: Vector) -> Vector:
     return tuple(changed)
 
 
+def _article(address: str) -> str:
+    return "an" if address in "AEFHILMNORSX" else "a"
+
+
 # --- work offsets ---
 
 
 def work(state: FrameState, asked: Asked) -> FrameState:
-    """G54 and its like: another work offset."""
+    """G54 and its like: another work offset; a code that takes words names one by each of them."""
     name = asked.dialect.work_names.get(asked.code, asked.code)
-    if "P" in asked.words:
-        number = asked.words["P"]
+    for address in asked.numbers:
+        number = asked.words.get(address)
+        if number is None:
+            raise ActError("GX213", f"{name} needs {_article(address)} {address} word")
         if number < 1 or number % 1:
-            raise ActError("GX213", f"{name} needs a whole number in P")
-        name = f"{name} P{number:g}"
-    elif name in ("G54.1", "G154"):
-        raise ActError("GX213", f"{name} needs a P word")
+            raise ActError("GX213", f"{name} needs a whole number in {address}")
+        name = f"{name} {address}{number:.0f}"
     unmoved = bool(np.isnan(asked.position).all())
     if not state.known and unmoved and name not in asked.reading.work_offsets:
         return state.starting_in(name, asked.reading.work_offsets, True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from gcxform.dialect import LINEAR, Dialect
+from gcxform.modal.chosen import choices_of
 from gcxform.modal.codes import Code, Effect, MCode
 from gcxform.modal.meaning import (
     ACT_ORDER,
@@ -49,6 +50,7 @@ def _read(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Re
     yield from _number_first(shape, dialect)
     yield from _words(shape, dialect, meaning)
     meaning.bars_comp = _bars_comp(shape, dialect, meaning)
+    meaning.choices = choices_of(shape, dialect, meaning)
     meaning.events.sort(key=lambda event: (event.after, event.order))
     meaning.acts.sort(key=lambda act: ACT_ORDER.index(act.name))
 
@@ -199,7 +201,8 @@ def _g_act(
     meaning.acts.append(Act(code.act, name, taken, word.start, width))
     if code.act == "length-add" and any(axis in meaning.slots for axis in dialect.axes):
         yield Refusal("GX202", word.start, width, f"{name} takes H or axis words, not both")
-    moves = "motion" in meaning.groups or not meaning.slots.keys().isdisjoint(dialect.axes)
+    motion = meaning.groups.get("motion", "G80") != "G80"
+    moves = motion or not meaning.slots.keys().isdisjoint(dialect.axes)
     if code.act == "no-length" and dialect.g49_takes_axes and moves:
         message = f"{name} takes the axis words here, and has no use for them"
         yield Refusal("GX202", word.start, width, message, "move in a block of its own")

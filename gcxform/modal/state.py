@@ -9,8 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform import door
+from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.machine.machine import TIP_AT_START, Machine, Tool
+from gcxform.machine.quantities import AXIS_LETTERS
 from gcxform.modal.frames import FrameState
+from gcxform.modal.increments import Increments
 from gcxform.toolpath.frames import Frame
 
 if TYPE_CHECKING:
@@ -20,6 +24,8 @@ Floats = NDArray[np.float64]
 Small = NDArray[np.int8]
 Flags = NDArray[np.bool_]
 
+BLOCK_DELETE = ("execute", "skip", "")
+UNITS = ("mm", "in", "")
 CYCLE_OFF = 80
 UNKNOWN_SPINDLE = 3
 
@@ -29,8 +35,9 @@ class Reading:
     """What a program does not say of itself.
 
     start         position of axes before the first block, mm or degrees
-    increment     least input increment, in the unit the program is in (mm, inch) and degrees;
-                  None: a distance without a point is refused where the dialect asks for one
+    increment     what 1 means in a distance without a point, as `Increments` takes it: "IS-B",
+                  "calculator", a length in mm; None: such a distance is refused where the dialect
+                  asks for a point
     feed          feed in effect before the first F word, in the program's unit
     block_delete  "execute", "skip", or "" to refuse blocks with a slash that do anything
     units         "mm" or "in" until the program says G20 or G21; "" for the dialect's default
@@ -39,18 +46,18 @@ class Reading:
     tools         the tool table
     control       settings of the control on which the meaning of codes depends
     inert_m       M codes of the machine's own that move no axis and set no variable
-    feed_increment   what 1 means in an F without a point, in units per minute; None: such an F is
-                  refused where the dialect asks for a point
+    feed_increment   what 1 means in an F without a point: a number of units per minute, a system
+                  or "calculator"; None: such an F is refused where the dialect asks for a point
     rotary        the letters of the rotary axes of the machine; "" where that is not known
     parameters    values of parameters before the first block, by number ("100") or name ("<a>")
     """
 
     start: Mapping[str, float] = field(default_factory=dict)
-    increment: float | None = None
+    increment: float | str | None = None
     feed: float | None = None
     block_delete: str = ""
     units: str = ""
-    feed_increment: float | None = None
+    feed_increment: float | str | None = None
     parameters: Mapping[str, float] = field(default_factory=dict)
     work_offsets: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     homes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
@@ -58,6 +65,40 @@ class Reading:
     control: Mapping[str, str | float] = field(default_factory=dict)
     inert_m: frozenset[int] = frozenset()
     rotary: str = ""
+
+    def __post_init__(self) -> None:
+        """Take what a caller may write for what it means; refuse all else. Raises UsageError."""
+        for name, value in self._taken().items():
+            object.__setattr__(self, name, value)
+        try:
+            _ = self.increments
+        except ValueError as error:
+            raise UsageError.one("GX708", f"increment: {error}") from None
+
+    def _taken(self) -> dict[str, object]:
+        """Return the fields that a program cannot be read without understanding, converted."""
+        start = {
+            door.chosen("start", axis, AXIS_LETTERS): door.number(f"start of {axis}", value)
+            for axis, value in door.table("start", self.start).items()
+        }
+        parameters = {
+            name: door.number(f"parameter {name}", value)
+            for name, value in door.table("parameters", self.parameters).items()
+        }
+        return {
+            "start": start,
+            "parameters": parameters,
+            "feed": None if self.feed is None else door.positive("feed", self.feed),
+            "block_delete": door.chosen("block_delete", self.block_delete, BLOCK_DELETE),
+            "units": door.chosen("units", self.units, UNITS),
+            "increment": _increment("increment", self.increment),
+            "feed_increment": _increment("feed_increment", self.feed_increment),
+        }
+
+    @property
+    def increments(self) -> Increments | None:
+        """What is said of distances without a point, None where nothing is."""
+        return None if self.increment is None else Increments.of(self.increment)
 
     def follows_at_start(self, otherwise: bool | None) -> bool | None:
         """Return whether the control follows the tip before the first block, None if not known."""
@@ -77,6 +118,11 @@ class Reading:
         )
 
 
+def _increment(what: str, value: object) -> float | str | None:
+    """Return an increment as `Increments` takes it: a length, or words."""
+    return value if value is None or isinstance(value, str) else door.positive(what, value)
+
+
 @dataclass(slots=True)
 class State:
     """What one window hands to the next.
@@ -88,6 +134,8 @@ class State:
                   `cancelled`: G40 has been in force since
     selected      the T word; `tool`: the tool in the spindle; `stored`: the D word; nan: not known
     pull   P and Q of the last move if that was a G5, in units of the program
+    assumed  what was chosen among several meanings that a word can have, in sentences; those that
+             may surprise with a warning
     vector the tool axis that G43.5 has led to, nan where it is not in force
     """
 
@@ -112,6 +160,7 @@ class State:
     at_side: int = 0
     cancelled: bool = False
     stated: set[str] = field(default_factory=set)
+    assumed: dict[str, Diagnostic | None] = field(default_factory=dict)
     parameters: dict[int | str, float] = field(default_factory=dict)
     cycles: Cycles | None = None
     pull: tuple[float, float] | None = None

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from gcxform.dialect import INCH, LINEAR, ROTARY
 from gcxform.distinct import distinct
-from gcxform.modal.acts import ACTS
+from gcxform.modal.acts import ACTS, unheard
 from gcxform.modal.asking import ActError, Asked
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames import FrameState
@@ -23,7 +23,7 @@ from gcxform.modal.lines import LENGTHS, Lines, fill
 from gcxform.modal.meaning import Act
 from gcxform.modal.state import Modes
 from gcxform.toolpath.frames import Frame
-from gcxform.toolpath.path import Plane
+from gcxform.toolpath.path import Plane, constant
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -113,6 +113,9 @@ class Track:
     def _one_act(self, act: Act, line: int) -> None:
         before, old = self.state.frames, self.frame
         asked = self._asked(act, line)
+        if word := unheard(act.name, asked):
+            message = f"{asked.code} takes {word}, and what this asks for is not known"
+            raise ActError("GX213", message)
         self.state.frames = frames = ACTS[act.name](before, asked)
         if act.name in FRAMELESS:
             return
@@ -273,6 +276,16 @@ class Track:
         self._refuse_steps(incremental & ~np.isfinite(position), axis, here.start)
         return position
 
+    def named(self, own: Flags) -> Ints:
+        """Return the axes (lines,), as bits, that blocks which move in their own way name."""
+        if not own.any():
+            return constant(0, len(own), np.int64)
+        named = np.zeros(len(own), np.int64)
+        for line in np.flatnonzero(own).tolist():
+            words = self.words_on(line) or self.axes  # G28 alone is of all axes
+            named[line] = sum(1 << k for k, axis in enumerate(self.axes) if axis in words)
+        return named
+
     def _refuse_steps(self, which: Flags, axis: str, first: int) -> None:
         """Refuse incremental words of lines, counted from the first, that begin nowhere known."""
         for line in np.flatnonzero(which)[: Findings.enough].tolist():
@@ -281,7 +294,8 @@ class Track:
                 "GX207",
                 f"{axis} is incremental, but where {axis} stands is not known",
                 axis,
-                f"begin with an absolute {axis}, or say start = {{ {axis} = ... }} in [input]",
+                f"write an absolute {axis} before; where the program begins, "
+                f"start = {{ {axis} = ... }} in [input] says it too",
             )
 
     def polar(self, here: slice) -> dict[str, tuple[Floats, Flags]]:

@@ -6,7 +6,6 @@ The program is read as the control reads it, the compensated one is what the pip
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -29,6 +28,7 @@ Ints = NDArray[np.int64]
 
 STILL = 1e-9  # mm; an axis that moves by less has not moved
 CORRECTION = 10.0  # mm; a virtual machine may be as bad as it likes
+FAR = 1e9  # cells; it has an error wherever it is
 PASS = "volumetric"
 
 
@@ -110,7 +110,7 @@ class Chain:
             "outside": self.outside,
             "part_origin": (0.0, 0.0, 0.0),
             "max_correction": CORRECTION,
-            "max_extrapolation": math.inf,
+            "max_extrapolation": FAR,
         }
         chosen: Any = default_registry().pass_(PASS)
         step = chosen(**options)

@@ -9,9 +9,10 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from lark import Token, Tree
+from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput
 
+from gcxform.limits import how_to_raise, limits
 from gcxform.syntax import kept
 from gcxform.syntax.tree import (
     Block,
@@ -24,6 +25,7 @@ from gcxform.syntax.tree import (
     Word,
 )
 
+ABOVE = 3  # levels of a tree above the first of an expression: start, word
 MARKS = frozenset({"block_delete", "percent", "program_id", "program_name", "filler", "label"})
 
 
@@ -37,7 +39,7 @@ class Grammar:
     def parse(self, text: str) -> Block:
         """Return the tree of one block; what the grammar does not accept becomes `Block.error`."""
         try:
-            tree = self._lark.parse(text)
+            tree = parsed(self._lark, text)
         except UnexpectedInput as error:
             return Block(text, (), refusal_of(error, text))
         return Block(text, tuple(_item(child, text) for child in tree.children))
@@ -49,9 +51,36 @@ def load(package: str, name: str) -> Grammar:
     return Grammar(package, name)
 
 
+class TooDeepError(UnexpectedInput):
+    """A text whose tree has more levels than anybody should follow one in the other."""
+
+    def __init__(self, node: Any) -> None:
+        super().__init__("too deep")
+        self.at = int(span_of(node)[0])
+
+
+def parsed(grammar: Lark, text: str) -> Tree[Token]:
+    """Return the tree of a text, no deeper than the limit is. Raises UnexpectedInput.
+
+    What reads the tree later calls itself for every level: this is why it may.
+    """
+    tree = grammar.parse(text)
+    most = limits().nesting
+    if len(text) > most:  # there are no more levels than characters
+        level: list[Any] = [tree]
+        for _ in range(most + ABOVE):
+            level = [child for node in level for child in getattr(node, "children", ())]
+        if level:
+            raise TooDeepError(level[0])
+    return tree
+
+
 def refusal_of(error: UnexpectedInput, text: str) -> tuple[int, str]:
     """Return the column and a sentence for a text that the grammar does not accept."""
     at = error.pos_in_stream
+    if isinstance(error, TooDeepError):
+        message = f"an expression has more than {limits().nesting} levels here"
+        return error.at + 1, f"{message}; {how_to_raise('nesting')}"
     if at is None or at < 0 or at >= len(text):
         return len(text) + 1, "the block ends in the middle of a word"
     if text[at] == "(":

@@ -16,9 +16,13 @@ lines is a place and a code, `2:8 GX101`, with the name of the file in front if 
 program, `pipeline.toml:3:1 GX701`. With neither, the output is the input. Further sections:
 
     certificate   lines like `deviation <= 0.001` about deviation, angle, lines_in, lines_out, moves
+    assumed       lines that the certificate has among what was assumed, or not: `- line`, `! line`
     words         a length: the output is compared word by word, numbers may differ by so much
     xfail         why the case is known to fail
     any other     a file beside the pipeline
+
+A pipeline that says nothing of `stamp` in [output] writes no stamps here, because a stamp has a
+digest of all options, and few cases are about it.
 
 Where every byte matters (line ends, encodings) a case is a directory with these files in it, the
 prose in `prose.txt`.
@@ -29,14 +33,18 @@ from __future__ import annotations
 import operator
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from gcxform.certificate import Certificate
 from gcxform.diagnostics import Diagnostic, GcxformError
 from gcxform.pipeline import Pipeline
+from gcxform.registry import default_registry
+from gcxform.testing.hints import try_hint
 
-SPECIAL = frozenset({"input.nc", "expected.nc", "diagnostics", "certificate", "words", "xfail"})
+SPECIAL = frozenset(
+    {"input.nc", "expected.nc", "diagnostics", "certificate", "assumed", "words", "xfail"}
+)
 PROSE = "prose.txt"
 _SECTION = re.compile(rb"^-- (\S+) --\n", re.MULTILINE)
 _CLAIM = re.compile(r"(\w+) (<=|>=|==|<|>) (\S+)")
@@ -120,6 +128,8 @@ def outcome(case: Case, folder: Path, places: Mapping[str, Path] | None = None) 
     (folder / "pipeline.toml").write_bytes(text)
     try:
         pipeline = Pipeline.load(folder / "pipeline.toml")
+        if b"stamp = " not in case.sections["pipeline.toml"]:
+            pipeline = replace(pipeline, stamp=False)
         result = pipeline.run(case.sections["input.nc"], verify="full")
     except GcxformError as error:
         return Outcome(diagnostics=error.diagnostics)
@@ -129,6 +139,8 @@ def outcome(case: Case, folder: Path, places: Mapping[str, Path] | None = None) 
 def run_case(case: Case, folder: Path, places: Mapping[str, Path] | None = None) -> None:
     """Run a case; AssertionError if it comes out otherwise than it says."""
     found = outcome(case, folder, places)
+    for diagnostic in found.diagnostics:
+        try_hint(diagnostic.hint, default_registry())
     said = "\n".join(diagnostic.render() for diagnostic in found.diagnostics)
     if "diagnostics" in case.sections:
         message = f"expected {case.diagnostics}, got {found.places}\n{said}"
@@ -138,6 +150,9 @@ def run_case(case: Case, folder: Path, places: Mapping[str, Path] | None = None)
     assert found.certificate is not None
     for claim in case.text("certificate").splitlines():
         _check_claim(claim, found.certificate)
+    for line in case.text("assumed").splitlines():
+        there = line[2:] in found.certificate.assumed
+        assert there == line.startswith("- "), f"{line}: assumed is {found.certificate.assumed}"
     if "expected.nc" in case.sections or "certificate" not in case.sections:
         expected = case.sections.get("expected.nc", case.sections["input.nc"])
         if "words" in case.sections:

@@ -19,6 +19,8 @@ from gcxform.modal.tables import COLUMNS, GROUPS, NUMBER
 from gcxform.pipeline import Pipeline
 from gcxform.source import Source
 from gcxform.syntax.shapes import Shape, slots_of
+from gcxform.testing.declared import check_declared
+from gcxform.testing.doing import check_doing
 from gcxform.toolpath.path import Plane, Toolpath
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
@@ -52,16 +54,19 @@ def check_dialect(dialect: type[Dialect]) -> None:
     """Hold a dialect to its contract.
 
     Documented, a grammar that loads, tables that fit together, every code of them read and
-    understood, a program that is written and read again as the same path, and a refusal with a
-    code for everything it does not have. Raises AssertionError.
+    understood, tables and small programs that agree with what controls agree on, two of everything
+    that has a number kept apart, a program that is written and read again as the same path, and a
+    refusal with a code for everything it does not have. Raises AssertionError.
     """
     _check_declaration(dialect)
     _check_tables(dialect)
+    check_declared(dialect)
     for code in dialect.codes:
         _check_code(dialect, code)
     for number in dialect.m_codes:
         _check_m_code(dialect, number)
     _check_refusals(dialect)
+    check_doing(dialect)
     if dialect.translator is not None:
         _check_translator(dialect, dialect.translator)
         return

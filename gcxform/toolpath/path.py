@@ -7,7 +7,7 @@ return new paths made with `replace`, `take` and `with_rows`, which carry `sourc
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from dataclasses import replace as dataclass_replace
 from enum import IntEnum
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.distinct import distinct
+from gcxform.limits import how_to_raise, limits
 from gcxform.toolpath.frames import Frame, by_frame
 
 Floats = NDArray[np.float64]
@@ -96,6 +97,8 @@ class Blocks:
     leaves          whether after the block something else than this program may run: it ends, or
                     calls what may move axes
     apart           whether the block has a slash or a name and is joined with no other
+    named           of which axes a block that moves in its own way (G28, G53) leads to a point of
+                    the machine, also if they are there already: bit k stands for axis k
     uncompensated   cutter compensation has been resolved: G41, G42 and their D are left out
     """
 
@@ -106,10 +109,11 @@ class Blocks:
     feed_mode: Small
     leaves: Flags
     apart: Flags
+    named: Ints
     uncompensated: bool = False
 
 
-BLOCK_MODES = ("inch", "incremental", "absolute_centre", "feed_mode", "leaves", "apart")
+BLOCK_MODES = ("inch", "incremental", "absolute_centre", "feed_mode", "leaves", "apart", "named")
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,6 +169,26 @@ COLUMNS = (
 )
 
 
+TYPES: Mapping[str, np.dtype[Any]] = {
+    **dict.fromkeys((*COLUMNS, "entry"), np.dtype(np.float64)),
+    **dict.fromkeys(("frame", "source", "nth", "lost"), np.dtype(np.int64)),
+    **dict.fromkeys(("kind", "plane", "feed_mode", "form", "side"), np.dtype(np.int8)),
+}
+"""What each column holds: a position that is kept in whole numbers would be cut off."""
+
+
+def _as(name: str, column: object, kind: np.dtype[Any]) -> NDArray[Any]:
+    """Return a column in its type; whole numbers become any other, nothing becomes whole."""
+    found = np.asarray(column)
+    whole = found.dtype.kind in "biu"
+    if not whole and not (kind.kind == "f" and found.dtype.kind == "f"):
+        raise TypeError(f"{name} of a toolpath holds {kind}, which {found.dtype} does not become")
+    column = found.astype(kind)
+    if (column != found).any() and whole:
+        raise TypeError(f"{name} of a toolpath has numbers that {kind} does not hold")
+    return column
+
+
 @dataclass(frozen=True)
 class Toolpath:
     """Rows of canonical moves.
@@ -201,6 +225,8 @@ class Toolpath:
     left_out        letters of axes that are not written, because the machine has none such
     after_rapid     whether the move before the first row was a rapid
     after_side      side of cutter compensation of the move before the first row
+    held            (axes,) where what was written before has left the axes, which may be elsewhere
+                    than `entry` if a pass compensates; None: as the pass would write `entry`
     refit_centres   whether centres may be moved so that both ends are on the circle as formatted
     """
 
@@ -233,11 +259,17 @@ class Toolpath:
     left_out: str = ""
     after_rapid: bool = False
     after_side: int = 0
+    held: Floats | None = None
     refit_centres: bool = True
 
     def __post_init__(self) -> None:
-        for name in (*COLUMNS, "entry"):
-            getattr(self, name).flags.writeable = False
+        """Hold each column in its own type. Raises TypeError for one that would lose by it."""
+        for name, kind in TYPES.items():
+            column = getattr(self, name)
+            if getattr(column, "dtype", None) != kind:
+                column = _as(name, column, kind)
+                object.__setattr__(self, name, column)
+            column.flags.writeable = False
 
     def __len__(self) -> int:
         return len(self.kind)
@@ -353,13 +385,20 @@ class Toolpath:
         """Return the path of some rows, in the order given; events and entry stay."""
         return self.replace(**{name: _picked(getattr(self, name), rows) for name in COLUMNS})
 
+    def check_rows(self, counts: Ints) -> Ints:
+        """Return how often each row is to stand, if that is no more than a window may become."""
+        if len(counts) and int(counts.sum()) > limits().rows:
+            message = f"with this block a window of the program becomes {counts.sum()} moves"
+            raise self.refuse("GX761", np.argsort(counts)[-1:], message, how_to_raise("rows"))
+        return counts
+
     def with_rows(self, counts: Ints, **columns: Any) -> Toolpath:
         """Return the path with row i standing `counts[i]` times, and some columns new.
 
         Events and blocks that are given move along with the row they stand before. Of the rows that
         stand for one, only the first can start where the position was lost.
         """
-        first = np.append(0, np.cumsum(counts))
+        first = np.append(0, np.cumsum(self.check_rows(counts)))
         begin = first.tolist() if self.events or self.given else []
         events = tuple(event.at(begin[event.row]) for event in self.events)
         given = tuple(dataclass_replace(g, row=begin[g.row]) for g in self.given)

@@ -15,9 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect import LINEAR
+from gcxform.distinct import distinct
 from gcxform.toolpath.beside import ROOM, Chain, along_chains
 from gcxform.toolpath.deviation import Deviation, deviation
 from gcxform.toolpath.path import FeedMode, Form, Kind, Toolpath
+from gcxform.toolpath.splines import spline_chords, splines_as_lines
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -25,6 +27,7 @@ Flags = NDArray[np.bool_]
 
 SAME_FEED = 2e-4  # relative; what the rounding of a feed may change
 STILL = 1e-9  # mm, deg
+STRAIGHT = 1e-5  # mm; lines that stand for a spline beside arcs are so near to it
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +94,7 @@ def deviation_of_runs(
     count for nothing if they are no longer than `ahead` (mm) together and it follows its owner.
     """
     off = deviation(before, after, runs.owner, ahead)
+    _arcs_beside_splines(before, after, runs.owner, off.distance)
     rows = runs.joined
     if not len(rows):
         return off
@@ -110,6 +114,33 @@ def deviation_of_runs(
     slight = _left_over(before, runs, rows) <= ahead
     distance[rows] = np.where(slight, np.minimum(distance, off.distance)[rows], distance[rows])
     return Deviation(distance, angle, off.unknown_start)
+
+
+def _arcs_beside_splines(before: Toolpath, after: Toolpath, owner: Ints, distance: Floats) -> None:
+    """Note in `distance` (mm) how far rows are from splines of which arcs have become a part.
+
+    Such a spline is compared as the lines that stand for it, as near to it as `STRAIGHT`.
+    """
+    arcs = np.flatnonzero(after.is_arc & before.is_spline[owner])
+    if not len(arcs):
+        return
+    group = np.full(len(before), -1)
+    splines = distinct(owner[arcs])
+    group[splines] = np.arange(len(splines))
+    pieces = np.ones(len(before), np.int64)
+    pieces[splines] = spline_chords(before, splines, STRAIGHT)
+    lines, whose = (
+        splines_as_lines(before, pieces),
+        group[np.repeat(np.arange(len(before)), pieces)],
+    )
+    rows = np.flatnonzero(group[owner] >= 0)
+    one = Chain(lines, np.flatnonzero(whose >= 0), whose[whose >= 0])
+    other = Chain(after, rows, group[owner[rows]])
+    for part in _portions(len(splines), one, other):
+        mine, theirs = one.of(*part), other.of(*part)
+        distance[theirs.rows] = along_chains(mine, theirs)
+    aside, _ = _other_axes(before, after, owner, rows)
+    distance[rows] = np.hypot(distance[rows] + STRAIGHT, aside) + after.slack
 
 
 def _left_over(before: Toolpath, runs: Runs, rows: Ints) -> Floats:

@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 HALVINGS = 6  # of splines, to measure them: their lengths are known to about 1e-6 then
+TOO_MANY = 2.0**40  # lines for one spline: refused, and still a whole number
 JUST_WHOLE = 1e-9  # a spline that needs so little more than n lines becomes n
 
 
@@ -45,7 +46,7 @@ def spline_chords(path: Toolpath, rows: Ints, chord_error: float) -> Ints:
 
 
 def _whole(value: Floats) -> Ints:
-    return np.maximum(np.ceil(value - JUST_WHOLE), 1).astype(np.int64)
+    return np.clip(np.ceil(value - JUST_WHOLE), 1, TOO_MANY).astype(np.int64)
 
 
 def spline_lengths(path: Toolpath, rows: Ints) -> tuple[Floats, Floats]:
@@ -95,7 +96,7 @@ def spline_extremes(path: Toolpath, rows: Ints) -> Floats:
 
 def splines_as_lines(path: Toolpath, pieces: Ints) -> Toolpath:
     """Return the path with each spline as so many lines, equal in t; `pieces` (n,), 1 elsewhere."""
-    row = np.repeat(np.arange(len(path)), pieces)
+    row = np.repeat(np.arange(len(path)), path.check_rows(pieces))
     nth = np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
     inner = np.flatnonzero(nth < pieces[row])
     end = path.end[row]

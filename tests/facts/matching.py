@@ -88,9 +88,8 @@ def refuse_ending(program: bytes, name: str) -> None:
     for window, reader in windows_of(Source.of_bytes(program), dialect):
         reader.table.update()
         ending.look(window, reader.table)
-    ending.close()
-    if ending.finding is not None:
-        raise gx.InputError((ending.finding,))
+    if ending.wrong:
+        raise gx.InputError(tuple(ending.wrong))
 
 
 def reading(fact: dict[str, Any]) -> dict[str, Any]:

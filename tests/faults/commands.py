@@ -56,9 +56,9 @@ MUTATIONS = (
     ),
     Mutation(
         "haas: a dwell with a point is in milliseconds",
-        "gcxform/modal/events.py",
-        "lines.window.decimals[number] >= 0:",
-        "lines.window.decimals[number] >= 9:",
+        "gcxform/modal/pointless.py",
+        "if decimals >= 0:",
+        "if decimals >= 9:",
         "tests/test_info.py",
     ),
 )

@@ -55,7 +55,7 @@ MUTATIONS = (
     ),
     Mutation(
         "computed distances are not rounded to the increment",
-        "gcxform/modal/lines.py",
+        "gcxform/modal/pointless.py",
         "np.where(computed, rounded, np",
         "np.where(computed, value, np",
         "tests/test_expressions.py",

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from faults.mutation import CUTTER, PASSES, Mutation
 
+PLANTED = "tests/test_planted_comp.py"
+
 
 def _offsetting(name: str, old: str, new: str) -> Mutation:
     return Mutation(f"offsetting: {name}", f"{PASSES}/offsetting.py", old, new, CUTTER)
@@ -34,6 +36,20 @@ MUTATIONS = (
         "np.where(_is_m6(lines, changes), selected, np.nan), changes, state.tool",
         "selected, selected == selected, state.tool",
         CUTTER,
+    ),
+    Mutation(
+        "copying: a probe stays as it is in other coordinates",
+        "gcxform/emit/copying.py",
+        "framed |= one_move | cycle[:, 0]",
+        "framed |= cycle[:, 0]",
+        "tests/test_corpus.py::test_case",
+    ),
+    Mutation(
+        "copying: distances stay as they are where a turn is folded away",
+        "gcxform/emit/copying.py",
+        "incremental[:, 0] & self._same_frames(rows, others)",
+        "incremental[:, 0]",
+        "tests/test_corpus.py::test_case",
     ),
     _offsetting("the other side", "(at[0] - side * radius", "(at[0] + side * radius"),
     _offsetting(
@@ -74,16 +90,79 @@ MUTATIONS = (
     Mutation(
         "compensated: contours may be moved",
         "gcxform/compensated.py",
-        "if type(step).undo is not Pass.undo and len(rows):",
+        "if type(step).undo is not Pass.undo and before.side.any():",
         "if False:",
         "tests/test_corpus.py::test_case",
     ),
     Mutation(
-        "compensated: the first move may be cut",
+        "compensated: a contour may be cut",
         "gcxform/compensated.py",
-        "if len(lines) and (_pieces(after, lines) != _pieces(before, lines)).any():",
+        "elif len(rows) != len(new):",
+        "elif False:",
+        PLANTED,
+    ),
+    Mutation(
+        "compensated: a point of a contour may be moved",
+        "gcxform/compensated.py",
+        "rows[_changed(before, rows, after, new)]",
+        "rows[:0]",
+        PLANTED,
+    ),
+    Mutation(
+        "compensated: the move that ends compensation may be moved",
+        "gcxform/compensated.py",
+        "on | np.append(path.after_side != 0, on[:-1])[: len(on)]",
+        "on",
+        PLANTED,
+    ),
+    Mutation(
+        "stretches: the move that ends compensation is none of it",
+        "gcxform/stretches.py",
+        "first + int(off[0]) + 1",
+        "first + int(off[0])",
+        PLANTED,
+    ),
+    Mutation(
+        "stretches: nothing goes on in the next window",
+        "gcxform/stretches.py",
+        "whole = piece if self._open is None else _joined(self._open, piece)",
+        "whole = piece",
+        PLANTED,
+    ),
+    Mutation(
+        "centrepath: how far the centre is off is not looked at",
+        "gcxform/centrepath.py",
+        "if not off.distance <= budget:",
         "if False:",
-        CUTTER,
+        PLANTED,
+    ),
+    Mutation(
+        "centrepath: where the control stops is not looked at",
+        "gcxform/centrepath.py",
+        "if (stop := _stop(self.ways, one, self.context)) is not None:",
+        "if (stop := None) is not None:",
+        "tests/test_corpus.py::test_case",
+    ),
+    Mutation(
+        "centrepath: what differs is taken for the same",
+        "gcxform/centrepath.py",
+        "    return all(np.array_equal",
+        "    return any(np.array_equal",
+        PLANTED,
+    ),
+    Mutation(
+        "centrepath: one setting of a control is compared",
+        "gcxform/centrepath.py",
+        "for way in self.ways:",
+        "for way in self.ways[:1]:",
+        PLANTED,
+    ),
+    Mutation(
+        "offsetting: LinuxCNC never looks back",
+        f"{PASSES}/offsetting.py",
+        "> manner.straight\n\n\ndef _turn(",
+        "> 9.9\n\n\ndef _turn(",
+        "tests/test_corpus.py::test_case",
     ),
     _beside("begins", 'self._fail(wrong & ~self.entry, "the centre is not', 'str("'),
     _beside("ends", 'self._fail(wrong, "the centre is not', 'str("'),

@@ -158,15 +158,15 @@ MUTATIONS = (
     Mutation(
         "translation: long programs are loops",
         TRANSLATION,
-        "        left = STEPS_AT_MOST + len(self.lines)",
-        "        left = STEPS_AT_MOST",
+        "        left = most = QUICK * limits().steps + len(self.lines)",
+        "        left = most = QUICK * limits().steps",
         WALK,
     ),
     Mutation(
         "translation: maps tell of blocks",
         "gcxform/run.py",
-        "lines if self.source is self.given else [line_of(k + 1) - 1 for k in lines]",
-        "lines",
+        "lines = [self.source.line_of(k + 1) - 1 for k in lines]",
+        "pass",
         RUNS,
     ),
     Mutation(

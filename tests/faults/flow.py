@@ -15,7 +15,20 @@ def _flow(name: str, file: str, old: str, new: str, tests: str = CASES) -> Mutat
 MUTATIONS = (
     _flow("a call keeps the values of its caller", "owords", "if k not in own}", "}"),
     _flow("what is not given is one", "owords", "*[0.0] *", "*[1.0] *", AGREES),
-    _flow("names are not local", "owords", 'not key.startswith("_")', "False"),
+    _flow("names are not local", "owords", "not RS274.outlives(key)", "key in LOCALS"),
+    _flow("nothing lasts", "lasting", "if not self.program.keeps:", "if True:"),
+    _flow(
+        "a message counts from before its block",
+        "execution",
+        "self.set(dict(changes))\n        for",
+        "for",
+    ),
+    _flow(
+        "a subprogram that is called is kept",
+        "keeping",
+        "if not program.times[d.lines].any()",
+        "if True",
+    ),
     _flow("a count is cut", "owords", "times = round(", "times = int(", AGREES),
     _flow(
         "a loop ends a round late",
@@ -64,8 +77,8 @@ MUTATIONS = (
     _flow(
         "a distance is not rounded",
         "execution",
-        "math.floor(abs(value) / increment + 0.5)",
-        "abs(value) / increment",
+        "math.floor(abs(value) * steps + 0.5)",
+        "abs(value) * steps",
         "tests/test_flow.py",
     ),
     _flow(

@@ -259,7 +259,7 @@ MUTATIONS = (
     Mutation(
         "growth is not bounded",
         "gcxform/run.py",
-        "out.lines_out <= limit * out.lines_in",
+        "out.blocks_out <= limit * out.blocks_in",
         "out.lines_out >= 0 * limit",
         f"{CORPUS}[bad/gx507-grows]",
     ),

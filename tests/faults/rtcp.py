@@ -111,7 +111,7 @@ MUTATIONS = (
     ),
     Mutation(
         "rtcp: the tool axis that stays off is that of one machine",
-        f"{PASSES}/rtcp.py",
+        f"{PASSES}/rtcp_measured.py",
         "for p in (way.nominal, way.axes))",
         "for p in (way.nominal, way.nominal))",
         f"{REPOST}::test_reposted_before_rounding",
@@ -226,7 +226,7 @@ MUTATIONS = (
         SWITCHES,
         "(step != 0.0).any(axis=1) & (self.path.kind",
         "(step > 1e9).any(axis=1) & (self.path.kind",
-        "tests/test_tip_switches.py::test_it_is_refused_by_name",
+        "tests/test_tip_switches.py::test_a_model_that_reads_line_by_line_agrees",
     ),
     Mutation(
         "rtcp: a code may leave the tip that a tool length follows",
@@ -356,9 +356,9 @@ MUTATIONS = (
     ),
     Mutation(
         "rtcp: one code may say both",
-        "gcxform/machine/machinefile.py",
-        "len(set(given.values())) == 1",
-        "len(given) == 1",
+        "gcxform/machine/control.py",
+        "given[SWITCHES[0]] == given[SWITCHES[1]]",
+        "False",
         "tests/test_tip_switches.py",
     ),
     Mutation(

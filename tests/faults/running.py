@@ -13,8 +13,8 @@ MUTATIONS = (
     Mutation(
         "run: the last window is not proved",
         "gcxform/run.py",
-        "        finally:\n            if proof.busy:",
-        "        finally:\n            if False:",
+        "            if proof.busy and not",
+        "            if False and not",
         "tests/test_verify.py",
     ),
     _worker("what was raised is lost", "if error is not None:", "if False:"),
@@ -39,7 +39,9 @@ MUTATIONS = (
     Mutation(
         "run: a pass can end it before its program",
         "gcxform/run.py",
-        "            for apart in windows:\n                one = self._transform(apart)\n",
+        "            for apart, first, last in with_ends(windows, self.frame.behind):\n"
+        "                one = self._transform(apart)\n",
+        "            first = last = False\n"
         "            for one in map(self._transform, windows):\n                apart = None\n",
         "tests/test_worker.py",
     ),

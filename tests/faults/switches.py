@@ -7,7 +7,7 @@ from faults.mutation import PASSES, Mutation
 CUTTING = f"{PASSES}/rtcp_cutting.py"
 PLACE = f"{PASSES}/rtcp_place.py"
 TRACK = "gcxform/modal/track.py"
-VERIFY = "gcxform/verify.py"
+KNOWN = "gcxform/known.py"
 TESTS = "tests/test_tip_switches.py"
 TURNED = f"{TESTS}::test_switched_with_axes_turned"
 REFUSED = f"{TESTS}::test_it_is_refused_by_name"
@@ -64,14 +64,14 @@ MUTATIONS = (
     ),
     Mutation(
         "switches: the proof takes everything for tips",
-        VERIFY,
+        KNOWN,
         "replace(path.frames[mine], following=read.frames[its].following)",
         "replace(path.frames[mine], following=True)",
         TURNED,
     ),
     Mutation(
         "switches: the proof lets axes move of which the source knows nothing",
-        VERIFY,
+        KNOWN,
         "end[rests & unknown] = np.nan",
         "end[unknown] = np.nan",
         f"{TESTS}::test_what_is_not_known_may_not_move",

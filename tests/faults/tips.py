@@ -37,8 +37,8 @@ MUTATIONS = (
     Mutation(
         "tips: they are not followed",
         RTCP,
-        'if self.direction != "to-machine":\n                self._check_tips',
-        'if self.direction == "to-machine":\n                self._check_tips',
+        'if self.direction != "to-machine":\n                self._tips',
+        'if self.direction == "to-machine":\n                self._tips',
         PROVED,
     ),
     Mutation(

@@ -29,7 +29,7 @@ MUTATIONS = (
     Mutation(
         "writing: centres count from where the start was before rounding",
         "gcxform/emit/centres.py",
-        "return np.where(exact[:, None], start, before)",
+        "return np.where(exact, start, before)",
         "return start",
         LAWS + "::test_centres_count_from_the_start_as_it_is_written",
     ),

@@ -19,6 +19,22 @@ SHIFTS = {
 TOUCHING = {"STRAIGHT_PROBE": "PROBE", "RIGID_TAP": "TAP"}
 PLANES = {"XY": ("XY", "XYZ"), "XZ": ("ZX", "ZXY"), "YZ": ("YZ", "YZX")}
 MODES = {"inverse time": "G93", "units per minute": "G94", "units per revolution": "G95"}
+TOLD = {
+    "MESSAGE",
+    "LOG",
+    "WAIT",
+    "SET_MOTION_CONTROL_MODE",
+    "SET_NAIVECAM_TOLERANCE",
+    "SET_MOTION_OUTPUT_BIT",
+    "CLEAR_MOTION_OUTPUT_BIT",
+    "SET_AUX_OUTPUT_BIT",
+    "CLEAR_AUX_OUTPUT_BIT",
+    "SET_AUX_OUTPUT_VALUE",
+    "SET_MOTION_OUTPUT_VALUE",
+    "DISABLE_FEED_OVERRIDE",
+    "DISABLE_SPEED_OVERRIDE",
+    "SET_SPINDLE_MODE",
+}
 EVENTS = {
     "START_SPINDLE_CLOCKWISE": "M3",
     "START_SPINDLE_COUNTERCLOCKWISE": "M4",
@@ -61,10 +77,14 @@ class CanonMove:
 
 @dataclass
 class CanonProgram:
-    """Moves, and events as (index of the move before which it happens, text)."""
+    """Moves, and events as (index of the move before which it happens, text).
+
+    `told` is all that is no motion, the events among them, in its order.
+    """
 
     moves: list[CanonMove] = field(default_factory=list)
     events: list[tuple[int, str]] = field(default_factory=list)
+    told: list[tuple[int, str]] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -141,6 +161,8 @@ class Reader:
             self._shift(SHIFTS[name], self._numbers(text))
         elif not self._mode(name, text):
             self._event(name, text)
+        if name in TOLD and not self.ending:
+            self.program.told.append((len(self.program.moves), f"{name} {text}"))
         self.last = name
 
     def _mode(self, name: str, text: str) -> bool:
@@ -221,6 +243,7 @@ class Reader:
         if name == "SET_SPINDLE_MODE" and self.last == "STOP_SPINDLE_TURNING":
             self.ending = True
             self.program.events.pop()
+            self.program.told.pop()
         elif name == "START_CHANGE":
             self.changing = True
         elif name == "PALLET_SHUTTLE":
@@ -245,6 +268,7 @@ class Reader:
 
     def _say(self, text: str) -> None:
         self.program.events.append((len(self.program.moves), text))
+        self.program.told.append((len(self.program.moves), text))
 
     def _numbers(self, text: str) -> list[float]:
         return [float(number) for number in text.replace(",", " ").split()]

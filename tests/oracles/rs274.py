@@ -44,8 +44,9 @@ PLAIN_G |= {*range(54, 60), 59.1, 59.2, 59.3, 52, 53, 92, 92.1, 92.2, 92.3}
 PLAIN_G |= {7, 8, 10, 28, 28.1, 30, 30.1, 43, 43.1, 43.2}
 PLAIN_G |= {73, 74, 98, 99, *range(81, 90)}
 PLAIN_G |= {33, 33.1, 38.2, 38.3, 38.4, 38.5}
+PLAIN_G |= {41, 42, 41.1, 42.1}  # where the last one is G40
 PLAIN_M = {0, 1, 3, 4, 5, 6, 7, 8, 9, 60, 61}
-BLOCK = re.compile(r"/?(N\d+)?(?:[ABCFGHIJKLMPQRSTXYZ][+-]?[\d.]+)*")
+BLOCK = re.compile(r"/?(N\d+)?(?:[A-DF-MP-TXYZ][+-]?[\d.]+)*")
 END = re.compile(rb"[ \t]*([nN]\d+)?[ \t]*[mM]0*2[ \t]*")  # not taken apart by a comment
 WORD = re.compile(r"([A-Z])([+-]?[\d.]+)")
 
@@ -87,7 +88,7 @@ def run(program: bytes) -> CanonProgram:
 
 def run_many(programs: Iterable[bytes]) -> list[CanonProgram | Rejected]:
     """Interpret many programs, as if each by itself; results in order, refusals as values."""
-    sources = list(programs)
+    sources = [_bare(program) for program in programs]
     results: list[CanonProgram | Rejected | None] = [None] * len(sources)
     plain = [i for i, source in enumerate(sources) if _is_plain(source)]
     others = sorted(set(range(len(sources))) - set(plain))
@@ -215,12 +216,26 @@ def _end_line(program: bytes) -> int:
     return max(i for i, line in enumerate(lines) if line.strip())
 
 
+def _bare(program: bytes) -> bytes:
+    """Return a program without percent signs, if they are its first and its last line."""
+    lines = program.split(b"\n")
+    at = [k for k, line in enumerate(lines) if line.strip()]
+    if len(at) > 2 and lines[at[0]].strip() == lines[at[-1]].strip() == b"%":
+        ended = END.fullmatch(lines[at[-2]])
+        lines[at[0]] = lines[at[-1]] = b""
+        return b"\n".join(lines) if ended else program
+    return program
+
+
 def _is_plain(program: bytes) -> bool:
     """Tell whether a program can leave nothing behind that the reset does not undo."""
     text = re.sub(rb"\([^()\n]*\)", b"", program).decode("latin-1").upper()
     lines = [re.sub(r"[ \t\r]|;.*", "", line) for line in text.split("\n")]
     while lines and not lines[-1]:
         lines.pop()
+    sides = re.findall(r"G\+?0*4([0-2])(?![0-9])", "\n".join(lines))
+    if sides and sides[-1] != "0":
+        return False
     if not lines or not END.fullmatch(program.rstrip().rpartition(b"\n")[2]) or "GCX" in text:
         return False
     return all(_is_plain_block(line) for line in lines[:-1])

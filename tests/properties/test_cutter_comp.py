@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -11,6 +10,7 @@ from hypothesis import settings
 from oracles import rs274
 from oracles.canon import CanonMove, CanonProgram
 from properties.contours import contour
+from seeds_kit import shares
 
 import gcxform as gx
 from gcxform.machine.machine import Machine, Tool
@@ -45,27 +45,31 @@ def centre_program(source: bytes) -> bytes | str:
         return error.diagnostics[0].message
 
 
-def test_the_centre_path_is_that_of_linuxcnc() -> None:
+@shares(COUNT, 100)
+def test_the_centre_path_is_that_of_linuxcnc(seeds: range) -> None:
     same = both = ours = 0
-    with ThreadPoolExecutor(2) as pool:
-        sources = [contour(seed) for seed in range(COUNT)]
-        for source, wanted in zip(sources, pool.map(executed, sources), strict=True):
-            made = centre_program(source)
-            if isinstance(made, str):
-                both += isinstance(wanted, str)
-                ours += not isinstance(wanted, str)
-                known = any(reason in made for reason in REFUSED_BY_US)
-                assert isinstance(wanted, str) or known, f"{made}\n{source.decode()}"
-                continue
-            assert not isinstance(wanted, str), f"{wanted}\n{source.decode()}\n{made.decode()}"
-            found = executed(made)
-            assert not isinstance(found, str), f"{found}\n{source.decode()}\n{made.decode()}"
-            problem = difference(wanted, found)
-            assert not problem, f"{problem}\n{source.decode()}\n{made.decode()}"
-            same += 1
-    assert same > COUNT / 3
-    assert both > COUNT / 10
-    assert ours < COUNT / 8
+    sources = [contour(seed) for seed in seeds]
+    results = [centre_program(source) for source in sources]
+    texts = [made for made in results if isinstance(made, bytes)]
+    others = iter(rs274.run_many(texts))
+    for source, made, wanted in zip(sources, results, rs274.run_many(sources), strict=True):
+        if isinstance(made, str):
+            refused = isinstance(wanted, rs274.Rejected)
+            both += refused
+            ours += not refused
+            known = any(reason in made for reason in REFUSED_BY_US)
+            assert refused or known, f"{made}\n{source.decode()}"
+            continue
+        found = next(others)
+        text = f"{source.decode()}\n{made.decode()}"
+        assert not isinstance(wanted, rs274.Rejected), f"{wanted}\n{text}"
+        assert not isinstance(found, rs274.Rejected), f"{found}\n{text}"
+        problem = difference(wanted, found)
+        assert not problem, f"{problem}\n{text}"
+        same += 1
+    assert same > len(seeds) / 3
+    assert both > len(seeds) / 10
+    assert ours < len(seeds) / 8
 
 
 def executed(program: bytes) -> CanonProgram | str:

@@ -19,8 +19,9 @@ from oracles import rs274
 from oracles.canon import CanonMove, CanonProgram
 from oracles.compare import lengths
 from properties import test_laws as laws
-from properties.test_rs274 import as_move, chunks, compensation, drawn, drawn_model
+from properties.test_rs274 import as_move, compensation, drawn, drawn_model
 from reference.interpreter import Move, interpret
+from seeds_kit import shares
 
 import gcxform as gx
 
@@ -127,28 +128,25 @@ def written(seed: int) -> tuple[gx.Pipeline, bytes, gx.Result, float] | None:
 
 
 @pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
-def test_linuxcnc_takes_as_long() -> None:
-    done = total = 0
+@shares(COUNT, 150)
+def test_linuxcnc_takes_as_long(seeds: range) -> None:
     modes: set[tuple[frozenset[str], frozenset[str]]] = set()
-    for seeds in chunks(COUNT):
-        jobs = [job for seed in seeds if (job := written(seed)) is not None]
-        total += len(seeds)
-        done += len(jobs)
-        old = rs274.run_many([source for _, source, _, _ in jobs])
-        new = rs274.run_many([result.text for _, _, result, _ in jobs])
-        for job, one, other in zip(jobs, old, new, strict=True):
-            pipeline, source, result, close = job
-            text = f"{source.decode('latin-1')}\n{result.text.decode('latin-1')}\n{pipeline}"
-            assert isinstance(one, CanonProgram), f"{one}\n{text}"
-            assert isinstance(other, CanonProgram), f"{other}\n{text}"
-            before = of_canon((m for m in one.moves if not unclear(m)), 0.0)
-            moves = by_source(other.moves, result)
-            after = of_canon(moves, pipeline.limit(b"G20" in result.text.upper()))
-            check(before, after, close, text)
-            modes |= {(before[k].modes, after[k].modes) for k in set(before) & set(after)}
+    jobs = [job for seed in seeds if (job := written(seed)) is not None]
+    old = rs274.run_many([source for _, source, _, _ in jobs])
+    new = rs274.run_many([result.text for _, _, result, _ in jobs])
+    for job, one, other in zip(jobs, old, new, strict=True):
+        pipeline, source, result, close = job
+        text = f"{source.decode('latin-1')}\n{result.text.decode('latin-1')}\n{pipeline}"
+        assert isinstance(one, CanonProgram), f"{one}\n{text}"
+        assert isinstance(other, CanonProgram), f"{other}\n{text}"
+        before = of_canon((m for m in one.moves if not unclear(m)), 0.0)
+        moves = by_source(other.moves, result)
+        after = of_canon(moves, pipeline.limit(b"G20" in result.text.upper()))
+        check(before, after, close, text)
+        modes |= {(before[k].modes, after[k].modes) for k in set(before) & set(after)}
     minute, inverse = frozenset({"G94"}), frozenset({"G93"})
     assert {(minute, inverse), (inverse, minute), (inverse, inverse), (minute, minute)} <= modes
-    assert done > 0.6 * total
+    assert len(jobs) > 0.6 * len(seeds)
 
 
 def unclear(move: CanonMove) -> bool:

@@ -15,6 +15,7 @@ from oracles.canon import CanonMove, CanonProgram
 from properties import test_laws as laws
 from reference.arcs import sweep
 from reference.interpreter import Move
+from seeds_kit import shares
 
 import gcxform as gx
 from gcxform.options import ModelFile
@@ -23,7 +24,6 @@ from gcxform.testing.generate import Options, program
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 COUNT = 20 * settings.default.max_examples  # 2,000; the profile `long` asks for more
-CHUNK = 1000
 CLOSE = 1e-4  # mm, degrees; beyond the rounding of the print
 PRINTED = 0.5e-4  # units of the program
 START = dict.fromkeys("XYZABC", 0.0)
@@ -35,23 +35,16 @@ def drawn(seed: int, **options: Any) -> bytes:
     return program(random.Random(seed).randint, Options(**options))
 
 
-def chunks(count: int) -> list[range]:
-    return [range(first, min(first + CHUNK, count)) for first in range(0, count, CHUNK)]
-
-
 # --- reading ---
 
 
-def test_gcxform_reads_what_linuxcnc_reads() -> None:
-    compared = 0
-    for seeds in chunks(COUNT):
-        sources = [drawn(seed) for seed in seeds]
-        for source, canon in zip(sources, rs274.run_many(sources), strict=True):
-            assert isinstance(canon, CanonProgram), (canon, source)
-            problem = difference(gx.read(source, "linuxcnc", start=START).path, canon)
-            assert problem == "", f"{problem}\n{source.decode('latin-1')}"
-            compared += 1
-    assert compared == COUNT
+@shares(COUNT, 500)
+def test_gcxform_reads_what_linuxcnc_reads(seeds: range) -> None:
+    sources = [drawn(seed) for seed in seeds]
+    for source, canon in zip(sources, rs274.run_many(sources), strict=True):
+        assert isinstance(canon, CanonProgram), (canon, source)
+        problem = difference(gx.read(source, "linuxcnc", start=START).path, canon)
+        assert problem == "", f"{problem}\n{source.decode('latin-1')}"
 
 
 def difference(path: Toolpath, canon: CanonProgram) -> str:
@@ -153,20 +146,17 @@ def compensation(
     )
 
 
-def test_linuxcnc_reads_what_gcxform_writes() -> None:
+@shares(COUNT, 125)
+def test_linuxcnc_reads_what_gcxform_writes(seeds: range) -> None:
     """Random chains: the same events, and the machine within the budget of the program's path."""
-    done = refused = 0
-    for seeds in chunks(COUNT):
-        jobs = [job for seed in seeds if (job := written(seed)) is not None]
-        refused += len(seeds) - len(jobs)
-        done += len(jobs)
-        before = rs274.run_many([job[1] for job in jobs])
-        after = rs274.run_many([job[2].text for job in jobs])
-        for job, old, new in zip(jobs, before, after, strict=True):
-            assert isinstance(old, CanonProgram)
-            assert isinstance(new, CanonProgram), f"{new}\n{job[1]!r}\n{job[2].text.decode()}"
-            check(job, old, new)
-    assert done > 0.85 * (done + refused)
+    jobs = [job for seed in seeds if (job := written(seed)) is not None]
+    before = rs274.run_many([job[1] for job in jobs])
+    after = rs274.run_many([job[2].text for job in jobs])
+    for job, old, new in zip(jobs, before, after, strict=True):
+        assert isinstance(old, CanonProgram)
+        assert isinstance(new, CanonProgram), f"{new}\n{job[1]!r}\n{job[2].text.decode()}"
+        check(job, old, new)
+    assert len(jobs) > 0.85 * len(seeds)
 
 
 Job = tuple[gx.Pipeline, bytes, gx.Result, "laws.Where"]

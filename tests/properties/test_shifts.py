@@ -13,18 +13,19 @@ from hypothesis import settings
 from oracles import rs274
 from oracles.canon import CanonMove, CanonProgram
 from oracles.toolpaths import HOMES, OFFSETS, START, difference, read
+from seeds_kit import shares
 
 import gcxform as gx
 from gcxform.machine.machine import Tool
 from gcxform.modal.state import Reading
-from gcxform.run import Output, Run
+from gcxform.output import Output
+from gcxform.run import Run
 from gcxform.source import Source
 from gcxform.testing.generate import Options
 from gcxform.testing.shifts import ShiftingBuilder
 
 INCH = 25.4
 COUNT = 20 * settings.default.max_examples  # 2,000; the profile `long` asks for more
-CHUNK = 1000
 CHORD = 0.02  # mm
 CLOSE = 0.012  # mm; what is printed is rounded in inches, and read back from that
 
@@ -52,16 +53,13 @@ def drawn(seed: int, blocks: int = 30) -> bytes:
 # --- reading ---
 
 
-def test_gcxform_reads_shifts_as_linuxcnc_does() -> None:
-    compared = 0
-    for first in range(0, COUNT, CHUNK):
-        sources = [drawn(seed) for seed in range(first, min(first + CHUNK, COUNT))]
-        for source, canon in zip(sources, rs274.run_many(sources), strict=True):
-            assert isinstance(canon, CanonProgram), (canon, source.decode("latin-1"))
-            problem = difference(read(source, TOOLS), canon)
-            assert problem == "", f"{problem}\n{source.decode('latin-1')}"
-            compared += 1
-    assert compared == COUNT
+@shares(COUNT, 500)
+def test_gcxform_reads_shifts_as_linuxcnc_does(seeds: range) -> None:
+    sources = [drawn(seed) for seed in seeds]
+    for source, canon in zip(sources, rs274.run_many(sources), strict=True):
+        assert isinstance(canon, CanonProgram), (canon, source.decode("latin-1"))
+        problem = difference(read(source, TOOLS), canon)
+        assert problem == "", f"{problem}\n{source.decode('latin-1')}"
 
 
 def test_the_programs_shift() -> None:
@@ -152,11 +150,13 @@ def written(chain: str, source: bytes, window: int) -> tuple[bytes, list[int]]:
     return b"".join(parts), lines
 
 
-def test_the_machine_goes_where_it_went() -> None:
+@shares(COUNT // 4, 125)
+def test_the_machine_goes_where_it_went(seeds: range, monkeypatch: pytest.MonkeyPatch) -> None:
     """Machine coordinates after each line are the same, as LinuxCNC tells its offsets."""
     jobs, refused = [], 0
-    for seed in range(COUNT // 4):
+    for seed in seeds:
         choose = random.Random(seed)
+        monkeypatch.setattr("gcxform.worker.LINUX", seed % 10 == 0)  # few are read by processes
         chain, source = choose.choice(CHAINS), drawn(seed, 20)
         try:
             text, lines = written(chain, source, choose.choice((30, 60, 100, 1 << 20)))

@@ -125,7 +125,7 @@ def pipeline_of(dialect: str, model: Path) -> gx.Pipeline:
     text = (
         f'format = 1\n[input]\ndialect = "{dialect}"\n[[pass]]\nuse = "volumetric"\n'
         f'model = "{model.name}"\npart-origin = [0.0, 0.0, 0.0]\ntolerance = {TOLERANCE}\n'
-        "[output]\ndecimals = 3\n"
+        "[output]\nstamp = false\ndecimals = 3\n"
     )
     pipeline = model.parent / "pipeline.toml"
     pipeline.write_text(text)

@@ -38,14 +38,14 @@ def interpret(
     program: bytes,
     dialect: str,
     start: dict[str, float] | None = None,
-    increment: float | None = None,
+    increment: float | str | None = None,
     *,
     block_delete: bool = False,
     same_frames: bool = False,
 ) -> Program:
     """Execute a program; raise `Refused`, whose `partial` holds what came before.
 
-    `increment` scales Fanuc distance words without a point, in the units in force.
+    `increment` is what a Fanuc distance word counts without a point: a length in mm, or IS-B.
     `block_delete` is the switch: blocks with a slash are skipped. `same_frames` says that all
     work offsets are equal, so that a change of frame leaves the position known.
     """
@@ -69,7 +69,7 @@ class _Machine:
         self,
         dialect: Dialect,
         position: dict[str, float],
-        increment: float | None,
+        increment: float | str | None,
         same_frames: bool,
     ) -> None:
         self.dialect = dialect
@@ -262,7 +262,13 @@ class _Machine:
         if self.dialect.name in FANUCS and not word.pointed and value:
             if self.increment is None:
                 raise self._refused(f"{word.letter} has no decimal point")
-            value *= self.increment
+            if isinstance(self.increment, str):
+                finer = self.modal["units"] == 200 and word.letter not in "ABC"
+                value /= 10_000 if finer else 1000
+            elif word.letter in "ABC":
+                raise self._refused(f"{word.letter} counts angles, and the increment is a length")
+            else:
+                return value * self.increment
         return value * INCH if self.modal["units"] == 200 and word.letter not in "ABC" else value
 
     def _arc(

@@ -88,6 +88,10 @@ class Fagor(gx.Dialect):
         129: gx.MCode("tip"),
     }
     translator = Blocks
+    m_order_chosen = True
+    chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        "ABC", "rotary axes go where they are told, whichever way is shorter"
+    )
     tip_switches: ClassVar[Mapping[str, str]] = {"tip-on": "M128", "tip-off": "M129"}
     spelled: ClassVar[Mapping[str, str]] = {"M128": "#RTCP ON", "M129": "#RTCP OFF"}
     has_percent = False

@@ -2,14 +2,16 @@
 
 | what | Fanuc |
 |---|---|
-| a distance without a point | counts in the least input increment: `[input] increment` |
+| a distance without a point | parameters 1013 and 3401#0 decide: `[input] increment` |
 | motion at start | parameter 3402: taken as unknown, so the first move needs its code |
 | units, distance mode at start | parameters: taken as G21 G90, and the certificate says so |
 | two codes of a group | the last is taken |
 | arc centre | incremental only; no centre at all: refused (parameter 3403 decides what is cut) |
 | R together with I J K | refused |
 | start and end radius | parameter 3410: taken as 0.01 mm |
-| F without a point | mm/min; in inch or G95 refused |
+| F without a point | mm/min; in inch, G93 or G95 refused, unless it is said what it counts |
+| G93 F1 | 0.001 a minute in IS-B and IS-C, 1 in calculator input (16/18 manual) |
+| G4 P, P of cycles | ms, also in calculator input; in IS-A, IS-C to IS-E not known |
 | another unit or feed mode | the feed is not known until it is programmed |
 | M0 M1 M2 M30 M98 M99 | act after the motion of their block |
 | M5, M9 with a motion | the machine's PLC decides, commonly after it: taken as after |
@@ -154,6 +156,12 @@ class Fanuc(gx.Dialect):
         29: gx.MCode("tapping"),
         **{code: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL") for code in (98, 198)},
         99: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL"),
+    }
+    m_order_chosen = True
+    chosen: ClassVar[Mapping[str, str]] = {
+        "G43": "a tool length is along Z (parameter 5001)",
+        "G44": "a tool length is along Z (parameter 5001)",
+        "M29": "M29 makes the next tap rigid and moves nothing (parameter 5210)",
     }
     unknown_m = gx.MCode("user", loses_position=True)
     length_may_move = True

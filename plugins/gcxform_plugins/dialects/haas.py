@@ -7,7 +7,9 @@ refused. What is not named here is as in `fanuc`.
 | what | Haas | known from |
 |---|---|---|
 | a distance without a point | Setting 162: refused, or `[input] increment` | manual |
+| R and Q without a point | not named for Setting 162: refused in calculator input | manual |
 | F without a point | Settings 77, 162: refused, or `[input] feed-increment` | manual |
+| its IS-B | 0.001 mm/min, 0.0001 inch/min: the default of Setting 77 | manual |
 | G4 P | an integer is ms, with a point it is seconds; no X, no U | known |
 | small letters | are read as capitals | known |
 | program number | O and five digits at most | manual |
@@ -107,6 +109,7 @@ class Haas(Fanuc):
         repeats="L",
         alone="cycle-without-place",
     )
+    settings = (gx.Setting("cycle-without-place", "haas: Setting 28", ("drills",)),)
     work_names: ClassVar[Mapping[str, str]] = {
         code: f"G154 P{int(code[1:]) - 109}" for code in MORE_OFFSETS
     }
@@ -114,7 +117,10 @@ class Haas(Fanuc):
     mirrors_at_zero = True
     words = Fanuc.words + "UVW"
     lower_case = True
+    chosen: ClassVar[Mapping[str, str]] = {"M16": "M16 is M6"}
     feed_point_required = True
+    calculator_words = "XYZABCEFIJKUW"
+    feed_steps: ClassVar[Mapping[str, tuple[float, float]]] = {"IS-B": (1000.0, 10_000.0)}
     dwell: ClassVar[Mapping[str, float]] = {"P": 0.001}
     dwell_point_is_seconds = True
     program_number_digits = 5

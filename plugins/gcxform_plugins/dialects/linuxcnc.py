@@ -9,6 +9,7 @@
 | turns of an arc | P n: n - 1 full turns more |
 | start and end radius | may differ by 0.0282843 mm, or by 0.1 % and 2.82843 mm |
 | the same in G20 | 0.00282843 in, or 0.1 % and 0.282843 in |
+| G1, G2, G3 alone | executed: refused without a feed, arcs without words (`rs274`) |
 | G93, G94, G95 | set the feed to zero, also when re-stated |
 | feed | along X Y Z; in degrees where only rotary axes move; in G93 no less than 0.1 per minute |
 | `G20 F10` | F is in the unit before; after G20, G21 the feed in mm/min stays |
@@ -175,6 +176,10 @@ class LinuxCNC(gx.Dialect):
         99: gx.MCode("stop", barrier=v.CALL),
         **{code: USER_CODE for code in range(100, 200)},
     }
+    chosen: ClassVar[Mapping[str, str]] = {
+        "M6": "a tool change leaves the axes where they are (no TOOL_CHANGE_POSITION)"
+    }
+    rounds_corners = True
     m_first = True
     axis_words_once = True
     spindle_stands = True
@@ -215,6 +220,7 @@ class LinuxCNC(gx.Dialect):
     words = "DEFHIJKLNPQRST@^$"
     arc_rotary = True
     feed_along_lines = True
+    lone_codes_count = True
     least_inverse_rate = 0.1
     arithmetic = v.RS274
     flow = "o-words"

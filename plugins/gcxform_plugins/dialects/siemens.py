@@ -93,6 +93,14 @@ class Siemens(gx.Dialect):
         129: gx.MCode("tip"),
     }
     translator = Blocks
+    m_order_chosen = True
+    chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        "ABC", "rotary axes go where they are told, whichever way is shorter (MD30455)"
+    )
+    settings = (
+        gx.Setting("edge-after-tool-change", "siemens: D behind M6 (MD20270)", (0, 1)),
+        gx.Setting("orientation-path", "siemens: how angles change in TRAORI", ("angles",)),
+    )
     tip_switches: ClassVar[Mapping[str, str]] = {"tip-on": "M128", "tip-off": "M129"}
     spelled: ClassVar[Mapping[str, str]] = {"M128": "TRAORI", "M129": "TRAFOOF"}
     turns_address = "P"

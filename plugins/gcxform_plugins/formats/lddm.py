@@ -12,6 +12,8 @@ import gcxform as gx
 AXES = "XYZ"
 _FILES = tuple(f"table_{axis.lower()}.txt" for axis in AXES)
 _POSITION = "position"
+_HEADINGS = {"posizione": _POSITION}
+"""What the instrument calls columns in other languages."""
 
 
 class Lddm(gx.ErrorFormat):
@@ -77,7 +79,7 @@ def _read_axis(path: Path, axis: str) -> gx.AxisFunction:
 
 def _columns(header: gx.TextRow, names: list[str]) -> list[int]:
     """Return where the named columns stand, or raise gx.UsageError."""
-    present = [word[0].lower() for word in header.words]
+    present = [_HEADINGS.get(word[0].lower(), word[0].lower()) for word in header.words]
     for k, name in enumerate(present):
         if name not in names or name in present[:k]:
             reason = "stands twice" if name in names else "does not belong into this table"

@@ -28,7 +28,7 @@ class Blocks(gx.Translator):
 
     grammar = ("gcxform_grammars", "fagor")
     number = re.compile(r"(?<![GMgm0-9.])[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
-    signs = re.compile(rb"^[^(;]*#(?:RTCP|TLC|CS|ACS|MCS|KIN|HSC)\b", re.IGNORECASE | re.MULTILINE)
+    signs = re.compile(rb"(?im)^[^(;\n]*#(?:RTCP|TLC|CS|ACS|MCS|KIN|HSC)\b")
 
     def __init__(self, *given: object) -> None:
         super().__init__(*given)  # type: ignore[arg-type]

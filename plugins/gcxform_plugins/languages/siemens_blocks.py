@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import gcxform as gx
 from gcxform_plugins.languages.siemens_cycles import Drilling
-from gcxform_plugins.languages.siemens_line import ABSOLUTE, STEP, Line
+from gcxform_plugins.languages.siemens_line import ABSOLUTE, FRAMES, STEP, Line
 from gcxform_plugins.languages.siemens_moves import Moves, rest_of
 from gcxform_plugins.languages.siemens_place import LINEAR, ROTARY, PlaceError
 
@@ -62,6 +62,10 @@ class Blocks(Moves):
         return not cuts_tips or self.angles_change_in_proportion
 
     def _made(self, line: Line) -> Iterator[str]:
+        if line.alone is not None and line.alone.name in FRAMES and line.axes:
+            name = line.alone.name
+            why = f"{name} with words sets a frame of the program, which is not read"
+            self.refuse(why, line.alone, "let the CAM write positions without it")
         if line.alone is not None and (line.axes or line.centres or line.codes or line.motion):
             self.refuse("this stands in a block of its own", line.alone, "give it its own line")
         if line.dwell is not None or line.act is not None or line.cycle is not None:

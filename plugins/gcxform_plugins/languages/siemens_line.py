@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 import gcxform as gx
 
 ABSOLUTE, STEP = "AC", "IC"
+FRAMES = frozenset(("TRANS", "ROT", "SCALE", "MIRROR"))
+"""Frames of the program: without words they end those that there are."""
 
 
 @dataclass(slots=True)

@@ -7,7 +7,7 @@ from typing import Any
 
 import gcxform as gx
 from gcxform_plugins.languages import siemens_cycles as cycles
-from gcxform_plugins.languages.siemens_line import ABSOLUTE, STEP, Line
+from gcxform_plugins.languages.siemens_line import ABSOLUTE, FRAMES, STEP, Line
 from gcxform_plugins.languages.siemens_place import LINEAR, ROTARY, Place
 
 MODAL = {
@@ -38,8 +38,6 @@ QUIET = frozenset((
 ))
 # fmt: on
 """Commands that move nothing and change no word behind them."""
-FRAMES = frozenset(("TRANS", "ROT", "SCALE", "MIRROR"))
-"""Frames of the program: without words they end those that there are."""
 TOLERANCES = frozenset(("ADIS", "ADISPOS", "CTOL", "OTOL", "ATOL"))
 ORIENTATION = {"ORIAXES": 0, "ORIVECT": 0, "ORIPLANE": 0, "ORIMKS": 1, "ORIWKS": 1}
 WHY = {

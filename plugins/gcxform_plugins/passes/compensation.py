@@ -6,6 +6,7 @@ then a command, and a *command* where the machine goes with it.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 import gcxform as gx
 from gcxform_plugins.passes.fitting import ArcFitter
 from gcxform_plugins.passes.placing import Place
-from gcxform_plugins.passes.ranges import check_inside
+from gcxform_plugins.passes.ranges import beyond_tables, check_inside
 from gcxform_plugins.passes.splitting import cuts_of_lines
 from gcxform_plugins.passes.swinging import Swing
 
@@ -23,22 +24,24 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 PACE = 0.1  # of a way; by so much more or less of it, at most, a turn of the head may be faster
 PROOF = 1.5e-5  # mm; what the proof may add to what is off, for what it does not follow
 PROOF_SHARE = 0.25  # of a tolerance, at most
 SAME = 1e-9  # mm; an axis that moves by less stays where it is
+MOST_TURNS = 100  # of an arc; cutting each takes a tenth of a second
 
 
-def left_alone(path: gx.Toolpath) -> NDArray[np.bool_]:
-    """Return the moves that are not compensated.
+def left_to_machine(path: gx.Toolpath, skip: bool = False) -> Flags:
+    """Return the rapids (n,) that are not compensated; `skip`: all of them.
 
-    These are moves to points of the machine itself (G28, G53), and rapids that end where some axis
+    These are moves to points of the machine itself (G28, G53), and those that end where some axis
     is at an unknown place, as between a tool change and the first Z.
     """
-    unknown = np.isnan(path.end[:, :3]).any(axis=1) & (path.kind == gx.Kind.RAPID)
-    machine = (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
-    return np.asarray(machine | unknown)
+    left = np.isnan(path.end[:, :3]).any(axis=1) | skip
+    left |= (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
+    return np.asarray(left & (path.kind == gx.Kind.RAPID))
 
 
 class Compensation:
@@ -57,7 +60,8 @@ class Compensation:
         self.lipschitz, self.curvature = model.lipschitz(reach), model.curvature(reach)
         steep = self.lipschitz / (1 - min(self.lipschitz, 0.5))
         self.undone = steep if step.inverse else self.lipschitz  # of what the undo moves, mm/mm
-        self.left = left_alone(path)
+        self.left = left_to_machine(path)
+        self.skipped = left_to_machine(path, step.rapids == "skip")
         self.room = step.limit - min(PROOF, PROOF_SHARE * step.limit)
 
     def offset_of(self, rows: Ints) -> Floats:
@@ -81,10 +85,9 @@ class Compensation:
         self._refuse_splines()
         self._check_known()
         check_inside(self.step, self.path, self.offset, np.flatnonzero(~self.left))
-        self.entry_command = self.step.command(self.start[:1], self.place.first_tool)[0]
-        if self.step.rapids == "skip" and self.path.after_rapid:
-            self.entry_command = self.start[0]
+        self.entry_command = self._first_command()
         commands = self._commands()
+        self._check_begins(commands)
         self._check_paces(commands)
         rows, part = self._cuts(commands)
         if len(rows):
@@ -100,6 +103,19 @@ class Compensation:
             message = "a spline is not compensated"
             raise self.path.refuse("GX506", rows, message, 'put the pass "segment" before')
 
+    def _first_command(self) -> Floats:
+        """Return where the axes stand before the first row, in the table (3,).
+
+        It is what was written before; where nothing was, the control says where they stand, and the
+        machine is off by its error there.
+        """
+        path, start = self.path, self.start[0]
+        if path.held is not None:
+            return np.asarray(np.where(np.isnan(start), start, path.held[:3] + self.offset[0]))
+        if self.step.rapids == "skip" and path.after_rapid:
+            return np.asarray(start)
+        return np.asarray(self.step.command(self.start[:1], self.place.first_tool)[0])
+
     def _commands(self) -> Floats:
         """Return the commands for the ends of the rows; what G28 and G53 say stays as it is."""
         if not self.left.any():
@@ -110,17 +126,24 @@ class Compensation:
         path = self.path
         distances = path.blocks.incremental[path.block] & (path.form == gx.Form.HOME)
         distances &= np.append(path.nth[1:] > 0, False)[: len(path)]  # the way to G28's own point
+        named = (path.blocks.named[path.block][:, None] >> np.arange(3) & 1).astype(np.bool_)
         for row in np.flatnonzero(self.left).tolist():
-            before = commands[row - 1] if row else self.entry_command
+            before = self._written(commands, row - 1) if row else self.entry_command
             way = self.end[row] - self.start[row]
-            stays = np.abs(way) < SAME
+            stays = (np.abs(way) < SAME) & ~named[row]
             commands[row] = np.where(stays, before, commands[row])
             if distances[row]:
                 commands[row] = before + way
         return commands
 
+    def _written(self, commands: Floats, row: int) -> Floats:
+        """Return what is written (3,) for the end of a row, in the table."""
+        return np.asarray((self.end if self.skipped[row] and not self.left[row] else commands)[row])
+
     def _entry(self) -> Floats:
         entry = self.path.entry.copy()
+        if self.path.held is not None:
+            return self.path.held.copy()
         if np.isfinite(self.entry_command).all():
             entry[:3] = self.entry_command - self.offset[0]
         return entry
@@ -131,11 +154,20 @@ class Compensation:
             return np.empty(0, np.int64), np.empty(0)
         row, part = cuts_of_lines(self, commands)
         if self.path.has_arcs:
+            self._check_turns()
             arc_row, arc_part = ArcFitter(self).cuts()
             row, part = np.append(row, arc_row), np.append(part, arc_part)
         return row, part
 
     # --- refusals ---
+
+    def _check_turns(self) -> None:
+        """Refuse arcs of very many turns: to cut each of them where it must be takes a while."""
+        rows = np.flatnonzero(self.path.sweep > MOST_TURNS * math.tau)
+        if len(rows):
+            message = f"an arc of more than {MOST_TURNS} turns is not compensated in one piece"
+            hint = 'segment arcs="split" arc-step="360 deg", before this pass'
+            raise self.path.refuse("GX761", rows, message, hint)
 
     def _check_known(self) -> None:
         unknown = np.isnan(self.end) & ~self.left[:, None]
@@ -148,6 +180,58 @@ class Compensation:
                 f"where {axis} stands is not known here, and the error depends on it",
                 f"program {axis} before, or say start = {{ {axis} = ... }} in [input]",
             )
+
+    def _check_begins(self, commands: Floats) -> None:
+        """Refuse feed moves from where the machine is not, and those to points of the machine.
+
+        Behind what is left to the machine, and at the start, the tool is off by the error there.
+        Where nothing is promised the proof measures how far.
+        """
+        path = self.path
+        feeds = path.kind != gx.Kind.RAPID
+        own = np.flatnonzero(feeds & (path.form == gx.Form.MACHINE))
+        if len(own):
+            message = "a feed move to a point of the machine (G53) is not compensated"
+            hint = "write it without G53, in a work offset; or as a rapid, G53 G0"
+            raise path.refuse("GX317", own[:1], message, hint)
+        known = path.held is not None and bool(np.isfinite(self.start[0]).all())
+        behind = np.append(known, self.left[:-1])
+        rows = np.flatnonzero(feeds & behind)
+        if not len(rows) or not np.isfinite(self.step.promise):
+            return
+        off = self._off_at_start(rows, np.vstack([self.entry_command, commands]))
+        wrong = np.flatnonzero(~(off <= self.step.limit))
+        if len(wrong):
+            raise self._refuse_begin(int(rows[wrong[0]]), float(off[wrong[0]]))
+
+    def _off_at_start(self, rows: Ints, commands: Floats) -> Floats:
+        """Return how far (n,) mm the machine is from where rows begin; nan where nobody knows.
+
+        `commands` (rows + 1, 3) are those before each row of the path.
+        """
+        places = np.vstack([self.start[:1], self.end])[rows]
+        meant = self.step.meant(commands[rows], self.place.tool_before(rows))
+        gap = np.where(np.isnan(places), 0.0, meant - places)
+        off = np.sqrt((gap**2).sum(axis=1))
+        near = self.step.max_correction
+        return np.where(beyond_tables(self.step, commands[rows], near), np.nan, off)
+
+    def _refuse_begin(self, row: int, off: float) -> gx.InputError:
+        """Return the error about a feed move that begins where the machine is not."""
+        path = self.path
+        size = f"{off:.4f} mm off" if np.isfinite(off) else "off by an amount that is not known"
+        what = "behind a rapid that is not compensated" if row else "at the start"
+        inch = 25.4 if path.blocks.inch[path.block[row]] else 1.0
+        words = zip("XYZ", path.in_frames(path.start)[row, :3] / inch, strict=True)
+        there = " ".join(f"{axis}{word:.6g}" for axis, word in words if np.isfinite(word))
+        unknown = [a for a, x in zip("XYZ", path.start[row], strict=False) if np.isnan(x)]
+        more = f" and {' and '.join(unknown)}, which has not been programmed yet" if unknown else ""
+        return path.refuse(
+            "GX317",
+            np.array([row]),
+            f"this feed move begins {what}, where the machine is {size}",
+            f"before it, write a rapid to where it begins: G90 G0 {there}{more}",
+        )
 
     def refuse_short(self, row: int, shortest: float) -> gx.InputError:
         """Return the error about a move that has to be cut into too short pieces."""

@@ -87,11 +87,41 @@ class CutterComp(gx.Pass):
         linear, beside_next = manner.corners is Corners.LINEAR, manner.entry is Entry.NEXT
         prove_beside(before, after, straight, linear, beside_next)
 
+    @classmethod
+    def ways(cls, dialect: type[gx.Dialect]) -> tuple[CutterComp, ...]:
+        """Return one of it for each setting that a control may have."""
+        rule = dialect.cutter_comp
+        return tuple(
+            cls(corners=corners, entry=entry)
+            for corners in ([Corners(rule.corners)] if rule.corners else Corners)
+            for entry in ([Entry(rule.entry)] if rule.entry else Entry)
+        )
+
+    def stops(self, path: gx.Toolpath, context: gx.PassContext) -> gx.InputError | None:
+        """Return where LinuxCNC stops; of other controls it is not known."""
+        rule = context.source.cutter_comp
+        if not (rule.corners and rule.entry):
+            return None
+        try:
+            self.apply(path, context)
+        except ContourError as error:
+            return error if error.alarm else None
+        except gx.InputError:
+            pass
+        return None
+
     def _manner(self, context: gx.PassContext) -> Manner:
         rule = context.source.cutter_comp
         corners = Corners(rule.corners) if rule.corners else self.corners or Corners.ARC
         entry = Entry(rule.entry) if rule.entry else self.entry or Entry.OWN
         return Manner(corners, entry, rule.straight or STRAIGHT)
+
+
+@dataclass
+class ContourError(gx.InputError):
+    """A contour that the tool cannot follow; `alarm`: LinuxCNC stops at it as well."""
+
+    alarm: bool = False
 
 
 CHOICES = {"corners": 'arc" or "linear', "entry": 'own" or "next'}
@@ -180,8 +210,12 @@ class _CentrePath:
             offset(edges, side, radius, self.manner)
         except CannotOffsetError as error:
             where = np.array([rows[error.index]])
-            hint = "use a smaller tool, or change the contour"
-            raise path.refuse("GX350", where, error.message, hint) from None
+            begins = error.index == 0
+            hint = "use a smaller tool, or " + (
+                "begin farther away" if begins else "change the contour"
+            )
+            refusal = path.refuse("GX350", where, error.message, hint)
+            raise ContourError(refusal.diagnostics, error.alarm) from None
         self._place(rows, edges, axes)
         self._still(first, last, rows, axes)
 

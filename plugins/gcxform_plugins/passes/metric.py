@@ -37,7 +37,7 @@ def _refuse_lengths(path: gx.Toolpath, dialect: type[gx.Dialect]) -> None:
             "GX501",
             f"the words of {event.what} are in inches, stay, and would be read as mm",
             gx.Location("", event.line + 1),
-            "leave the block out, or write it in mm (G21)",
+            _way_out(event, dialect),
         )
         for event in path.events
         if path.blocks.inch[event.line - path.blocks.first] and _has_length(event, path, dialect)
@@ -51,5 +51,12 @@ def _has_length(event: gx.Event, path: gx.Toolpath, dialect: type[gx.Dialect]) -
     code = dialect.codes.get(event.what)
     if code is None or (path.folded and code.act in FOLDED):
         return False
-    letters = {address for address, _ in event.values}
+    letters = {address for address, value in event.values if value}  # 0 has no unit
     return bool(letters & LENGTHS or (event.what == "G64" and letters))
+
+
+def _way_out(event: gx.Event, dialect: type[gx.Dialect]) -> str:
+    """Return what to do: to leave the block out would shift the part."""
+    if dialect.codes[event.what].act in FOLDED:
+        return 'put the pass "offsets" before: it writes what the block does into the moves'
+    return "write the block in mm (G21)"

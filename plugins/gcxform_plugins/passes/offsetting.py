@@ -48,12 +48,17 @@ class Manner:
 
 
 class CannotOffsetError(Exception):
-    """A move that cannot be compensated: its index, and why."""
+    """A move that cannot be compensated: its index, and why.
 
-    def __init__(self, index: int, message: str) -> None:
+    `alarm`: LinuxCNC stops there as well, with a message. What it does of the rest, such as a cut
+    into the contour, depends on the last digit, or nobody would want it.
+    """
+
+    def __init__(self, index: int, message: str, alarm: bool = False) -> None:
         super().__init__(message)
         self.index = index
         self.message = message
+        self.alarm = alarm
 
 
 @dataclass(slots=True)
@@ -112,15 +117,16 @@ def offset(edges: list[Edge], side: int, radius: float, manner: Manner) -> None:
     for index in range(1, len(edges)):
         edge = edges[index]
         if edge.centre is not None and edge.reach(side, radius) < 1e-9:
-            raise CannotOffsetError(index, "the radius of the arc is not larger than the tool's")
+            message = "the radius of the arc is not larger than the tool's"
+            raise CannotOffsetError(index, message, alarm=True)
         edge.begin = _beside(edge.start, edge.first, side, radius)
         edge.finish = _beside(edge.end, edge.last, side, radius)
         if index > 1 or manner.entry is Entry.OWN:
             _join(edges, index, side, radius, manner)
         else:
             edges[0].finish = edge.begin
-    for index, edge in enumerate(edges):
-        _check_direction(edge, index)
+    for index in range(len(edges)):
+        _check_direction(edges, index, _ends_inside(edges, index, side, manner))
 
 
 def swept(edge: Edge) -> float:
@@ -141,6 +147,7 @@ def _begin(edges: list[Edge], side: int, radius: float, manner: Manner) -> None:
             0,
             f"the move that begins compensation is {edge.length:.4f} mm long, which is not more "
             f"than the tool's radius of {radius:.4f} mm",
+            alarm=True,
         )
     edge.begin = edge.start
     edge.finish = _beside(edge.end, edge.last, side, radius)
@@ -149,8 +156,7 @@ def _begin(edges: list[Edge], side: int, radius: float, manner: Manner) -> None:
 def _join(edges: list[Edge], index: int, side: int, radius: float, manner: Manner) -> None:
     """Join two neighbours at their corner."""
     one, other = edges[index - 1], edges[index]
-    u, v = one.last, other.first
-    turn = side * atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1])
+    turn = _turn(one, other, side)
     if abs(turn) <= manner.straight:
         other.begin = one.finish
     elif _closes(other, turn, side):
@@ -193,7 +199,7 @@ def _meeting(one: Edge, other: Edge, index: int, side: int, radius: float) -> Po
         u, v = one.direction(point), other.direction(point)
         if side * (u[0] * v[1] - u[1] * v[0]) >= 0:  # at the other crossing it turns outwards
             return point
-    raise CannotOffsetError(index, "the tool does not fit into the inside corner")
+    raise CannotOffsetError(index, "the tool does not fit into the inside corner", alarm=True)
 
 
 def _crossings(one: Edge, other: Edge, side: int, radius: float) -> list[Point]:
@@ -253,18 +259,34 @@ def _turns_back(one: Edge, other: Edge, turn: float) -> bool:
     return pi - SHARP < turn < pi - BACK
 
 
-def _check_direction(edge: Edge, index: int) -> None:
+def _ends_inside(edges: list[Edge], index: int, side: int, manner: Manner) -> bool:
+    """Whether a move ends at an inside corner or is the last: there LinuxCNC looks back at it."""
+    if index in (0, len(edges) - 1):
+        return index > 0
+    return _turn(edges[index], edges[index + 1], side) > manner.straight
+
+
+def _turn(one: Edge, other: Edge, side: int) -> float:
+    """Return the angle (rad) by which a contour turns from move to move; inwards is positive."""
+    u, v = one.last, other.first
+    return side * atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1])
+
+
+def _check_direction(edges: list[Edge], index: int, alarm: bool) -> None:
     """Refuse a move that its inside corners leave nothing of."""
+    edge = edges[index]
     if edge.centre is not None:
         if not 0 <= swept(edge) <= edge.sweep + LONGER:
-            raise CannotOffsetError(index, "the tool cannot reach the arc between inside corners")
+            message = "the tool cannot reach the arc between inside corners"
+            raise CannotOffsetError(index, message, alarm)
         if ceil(swept(edge) / tau - 1e-9) > ceil(edge.sweep / tau - 1e-9):
             raise CannotOffsetError(index, "the circle would be cut by more than a turn")
         return
     way = (edge.finish[0] - edge.begin[0]) * edge.first[0]
     way += (edge.finish[1] - edge.begin[1]) * edge.first[1]
     if way < -1e-9:
-        raise CannotOffsetError(index, "the tool cannot reach the move between inside corners")
+        message = "the tool cannot reach the move between inside corners"
+        raise CannotOffsetError(index, message, alarm)
 
 
 def _beside(at: Point, along: Point, side: int, radius: float) -> Point:

@@ -36,6 +36,14 @@ class Place:
             return self.lever.at(rows, part)
         return self.tool if self.tool is None or self.tool.ndim == 1 else self.tool[rows]
 
+    def tool_before(self, rows: Ints) -> Floats | None:
+        """Return the tools where rows begin."""
+        if self.lever is not None:
+            return self.lever.starts[rows]
+        if self.tool is None or self.tool.ndim == 1:
+            return self.tool
+        return self.tool[np.maximum(rows - 1, 0)]
+
     @property
     def first_tool(self) -> Floats | None:
         """The tool before the first row."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 BORDER = 1e-9  # mm
 CURVED_CELLS = 1.0  # the bounds of a curved field hold for one cell beyond the table
@@ -26,18 +27,27 @@ def check_inside(
 
     `offset` (n or 1, 3) is table position minus program position.
     """
-    if step.outside not in (gx.Outside.ERROR, gx.Outside.EXTRAPOLATE):
-        return
-    cells = _cells(step)
-    allowed = [step.model.model.extended(axis, cells) for axis in range(3)]
     points, rows = _points(path, offset, rows)
-    beyond = np.zeros(len(points), np.bool_)
-    for axis, (low, high) in enumerate(allowed):
-        beyond |= points[:, axis] < low - margin - BORDER
-        beyond |= points[:, axis] > high + margin + BORDER
+    beyond = beyond_tables(step, points, margin)
     if beyond.any():
         first = int(np.argmax(beyond))
-        _refuse(step, path, int(rows[first]), points[first], cells, allowed)
+        _refuse(step, path, int(rows[first]), points[first])
+
+
+def beyond_tables(step: Volumetric, points: Floats, margin: float = 0.0) -> Flags:
+    """Return which points (n, 3), in the table, are farther beyond the tables than is allowed."""
+    found = np.zeros(len(points), np.bool_)
+    if step.outside in (gx.Outside.ERROR, gx.Outside.EXTRAPOLATE):
+        for axis, (low, high) in enumerate(_allowed(step)):
+            found |= points[:, axis] < low - margin - BORDER
+            found |= points[:, axis] > high + margin + BORDER
+    return found
+
+
+def _allowed(step: Volumetric) -> list[tuple[float, float]]:
+    """Return the lowest and the highest position of each axis."""
+    cells = _cells(step)
+    return [step.model.model.extended(axis, cells) for axis in range(3)]
 
 
 def beyond(step: Volumetric, path: gx.Toolpath, offset: Floats, rows: Ints) -> dict[str, float]:
@@ -73,16 +83,10 @@ def _points(path: gx.Toolpath, offset: Floats, rows: Ints) -> tuple[Floats, Ints
     return points, rows
 
 
-def _refuse(
-    step: Volumetric,
-    path: gx.Toolpath,
-    row: int,
-    point: Floats,
-    cells: float,
-    allowed: list[tuple[float, float]],
-) -> None:
-    model = step.model.model
-    off = [max(low - x, x - high) for x, (low, high) in zip(point.tolist(), allowed, strict=True)]
+def _refuse(step: Volumetric, path: gx.Toolpath, row: int, point: Floats) -> None:
+    model, cells = step.model.model, _cells(step)
+    pairs = zip(point.tolist(), _allowed(step), strict=True)
+    off = [max(low - x, x - high) for x, (low, high) in pairs]
     axis = int(np.argmax(np.array(off) > BORDER))
     low, high = model.range_of(axis)
     value = float(point[axis])

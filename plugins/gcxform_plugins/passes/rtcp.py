@@ -14,6 +14,7 @@ are apart by a rotation and an arm that the angles alone fix. So one bound serve
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
@@ -22,12 +23,13 @@ from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_circling import Circling
-from gcxform_plugins.passes.rtcp_cutting import STILL, Cutting
+from gcxform_plugins.passes.rtcp_cutting import Cutting
 from gcxform_plugins.passes.rtcp_driven import Driven, Led, Pointed, Straight
 from gcxform_plugins.passes.rtcp_lines import UserLines
+from gcxform_plugins.passes.rtcp_measured import AXIS_OFF, TIP_OFF, leaning, slowed
 from gcxform_plugins.passes.rtcp_moving import Correcting, Moving
 from gcxform_plugins.passes.rtcp_options import check_machines, check_options
-from gcxform_plugins.passes.rtcp_place import Place, turned_at
+from gcxform_plugins.passes.rtcp_place import Place
 from gcxform_plugins.passes.rtcp_pointed import PointedProof
 from gcxform_plugins.passes.rtcp_pointing import InProportion, Pointing
 from gcxform_plugins.passes.rtcp_proof import Proof
@@ -175,8 +177,25 @@ class Rtcp(gx.Pass):
 
     @property
     def promise(self) -> float:
-        """The tolerance; nothing where the path is proved before it is written."""
-        return 0.0 if self.turns_anew else self.tolerance
+        """The tolerance: of the tip, also where it is proved before anything is written."""
+        return self.tolerance
+
+    @property
+    def promise_angle(self) -> float:
+        """How far (deg) the tool axis may lean, where other angles are written."""
+        lean = self._leans()[0]
+        return lean if self.turns_anew and np.isfinite(lean) else 0.0
+
+    @property
+    def deviates(self) -> Mapping[str, str]:  # type: ignore[override]
+        """What the tip is off, and the tool axis, where that is bounded."""
+        tip = {} if self.follows_undo else {"deviation": TIP_OFF}
+        return tip | ({"angle": AXIS_OFF} if self.promise_angle else {})
+
+    @property
+    def follows_undo(self) -> bool:
+        """Whether tips are what the undo leads to, so that comparing paths compares them."""
+        return self.direction == "to-machine" and not self.turns_anew
 
     @property
     def feed_mode(self) -> gx.FeedMode | None:
@@ -193,7 +212,7 @@ class Rtcp(gx.Pass):
         machine = context.machine
         if machine is None or not machine.table + machine.head:
             message = "rtcp needs a machine with rotary axes"
-            hint = "[machine] file = ..., with `kinematics`, or `table` and `head`"
+            hint = 'file = "machine.toml" in [machine], with `kinematics`, or `table` and `head`'
             raise gx.UsageError.one("GX742", message, hint=hint)
         UserLines.of(self, context)
         check_machines(self, context)
@@ -214,21 +233,20 @@ class Rtcp(gx.Pass):
             place = self._place(path, context)
             way = self._corrected(path, context) or Between(place, self.direction == "to-machine")
             cutting = Cutting(self, path, context, place, way)
-            after = cutting.run()
+            before, path = path, cutting.run()
             if self.direction != "to-machine":
-                self._check_tips(path, after, context, cutting.row)
-            path = after
+                self._tips(before, path, context, cutting.row).check_tips()
         return path.replace(blocks=self.timed(path.blocks))
 
-    def _check_tips(
+    def _tips(
         self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext, owner: Ints
-    ) -> None:
-        """Raise VerificationError where tips are farther off than the tolerance."""
+    ) -> TipProof:
+        """Return the proof that no tip is farther off than the tolerance."""
         source, _ = self._machines(before, context)
         _, target = self._machines(after, context)
         led = self.direction == "to-tip"
         written = Straight(after, target) if led else Driven(self, after, target)
-        TipProof(self, context, Driven(self, before, source), written, owner).check_tips()
+        return TipProof(self, context, Driven(self, before, source), written, owner)
 
     def _nothing_to_correct(self, context: gx.PassContext) -> bool:
         """Whether the calibrated machine is where the one posted for is."""
@@ -318,32 +336,25 @@ class Rtcp(gx.Pass):
     def measure(
         self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
     ) -> dict[str, float]:
-        """Return how far the tool axis stays off where angles are kept, and what that is at a tool.
-
-        It is nothing at the tip, and at the other end of the tool it is the length times as much.
-        """
+        """Return how far tips and tool axes stay off, and how much slower moves are."""
         if not len(after):
             return {}
+        found = self._turned(before, after, context)
         if self.slows:
-            return self._slowed(before, after, context) | self._turned(before, after, context)
-        return self._turned(before, after, context)
+            before = without_left(before)
+            found |= slowed(before, after, self._place(before, context))
+        elif not self.turns_anew and not self._nothing_to_correct(context):
+            found |= self._tip_off(before, after, context)
+        return found
 
-    def _slowed(
+    def _tip_off(
         self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
     ) -> dict[str, float]:
-        """Return how much longer a piece takes than its feed says, if any does."""
-        before = without_left(before)
-        owner = np.searchsorted(before.source, after.source)
-        cut = (after.kind != gx.Kind.RAPID) & (after.feed_mode != before.feed_mode[owner])
-        rows = np.flatnonzero(cut)
-        place = self._place(before, context)
-        step = before.end - before.start
-        way = np.sqrt((step[:, :3] ** 2).sum(axis=1))
-        turned = np.sqrt((place.angles(step) ** 2).sum(axis=1))
-        time = np.where(way < STILL, turned, way) / before.feed
-        time = time / np.maximum(np.bincount(owner, minlength=len(before)), 1)
-        slower = float(np.max(1.0 / after.feed[rows] / time[owner[rows]], initial=0.0))
-        return {"slower than its feed, times": slower} if slower > 1.001 else {}
+        """Return how far the tip is off where axes are compared; pieces stand behind their rows."""
+        begins = (np.diff(after.source) != 0) | (np.diff(after.nth) != 0)
+        proof = self._tips(before, after, context, np.append(0, np.cumsum(begins)))
+        proof.run()
+        return {TIP_OFF: proof.tip}
 
     def _turned(
         self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
@@ -351,17 +362,7 @@ class Rtcp(gx.Pass):
         if self.turns_anew:
             return self._measured(before, after, context)
         way = self._corrected(after, context)
-        if way is None:
-            return {}
-        angles = way.axes.angles(after.end)
-        rows = np.flatnonzero(turned_at(angles))
-        one, other = (p.chain.tool_axis(angles[rows]) for p in (way.nominal, way.axes))
-        off = np.linalg.norm(one - other, axis=1)
-        length = np.linalg.norm(way.axes.tools[way.axes.which[rows]], axis=1)
-        return {
-            "tool axis off, degrees": float(np.degrees(off.max(initial=0.0))),
-            "tool axis off by tool length, mm": float((off * length).max(initial=0.0)),
-        }
+        return {} if way is None else leaning(way, after)
 
     def _measured(
         self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
@@ -369,7 +370,7 @@ class Rtcp(gx.Pass):
         """Return what the proof has found."""
         proof = self._proof(before, after, context)
         proof.run()
-        found = {"tip off, mm": proof.tip, "tool axis off, degrees": proof.lean}
+        found = {TIP_OFF: proof.tip, AXIS_OFF: proof.lean}
         found |= proof.measured()
         corrected = {"angles corrected by, degrees": proof.turn}
         return found if self.calibrated is None else found | corrected

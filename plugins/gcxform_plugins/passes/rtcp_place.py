@@ -136,7 +136,7 @@ class Place:
             (begins, "the control begins or ends to follow the tip while axes are turned"),
         ):
             if rows.any():
-                hint = "turn them back to 0 first"
+                hint = "before it, draw the tool back along its axis and turn the axes to 0"
                 raise self.path.refuse("GX330", np.flatnonzero(rows)[:1], what, hint)
 
     # --- from one to the other ---

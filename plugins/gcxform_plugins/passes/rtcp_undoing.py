@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+TOO_MANY = 2.0**40  # pieces: refused, and still a whole number
 SHARE = 0.1
 """The part of the tolerance that is left to the pieces of the proof."""
 
@@ -50,7 +51,7 @@ class Undoing:
         path = self.path
         bend = self.bends()
         pieces = np.ceil(np.sqrt(bend / (SHARE * self.step.tolerance)) - 1e-9)
-        pieces = np.maximum(pieces, 1.0).astype(np.int64)
+        pieces = path.check_rows(np.clip(pieces, 1.0, TOO_MANY).astype(np.int64))
         row = np.repeat(np.arange(len(path)), pieces)
         nth = np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
         part = (nth / pieces[row])[:, None]

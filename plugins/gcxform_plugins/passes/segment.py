@@ -20,6 +20,7 @@ ANGLE_ERROR = 0.001
 """How far (deg) a rotary axis may be off on a chord: it turns with the chord, not the arc."""
 MEASURED = 0.01
 """The part of the chord error that splines leave to the proof, whose bound is an upper one."""
+TOO_MANY = 2.0**40  # pieces of a move: refused, and still a whole number
 JUST_WHOLE = 1e-9  # a move that is so little longer than n pieces is cut into n
 
 
@@ -35,6 +36,7 @@ class Segment(gx.Pass):
 
     name = "segment"
     ensures = frozenset({gx.LINEAR_ONLY})
+    keeps_rows = False
     chord_error: Annotated[
         gx.Length | None, gx.Option("largest distance of a chord from its arc", above=0.0)
     ] = None
@@ -118,7 +120,7 @@ def splines_as_lines(path: gx.Toolpath, chord_error: float | None) -> gx.Toolpat
 
 
 def _whole(value: Floats) -> Ints:
-    return np.maximum(np.ceil(value - JUST_WHOLE), 1).astype(np.int64)
+    return np.clip(np.ceil(value - JUST_WHOLE), 1, TOO_MANY).astype(np.int64)
 
 
 def _length(start: Floats, end: Floats) -> Floats:
@@ -170,7 +172,7 @@ def cut_lines(path: gx.Toolpath, pieces: Ints) -> gx.Toolpath:
     """Return the path with each line cut into equal pieces."""
     if not (pieces > 1).any():
         return path
-    row, part = _parts(pieces)
+    row, part = _parts(path.check_rows(pieces))
     start, end = path.start[row], path.end[row]
     points = start + part[:, None] * (end - start)
     points = np.where((part == 1.0)[:, None] | np.isnan(points), end, points)
@@ -179,7 +181,7 @@ def cut_lines(path: gx.Toolpath, pieces: Ints) -> gx.Toolpath:
 
 def cut_arcs(path: gx.Toolpath, pieces: Ints, arcs: Flags, keep: bool) -> gx.Toolpath:
     """Return the path with lines and the arcs chosen cut into equal pieces; `keep` them arcs."""
-    row, part = _parts(pieces)
+    row, part = _parts(path.check_rows(pieces))
     start, end = path.start[row], path.end[row]
     points = start + part[:, None] * (end - start)
     chosen = arcs[row]

@@ -20,6 +20,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+TIED = (gx.Form.THREAD, gx.Form.SYNCHRONISED, gx.Form.PROBE)
 REFINEMENTS = 4  # each shrinks the error of a crossing by the Lipschitz constant of the error
 NEGLIGIBLE = 1e-5  # mm; a cut that mends less is not worth a block: a hundredth of the rounding
 CURVED = 1e-4  # mm; what may stay between two cuts, without a tolerance, where the error is curved
@@ -34,7 +35,8 @@ def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
     points = np.empty((3, len(path) + 1)).T
     points[0], points[1:] = work.entry_command, commands
     bending = np.vstack([work.start[:1], work.end]) if step.inverse else points
-    lines = (path.kind == gx.Kind.LINE) & (path.form == gx.Form.PLAIN)
+    whole = np.isin(path.form, TIED)
+    lines = (path.kind == gx.Kind.LINE) & ((path.form == gx.Form.PLAIN) | whole)
     lines &= path.starts_known & ~work.left
     row, part = _at_nodes(work, bending, lines)
     exact = step.tolerance is None or step.split == "nodes"
@@ -45,8 +47,14 @@ def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
         most -= left
     if not len(row):
         return row, part
-    residual = np.full(len(path), NEGLIGIBLE) if exact else most
-    return _needed(work, row, part, points, (residual, most))
+    residual = np.where(whole, most, NEGLIGIBLE) if exact else most
+    row, part = _needed(work, row, part, points, (residual, most))
+    if whole[row].any():
+        message = "this move is tied to the spindle or to a probe and cannot be cut, and the error "
+        message += f"bends on its way by more than {work.step.limit * 1000:g} um"
+        hint = "give volumetric a larger tolerance, or the move a shorter way"
+        raise path.refuse("GX506", row[whole[row]][:1], message, hint)
+    return row, part
 
 
 def _at_nodes(work: Compensation, points: Floats, lines: Flags) -> tuple[Ints, Floats]:
@@ -63,7 +71,9 @@ def _at_nodes(work: Compensation, points: Floats, lines: Flags) -> tuple[Ints, F
             shift = (plane - command[index, axis]) / way[index, axis]
         part = part + np.where(np.isfinite(shift) & (np.abs(shift) < 0.5), shift, 0.0)
     inside = (part > 0) & (part < 1)
-    return row[inside], part[inside]
+    row, part = row[inside], part[inside]
+    order = np.lexsort((part, row))  # of two nodes near to each other another may now be the first
+    return row[order], part[order]
 
 
 def _divided(

@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 import gcxform as gx
 from gcxform_plugins.passes.levers import Lever
 from gcxform_plugins.passes.placing import Place
-from gcxform_plugins.passes.ranges import check_inside
+from gcxform_plugins.passes.ranges import beyond_tables, check_inside
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.volumetric import Volumetric
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 NO_WAY = 1e-12  # of a move; two cuts nearer to each other are one
-STILL = 1e-9  # mm; an axis that moves by less stays where it is
 UNDO_SLACK = 2e-6  # mm; how far pieces of an undone arc are from the curve they stand for
 BEND_SLACK = 1e-5  # mm; the same for pieces of a line, and what the bending adds to an arc
 
@@ -76,9 +76,10 @@ class Machine:
     def run(self) -> gx.Toolpath:
         """Return the path of the machine."""
         path = self.path
-        said = (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
+        own = (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
+        own &= path.kind == gx.Kind.RAPID
         near = self.step.max_correction  # the table may end between a target and its command
-        check_inside(self.step, path, self.offset, np.flatnonzero(~said), near)
+        check_inside(self.step, path, self.offset, np.flatnonzero(~own), near)
         rows, part = self._crossings()
         whole = np.arange(len(path))
         counts = np.ones(len(path), np.int64)
@@ -90,36 +91,23 @@ class Machine:
             every, at = _apart(every[order], at[order])
             counts = np.bincount(every, minlength=len(path))
         point = self._points(every, at)
-        offset = self.place.offset_of(every)
-        actual = point + self.moved(point + offset, self.place.tool_of(every, at))
-        if self.step.rapids == "skip":
-            rapid = path.kind[every] == gx.Kind.RAPID
-            actual[rapid] = point[rapid]
-        self._leave(every, point, actual)
+        table = point + self.place.offset_of(every)
+        actual = point + self.moved(table, self.place.tool_of(every, at))
+        of_machine = np.flatnonzero(own[every])  # which may be where nobody has measured
+        actual[of_machine[self._beyond(table[of_machine])]] = np.nan
         return self._path(counts, every, at, actual)
 
-    def _leave(self, rows: Ints, point: Floats, actual: Floats) -> None:
-        """Take moves to points of the machine itself as they are said: they are where they go.
-
-        So are rapids to a place that is not known in every axis, which nothing can compensate. An
-        axis that does not move in them stays where it is.
-        """
-        form, rapid = self.path.form[rows], self.path.kind[rows] == gx.Kind.RAPID
-        unknown = rapid & np.isnan(point).any(axis=1)
-        own = np.flatnonzero((form == gx.Form.HOME) | (form == gx.Form.MACHINE) | unknown)
-        for at in own.tolist():
-            before = self.path.start[rows[at], :3]
-            stays = np.abs(point[at] - before) < STILL
-            here = actual[at - 1] if at else self._entry()
-            actual[at] = np.where(stays, here, point[at])
+    def _beyond(self, table: Floats) -> Flags:
+        """Return which commands (n, 3), in the table, are where nobody has measured."""
+        return beyond_tables(self.step, table, self.step.max_correction)
 
     def _entry(self) -> Floats:
-        """Return where the machine stands before the first row (3,)."""
-        entry = self.path.entry[:3].copy()
-        skipped = self.step.rapids == "skip" and self.path.after_rapid
-        if np.isfinite(entry).all() and not skipped:
-            entry += self.moved(entry[None, :] + self.offset[:1], self.place.first_tool)[0]
-        return entry
+        """Return where the machine stands before the first row (3,): it errs there as well."""
+        entry = self.path.entry[None, :3]
+        table = entry + self.offset[:1]
+        actual = entry + self.moved(table, self.place.first_tool)
+        actual[self._beyond(table)] = np.nan
+        return np.asarray(actual[0])
 
     def moved(self, table: Floats, tool: Floats | None) -> Floats:
         """Return by how much (n, 3) points in the table (n, 3) are moved: the error, mm."""

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
-from gcxform_plugins.passes.compensation import Compensation, left_alone
+from gcxform_plugins.passes.compensation import Compensation, left_to_machine
 from gcxform_plugins.passes.levers import UNKNOWN, lever_of
 from gcxform_plugins.passes.placing import Place
 from gcxform_plugins.passes.ranges import beyond
@@ -110,7 +110,8 @@ class Volumetric(gx.Pass):
             raise ValueError("inverse writes where the machine goes, which takes no iterations")
         if self.inverse:
             asked = self.ensures | {gx.AXIS_POSITIONS}
-            turned = {"requires": asked, "ensures": self.requires, "clears": self.ensures}
+            nominal = frozenset({gx.NOMINAL})
+            turned = {"requires": asked, "ensures": nominal, "clears": self.ensures}
             for name, facts in turned.items():
                 object.__setattr__(self, name, facts)
 
@@ -176,13 +177,17 @@ class Volumetric(gx.Pass):
         undoing = Commands if self.inverse else Machine
         return undoing(self, path, self._place(path, context)).run() if len(path) else path
 
+    def spares(self, path: gx.Toolpath) -> NDArray[np.bool_]:
+        """Return the rapids to points of the machine, to unknown places, or all if so asked."""
+        return left_to_machine(path, self.rapids == "skip")
+
     def measure(
         self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
     ) -> dict[str, float]:
         """Return how far the path goes beyond the tables, where that is allowed."""
         if self.outside is gx.Outside.ERROR or not len(before):
             return {}
-        rows = np.flatnonzero(~left_alone(before))
+        rows = np.flatnonzero(~left_to_machine(before))
         return beyond(self, before, self._place(before, context).offset, rows)
 
     def _place(self, path: gx.Toolpath, context: gx.PassContext) -> Place:

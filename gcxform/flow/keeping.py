@@ -1,0 +1,55 @@
+"""Subprograms that nothing calls: they stay behind the end of the program, as they stand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gcxform.modal.meaning import OWN_MOVES
+
+if TYPE_CHECKING:
+    from gcxform.flow.execution import Execution
+
+NAMED = 5  # of the subprograms that a refusal names
+HINT = "transform the program that calls it, with this one in the same file"
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """A subprogram as it stands in the file: what calls it by, its first and its last line."""
+
+    name: str
+    first: int
+    last: int
+
+    @property
+    def lines(self) -> slice:
+        """Its lines behind the first, which names it and is not executed by a call."""
+        return slice(self.first + 1, self.last + 1)
+
+
+def kept(program: Execution) -> tuple[Definition, ...]:
+    """Return the subprograms that nothing has called.
+
+    What they do is not transformed, so a file in which nothing else moves is refused: InputError.
+    """
+    found = tuple(d for d in program.definitions() if not program.times[d.lines].any())
+    if not found:
+        return ()
+    first, names = found[0], ", ".join(each.name for each in found[:NAMED])
+    if not any(_moves(program, line) for line in np.flatnonzero(program.times).tolist()):
+        message = f"nothing moves in this file but in what nothing here calls: {names}"
+        raise program.listing.refusal(first.first, "GX226", message, HINT)
+    if not program.ended:
+        message = f"nothing calls {first.name}, and no end stands behind which it could be kept"
+        hint = "end the program with M2 or M30, or take the subprogram out"
+        raise program.listing.refusal(first.first, "GX226", message, hint)
+    return found
+
+
+def _moves(program: Execution, line: int) -> bool:
+    """Whether a line moves an axis."""
+    meaning = program.listing.meaning(line)
+    return bool(meaning.axes) or any(act.name in OWN_MOVES for act in meaning.acts)

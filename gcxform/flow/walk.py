@@ -1,0 +1,50 @@
+"""Proves that an execution has left out no line: by its account alone, not by how it went.
+
+Behind a block that decides nothing the next line is executed, as often at least; and so is what
+stands behind a loop or a branch that was entered, if nothing inside goes elsewhere.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.diagnostics import Diagnostic, Location, VerificationError
+
+if TYPE_CHECKING:
+    from gcxform.flow.execution import Execution
+
+Ints = NDArray[np.int64]
+HINT = "nothing was written; this is a bug of gcxform"
+
+
+def check_walk(program: Execution) -> None:
+    """Raise VerificationError for a line that was not executed, or not written out."""
+    times = program.times
+    plain = np.ones(len(times), np.bool_)
+    plain[program.listing.special] = False
+    _refuse(program, plain & (times != _written(program)), "a block is not written out as often")
+    behind = np.append(times[1:], np.iinfo(np.int64).max)
+    _refuse(program, plain & (behind < times), "the line behind this one is not executed as often")
+    for first, last in program.entered():
+        inside = np.flatnonzero(times[first : last + 1]) + first
+        gone = any(program.leaves(line, first, last) for line in inside.tolist())
+        if times[first] and not gone and last + 1 < len(times) and not times[last + 1]:
+            _refuse(program, np.arange(len(times)) == last, "what stands behind this is left out")
+
+
+def _written(program: Execution) -> Ints:
+    """Return how often each line stands in what is written, for itself and no other reason."""
+    lines = np.concatenate([np.empty(0, np.int64), *program.origin])
+    times = np.bincount(lines, minlength=len(program.times))
+    for each in program.kept:
+        times[each.first : each.last + 1] -= 1
+    return np.asarray(times)
+
+
+def _refuse(program: Execution, wrong: NDArray[np.bool_], message: str) -> None:
+    if wrong.any():
+        where = Location(program.listing.file, int(np.argmax(wrong)) + 1)
+        raise VerificationError((Diagnostic("GX601", message, where, HINT),))

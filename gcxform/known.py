@@ -1,0 +1,73 @@
+"""What is known of the output: no more than of the source that it was written from."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.dialect import INCH
+from gcxform.toolpath.path import Event, Toolpath
+
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+LENGTHS = frozenset("XYZUVWIJKR")
+
+
+def as_known(path: Toolpath, read: Toolpath, line: Ints, nth: Ints, switched: bool) -> Toolpath:
+    """Return a path that was written with no more than is known of the source.
+
+    `line` (n,) are the lines of the source for its rows, `nth` (n,) which of the moves there they
+    are; `switched`: a pass has taken over the codes with which the control follows the tip.
+    """
+    unknown = np.isnan(read.end).any()
+    if not len(read) or not (unknown or switched):
+        return path
+    row = _row_of(read, line, nth)
+    if unknown:
+        path = _at_rest_unknown(path, (np.isnan(read.start) & np.isnan(read.end))[row])
+    return _followed(path, read, row) if switched else path
+
+
+def _row_of(read: Toolpath, line: Ints, nth: Ints) -> Ints:
+    """Return the rows (n,) of the source, by their lines and which of the moves there they are."""
+    first, last = (np.searchsorted(read.source, line, side) for side in ("left", "right"))
+    row = np.clip(first + nth, first, np.maximum(last, first + 1) - 1)
+    return np.asarray(np.minimum(row, len(read) - 1))
+
+
+def _at_rest_unknown(path: Toolpath, unknown: Flags) -> Toolpath:
+    """Return a path in which axes that do not move stand nowhere known where `unknown` (n, axes).
+
+    A tool change of the source may move axes, and another control knows that its own does not. The
+    source does not say where such an axis stands; all that can be asked is that it is left there.
+    `unknown` is where the source knows neither where a move starts nor where it ends: one that it
+    takes from a known place to a place of the machine must not rest.
+    """
+    end, rests = path.end.copy(order="F"), path.end == path.start
+    end[rests & unknown] = np.nan
+    return path.replace(end=end)
+
+
+def _followed(path: Toolpath, read: Toolpath, row: Ints) -> Toolpath:
+    """Return a path with what a pass has taken over: where the control follows the tip.
+
+    No code in the output says it, but the rows (n,) of the source that its rows came from.
+    """
+    pairs = np.stack([path.frame, read.frame[row]])
+    pairs, which = np.unique(pairs, axis=1, return_inverse=True)
+    frames = tuple(
+        replace(path.frames[mine], following=read.frames[its].following)
+        for mine, its in pairs.T.tolist()
+    )
+    return path.replace(frames=frames, frame=which.reshape(-1))
+
+
+def in_mm(event: Event, path: Toolpath) -> Event:
+    """Return an event with the lengths among the words of its G code in mm."""
+    if event.what[0] != "G" or not path.blocks.inch[event.line - path.blocks.first]:
+        return event
+    values = tuple((a, v * INCH if a in LENGTHS else v) for a, v in event.values)
+    return replace(event, values=values)

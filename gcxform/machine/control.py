@@ -1,0 +1,152 @@
+"""The section `[control]` of a machine file: settings on which the meaning of codes depends.
+
+A setting is declared before a file can have it: here, or by the dialect that asks for it
+(`Dialect.settings`). So a word that is misspelt is refused, and never takes the place of silence.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+from gcxform.diagnostics import Diagnostic
+from gcxform.machine.machine import SWITCHES, TIP_AT_START
+from gcxform.machine.quantities import LENGTH
+from gcxform.tomltext import TomlText, did_you_mean
+
+INERT: Final = "inert-m"
+"""The setting that lists M codes which move nothing."""
+Value = str | float | list[int]
+_OWN_CODE = re.compile("M[1-9][0-9]{2,3}")
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A setting of a control: its key, what it says, and the values that it takes.
+
+    `choices` are those values; without any it is a length in mm that is not negative, which a file
+    may write with its unit. The settings of a control are not options: what is not said is not
+    known, and codes that depend on it are refused.
+    """
+
+    name: str
+    help: str
+    choices: tuple[str | int, ...] = ()
+
+    def read(self, raw: object) -> str | float:
+        """Return the value; ValueError, with a sentence, for what is none."""
+        if not self.choices:
+            return _length(raw)
+        if isinstance(raw, bool) or raw not in self.choices:
+            wanted = ", or ".join(f'"{c}"' if isinstance(c, str) else str(c) for c in self.choices)
+            raise ValueError(f"expected {wanted}")
+        assert isinstance(raw, str | float | int)
+        return raw
+
+    def schema(self) -> dict[str, Any]:
+        """Return its JSON Schema."""
+        found: dict[str, Any] = {"enum": [*self.choices]} if self.choices else {}
+        return {**(found or {"type": ["number", "string"]}), "description": self.help}
+
+
+@dataclass(frozen=True)
+class _Code(Setting):
+    """A setting that names an M code of the machine's own."""
+
+    def read(self, raw: object) -> str | float:
+        """Return the code; ValueError for what is none."""
+        if not isinstance(raw, str) or not _OWN_CODE.fullmatch(raw):
+            raise ValueError('expected an M code of the machine\'s own, such as "M428"')
+        return raw
+
+    def schema(self) -> dict[str, Any]:
+        """Return its JSON Schema."""
+        return {"type": "string", "pattern": _OWN_CODE.pattern, "description": self.help}
+
+
+_KNOWN: dict[str, Setting] = {}
+
+
+def declare(settings: Iterable[Setting]) -> None:
+    """Let machine files have settings. ValueError if one of the name takes other values."""
+    for setting in settings:
+        if _KNOWN.setdefault(setting.name, setting) != setting or setting.name == INERT:
+            raise ValueError(f"the setting {setting.name!r} is there, and is another one")
+
+
+declare(
+    (
+        Setting("g52", "what G52 does: Setting 33 of haas", ("fanuc", "haas", "yasnac")),
+        Setting("user-codes", "whether M100 to M199 are there", ("keep",)),
+        Setting("peck-return", "how far G73 goes up between pecks"),
+        Setting("peck-clearance", "how far above the last depth a peck of G83 begins"),
+        _Code("tip-on", "the M code from which the control follows the tip of the tool"),
+        _Code("tip-off", "the M code from which it does not"),
+        Setting("tool-length-axis", "where lengths stay in G18 and G19", ("Z",)),
+        Setting(TIP_AT_START, "whether it does before the first block", ("off", "on")),
+    )
+)
+
+
+def settings_of(control: Mapping[str, Value]) -> dict[str, str | float]:
+    """Return the values of a section that has no findings; lengths in mm."""
+    return {k: _KNOWN[k].read(v) for k, v in control.items() if k != INERT}
+
+
+def inert_of(control: Mapping[str, Value]) -> frozenset[int]:
+    """Return the M codes that move nothing."""
+    codes = control.get(INERT, [])
+    return frozenset(codes) if isinstance(codes, list) else frozenset()
+
+
+def findings(document: TomlText, control: Mapping[str, Value]) -> Iterator[Diagnostic]:
+    """Yield what is wrong with a section."""
+    for name, value in control.items():
+        if name != INERT and name not in _KNOWN:
+            yield from document.unknown_key(("control", name), [*_KNOWN, INERT]).diagnostics
+            continue
+        try:
+            _codes(value) if name == INERT else _KNOWN[name].read(value)
+        except ValueError as error:
+            setting = _KNOWN.get(name)
+            words = [str(choice) for choice in setting.choices] if setting else []
+            hint = did_you_mean(str(value), words) if words and isinstance(value, str) else ""
+            where = document.where("control", name)
+            yield Diagnostic(document.codes.wrong_value, f"{name}: {error}", where, hint)
+    yield from _switch_findings(document, control)
+
+
+def _switch_findings(document: TomlText, control: Mapping[str, Value]) -> Iterator[Diagnostic]:
+    """Yield what is wrong with the two codes that let the control follow the tip, and leave it."""
+    given = {name: control[name] for name in SWITCHES if name in control}
+    message = ""
+    if 0 < len(given) < len(SWITCHES):
+        message = f"{' and '.join(SWITCHES)} are given together"
+    elif len(given) == len(SWITCHES) and given[SWITCHES[0]] == given[SWITCHES[1]]:
+        message = "one code cannot say both"
+    for name in given if message else ():
+        where = document.where("control", name)
+        yield Diagnostic(document.codes.wrong_value, f"{name}: {message}", where)
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON Schema of the section."""
+    codes = {"type": "array", "items": {"type": "integer"}}
+    properties = {name: setting.schema() for name, setting in _KNOWN.items()} | {INERT: codes}
+    return {"type": "object", "properties": properties, "additionalProperties": False}
+
+
+def _length(raw: object) -> float:
+    if isinstance(raw, bool) or not isinstance(raw, str | int | float):
+        raise ValueError('expected a length, such as "0.5 mm"')
+    length = LENGTH.parse(raw) if isinstance(raw, str) else float(raw)
+    if not length >= 0.0:
+        raise ValueError(f"{length:g} mm is below 0")
+    return length
+
+
+def _codes(raw: object) -> None:
+    if not isinstance(raw, list):
+        raise ValueError("expected a list of M codes, such as [100, 101]")

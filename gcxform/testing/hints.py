@@ -1,0 +1,50 @@
+"""Hints have to work: what they give has to be a setting, and one that takes its value."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from gcxform.diagnostics import Location, UsageError
+from gcxform.options import build, describe
+from gcxform.pipelinefile import SECTIONS
+from gcxform.registry import Registry
+from gcxform.wayout import Setting, settings
+
+
+def try_hint(hint: str, registry: Registry) -> None:
+    """Raise ValueError for a setting in a hint that nothing has or whose value is not taken."""
+    for setting in settings(hint):
+        _try(setting, registry)
+
+
+def _try(setting: Setting, registry: Registry) -> None:
+    """Raise ValueError if nothing has the key of a setting, or if it does not take the value.
+
+    Letters and dots that stand for numbers (`start = { X = ... }`, `[x, y, z]`) count as 0.
+    """
+    text = re.sub(r"\.\.\.|\b[a-z]\b(?=[],])", "0.0", setting.value).replace(", 0.0 }", " }")
+    value = tomllib.loads(f"value = {text}")["value"]
+    if setting.section:
+        owners: list[type] = [SECTIONS[setting.section]] if setting.section in SECTIONS else []
+        if setting.section == "control":
+            return
+    else:
+        owners = list(registry.passes.values())
+    having = [owner for owner in owners if setting.key in {o.name for o in describe(owner)}]
+    if setting.section and not having:
+        raise ValueError(f"[{setting.section}] has no key {setting.key!r}")
+    for owner in having:
+        _take(owner, setting.key, value)
+
+
+def _take(owner: type, key: str, value: Any) -> None:
+    """Raise ValueError if an option does not take a value; other options do not count."""
+    try:
+        build(owner, {key: value}, Path(), (), Location)
+    except UsageError as error:
+        wrong = [each for each in error.diagnostics if each.message.startswith(f"{key}:")]
+        if wrong:
+            raise ValueError(wrong[0].message) from None

@@ -1,0 +1,63 @@
+"""Faults of the account of what a program holds, and of what its file lacks for another control."""
+
+from __future__ import annotations
+
+from faults.mutation import CORPUS, Mutation
+
+PLANTED = "tests/test_planted_inventory.py"
+MESSAGES = "tests/test_corpus.py::test_case"
+
+
+def _proof(name: str, old: str, new: str = "if False:", file: str = "inventoryproof") -> Mutation:
+    return Mutation(f"inventory: {name}", f"gcxform/{file}.py", old, new, PLANTED)
+
+
+MUTATIONS = (
+    _proof(
+        "other values are ignored",
+        "if (before.line, before.key) != (line, after.key) or not close:",
+    ),
+    _proof("missing assignments are ignored", "if len(old) == len(new):", "if True:"),
+    _proof("kinds need not balance", "            if count:", "            if count > 99:"),
+    _proof(
+        "what is behind the end is ignored",
+        "if not self.crossing and output.behind != self.text_behind.hexdigest():",
+    ),
+    _proof(
+        "what loops have set is ignored",
+        "if executed is not None and not executed.agrees(self.assigned):",
+    ),
+    _proof("the end is ignored", "if self.findings.file.no_end and not faulty:", file="run"),
+    _proof(
+        "lines need not be written out",
+        "plain & (times != _written(program))",
+        "plain & (times < 0)",
+        "flow/walk",
+    ),
+    _proof(
+        "lines need not follow", "plain & (behind < times)", "plain & (behind < 0)", "flow/walk"
+    ),
+    _proof("loops need not go on", "and not times[last + 1]:", "and False:", "flow/walk"),
+    _proof("M codes are not counted", "stops, ends, others]", "stops, ends, 0]", "inventory"),
+    Mutation(
+        "inventory: no percent signs",
+        "gcxform/modal/ending.py",
+        "behind=True)",
+        "behind=False)",
+        CORPUS,
+    ),
+    Mutation(
+        "messages: what is small is printed",
+        "gcxform/flow/messages.py",
+        "ZERO = 1e-4",
+        "ZERO = 1e-9",
+        MESSAGES,
+    ),
+    Mutation(
+        "messages: %f has six decimals",
+        "gcxform/flow/messages.py",
+        "DECIMALS, OF_F = 6, 4",
+        "DECIMALS, OF_F = 6, 6",
+        MESSAGES,
+    ),
+)

@@ -1,0 +1,104 @@
+"""Faults of what `volumetric` leaves to the machine, and of what the proof asks of it."""
+
+from __future__ import annotations
+
+from faults.mutation import CORPUS, PASSES, Mutation
+
+PLANTED = "tests/test_planted_volumetric.py"
+SPARED = "gcxform/spared.py"
+COMPENSATION = f"{PASSES}/compensation.py"
+UNDOING = f"{PASSES}/undoing.py"
+
+MUTATIONS = (
+    Mutation(
+        "spared: the start is free of error in the undo",
+        UNDOING,
+        "actual = entry + self.moved(table, self.place.first_tool)",
+        "actual = entry.copy()",
+        PLANTED,
+    ),
+    Mutation(
+        "spared: feed moves from the start are not looked at",
+        COMPENSATION,
+        "known = path.held is not None and bool(np.isfinite(self.start[0]).all())",
+        "known = False",
+        PLANTED,
+    ),
+    Mutation(
+        "spared: feed moves behind rapids that are left are not looked at",
+        COMPENSATION,
+        "np.append(known, self.left[:-1])",
+        "np.append(known, np.zeros(len(path) - 1, np.bool_))",
+        PLANTED,
+    ),
+    Mutation(
+        "spared: what was written before is forgotten",
+        "gcxform/run.py",
+        "self.held.get(number, path.entry)",
+        "path.entry",
+        f"{PLANTED}::test_windows_know_where_the_axes_were_left",
+    ),
+    Mutation(
+        "spared: where a rapid is told to go is not looked at",
+        SPARED,
+        "good = (np.abs(end - goal) <= slack)",
+        "good = (np.abs(end - goal) <= 1.0)",
+        PLANTED,
+    ),
+    Mutation(
+        "spared: an axis that rests may go anywhere",
+        SPARED,
+        "(np.abs(end - start) <= STILL) & (np.abs(goal - begin) <= STILL)",
+        "(np.abs(goal - begin) <= STILL)",
+        PLANTED,
+    ),
+    Mutation(
+        "spared: where feed moves begin is not compared in the first row",
+        "gcxform/verify.py",
+        "kind[trace.owner] != Kind.RAPID))\n        if not len(rows)",
+        "kind[trace.owner] != Kind.RAPID))[1:]\n        if not len(rows)",
+        PLANTED,
+    ),
+    Mutation(
+        "spared: an axis that is named where it stands is taken for one that rests",
+        COMPENSATION,
+        "(np.abs(way) < SAME) & ~named[row]",
+        "np.abs(way) < SAME",
+        f"{CORPUS}[volumetric/g53-at-rest]",
+    ),
+    Mutation(
+        "spared: two programs are not compared where feed moves begin",
+        "gcxform/comparison.py",
+        "np.where(fresh & behind & feeds, gap, 0.0)",
+        "np.zeros(len(row))",
+        "tests/test_compare_model.py::test_what_is_left_to_the_machine",
+    ),
+    Mutation(
+        "promises: what proves itself has room for nothing",
+        "plugins/gcxform_plugins/passes/rtcp.py",
+        "        return self.tolerance\n",
+        "        return 0.0 if self.turns_anew else self.tolerance\n",
+        "tests/test_promises.py",
+    ),
+    Mutation(
+        "promises: the tip is left out of the largest",
+        "gcxform/certifying.py",
+        "largest[key] + off if proved else",
+        "largest[key] if proved else",
+        "tests/test_promises.py",
+    ),
+    Mutation(
+        "promises: what is written may be off by all of the budget",
+        "gcxform/pipeline.py",
+        " - sum(step.promise for step in proved)",
+        "",
+        "tests/test_promises.py",
+    ),
+    Mutation(
+        "promises: arcs that are not there have room",
+        "gcxform/pipeline.py",
+        "if arcs and LINEAR_ONLY",
+        "if LINEAR_ONLY",
+        "tests/test_promises.py",
+    ),
+)

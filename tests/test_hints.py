@@ -1,0 +1,148 @@
+"""Hints help: what they give is a setting that takes its value, said as the user can say it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from cli_kit import call
+
+import gcxform as gx
+from gcxform.cli.options import pipeline_options
+from gcxform.pipelinefile import SECTIONS
+from gcxform.registry import default_registry
+from gcxform.testing.hints import try_hint
+from gcxform.wayout import ON_COMMAND_LINE, for_chain, settings
+
+
+@pytest.mark.parametrize(
+    ("hint", "typed"),
+    [
+        ('increment = "IS-B" in [input] if it is so', "--increment IS-B if it is so"),
+        ('increment = "calculator IS-B" in [input]', "--increment 'calculator IS-B'"),
+        ("or say start = { X = ... } in [input]", "or say --start X=..."),
+        ("decimals = { A = 4, C = 4 } in [output]", "--decimals A=4,C=4"),
+        ('deviation = "20 um" in [budget]', "--budget 20um"),
+        ('file = "machine.toml" in [machine]', "-m machine.toml"),
+        ('chord-error = "2 um", or arcs = "split"', "chord-error=2um, or arcs=split"),
+        ("part-origin = [0, 1.5, z]", "part-origin=0,1.5,z"),
+        ('peck-return = "0.5 mm" in [control]', 'peck-return = "0.5 mm" in [control]'),
+        ("start: X=4 is fine", "start: X=4 is fine"),
+    ],
+)
+def test_hints_for_who_typed_a_chain(hint: str, typed: str) -> None:
+    assert for_chain(hint) == typed
+
+
+@pytest.mark.parametrize(
+    "hint",
+    [
+        'increments = "IS-B" in [input]',
+        'increment = "IS-F" in [input]',
+        'block-delete = "maybe" in [input]',
+        "growth = 0 in [budget]",
+        'chord-error = "2 parsec"',
+        'colour = "red" in [output]',
+    ],
+)
+def test_a_hint_that_would_not_work_is_found(hint: str) -> None:
+    with pytest.raises(ValueError, match=r"[a-z]"):
+        try_hint(hint, default_registry())
+
+
+def test_every_key_of_the_command_line_is_one_of_a_pipeline_file() -> None:
+    @pipeline_options
+    def command() -> None: ...
+
+    known = {option for each in command.__click_params__ for option in each.opts}  # type: ignore[attr-defined]
+    for (section, key), option in ON_COMMAND_LINE.items():
+        (setting,) = settings(f"{key} = 1 in [{section}]")
+        assert section in SECTIONS
+        assert setting.key == key
+        assert option in known, option
+
+
+# --- what is typed works ---
+
+DRILL = b"G21 G90 G94 G17\nG0 X0. Y0. Z5.\nG81 X1. Y1. Z-5. R1. F100\nG80\nM30\n"
+
+
+def hint_of(file: Path, text: bytes, *words: str) -> str:
+    file.write_bytes(text)
+    found = call("run", *words, str(file), "-o", str(file.with_suffix(".out")))
+    assert found.exit_code in (2, 3), found.stderr
+    return found.stderr.partition("hint: ")[2].strip()
+
+
+def test_the_way_out_of_a_chain_is_an_option(tmp_path: Path) -> None:
+    file = tmp_path / "f.nc"
+    text = b"G21 G90 G94\nG0 X1000 Y0 Z0\nM30\n"
+    hint = hint_of(file, text, "-f", "fanuc", "-x", "absolute")
+    assert hint.startswith("--increment IS-B if X1000 is 1 mm, --increment calculator if")
+    assert (
+        call("run", "-f", "fanuc", "-x", "absolute", "--increment", "IS-B", str(file)).exit_code
+        == 0
+    )
+
+
+def test_who_has_a_file_is_told_what_to_write_into_it(tmp_path: Path) -> None:
+    pipeline = tmp_path / "p.toml"
+    pipeline.write_text('format = 1\n[input]\ndialect = "fanuc"\n[[pass]]\nuse = "absolute"\n')
+    hint = hint_of(tmp_path / "f.nc", b"G0 X10\n", "-p", str(pipeline))
+    assert hint.startswith('increment = "IS-B" in [input]')
+
+
+def test_a_budget_can_be_typed(tmp_path: Path) -> None:
+    file = tmp_path / "f.nc"
+    chain = ("-f", "linuxcnc", "-x", "segment arcs=split max-length=1mm arc-step=1deg")
+    words = ("-f", "linuxcnc", "-x", "segment arc-step=1deg")
+    text = b"G21 G90\nG0 X0 Y0\nG2 X20 Y0 I10 F100\nM2\n"
+    assert "--budget 20um" in hint_of(file, text, *words)
+    assert call("run", *words, "--budget", "20um", str(file)).exit_code == 0
+    assert call("run", *chain, "--budget", "20um", "--growth", "2", str(file)).exit_code in (2, 3)
+
+
+def test_decimals_feed_units_and_parameters_can_be_typed(tmp_path: Path) -> None:
+    file = tmp_path / "f.nc"
+    file.write_bytes(b"G91.1\nG1 X#100 Y0 Z0\nM2\n")
+    words = ("run", "-q", "-f", "linuxcnc", "-x", "metric", "--feed", "2", "--units", "in")
+    found = call(*words, "--parameters", "100=0.5", "--decimals", "X=2", str(file))
+    assert found.exit_code == 0, found.stderr
+    assert "X12.7 " in found.stdout
+    assert call(*words, "--parameters", "100", str(file)).exit_code == 2
+    assert call(*words, "--decimals", "X=a", str(file)).exit_code == 2
+
+
+@pytest.mark.parametrize("target", ["linuxcnc", "grbl"])
+def test_cycles_have_a_way_out(target: str, tmp_path: Path) -> None:
+    hint = hint_of(tmp_path / "f.nc", DRILL, "-f", "fanuc", "-t", target, "-x", "absolute")
+    assert hint == 'put the pass "cycles" before'
+    chain = gx.Pipeline.parse("cycles | absolute", "fanuc")
+    assert chain.run(DRILL).certificate.verified
+
+
+def test_g92_in_inches_has_one_too() -> None:
+    text = b"G20 G90 G94\nG0 X1 Y1 Z1\nG92 X1 Y0 Z0\nG1 X2 F5\nM2\n"
+    with pytest.raises(gx.InputError) as caught:
+        gx.Pipeline.parse("metric", "linuxcnc").run(text)
+    assert 'the pass "offsets" before' in caught.value.diagnostics[0].hint
+    found = gx.Pipeline.parse("offsets | metric", "linuxcnc").run(text)
+    assert b"G1 X50.8" in found.text  # 1 inch on from X25.4, which G92 calls 1 inch
+
+
+def test_a_tolerance_without_unit_is_asked_about(tmp_path: Path) -> None:
+    def warned(chain: str) -> list[str]:
+        return [each.hint for each in gx.Pipeline.parse(chain, "linuxcnc").warnings]
+
+    assert warned("segment chord-error=5") == [
+        'chord-error = "5 um" if it is 5 um, chord-error = "5 mm" if it is not'
+    ]
+    assert warned("segment chord-error=5mm | arcs tolerance=0.1") == []
+    file = tmp_path / "f.nc"
+    file.write_bytes(b"G0 X0\nM2\n")
+    found = call("check", "-f", "linuxcnc", "-x", "segment chord-error=5", str(file))
+    assert "warning[GX748]" in found.stderr
+    assert "chord-error=5um if it is 5 um" in found.stderr
+    pipeline = tmp_path / "p.toml"
+    pipeline.write_text("format = 1\n[input]\ndialect = 'grbl'\n[budget]\ndeviation = 20\n")
+    assert "deviation = 20 is 20 mm" in call("check", "-p", str(pipeline)).stderr

@@ -1,0 +1,240 @@
+"""Faults planted into a run that lose or double something: the proof of the run catches each.
+
+The faults are in the writer, the executer and the framing, not in a pass: no test of theirs is
+asked, only whether the run says PASS. Every fault is shown to bite: without it the program passes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import gcxform as gx
+from gcxform.emit.emitter import Emitted, Emitter
+from gcxform.flow import lasting
+from gcxform.flow.execution import Execution
+from gcxform.flow.listing import Listing
+from gcxform.flow.macros import MacroB
+from gcxform.flow.owords import OWords
+from gcxform.flow.walk import check_walk
+from gcxform.inventoryproof import assignments_differ
+from gcxform.modal.ending import Frame
+from gcxform.modal.lines import Assigned
+from gcxform.modal.state import Reading
+from gcxform.registry import default_registry
+
+STRAIGHT = b"""G21 G90 G94
+#<_deep>=2.5
+G0 X1
+(DEBUG, depth #<_deep>)
+M3 S100
+#100=[#<_deep>*2]
+G1 X2 F100
+M0
+M5
+M2
+o<kept> sub
+G1 X9
+o<kept> endsub
+"""
+LOOP = b"""G21 G90 G94
+G0 X0
+o1 repeat [3]
+#100=[7+#1]
+G91 G1 X1 F100
+G90
+(DEBUG, #100)
+o1 endrepeat
+G0 X10
+G0 X11
+M2
+o<kept> sub
+G1 X9
+o<kept> endsub
+"""
+MACRO = b"O1\nG21 G90\n#1=0\nWHILE[#1LT2]DO1\n#500=#1\nG0 X#1\n#1=#1+1\nEND1\nG0 X5.\nG0 X6.\nM30\n"
+GRBL = b"G21 G90 G94\nG0 X1\nG1 X2 F100\n"
+
+
+def run(program: bytes, source: str = "linuxcnc", target: str = "") -> gx.Result:
+    pipeline = gx.Pipeline.parse("absolute", source)
+    told = replace(pipeline.reading, parameters={"1": 0.0}, increment="IS-B")
+    written = default_registry().dialect(target or source)
+    return replace(pipeline, reading=told, target=written).run(program)
+
+
+def rewrites(old: bytes, new: bytes) -> Callable[[pytest.MonkeyPatch], None]:
+    """Return a fault: the writer writes something else, and drops lines that become nothing."""
+
+    def plant(patch: pytest.MonkeyPatch) -> None:
+        emit = Emitter.emit
+
+        def wrong(self: Emitter, *given: object) -> Emitted:
+            right = emit(self, *given)
+            lines = right.text.replace(old, new, 1).splitlines(keepends=True)
+            before = right.text.splitlines(keepends=True)
+            if len(lines) == len(before):
+                return replace(right, text=b"".join(lines))
+            at = before.index(old)
+            columns = np.delete(right.source, at), np.delete(right.nth, at)
+            if len(lines) > len(before):
+                columns = tuple(np.insert(c, at, c[at]) for c in (right.source, right.nth))
+            return Emitted(b"".join(lines), *columns)
+
+        patch.setattr(Emitter, "emit", wrong)
+
+    return plant
+
+
+def replaces(owner: object, name: str, wrong: object) -> Callable[[pytest.MonkeyPatch], None]:
+    return lambda patch: patch.setattr(owner, name, wrong)
+
+
+def lost_copy(self: Execution, stop: int) -> None:
+    """Take the lines but for the last one."""
+    lines = np.arange(self.at, stop)
+    self.times[lines] += 1
+    self._put(self.listing.raw(self.at, stop - 1), lines[:-1])
+    self.at = stop
+
+
+def short_copy(self: Execution, stop: int) -> None:
+    """Leave out the first line without any trace, behind which nothing jumps."""
+    first = self.at + (self.at > 0 and stop - self.at > 1)
+    self._put(self.listing.raw(first, stop), np.arange(first, stop))
+    self.times[first:stop] += 1
+    self.at = stop
+
+
+def long_leave(self: OWords, construct: object) -> None:
+    """Go on one line too far behind a loop."""
+    self.counters.pop(construct.lines[0], None)  # type: ignore[attr-defined]
+    self.at = construct.last + 2  # type: ignore[attr-defined]
+
+
+def long_while(self: MacroB, statement: object) -> None:
+    """The same in macro B."""
+    if not self._holds(statement):  # type: ignore[arg-type]
+        self.at = self.loops[self.line].last + 2
+
+
+def silent(self: lasting.Lasting, key: object, value: float) -> str:
+    self.assigned.append((self.program.line, key, value))  # type: ignore[arg-type]
+    return ""
+
+
+def off(self: lasting.Lasting, key: object, value: float) -> str:
+    self.assigned.append((self.program.line, key, value))  # type: ignore[arg-type]
+    return f"#{key}={value + 1.0}" if self.program.arithmetic.outlives(key) else ""  # type: ignore[arg-type]
+
+
+FAULTS = {
+    "an assignment is dropped": (STRAIGHT, rewrites(b"#<_deep>=2.5\n", b"")),
+    "an assignment has another value": (STRAIGHT, rewrites(b"=2.5", b"=2.6")),
+    "an assignment is another parameter's": (STRAIGHT, rewrites(b"#100=", b"#101=")),
+    "an assignment is doubled": (STRAIGHT, rewrites(b"#<_deep>=2.5\n", b"#<_deep>=2.5\n" * 2)),
+    "an M code is doubled": (STRAIGHT, rewrites(b"M5\n", b"M5\nM5\n")),
+    "an M code is dropped": (STRAIGHT, rewrites(b"M5\n", b"")),
+    "an M code is another": (STRAIGHT, rewrites(b"M3 ", b"M4 ")),
+    "a stop is dropped": (STRAIGHT, rewrites(b"M0\n", b"")),
+    "an optional stop": (STRAIGHT, rewrites(b"M0\n", b"M1\n")),
+    "a message is dropped": (STRAIGHT, rewrites(b"(DEBUG, depth #<_deep>)\n", b"")),
+    "a message is no message": (STRAIGHT, rewrites(b"(DEBUG,", b"(bug,")),
+    "the end is dropped": (STRAIGHT, rewrites(b"M2\n", b"")),
+    "a subprogram behind the end loses its name": (STRAIGHT, rewrites(b"o<kept> sub\n", b"")),
+    "a line behind the end is dropped": (STRAIGHT, rewrites(b"G1 X9\n", b"")),
+    "a run of lines loses its last": (LOOP, replaces(Execution, "_copy", lost_copy)),
+    "a run of lines loses its first": (LOOP, replaces(Execution, "_copy", short_copy)),
+    "a line behind a loop is dropped": (LOOP, replaces(OWords, "_leave", long_leave)),
+    "a line behind a WHILE is dropped": (MACRO, replaces(MacroB, "_while", long_while)),
+    "what lasts is not written": (LOOP, replaces(lasting.Lasting, "account", silent)),
+    "what lasts is off": (LOOP, replaces(lasting.Lasting, "account", off)),
+    "percent signs are forgotten": (GRBL, replaces(Frame, "put", lambda s, t, a, b: (t, 0, 0))),
+    "only one percent sign": (
+        GRBL,
+        replaces(Frame, "put", lambda s, t, a, b: (b"%\n" + t, 1, 0)),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_the_proof_of_a_run_catches(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    program, plant = FAULTS[name]
+    kinds = {MACRO: ("fanuc", "fanuc"), GRBL: ("grbl", "linuxcnc")}.get(program, ("linuxcnc",) * 2)
+    assert run(program, *kinds).certificate.verified
+    plant(monkeypatch)
+    with pytest.raises((gx.VerificationError, gx.InputError)):
+        run(program, *kinds)
+
+
+def test_an_account_of_kinds_and_rules() -> None:
+    found = run(LOOP).certificate.inventory
+    assert (found["motions"]["source"], found["motions"]["output"]) == (5, 7)
+    assert found["motions"]["rules"] == {"calls and loops written out": 2}
+    assert found["definitions"] == {"source": 1, "output": 1, "rules": {}}
+    assert found["assignments"]["output"] == found["messages"]["output"] == 3
+    for kind in found.values():
+        assert kind["source"] + sum(kind["rules"].values()) == kind["output"]
+    signs = run(GRBL, "grbl", "linuxcnc").certificate.inventory["percent_signs"]
+    assert signs == {"source": 0, "output": 2, "rules": {"linuxcnc wants an end": 2}}
+
+
+# --- each check by itself: a fault that another one would find as well ---
+
+
+def walked() -> OWords:
+    """Return the execution of a loop, as it was."""
+    told = Reading(parameters={"1": 0.0})
+    done = OWords(Listing(LOOP, default_registry().dialect("linuxcnc"), "-"), told, keeps=True)
+    done.run()
+    check_walk(done)
+    return done
+
+
+def test_a_line_that_is_not_written_out_is_found() -> None:
+    done = walked()
+    done.origin[0] = done.origin[0][:-1]
+    with pytest.raises(gx.VerificationError, match="not written out as often"):
+        check_walk(done)
+
+
+def test_a_line_that_does_not_follow_is_found() -> None:
+    done = walked()
+    done.times[5] -= 1  # G90 in the loop
+    done.origin = [lines[lines != 5] for lines in done.origin] + [np.full(2, 5)]
+    with pytest.raises(gx.VerificationError, match="behind this one is not executed as often"):
+        check_walk(done)
+
+
+def test_an_assignment_too_few_or_too_many_is_found() -> None:
+    context = gx.Pipeline.parse("absolute", "linuxcnc").context
+    trace = SimpleNamespace(line_of=lambda line: line)
+    one, two = Assigned(0, 100, 1.0), Assigned(1, 101, 2.0)
+    assert assignments_differ((one, two), (one, two), trace, context) is None
+    for old, new in (((one, two), (one,)), ((one,), (one, two))):
+        found = assignments_differ(old, new, trace, context)
+        assert found is not None
+        assert "#101=2 is missing or too many" in found[0]
+
+
+def test_a_name_of_a_program_is_in_the_balance(monkeypatch: pytest.MonkeyPatch) -> None:
+    rewrites(b"O1\n", b"")(monkeypatch)
+    with pytest.raises(gx.VerificationError, match="1 fewer definitions"):
+        run(MACRO, "fanuc")
+
+
+def test_what_a_straight_program_holds() -> None:
+    found = run(STRAIGHT).certificate.inventory
+    assert {kind: counts["output"] for kind, counts in found.items()} == {
+        "motions": 3,
+        "definitions": 1,
+        "assignments": 2,
+        "messages": 1,
+        "stops": 1,
+        "ends": 1,
+        "m_codes": 2,
+    }
