@@ -122,7 +122,9 @@ CODES: dict[str, tuple[str, str]] = {
         'asks for cannot be said in such a block. Resolve it first: the pass "cycles" writes '
         'cycles as plain moves, the pass "offsets" folds shifts into coordinates. Taps are written '
         "again with their ends moved, if the place, which is one for top and bottom, is right for "
-        "both within what the passes promise; otherwise give the pass a larger tolerance.",
+        "both within what the passes promise; otherwise give the pass a larger tolerance. G28, G30 "
+        "and G53 are written in another unit where it is known where they lead (G53 needs a "
+        "machine file with work offsets), and if their numbers have points where these decide.",
     ),
     "GX507": (
         "The program grows beyond the budget",

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from gcxform.diagnostics import InputError
 from gcxform.dialect import LINEAR
 from gcxform.distinct import distinct
+from gcxform.emit.converting import convertible
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, as_written
@@ -61,6 +62,7 @@ class Copying:
         self.believed_said = believed.said
         self.believed_position = believed.position
         self.lines = (old_count == 0) & (pieces.count == 0) & ~pieces.expanded_line
+        self.converted = np.zeros(live, np.bool_)
         stands = self._standing(old_count, pieces)
         self._refuse_changed(stands, pieces)
         self._refuse_presets()
@@ -69,7 +71,7 @@ class Copying:
             self.lines &= self._nothing_to_say()
         else:
             self.lines &= self._same_modes()
-            self.lines |= stands
+            self.lines |= stands & ~self.converted
         if self.path.folded:
             self.lines[self.task.table.flag("framing", self.task.shape)] = False
         self.lines &= ~self.task.table.flag("switches", self.task.shape)
@@ -219,7 +221,9 @@ class Copying:
         if not len(rows):
             return stands
         lines = self.path.block[rows]
-        good = (self._same_modes() | self._without_lengths(special))[lines]
+        alike = self._same_modes() | self._without_lengths(special)
+        self.converted = ~alike & convertible(self.task, pieces, self.positions)
+        good = (alike | self.converted)[lines]
         if not self.task.manner.crossing:
             good &= special[lines] | ~pieces.repaired_in(lines)
         good &= self.path.form[rows] == self.original.form[others]
@@ -232,7 +236,7 @@ class Copying:
             good[own] &= self._same_words(rows[own], others[own])
         turned = plain | (self.path.form[rows] == Form.SPLINE)
         good &= ~turned | self._same_frames(rows, others)
-        starts_exact = self._track_exactness(rows, others, good)
+        starts_exact = self._track_exactness(rows, others, good & ~self.converted[lines])
         incremental = self.path.blocks.incremental[self.path.block[rows]]
         doubtful = np.flatnonzero(good & plain & incremental & ~starts_exact)
         if len(doubtful):

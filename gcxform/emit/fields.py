@@ -41,8 +41,8 @@ class Key:
     nothing. `silent`: a motion code that moves nothing is left out.
     `expanded`: the block called a canned cycle, of which this is a move. `thread`: it is one whose
     code and K stay. `tap`: it is a canned cycle whose ends have moved; `apart`: one of its repeats,
-    which become blocks of their own. `arc`: whether centre words are written, in `plane`; `turns`:
-    full turns beyond the arc.
+    which become blocks of their own. `converted`: its words stay, in the other unit. `arc`: whether
+    centre words are written, in `plane`; `turns`: full turns beyond the arc.
     """
 
     role: Role
@@ -57,6 +57,7 @@ class Key:
     thread: bool
     tap: bool
     apart: bool
+    converted: bool
     arc: bool
     plane: int
     turns: int
@@ -84,6 +85,14 @@ class Copied:
 @dataclass(frozen=True, slots=True)
 class Computed:
     """A word with the number that an expression in a slot of the source line is worth."""
+
+    address: str
+    slot: int
+
+
+@dataclass(frozen=True, slots=True)
+class Converted:
+    """A word with the length in a slot of the source line, in the other unit."""
 
     address: str
     slot: int
@@ -121,7 +130,7 @@ class FeedWord:
     gap: bytes
 
 
-Field = Literal | Copied | Computed | Axis | CycleWord | Centre | FeedWord
+Field = Literal | Copied | Computed | Converted | Axis | CycleWord | Centre | FeedWord
 
 
 class CycleWords:

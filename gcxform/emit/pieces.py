@@ -27,6 +27,8 @@ Small = NDArray[np.int8]
 Flags = NDArray[np.bool_]
 
 NOTHING = np.int8(-1)
+PLACES = (Form.HOME, Form.MACHINE)
+"""Forms whose axis words may be converted where they stand."""
 
 
 class Pieces:
@@ -44,6 +46,7 @@ class Pieces:
               into which its repeats are taken apart
     feed      (pieces,) `Feed`; `feed_value` is the number to write
     special   (pieces,) whether it stands for all moves of a block that is written as it stands
+    converted (pieces,) whether such a block, to a place of the machine, is written in another unit
     event     (pieces,) index into `events`, one of each kind, -1 for none: what a cycle does
               between its moves, and blocks that the user gives, of which some are moves
     repaired  (pieces,) whether something is stated that the source line did not state
@@ -121,6 +124,7 @@ class Pieces:
         role[self.has_row & self.ends] = Role.LAST
         role[self.has_row & self.leads & self.ends] = Role.ONLY
         self.special = special[self.line]
+        self.converted = self._converted()
         cycle = self.task.read.modes.cycle[: len(special)] != CYCLE_OFF
         self.tap = (self.taps.lines & cycle)[self.line]
         self.apart = self.tap & (self.taps.count > 1)[self.line]
@@ -129,6 +133,14 @@ class Pieces:
         role[self.special] = Role.VERBATIM
         role[self.event >= 0] = Role.EVENT
         self.role = role
+
+    def _converted(self) -> Flags:
+        """Return the pieces that lead home or to a place of the machine, in another unit."""
+        path, now = self.task.path, self.task.path.blocks.inch
+        places = self.of_rows(np.isin(path.form, PLACES), False)
+        return np.asarray(
+            places & self.special & (now != self.task.read.path.blocks.inch)[self.line]
+        )
 
     def _gone(self) -> Flags:
         """Return the lines whose moves are parts of others', and in which nothing else happens."""

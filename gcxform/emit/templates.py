@@ -8,12 +8,14 @@ then a matter of whole arrays.
 
 from __future__ import annotations
 
+from gcxform.dialect import LINEAR
 from gcxform.emit.codewords import CodeWords
 from gcxform.emit.draft import Draft
 from gcxform.emit.fields import (
     Axis,
     Centre,
     Computed,
+    Converted,
     Copied,
     CycleWords,
     Feed,
@@ -184,6 +186,9 @@ class TemplateWriter:
             self.codes.g_word(word, lead)
         elif address == "M":
             self.codes.m_word(word, lead)
+        elif self.key.converted and address in self.meaning.axes and address in LINEAR:
+            self.draft.literal(lead, "")
+            self.draft.fields.append(Converted(address, slot))
         elif address in self.meaning.slots and not verbatim and self._motion(word, lead):
             return
         elif address == "F" and "F" in self.meaning.slots:

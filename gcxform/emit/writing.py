@@ -14,10 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
+from gcxform.dialect import INCH
 from gcxform.emit.fields import (
     Axis,
     Centre,
     Computed,
+    Converted,
     Copied,
     CycleWord,
     Feed,
@@ -114,6 +116,7 @@ class Writing:
             (pieces.thread, 2),
             (pieces.tap, 2),
             (pieces.apart, 2),
+            (pieces.converted, 2),
             (pieces.feed, 3),
             (inch, 2),
         ]
@@ -159,6 +162,7 @@ class Writing:
             bool(pieces.thread[piece]),
             bool(pieces.tap[piece]),
             bool(pieces.apart[piece]),
+            bool(pieces.converted[piece]),
             arc,
             int(self.task.path.plane[row]) if arc else 0,
             int(self._turns()[row]) if arc else 0,
@@ -202,6 +206,8 @@ class Writing:
             renderer.copied(self.pieces.line[members], field.slot)
         elif isinstance(field, Computed):
             self._computed(field, self.pieces.line[members], renderer)
+        elif isinstance(field, Converted):
+            self._converted(field, self.pieces.line[members], inch, renderer)
         elif isinstance(field, Axis):
             column = self.task.path.axes.index(field.address)
             present = self.positions.write[rows, column]
@@ -240,6 +246,14 @@ class Writing:
             message = f"{field.address} is computed, and has more decimals than can be written"
             raise InputError.one("GX501", message, where)
         renderer.number(b"", field.address, whole, decimals, np.ones(len(lines), np.bool_), False)
+
+    def _converted(self, field: Converted, lines: Ints, inch: bool, renderer: Renderer) -> None:
+        """Write lengths of the source in the unit that is in force now: `inch`, or millimetres."""
+        value = self.task.read.value[self.task.window.first_number[lines] + field.slot]
+        decimals = self.task.manner.decimals_of(field.address, inch)
+        whole = quantise(value / INCH if inch else value * INCH, decimals)
+        everywhere = np.ones(len(lines), np.bool_)
+        renderer.number(b"", field.address, whole, decimals, everywhere)
 
     # --- what is refused ---
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import FIGURES, FOUND, LAWS, VERIFY, Mutation
+from faults.mutation import CORPUS, FIGURES, FOUND, LAWS, VERIFY, Mutation
 
 MUTATIONS = (
     Mutation(
@@ -53,5 +53,26 @@ MUTATIONS = (
         'if inch[line] or address == "X":',
         "if False:",
         FOUND,
+    ),
+    Mutation(
+        "writing: the point that a return goes over keeps its number in another unit",
+        "gcxform/emit/writing.py",
+        "quantise(value / INCH if inch else value * INCH, decimals)",
+        "quantise(value, decimals)",
+        CORPUS + "[metric/home-by-a-point]",
+    ),
+    Mutation(
+        "writing: a block to where nobody knows is converted",
+        "gcxform/emit/converting.py",
+        "found[task.path.block[rows[lost]]] = False",
+        "del lost",
+        CORPUS + "[hazards/machine-coordinates-in-inches]",
+    ),
+    Mutation(
+        "writing: increments are converted as if they were lengths",
+        "gcxform/emit/converting.py",
+        "(task.window.decimals[numbers] < 0).any()",
+        "not numbers",
+        CORPUS + "[bad/gx506-home]",
     ),
 )

@@ -17,7 +17,8 @@ FOLDED = frozenset({"set-work", "local", "preset", "rotate", "scale", "mirror"})
 class Metric(gx.Pass):
     """Write millimetres instead of inches: G20 becomes G21.
 
-    Lengths and feeds are converted; angles, counts, speeds and times are not lengths and stay.
+    Lengths and feeds are converted, the points of G28, G30 and G53 too; angles, counts, speeds and
+    times are not lengths and stay.
     """
 
     name = "metric"
