@@ -9,28 +9,30 @@ from lark import Token
 
 from gcxform.flow.execution import HINT, Execution, whole_number
 from gcxform.flow.listing import bare
+from gcxform.syntax.grammar import is_comment
 from gcxform.syntax.tree import BLANKS, Statement, Word
 
 ORDERS = {
     "sub": ("sub", "endsub"),
     "if": ("if", "elseif", "else", "endif"),
     "while": ("while", "break", "continue", "endwhile"),
-    "do": ("do", "break", "while"),
+    "do": ("do", "break", "continue", "while"),
     "repeat": ("repeat", "endrepeat"),
 }
-"""The keywords with the label of each construct: what opens it first, what closes it last.
-
-After `continue` in a `do` loop the interpreter runs a later `repeat` too often, so it is refused.
-"""
+"""The keywords with the label of each construct: what opens it first, what closes it last."""
 
 
 @dataclass(frozen=True, slots=True)
 class OWord:
-    """A line with an O-word: its label, its keyword, the values behind it, and its construct."""
+    """A line with an O-word: its label, its keyword, the values behind it, and its construct.
+
+    `computed` is the expression that says the number of what is called, where `label` is "".
+    """
 
     label: str
     keyword: str
     values: tuple[Any, ...]
+    computed: Any = None
 
 
 @dataclass(slots=True)
@@ -91,14 +93,17 @@ class Constructs:
         return self.words[line].keyword
 
     def _read(self, statement: Statement) -> OWord:
-        _, label, keyword, *values = statement.tree.children
+        _, label, keyword, *rest = statement.tree.children
+        values = tuple(node for node in rest if not is_comment(node))
+        if not isinstance(label, Token) and keyword.type == "CALL":
+            return OWord("", "call", values, label)
         if not isinstance(label, Token):
             place = (statement.start, statement.end)
             message = "which label this is must be written: a parameter says it"
             raise self.program.refusal("GX206", message, HINT, place)
         text = str(label).translate(BLANKS).lower()
         name = text[1:-1] if text.startswith("<") else str(int(text))
-        return OWord(name, str(keyword).lower(), tuple(values))
+        return OWord(name, str(keyword).lower(), values)
 
     def _place(
         self, line: int, word: OWord, scope: str, open_: dict[tuple[str, str], Construct]

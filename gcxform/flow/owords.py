@@ -18,8 +18,9 @@ from gcxform.flow.keeping import Definition
 from gcxform.flow.listing import Listing, bare
 from gcxform.flow.modes import StoredModes
 from gcxform.flow.places import FIRST, Places
-from gcxform.modal.arithmetic import RS274, Key
+from gcxform.modal.arithmetic import RS274, Key, NoValueError, whole
 from gcxform.modal.state import Reading
+from gcxform.syntax.grammar import span_of
 from gcxform.syntax.tree import Block, Statement, Word
 
 LOCALS = RS274.local
@@ -36,7 +37,7 @@ class OWords(Execution):
     def __init__(self, listing: Listing, reading: Reading, keeps: bool = False) -> None:
         super().__init__(listing, reading, keeps)
         self.ahead: set[str] = set()
-        self.jumped = False
+        self.broken = self.continued = False
         self.modes = StoredModes(self)
         self.places = Places(self)
         self.counters: dict[int, int] = {}
@@ -133,24 +134,36 @@ class OWords(Execution):
             self.returned(math.nan)  # only who reads it must know it
 
     def _call(self, word: OWord) -> None:
-        construct = self.subs.get(word.label)
+        label = self._label(word)
+        construct = self.subs.get(label)
         if construct is None:
-            message = f"the subprogram {word.label} is not in this file"
+            message = f"the subprogram {label} is not in this file"
             raise self.refusal("GX210", message, HINT)
         values = [self.value(node) for node in word.values]
         if len(values) > len(LOCALS):
             raise self.refusal("GX221", f"a call takes at most {len(LOCALS)} values")
-        self._refuse_recursion_in_loop(word.label)
+        self._refuse_recursion_in_loop(label)
         if construct.lines[0] > self.line:
-            self.ahead.add(word.label)
+            self.ahead.add(label)
         own = {key: value for key, value in self.parameters.items() if _is_local(key)}
-        call = Call(f"O{word.label}", self.at, construct.lines[0] + 1, 1, own, self.counters)
+        call = Call(f"O{label}", self.at, construct.lines[0] + 1, 1, own, self.counters)
         self.parameters = {k: v for k, v in self.parameters.items() if k not in own}
         given = [*values, *[0.0] * (len(LOCALS) - len(values))]
         self.set(dict(zip(LOCALS, given, strict=True)))
         self.counters = {}
         self.enter(call)
         self.modes.enter()
+
+    def _label(self, word: OWord) -> str:
+        """Return the label that a call names, which may be computed."""
+        if word.computed is None:
+            return word.label
+        value = self.value(word.computed)
+        try:
+            return str(whole(value, self.arithmetic.whole_slip))
+        except NoValueError as why:
+            message = f"the number of a subprogram: {why}"
+            raise self.refusal("GX221", message, place=span_of(word.computed)) from None
 
     def _refuse_recursion_in_loop(self, label: str) -> None:
         """Refuse a call of itself inside `repeat`: the control has one counter for both."""
@@ -256,22 +269,33 @@ class OWords(Execution):
         construct = self.construct[self.line]
         again = self._truth(word)
         if construct.kind == "do":
-            self._refuse_after_jump()
+            self._refuse_after_break()
             if again:
                 self.back_to(construct.lines[0] + 1)
             return
-        self.jumped |= any(self.words[line].keyword in LEAVES for line in construct.lines)
+        self.broken |= self._has(construct, "break")
         if not again:
             self.at = construct.last + 1
 
-    def _refuse_after_jump(self) -> None:
-        """Refuse a `do` loop behind a loop with `break` or `continue`, taken or not.
+    def _has(self, construct: Construct, keyword: str) -> bool:
+        """Whether a keyword stands in a construct behind the line that is executed."""
+        behind = (line for line in construct.lines if line > self.line)
+        return any(self.words[line].keyword == keyword for line in behind)
+
+    def _refuse_after_break(self) -> None:
+        """Refuse a `do` loop behind a `while` loop with `break`, taken or not.
 
         The interpreter may run it once, whatever its condition says.
         """
-        if self.jumped:
-            message = "behind a loop with break or continue the control may run this loop once only"
+        if self.broken:
+            message = "behind a loop with break the control may run this loop once only"
             raise self.refusal("GX223", message, "write it as a while loop")
+
+    def _refuse_after_continue(self) -> None:
+        """Refuse `repeat` behind `continue` in a `do` loop: it may be run too often."""
+        if self.continued:
+            message = "behind continue in a do loop the control counts this loop wrong"
+            raise self.refusal("GX223", message, "write the do loop as a while loop")
 
     def _endwhile(self, word: OWord) -> None:
         self.back_to(self.construct[self.line].lines[0])
@@ -280,6 +304,7 @@ class OWords(Execution):
         """Go on."""
 
     def _repeat(self, word: OWord) -> None:
+        self._refuse_after_continue()
         if len(word.values) != 1:
             raise self.refusal("GX221", "repeat takes a count in brackets")
         if self.line in self.left:
@@ -291,6 +316,7 @@ class OWords(Execution):
             self._leave(self.construct[self.line])
 
     def _endrepeat(self, word: OWord) -> None:
+        self._refuse_after_continue()
         first = self.construct[self.line].lines[0]
         self.counters[first] -= 1
         if self.counters[first] > 0:
@@ -299,9 +325,11 @@ class OWords(Execution):
             self._leave(self.construct[self.line])
 
     def _break(self, word: OWord) -> None:
-        self.jumped = True
-        self._note_left(self.construct[self.line])
-        self._leave(self.construct[self.line])
+        """Leave a loop; on its way to the end the interpreter notes a `continue` that it passes."""
+        construct = self.construct[self.line]
+        self.continued |= construct.kind == "do" and self._has(construct, "continue")
+        self._note_left(construct)
+        self._leave(construct)
 
     def _note_left(self, construct: Construct) -> None:
         """Note the `repeat` loops inside a construct that a jump leaves."""
@@ -310,8 +338,12 @@ class OWords(Execution):
             del self.counters[line]
 
     def _continue(self, word: OWord) -> None:
-        self._note_left(self.construct[self.line])
-        self.at = self.construct[self.line].last
+        """Go to the condition; the interpreter notes a `break` that it passes."""
+        construct = self.construct[self.line]
+        self.continued |= construct.kind == "do"
+        self.broken |= self._has(construct, "break")
+        self._note_left(construct)
+        self.at = construct.last
 
     def _leave(self, construct: Construct) -> None:
         self.counters.pop(construct.lines[0], None)

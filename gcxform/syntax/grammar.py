@@ -6,6 +6,7 @@ iso (...)`.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
@@ -42,7 +43,7 @@ class Grammar:
             tree = parsed(self._lark, text)
         except UnexpectedInput as error:
             return Block(text, (), refusal_of(error, text))
-        return Block(text, tuple(_item(child, text) for child in tree.children))
+        return Block(text, tuple(item for child in tree.children for item in _items(child, text)))
 
 
 @cache
@@ -100,6 +101,27 @@ def span_of(node: Any) -> tuple[int, int]:
         assert node.end_pos is not None
         return node.start_pos, node.end_pos
     return node.meta.start_pos, node.meta.end_pos
+
+
+def _items(node: Any, text: str) -> Iterator[Item]:
+    """Yield the items a child of the start rule stands for: comments behind a call by themselves.
+
+    Only the grammar of a call has comments inside: between its values.
+    """
+    behind: list[Any] = []
+    if rule_of(node) == "flow":
+        while is_comment(node.children[-1]):
+            behind.insert(0, node.children.pop())
+    if not behind:
+        yield _item(node, text)
+        return
+    yield Statement(span_of(node)[0], span_of(node.children[-1])[1], rule_of(node), node)
+    yield from (_item(each, text) for each in behind)
+
+
+def is_comment(node: Any) -> bool:
+    """Whether a node is a comment."""
+    return isinstance(node, Tree) and rule_of(node) == "comment"
 
 
 def _item(node: Any, text: str) -> Item:

@@ -88,4 +88,32 @@ MUTATIONS = (
         "line",
         "tests/test_flow.py",
     ),
+    _flow(
+        "a loop behind break is run as it says",
+        "owords",
+        'self.broken |= self._has(construct, "break")\n        if not again',
+        "if not again",
+        "tests/test_corpus.py::test_case[flow/break-do]",
+    ),
+    _flow(
+        "continue in a do loop forgets a break that is passed",
+        "owords",
+        'self.broken |= self._has(construct, "break")\n        self._note_left',
+        "self._note_left",
+        "tests/test_corpus.py::test_case[flow/do-continue-break]",
+    ),
+    _flow(
+        "repeat behind continue is run as it says",
+        "owords",
+        'self.continued |= construct.kind == "do"\n',
+        "self.continued = False\n",
+        "tests/test_corpus.py::test_case[flow/do-continue-repeat]",
+    ),
+    _flow(
+        "the number of a call is cut off, not rounded",
+        "owords",
+        "str(whole(value, self.arithmetic.whole_slip))",
+        "str(int(value))",
+        "tests/test_corpus.py::test_case[flow/call-by-a-value]",
+    ),
 )

@@ -63,14 +63,13 @@ class Flow:
             if self.choose.random() < 0.4
             else (f"{name} while {condition}", f"{name} endwhile")
         )
-        ways = ("break",) if first.endswith("do") else ("break", "continue")
-        return [f"#{counter}=0", first, step, *self.inside(name, depth, ways), last]
+        return [f"#{counter}=0", first, step, *self.inside(name, depth), last]
 
-    def inside(self, name: str, depth: int, ways: tuple[str, ...]) -> list[str]:
+    def inside(self, name: str, depth: int) -> list[str]:
         lines = self.body(depth)
-        if self.choose.random() < 0.4:
+        for _ in range(self.choose.choice((0, 0, 0, 1, 1, 2))):
             inner = self.label()
-            leave = self.choose.choice(ways)
+            leave = self.choose.choice(("break", "continue"))
             lines += [f"{inner} if {self.condition()}", f"{name} {leave}", f"{inner} endif"]
             lines += self.plain(depth)
         return lines
@@ -78,8 +77,13 @@ class Flow:
     def call(self, depth: int) -> list[str]:
         if not self.subs:
             return self.plain(depth)
-        values = (f" [{self.number()}]" for _ in range(self.choose.randint(0, 3)))
-        lines = [f"o{self.choose.choice(self.subs)} call" + "".join(values)]
+        gaps = (" ", " ", " (a [7]) ", "")
+        values = (
+            f"{self.choose.choice(gaps)}[{self.number()}]" for _ in range(self.choose.randint(0, 3))
+        )
+        number = self.choose.choice(self.subs)
+        names = (f"{number}", f"{number}", f"[{number - 7} + 3.5 * 2]", f"[#1 - #1 + {number}]")
+        lines = [f"o{self.choose.choice(names)} call" + "".join(values)]
         if self.choose.random() < 0.3:
             lines.append("G0 X#<_value> Y#<_value_returned>")
         return lines

@@ -14,6 +14,7 @@ NOT_RESOLVED = (
     "polar words are resolved in G90",
     "the control loses its place",
     "the control may run this loop once only",
+    "the control counts this loop wrong",
     "the control goes on counting from there",
 )
 """Why programs are refused that the interpreter runs, in the way that its own faults decide."""
