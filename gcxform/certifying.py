@@ -186,7 +186,9 @@ def warnings_of(interpreter: Interpreter, source: Source) -> tuple[Diagnostic, .
 def _of_the_file(run: Run) -> Iterator[str]:
     """Yield what was not checked of the file as a whole."""
     if run.executed is not None and run.executed.kept:
-        what = "subprograms that nothing calls: kept as they stand behind the end, not transformed"
+        what = (
+            "subprograms that nothing calls, and what they call: kept as they stand, behind the end"
+        )
         yield f"{what}: {run.executed.kept}"
     if why := run.findings.file.no_end:
         yield f"whether this is a whole program: {why}, and the source has none"

@@ -53,17 +53,26 @@ class Tally:
 
     def add(self, table: MeaningTable, shape: Ints) -> Ints:
         """Count lines of these shapes; return what they hold, (kinds,)."""
+        if not len(shape):
+            return nothing_held()
+        held_by = self._held_by(table)
+        times = np.bincount(shape, minlength=len(held_by))[: len(held_by)]
+        held = times @ held_by
+        self.total = self.total + held
+        return np.asarray(held)
+
+    def lines(self, table: MeaningTable, shape: Ints, kind: str) -> Ints:
+        """Return which lines of these shapes (n,) hold something of a kind, ascending."""
+        return np.flatnonzero(self._held_by(table)[shape, KINDS.index(kind)])
+
+    def _held_by(self, table: MeaningTable) -> Ints:
+        """Return what lines of each shape hold, (shapes, kinds)."""
         if table is not self._table:
             self._table, self._held = table, []
         for number in range(len(self._held), len(table.meanings)):
             block = table.shapes.shapes[number].block
             self._held.append(_held(block, table.meanings[number], table.dialect))
-        if not len(shape):
-            return nothing_held()
-        times = np.bincount(shape, minlength=len(self._held))[: len(self._held)]
-        held = times @ np.array(self._held, np.int64)
-        self.total = self.total + held
-        return np.asarray(held)
+        return np.array(self._held, np.int64).reshape(-1, len(KINDS))
 
 
 def _held(block: Block, meaning: Meaning, dialect: type[Dialect]) -> list[int]:

@@ -118,6 +118,37 @@ def behind_end(window: Window, live: int) -> bytes:
     return without_lines(window.text[int(window.start[live]) :]) if live < len(window) else b""
 
 
+class Others:
+    """Looks for other programs behind the end of the one that is transformed.
+
+    Its number is enough for a control to run one, while what LinuxCNC has behind an end is of that
+    file alone.
+    """
+
+    def __init__(self, dialect: type[Dialect], file: str) -> None:
+        self.looks = dialect.flow == "macro-b"
+        self.file = file
+        self.tally = Tally()
+        self.begins = -1
+
+    def refuse_moving(self, window: Window, table: MeaningTable, live: int) -> None:
+        """Raise InputError for one that moves: of a window, whose `live` lines are executed."""
+        shape = window.shape[live:]
+        if not self.looks or not len(shape):
+            return
+        moves = self.tally.lines(table, shape, "motions")
+        if self.begins < 0:
+            begins = self.tally.lines(table, shape, "definitions")
+            if not len(begins):
+                return
+            self.begins = int(begins[0]) + live + window.first_line
+            moves = moves[moves > begins[0]]
+        if len(moves):
+            message = "a program begins here that this one does not call: it would stay as it is"
+            hint = "what steps do to positions is said of a whole file: give it a file of its own"
+            raise InputError.one("GX226", message, Location(self.file, self.begins + 1), hint)
+
+
 class Books:
     """Keeps account of what the windows of a source hold, and closes it with the output's."""
 

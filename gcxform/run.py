@@ -20,7 +20,7 @@ from gcxform.emit.emitter import Emitted, Emitter
 from gcxform.flow.written_out import located, written_out
 from gcxform.heap import Heap
 from gcxform.inventory import Account
-from gcxform.inventoryproof import Books
+from gcxform.inventoryproof import Books, Others
 from gcxform.modal.ending import Ending, Frame, frame_for, with_ends
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import Apart, WindowReader
@@ -76,6 +76,7 @@ class Run:
         self.source, self.dialect = pipeline.without_tip_codes(self.source)
         self.ending = Ending(self.dialect, source.name)
         self.books = Books(pipeline.context, frozenset())
+        self.others = Others(self.dialect, self.source.name)
         self.account = Account()
         self.frame = Frame()
         self.given = source
@@ -213,6 +214,8 @@ class Run:
         try:
             for apart, first, last in with_ends(windows, self.frame.behind):
                 one = self._transform(apart)
+                if self.marks.changes:
+                    self.others.refuse_moving(one.window, one.table, one.read.live)
                 emitted = self._emitted(one, first, last)
                 if self.dialect.needs_end:
                     self.ending.look(one.window, one.table)

@@ -175,7 +175,10 @@ CODES: dict[str, tuple[str, str]] = {
         "that nothing in the file calls is not executed, so it would be left as it is, and what it "
         "does depends on who calls it. Put it into the file of the program that calls it, and "
         "transform that. Beside a program that moves, such subprograms are kept as they stand, "
-        "behind its end; the certificate says how many.",
+        "behind its end, with those that they call; the certificate says how many. Where a step "
+        "turns positions into others (volumetric, rtcp), a second program that moves is refused in "
+        "a file of a control that runs programs by their numbers: it would stay as it is, and the "
+        "stamp would say otherwise. Give each program a file of its own.",
     ),
     "GX229": (
         "A way home that leads down first",

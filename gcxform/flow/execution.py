@@ -209,6 +209,10 @@ class Execution:
         return iter(())
 
     @abstractmethod
+    def callees(self, line: int) -> frozenset[str] | None:
+        """Return the names of the subprograms that a line calls; None: it may be any of them."""
+
+    @abstractmethod
     def act(self, block: Block) -> bool:
         """Do what a line decides about the order of execution; return whether that was all."""
 

@@ -1,7 +1,11 @@
-"""Subprograms that nothing calls: they stay behind the end of the program, as they stand."""
+"""Subprograms that nothing calls: they stay behind the end of the program, as they stand.
+
+With them stay those that they call.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -35,7 +39,8 @@ def kept(program: Execution) -> tuple[Definition, ...]:
 
     What they do is not transformed, so a file in which nothing else moves is refused: InputError.
     """
-    found = tuple(d for d in program.definitions() if not program.times[d.lines].any())
+    every = tuple(program.definitions())
+    found = tuple(each for each in every if not program.times[each.lines].any())
     if not found:
         return ()
     first, names = found[0], ", ".join(each.name for each in found[:NAMED])
@@ -46,7 +51,36 @@ def kept(program: Execution) -> tuple[Definition, ...]:
         message = f"nothing calls {first.name}, and no end stands behind which it could be kept"
         hint = "end the program with M2 or M30, or take the subprogram out"
         raise program.listing.refusal(first.first, "GX226", message, hint)
-    return found
+    return _with_called(program, every, found)
+
+
+def _with_called(
+    program: Execution, every: tuple[Definition, ...], found: tuple[Definition, ...]
+) -> tuple[Definition, ...]:
+    """Return the subprograms found, and those that they call, in the order of the file.
+
+    What the program has called as well is written out there, and stays beside it: it would be
+    missing for those that are kept as they stand.
+    """
+    keeps, new = set(found), list(found)
+    while new:
+        for names in _callees(program, new.pop()):
+            called = [each for each in every if names is None or each.name in names]
+            new += [each for each in called if each not in keeps]
+            keeps.update(called)
+    return tuple(each for each in every if each in keeps)
+
+
+def _callees(program: Execution, one: Definition) -> Iterator[frozenset[str] | None]:
+    """Yield what the lines of a subprogram call. A shape that calls nothing is looked at once."""
+    plain: set[int] = set()
+    for line in range(one.first, one.last + 1):
+        shape = int(program.listing.window.shape[line])
+        names = frozenset() if shape in plain else program.callees(line)
+        if names == frozenset():
+            plain.add(shape)
+        else:
+            yield names
 
 
 def _moves(program: Execution, line: int) -> bool:

@@ -21,12 +21,14 @@ from gcxform.flow.keeping import Definition
 from gcxform.flow.listing import Listing, bare
 from gcxform.modal.arithmetic import MACRO_B, Arithmetic, NoValueError
 from gcxform.modal.state import Reading
-from gcxform.syntax.tree import BLANKS, Block, Mark, Statement, Word
+from gcxform.syntax.tree import BLANKS, Block, Mark, Number, Statement, Word
 
 LOCALS = MACRO_B.local
 LOOPS = ("1", "2", "3")
 NEAR = 1e-6
 SEQUENCE = re.compile(rb"(?:\([^()]*\))*(?:/[1-9]?)?(?:\([^()]*\))*[Nn]([0-9]+)")
+CALLING = frozenset({"M98", "M198", "G65", "G66", "G66.1", "computed"})
+"""What calls a program by its number, or may do so."""
 PACKED = 10_000  # P of old controls: a count, and four digits of a program number
 
 
@@ -183,6 +185,17 @@ class MacroB(Execution):
             name = "a program without a number" if number is None else f"O{number}"
             yield Definition(name, line, self.listing.last_of(line, after))
 
+    def callees(self, line: int) -> frozenset[str] | None:
+        """Return the programs that M98, G65 or a relative names; P may hold a count as well."""
+        block = self.listing.block(line)
+        codes = {_code(word) for word in block.words if word.address in "GM"}
+        if block.error is None and not codes & CALLING:
+            return frozenset()
+        numbers = [whole_number(word) for word in block.words if word.address == "P"]
+        if len(numbers) != 1 or numbers[0] is None:
+            return None
+        return frozenset(f"O{number}" for number in (numbers[0], numbers[0] % PACKED))
+
     def _call(self, block: Block, items: list[Word | Statement], own: bool) -> None:
         self.refuse_more(items, "MPL")
         number, times = self.number(block, "P"), self.number(block, "L", 1.0)
@@ -328,6 +341,12 @@ def _statement(block: Block) -> Statement | None:
     """Return the flow word of a block."""
     found = (i for i in block.items if isinstance(i, Statement) and i.kind != "assignment")
     return next(found, None)
+
+
+def _code(word: Word) -> str:
+    """Return a G or M code as it is named."""
+    value = word.value
+    return f"{word.address}{value.value:g}" if isinstance(value, Number) else "computed"
 
 
 def _begins_program(block: Block) -> bool:

@@ -106,10 +106,7 @@ class OWords(Execution):
         """Yield the subprograms, those of numbers up to the next or to the end of the file."""
         begins = sorted({line for lines in self.labels.values() for line in lines})
         begins += [construct.lines[0] for construct in self.subs.values()]
-        found = [
-            Definition(f"o<{name}>" if not name.isdigit() else f"O{name}", c.lines[0], c.last)
-            for name, c in self.subs.items()
-        ]
+        found = [Definition(_name(label), c.lines[0], c.last) for label, c in self.subs.items()]
         for number, lines in self.labels.items():
             for line in lines:
                 after = min((other for other in begins if other > line), default=None)
@@ -117,6 +114,18 @@ class OWords(Execution):
                 if not self.times[line]:
                     found.append(Definition(f"O{number}", line, last))
         yield from sorted(found, key=lambda each: each.first)
+
+    def callees(self, line: int) -> frozenset[str] | None:
+        """Return the subprogram that an O-word calls, or the number that M98 does."""
+        word, block = self.words.get(line), self.listing.block(line)
+        if word is not None:
+            called = word.keyword == "call"
+            return frozenset({_name(word.label)} if called else ())
+        calls = any(w.address == "M" and whole_number(w) in (98, None) for w in block.words)
+        if block.error is None and not calls:
+            return frozenset()
+        numbers = {whole_number(w) for w in block.words if w.address == "P"}
+        return None if numbers in (set(), {None}) else frozenset(f"O{n}" for n in numbers)
 
     def _sub(self, word: OWord) -> None:
         if word.label in self.ahead:
@@ -348,6 +357,11 @@ class OWords(Execution):
     def _leave(self, construct: Construct) -> None:
         self.counters.pop(construct.lines[0], None)
         self.at = construct.last + 1
+
+
+def _name(label: str) -> str:
+    """Return the name of a subprogram with a label."""
+    return f"O{label}" if label.isdigit() else f"o<{label}>"
 
 
 def _returns(block: Block) -> bool:

@@ -35,7 +35,7 @@ class Executed:
     idle        in lines that are not executed, and are not kept either
     locals_set  how often a parameter was set that ends with its call, or with the program
     assigned    the others, with their values, in order
-    kept        how many subprograms nothing calls
+    kept        how many subprograms stay: nothing calls them, or one of them does
     """
 
     held: Ints

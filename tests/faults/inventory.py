@@ -40,6 +40,20 @@ MUTATIONS = (
     _proof("loops need not go on", "and not times[last + 1]:", "and False:", "flow/walk"),
     _proof("M codes are not counted", "stops, ends, others]", "stops, ends, 0]", "inventory"),
     Mutation(
+        "inventory: other programs may move",
+        "gcxform/run.py",
+        "if self.marks.changes:\n                    self",
+        "if True:\n                    self",
+        CORPUS,
+    ),
+    Mutation(
+        "inventory: what moves before is another program",
+        "gcxform/inventoryproof.py",
+        "moves > begins[0]",
+        "moves > -1",
+        CORPUS,
+    ),
+    Mutation(
         "inventory: no percent signs",
         "gcxform/modal/ending.py",
         "behind=True)",
