@@ -11,7 +11,7 @@ from cli_kit import call
 from diagonal_kit import LENGTHS, apart, linear, published, readings
 
 from gcxform.calibrate.diagonalfile import diagonals_csv, linear_csv
-from gcxform.calibrate.plaindiagonal import BLIND
+from gcxform.calibrate.plaindiagonal import ANGLES, BLIND
 
 
 @pytest.fixture
@@ -76,7 +76,8 @@ def test_calibrate_plain_says_what_it_is_blind_to(files):
     assert "blind to scale errors with X^2 sX + Y^2 sY" in " ".join(text.split())
     assert "C0Y -25.26 +- " in text
     report = json.loads(Path("r.json").read_text())
-    assert report["blind"] == BLIND
+    assert report["blind"] == f"{BLIND}; {ANGLES}"
+    assert "four lengths cannot tell them" in " ".join(text.replace("#", " ").split())
     assert [round(v * 1e3, 3) for _, v in report["deviations"]] == LENGTHS
 
 

@@ -268,7 +268,7 @@ def test_covariance_against_a_monte_carlo(free):
         found = solved(step_diagonals(legs), tests, assumed)
         samples.append(found.functions.ravel())
     seen = np.cov(np.array(samples).T)
-    size, vectors = np.linalg.eigh(found.covariance)
+    size, vectors = np.linalg.eigh(found.covariance / found.scatter.factor**2)
     kept = size > 1e-9 * size[-1]
     white = vectors[:, kept] / np.sqrt(size[kept])
     ratio = np.linalg.eigvalsh(white.T @ seen @ white)
@@ -321,7 +321,8 @@ def test_a_misaligned_beam_is_as_uncertain_as_it_scatters():
         found = solved(step_diagonals(legs), tests)
         assert found.misalignments is not None
         seen.append(found.misalignments[0])
-    assert np.std(seen, axis=0) == pytest.approx(found.misalignments[1], rel=0.25)
+    stated = found.misalignments[1] / found.scatter.factor
+    assert np.std(seen, axis=0) == pytest.approx(stated, rel=0.25)
 
 
 # --- what is refused ---

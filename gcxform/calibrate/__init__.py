@@ -6,6 +6,7 @@
     gcxform/calibrate/equations.py      what a reading says about the errors of the axes
     gcxform/calibrate/solution.py       weighted least squares that knows what it cannot tell
     gcxform/calibrate/stepdiagonal.py   sequential step diagonal: the nine functions
+    gcxform/calibrate/angles.py         whether its residuals show angular errors
     gcxform/calibrate/plaindiagonal.py  four lengths: the squareness
     gcxform/calibrate/reframe.py        the reference frame of nine functions: end points
     gcxform/calibrate/words.py          reports and comments for a person

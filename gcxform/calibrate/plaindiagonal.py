@@ -19,7 +19,7 @@ from typing import Final
 import numpy as np
 
 from gcxform.calibrate.diagonaldata import Diagonals
-from gcxform.calibrate.solution import Solution, solve
+from gcxform.calibrate.solution import Scatter, Solution, solve
 from gcxform.machine.errors import FloatArray, check_contraction
 from gcxform.machine.functions import AxisFunction, AxisFunctions
 
@@ -27,6 +27,9 @@ BLIND: Final = (
     "a plain diagonal test is blind to scale errors with X^2 sX + Y^2 sY + Z^2 sZ = 0 (X, Y, Z: "
     "the sides of the volume): on a cube +50, -50 and 0 ppm change none of the four lengths; it is "
     "blind to straightness as well"
+)
+ANGLES: Final = (
+    "angular errors are taken to be none: four lengths cannot tell them from squareness and scales"
 )
 
 
@@ -38,6 +41,11 @@ class Squareness:
     noise: float
     lengths: FloatArray
     solution: Solution
+
+    @property
+    def scatter(self) -> Scatter:
+        """What repeated runs say of the stated noise."""
+        return Scatter(self.noise, self.solution.chi_square, self.solution.redundancy)
 
     @property
     def _factors(self) -> FloatArray:
@@ -58,8 +66,9 @@ class Squareness:
 
     @property
     def covariance(self) -> FloatArray:
-        """The covariance (4, 4) of the mean scale and the three slopes."""
-        return np.asarray(np.outer(self._factors, self._factors) * self.solution.covariance)
+        """The covariance (4, 4) of mean scale and three slopes, for the effective noise."""
+        factors = self.scatter.factor * self._factors
+        return np.asarray(np.outer(factors, factors) * self.solution.covariance)
 
     def model(self) -> AxisFunctions:
         """Return the model with this squareness alone: other errors were not measured and are 0.

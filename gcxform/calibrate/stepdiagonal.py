@@ -8,7 +8,7 @@ the three squarenesses and X^2 sX + Y^2 sY + Z^2 sZ, where s are the scale error
 sides of the volume. Linear tests of two axes tell the rest (Chapman, Precis. Eng. 27 (2003) 401).
 
 The method takes the machine to have no angular errors. Residuals are a weak sign of them: 20 urad
-of roll, pitch and yaw make the nine functions wrong by 9 um, and the residuals 1 um.
+of roll, pitch and yaw make the nine functions wrong by 9 um, and the residuals 1 um (see `angles`).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import numpy as np
 from gcxform.calibrate.diagonaldata import Diagonals, LinearTest, beam, sideways
 from gcxform.calibrate.equations import Equations, Increments, Layout, equations, increments
 from gcxform.calibrate.reframe import slopes_of, turn_of
-from gcxform.calibrate.solution import Solution, plausible, reduced_rows, solve
+from gcxform.calibrate.solution import Scatter, Solution, plausible, reduced_rows, solve
 from gcxform.diagnostics import InputError
 from gcxform.machine.errors import AXES, BoolArray, FloatArray, check_contraction
 from gcxform.machine.functions import AxisFunction, AxisFunctions
@@ -64,6 +64,12 @@ class Identified:
     solution: Solution
     increments: Increments
 
+    @property
+    def scatter(self) -> Scatter:
+        """What the residuals of all readings say of the stated noise."""
+        found = self.solution
+        return Scatter(self.assumed.noise, found.chi_square, found.redundancy)
+
     @cached_property
     def _framing(self) -> FloatArray:
         """The matrix (outputs, unknowns) from the unknowns to functions and misalignments."""
@@ -95,9 +101,12 @@ class Identified:
 
     @cached_property
     def covariance(self) -> FloatArray:
-        """The covariance (9 steps, 9 steps) of `functions` in mm^2, in their order."""
-        part = self._framing[: self.layout.errors]
-        return np.asarray(part @ self.solution.covariance @ part.T)
+        """The covariance (9 steps, 9 steps) of `functions` in mm^2, for the effective noise."""
+        return self._covariance(self._framing[: self.layout.errors])
+
+    def _covariance(self, part: FloatArray) -> FloatArray:
+        """Return the covariance of outputs of the effective noise, by their rows (k, unknowns)."""
+        return np.asarray(self.scatter.factor**2 * (part @ self.solution.covariance @ part.T))
 
     @property
     def deviations(self) -> FloatArray:
@@ -154,8 +163,7 @@ class Identified:
         first = self.layout.errors
         if not self.layout.beams or not self._known[first:].all():
             return None
-        part = self._framing[first:]
-        spread = np.sqrt(np.diag(part @ self.solution.covariance @ part.T).clip(0.0))
+        spread = np.sqrt(np.diag(self._covariance(self._framing[first:])).clip(0.0))
         scale = self.diagonals.volume.diagonal
         return self._output[first:].reshape(-1, 2) / scale, spread.reshape(-1, 2) / scale
 
@@ -173,7 +181,7 @@ class Identified:
     @property
     def redundancy_rms(self) -> float:
         """The noise of one step in mm that the residuals show; nan without redundancy."""
-        return self.assumed.noise * self.solution.ratio
+        return self.scatter.observed
 
     def model(self) -> AxisFunctions:
         """Return the nine functions.

@@ -12,8 +12,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from gcxform.calibrate.angles import Angles
 from gcxform.calibrate.diagonaldata import Diagonals, Volume, name_of
-from gcxform.calibrate.plaindiagonal import BLIND, Squareness, spread
+from gcxform.calibrate.plaindiagonal import ANGLES, BLIND, Squareness, spread
 from gcxform.calibrate.reframe import FRAME
 from gcxform.calibrate.stepdiagonal import REJECTED, Identified, together, worded
 from gcxform.machine.errors import AXES, FloatArray
@@ -40,7 +41,7 @@ def step_report(
     found: Identified, files: Mapping[str, Any], conditions: Mapping[str, Any]
 ) -> Report:
     """Return all that was found, as plain values; what the readings do not tell is None."""
-    known = found.determined.reshape(9)
+    known, angles = found.determined.reshape(9), Angles(found)
     slopes, spread_of_slopes = found.slopes
     sigma = np.sqrt(np.diag(spread_of_slopes).clip(0.0))
     values = found.functions.reshape(9, -1)
@@ -52,6 +53,9 @@ def step_report(
         "misalignment": "free" if found.assumed.free_beams else "none",
         "observable": _observable(found),
         "redundancy": _redundancy(found),
+        "scatter": found.scatter.report(),
+        "angles": angles.report(),
+        "warnings": [*angles.warnings],
         "repeatability": _number(found.increments.scatter),
         "mean-scale": {"meaning": MEAN_SCALE, **_pair(mean, mean_sd)},
         "scales": {
@@ -82,10 +86,12 @@ def plain_report(
     return {
         **_head("plain diagonal test", found.diagonals, files),
         "noise": found.noise,
+        "scatter": found.scatter.report(),
+        "warnings": found.scatter.warnings,
         "deviations": [[leg.name, length] for leg, length in legs],
         "squareness": _squareness(found.slopes, sigma[1:]),
         "mean-scale": {"meaning": MEAN_SCALE, **_pair(found.mean_scale, sigma[0])},
-        "blind": BLIND,
+        "blind": f"{BLIND}; {ANGLES}",
         "covariance": {
             "order": ["mean scale", "EXY slope", "EXZ slope", "EYZ slope"],
             "matrix": found.covariance.tolist(),
@@ -192,7 +198,8 @@ def step_comments(found: Identified, files: Mapping[str, Any]) -> str:
     ]
     for name, row in zip(NAMES, found.deviations.reshape(9, -1), strict=True):
         lines.append(f"  {name}  {' '.join(f'{value * 1e3:.2f}' for value in row)}")
-    lines.append("Angular errors were not measured and are taken to be none.")
+    angles = Angles(found)
+    lines += [angles.words, *(f"Warning: {line}." for line in angles.warnings)]
     return _commented(lines)
 
 
@@ -205,7 +212,8 @@ def plain_comments(found: Squareness, files: Mapping[str, Any]) -> str:
         f"Noise: {_um(found.noise)} um a length.",
         *_square_lines(found.slopes, sigma[1:]),
         f"Mean scale {found.mean_scale * 1e6:.2f} +- {sigma[0] * 1e6:.2f} ppm, not in this model:",
-        f"{BLIND}.",
+        f"{BLIND}; {ANGLES}.",
+        *(f"Warning: {line}." for line in found.scatter.warnings),
     ]
     return _commented(lines)
 

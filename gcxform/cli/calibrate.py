@@ -99,7 +99,8 @@ def diagonal(
     Steps of one axis at a time along the diagonals (vector method) give the nine functions with
     their covariance. Readings that contradict each other are refused: more than 3 times the noise
     over all, or beams off their diagonals where --misalignment none says that they are not, or
-    linear tests of another sign or scale.
+    linear tests of another sign or scale. Residuals with the pattern of angular errors, which the
+    method takes to be none, are a warning, as is more noise than was stated.
     """
     check_places({"-o": output, "--report": report}, [data, *linear])
     sigma = length_of(noise, "--noise")
@@ -114,6 +115,8 @@ def diagonal(
         else:
             free = misalignment == "free"
             model, found = _steps(data, linear, (sigma, reading, free), output is not None)
+    for line in found["warnings"]:
+        click.echo(f"warning: {line}", err=True)
     if output is not None:
         write(output, model)
     if report is not None:

@@ -8,11 +8,16 @@ FIGURES = "tests/test_step_diagonal.py"
 PLAIN = "tests/test_plain_diagonal.py"
 FILES = "tests/test_diagonal_files.py"
 COMMAND = "tests/test_calibrate.py"
+ANGLES = "tests/test_angles.py"
 ROUND_TRIP = "tests/properties/test_diagonal.py"
 
 
 def _calibrate(file: str, name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
     return Mutation(f"diagonal: {name}", f"gcxform/calibrate/{file}.py", old, new, tests)
+
+
+def _angles(name: str, old: str, new: str) -> Mutation:
+    return _calibrate("angles", name, old, new, ANGLES)
 
 
 def _simulate(name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
@@ -246,5 +251,33 @@ MUTATIONS = (
         "noise does not wander",
         "np.cumsum(noise * generator.standard_normal(len(stops) - 1))",
         "noise * generator.standard_normal(len(stops) - 1)",
+    ),
+    # angular errors
+    _angles("a turn moves along its lever", "self.direction] = shape", "self.lever] = shape"),
+    _angles("the noise of what is left is forgotten", "max(1.0, self.left / self.freedom)", "1.0"),
+    _angles(
+        "the unknowns of the method keep their part", "read - basis @ (basis.T @ read)", "read"
+    ),
+    _angles("weak directions count as strong", "_WEAK: Final = 0.25", "_WEAK: Final = 1e-6"),
+    _angles(
+        "amounts are those of their directions",
+        "(told / size[strong]) @",
+        "(told * size[strong]) @",
+    ),
+    _angles("the linear tests stand in the middle", "= place ** (power + 1)", "= 0.0"),
+    _angles("alarms are ten times as many", "_QUANTILE: Final = 2.5758", "_QUANTILE: Final = 1.6"),
+    _calibrate(
+        "stepdiagonal",
+        "deviations are those of the stated noise",
+        "self.scatter.factor**2 * (part",
+        "1.0 * (part",
+        ANGLES,
+    ),
+    _calibrate(
+        "plaindiagonal",
+        "four lengths are as good as they say",
+        "self.scatter.factor * self._factors",
+        "self._factors",
+        ANGLES,
     ),
 )
