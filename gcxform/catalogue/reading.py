@@ -366,7 +366,8 @@ CODES: dict[str, tuple[str, str]] = {
         "The tool axis comes too near to the pole",
         "Where the tool axis lies along the first rotary axis, that axis has no angle of its own; "
         "beside it a small lean of the tool is a long turn. Inside a cut it would have to leap. "
-        "Lead the tool through the pole or farther beside it, or lift it off and turn the axis.",
+        "Lead the tool through the pole or farther beside it, or lift it off and turn the axis. "
+        "With `retract`, `rtcp` draws the tool back exactly at the pole, and turns the axis there.",
     ),
     "GX334": (
         "The tool axis comes to the border of reach",

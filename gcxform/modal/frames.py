@@ -39,7 +39,7 @@ class FrameState:
     local         the shift of G52 where it is not that of G92
     tool          mm, from the tip to the reference point; nan where a length is not known
     tool_name     what the tool vector belongs to: "H3"; "" for none
-    selected, in_spindle   tool numbers, -1 where not known
+    in_spindle    number of the tool, -1 where not known; `changes` counts the tool changes
     turns         rotation, scaling and mirror of the program, the innermost first
     polar, diameter   G16 and G7 are in force
     homes         machine positions of G28 and G30
@@ -59,6 +59,7 @@ class FrameState:
     tool: tuple[float, float, float] = NO_TOOL
     tool_name: str = ""
     in_spindle: int = -1
+    changes: int = 0
     turns: tuple[tuple[str, Turn], ...] = ()
     polar: bool = False
     diameter: bool = False
@@ -139,6 +140,7 @@ class FrameState:
             self.polar,
             self.tool,
             self.following,
+            bool(self.tool_name),
         )
 
     def _matrix(self) -> tuple[Matrix | None, Sequence[float]]:

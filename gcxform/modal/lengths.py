@@ -12,7 +12,7 @@ from gcxform.modal.frames import NO_TOOL, FrameState
 
 def change_tool(state: FrameState, asked: Asked) -> FrameState:
     """M6: the tool that T has named is in the spindle."""
-    return replace(state, in_spindle=int(asked.tool_word))
+    return replace(state, in_spindle=int(asked.tool_word), changes=state.changes + 1)
 
 
 def user_code(state: FrameState, asked: Asked) -> FrameState:
@@ -42,7 +42,7 @@ def set_tool(state: FrameState, asked: Asked) -> FrameState:
     """M61 Q: another number for the tool that is in the spindle."""
     if "Q" not in asked.words:
         raise ActError("GX213", f"{asked.code} needs a Q word")
-    return replace(state, in_spindle=int(asked.words["Q"]))
+    return replace(state, in_spindle=int(asked.words["Q"]), changes=state.changes + 1)
 
 
 def length(state: FrameState, asked: Asked) -> FrameState:
@@ -69,8 +69,12 @@ def _tool_vector(
 ) -> tuple[tuple[float, float, float], str]:
     """Return the vector of a tool, nan along Z where its length is not known, and its name."""
     number = asked.words.get("H", np.nan)
-    if asked.dialect.g43_takes_spindle_tool:
-        number = number if number > 0 else float(_tool_in_spindle(state, asked))
+    if asked.dialect.g43_takes_spindle_tool and not number > 0:
+        if number < 0:
+            raise ActError("GX213", "H is not a number of a tool")
+        if state.in_spindle < 1:
+            return _unknown_tool(state, asked)
+        number = float(state.in_spindle)
     elif np.isnan(number):
         raise ActError("GX213", f"{asked.code} needs an H word")
     if number % 1 or number < 0:
@@ -86,14 +90,18 @@ def _tool_vector(
     return (sign * x, sign * y, sign * z), f"H{number:g}"
 
 
-def _tool_in_spindle(state: FrameState, asked: Asked) -> int:
-    """Return the tool that H0, or no H, stands for."""
-    if asked.words.get("H", 0.0) < 0:
-        raise ActError("GX213", "H is not a number of a tool")
-    if state.in_spindle < 1:
-        message = f"{asked.code} takes the tool in the spindle, and which that is is not known"
-        raise ActError("GX213", message, "write H, or the tool change before")
-    return state.in_spindle
+def _unknown_tool(state: FrameState, asked: Asked) -> tuple[tuple[float, float, float], str]:
+    """Return the vector and the name of the tool that H0, or no H, stands for.
+
+    Which that is no block has said, or none is there (then `rs274` takes the length of the one
+    before): its length is not known, and after every change it may be another.
+    """
+    aside = any(tool.vector[0] or tool.vector[1] for tool in asked.reading.tools.values())
+    across = np.nan if aside else 0.0
+    name = "the tool in the spindle"
+    if state.changes:
+        name += f" after tool change {state.changes}"
+    return (across, across, np.nan), name
 
 
 def length_vector(state: FrameState, asked: Asked) -> FrameState:

@@ -39,6 +39,7 @@ class Frame:
              nan where it adds a length that is not known
     following  whether the control takes X, Y and Z for the tip; None where that is not known, or no
              code that is read switches it
+    called   whether the program has called a tool length, which may be 0
     """
 
     work: str
@@ -49,6 +50,7 @@ class Frame:
     polar: bool = False
     tool: tuple[float, float, float] = (0.0, 0.0, 0.0)
     following: bool | None = None
+    called: bool = False
 
     @property
     def shifts_only(self) -> bool:

@@ -89,4 +89,25 @@ MUTATIONS = (
         "+ []",
         FACTS,
     ),
+    Mutation(
+        "frames: two tools that are not known are one",
+        "gcxform/modal/lengths.py",
+        'name += f" after tool change {state.changes}"',
+        "pass",
+        "tests/test_corpus.py::test_case[dialects/linuxcnc/length-of-another-unknown-tool]",
+    ),
+    Mutation(
+        "frames: no tool is one of no length",
+        "gcxform/modal/lengths.py",
+        "if state.in_spindle < 1:",
+        "if state.in_spindle < 0:",
+        "tests/test_corpus.py::test_case[dialects/linuxcnc/length-without-tool]",
+    ),
+    Mutation(
+        "frames: a tool length of 0 is none",
+        "gcxform/modal/frames.py",
+        "bool(self.tool_name),",
+        "any(self.tool),",
+        "tests/test_corpus.py::test_case[rtcp/tool-length-zero]",
+    ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import PASSES, Mutation
+from faults.mutation import CORPUS, PASSES, Mutation
 
 TESTS = "tests/test_rtcp.py"
 BOUND = f"{PASSES}/rtcp_bound.py"
@@ -371,8 +371,8 @@ MUTATIONS = (
     Mutation(
         "rtcp: the tool is drawn back anywhere",
         CHOICE,
-        "self.may = self.may & cut &",
-        "self.may = cut &",
+        "self.may = self.may & cut",
+        "self.may = cut",
         f"{DRAWN}::test_as_late_or_soon_as_it_may_but_not_more_often",
     ),
     Mutation(
@@ -451,5 +451,19 @@ MUTATIONS = (
         "self.added[what] = self.added.get(what, 0) + number",
         "self.added[what] = number",
         f"{DRAWN}::test_several_cuts_are_counted_together",
+    ),
+    Mutation(
+        "rtcp: the tool is not drawn back where limits lead to the pole",
+        f"{PASSES}/rtcp_choice.py",
+        "DRAWN_BACK = (Trouble.FLIP, Trouble.POLE)",
+        "DRAWN_BACK = (Trouble.FLIP,)",
+        CORPUS + "[rtcp/retract-pole]",
+    ),
+    Mutation(
+        "rtcp: at the pole the free axis does not turn while the tool is drawn back",
+        f"{PASSES}/rtcp_choice.py",
+        "if turns or not self.cut[at]:",
+        "if not self.cut[at]:",
+        CORPUS + "[rtcp/retract-pole]",
     ),
 )

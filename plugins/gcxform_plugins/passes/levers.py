@@ -126,7 +126,8 @@ def _check_chain(path: gx.Toolpath, context: gx.PassContext, turned: Flags) -> N
 
 def _check_tools(path: gx.Toolpath, turned: Flags) -> None:
     """Refuse cuts with a turned head and without a tool length."""
-    bare = np.array([not np.nan_to_num(frame.tool).any() for frame in path.frames])
+    known = [frame.called and bool(np.isfinite(frame.tool).all()) for frame in path.frames]
+    bare = ~np.array(known)
     rows = np.flatnonzero(turned & bare[path.frame] & (path.kind != gx.Kind.RAPID))
     if len(rows):
         message = f"{UNKNOWN}no tool length is in force"

@@ -40,6 +40,7 @@ class Offsets(gx.Pass):
             frame.origin,
             tool=frame.tool,
             following=frame.following,
+            called=frame.called,
         )
 
     def _check_known(self, path: gx.Toolpath) -> None:

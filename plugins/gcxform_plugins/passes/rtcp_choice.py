@@ -7,7 +7,8 @@ degrees that all axes turn together. Inside a cut no axis may leap: between two 
 near each other only a change of attitude does. At the pole the angle of one axis is free; it stays.
 
 Where the tool may be drawn back, axes may leap at a point; as this is dearer than any turn, there
-are as few such points as can be, and none where there is a way without.
+are as few such points as can be, and none where there is a way without. At the pole it is the free
+axis that may turn then.
 """
 
 from __future__ import annotations
@@ -42,6 +43,8 @@ class Trouble(Enum):
     FLIP = "flip"
 
 
+DRAWN_BACK = (Trouble.FLIP, Trouble.POLE)
+"""What drawing the tool back may help against."""
 WHY = {
     Trouble.UNREACHABLE: (
         "GX332",
@@ -104,7 +107,7 @@ class Choice:
         self.found = gx.attitudes(chain, axis)
         self.angle, self.allowed = gx.turns(chain, self.found.angle)
         self.may = np.zeros(len(axis), np.bool_) if may is None else may
-        self.may = self.may & cut & (self.found.state != gx.State.POLE)
+        self.may = self.may & cut
         self.endless = np.array([each.limits is None for each in chain.axes], np.bool_)
         lost = np.flatnonzero(self.found.state == gx.State.UNREACHABLE)
         if len(lost):
@@ -145,7 +148,7 @@ class Choice:
 
     def _drawn_back(self, at: int, before: _Step) -> _Step:
         """Return a point's candidates once more, if the tool may be drawn back there to turn."""
-        angle = np.asarray(self.angle[at][self.allowed[at]])
+        angle = self._candidates(at, before, turns=True)
         way = np.abs(self._way(before.angle[:, None, :], angle[None, :, :])).sum(axis=-1)
         same = (before.angle[:, None, :] == angle[None, :, :]).all(axis=-1)
         cost = before.cost[:, None] + np.where(same, 0.0, RETRACT + way)
@@ -166,17 +169,18 @@ class Choice:
             raise NoWayError(self._why(at), at)
         return _Step(angle[good], found[good], come[good])
 
-    def _candidates(self, at: int, before: _Step) -> Floats:
+    def _candidates(self, at: int, before: _Step, turns: bool = False) -> Floats:
         """Return the angles (c, m) for a point; at the pole the free one is one that there was.
 
-        Where nothing has been cut yet it may be that of what is cut first.
+        Where nothing has been cut yet, or the tool is drawn back and axes turn (`turns`), it may be
+        that of what is cut next.
         """
         own = np.asarray(self.angle[at][self.allowed[at]])
         free = self.found.free
         if self.found.state[at] != gx.State.POLE or free is None:
             return own
         held = before.angle[:, free]
-        if not self.cut[at]:
+        if turns or not self.cut[at]:
             later = np.flatnonzero(self.found.state[at:] != gx.State.POLE)[:1] + at
             held = np.concatenate([held, *(self.angle[k][self.allowed[k]][:, free] for k in later)])
         own = np.repeat(own, len(held), axis=0)

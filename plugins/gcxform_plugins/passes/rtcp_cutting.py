@@ -293,7 +293,7 @@ class Cutting:
         message = "the tool length changes where the axes are turned"
         self._refuse("GX330", changed, message, hint)
         if self.place.chain.head:
-            none = (self.place.tools == 0.0).all(axis=1)[which]
+            none = ~self.place.called
             message = "no tool length is in force, and the head is turned"
             hint = "call it with G43, and give the tools of the machine file their lengths"
             self._refuse("GX330", none & turned, message, hint)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform_plugins.passes.rtcp_bound import leaving
-from gcxform_plugins.passes.rtcp_choice import WHY, Choice, NoWayError, Trouble, nearest
+from gcxform_plugins.passes.rtcp_choice import DRAWN_BACK, WHY, Choice, NoWayError, nearest
 from gcxform_plugins.passes.rtcp_cutting import Cutting
 from gcxform_plugins.passes.rtcp_lines import UserLines
 from gcxform_plugins.passes.rtcp_place import Place
@@ -251,7 +251,7 @@ class Moving(Cutting):
                 return choice.run(np.zeros(2)), choice.retracts
             except NoWayError as problem:
                 trouble = problem
-            if self.step.retract is None or trouble.trouble is not Trouble.FLIP:
+            if self.step.retract is None or trouble.trouble not in DRAWN_BACK:
                 break
         code, message, hint = WHY[trouble.trouble]
         if self.step.direction != "retarget":

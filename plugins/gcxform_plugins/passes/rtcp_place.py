@@ -66,6 +66,7 @@ class Place:
         tools = np.array([frame.tool for frame in path.frames])
         off = np.array([switched and frame.following is False for frame in path.frames])
         self.off = np.asarray(off[path.frame])
+        self.called = np.array([frame.called for frame in path.frames], np.bool_)[path.frame]
         self.tools, which = np.unique(tools, axis=0, return_inverse=True)
         of_frame = which.reshape(-1)
         self.which = np.asarray(of_frame[path.frame])

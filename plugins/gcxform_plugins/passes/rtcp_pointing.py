@@ -94,7 +94,7 @@ class Pointing(OnCircles):
     def _lengths(self) -> Iterator[tuple[str, Flags, str, str]]:
         """Yield rows without a tool length, and those in which it changes within a section."""
         place, on = self.place, self.vectors.on
-        none = (place.tools == 0.0).all(axis=1)[place.which]
+        none = ~place.called
         hint = "call it with H, and give the tools of the machine file their lengths"
         yield "GX330", np.asarray(on & none), "no tool length is in force", hint
         changed = on & np.append(False, on[:-1])[: len(on)] & (place.which != place.which_before)
