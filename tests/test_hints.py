@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 from cli_kit import call
+from rtcp_kit import chain_of_kind, machine_text
+from rtcp_kit import pipeline as rtcp
 
 import gcxform as gx
 from gcxform.cli.options import pipeline_options
@@ -146,3 +148,43 @@ def test_a_tolerance_without_unit_is_asked_about(tmp_path: Path) -> None:
     pipeline = tmp_path / "p.toml"
     pipeline.write_text("format = 1\n[input]\ndialect = 'grbl'\n[budget]\ndeviation = 20\n")
     assert "deviation = 20 is 20 mm" in call("check", "-p", str(pipeline)).stderr
+
+
+# --- hints that do no harm ---
+
+TURNED = b"G21 G90 G94 G17 G54\nG0 X0. Y0. A0. C0.\nG43.4 H1 Z0.\nG1 X5. A20. F600.\n"
+
+
+def test_behind_g49_the_tool_is_taken_out_of_the_part_before_axes_turn(tmp_path: Path) -> None:
+    """With axes turned the tool stands in the part: to turn them back there would cut it."""
+    machine = machine_text("ac-trunnion", chain_of_kind("ac-trunnion", 3))
+    step = rtcp(tmp_path, machine, tolerance=0.01, tip_codes="read")
+    with pytest.raises(gx.InputError) as caught:
+        step.run(TURNED + b"G49\nG1 X9. F600.\nM30\n")
+    (found,) = caught.value.diagnostics
+    assert found.code == "GX330"
+    assert "along its axis and turn" in found.hint
+
+
+def test_the_setting_for_pecks_is_one_that_works(tmp_path: Path) -> None:
+    text = DRILL.replace(b"G81", b"G83").replace(b"R1.", b"R1. Q2.")
+    hint = hint_of(tmp_path / "f.nc", text, "-f", "fanuc", "-x", "cycles")
+    setting = hint.partition(" in [control] of the machine file")[0]
+    machine = tmp_path / "m.toml"
+    machine.write_text(f"format = 1\n[control]\n{setting}\n")
+    words = ("-f", "fanuc", "-x", "cycles", "-m", str(machine))
+    found = call("run", *words, str(tmp_path / "f.nc"), "-o", str(tmp_path / "f.out"))
+    assert found.exit_code == 0, found.stderr
+
+
+@pytest.mark.parametrize("tool", ["2 TOOL CALL 1 Z S1000\n", ""])
+def test_where_axes_stand_at_the_start_is_asked_only_where_that_helps(
+    tool: str, tmp_path: Path
+) -> None:
+    text = f"0 BEGIN PGM A MM\n{tool}3 L IX+10 R0 FMAX\n4 END PGM A MM\n".encode()
+    hint = hint_of(tmp_path / "f.h", text, "-f", "heidenhain", "-t", "fanuc", "-x", "absolute")
+    helps = "--start" in hint
+    start = ("--start", "X=0,Y=0,Z=0")
+    found = call("check", "-f", "heidenhain", *start, str(tmp_path / "f.h"))
+    assert helps == ("GX207" not in found.stderr)
+    assert helps or "write X absolute before: what line 2 does loses it" in hint

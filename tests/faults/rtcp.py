@@ -210,14 +210,14 @@ MUTATIONS = (
     Mutation(
         "rtcp: the control may begin with axes turned",
         f"{PASSES}/rtcp_place.py",
-        "(self.which != self.which_before) & turned_at(start)",
-        "np.zeros(len(self.which), np.bool_)",
+        "begins &= turned_at(start)",
+        "begins[:] = False",
         "tests/test_corpus.py::test_case",
     ),
     Mutation(
         "rtcp: axes may be turned before the control follows",
         f"{PASSES}/rtcp_place.py",
-        "(bare[self.which] | (self.off & by_length)) & (turned_at(end) | cuts)",
+        "(~self.called | (self.off & by_length)) & (turned_at(end) | cuts)",
         "np.zeros(len(self.which), np.bool_)",
         "tests/test_corpus.py::test_case",
     ),

@@ -39,6 +39,7 @@ class Words(gx.Translator):
     """The state that statements of a TNC share.
 
     place     where the axes stand, as the program counts it; an axis that is not here is lost
+    lost      the line, from 1, in which the program has lost axes last, by axis
     pole      X and Y of CC, as numbers of the program
     polar     PR and PA that were programmed last, None after other moves
     moved     axes that have moved to a place of the workpiece since the program began
@@ -52,6 +53,7 @@ class Words(gx.Translator):
     def __init__(self, *program: Any) -> None:
         super().__init__(*program)
         self.place: dict[str, str] = {}
+        self.lost: dict[str, int] = {}
         self.pole: dict[str, str] = {}
         self.polar: tuple[float, float] | None = None
         self.moved: set[str] = set()
@@ -79,7 +81,10 @@ class Words(gx.Translator):
         """Return where an axis stands. Raises InputError where that is not known."""
         if axis not in self.place:
             message = f"{what or item.name} counts from where {axis} stands, which is not known"
-            raise self.refusal("GX207", message, item, UNKNOWN)
+            hint = UNKNOWN
+            if axis in self.lost:
+                hint = f"write {axis} absolute before: what line {self.lost[axis]} does loses it"
+            raise self.refusal("GX207", message, item, hint)
         return Decimal(self.place[axis])
 
     def reached(self, item: gx.Item) -> tuple[str, str]:
@@ -113,7 +118,8 @@ class Words(gx.Translator):
 
     def lose(self, axes: str | None = None) -> None:
         """Forget where axes stand, all of them if none are named."""
-        lost = [*self.place] if axes is None else axes
+        lost = LINEAR + ROTARY if axes is None else axes
+        self.lost |= dict.fromkeys(lost, self.line + 1)
         for axis in lost:
             self.place.pop(axis, None)
         if not {"X", "Y"}.isdisjoint(lost):

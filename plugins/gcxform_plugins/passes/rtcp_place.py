@@ -127,11 +127,12 @@ class Place:
         axes turned, a parameter says whether X, Y and Z turn with the table. `by_length`: the code
         of the tool length follows the tip, which an M code has switched off before or behind it.
         """
-        bare = np.asarray(~self.tools.any(axis=1))
+        before = np.append(self.path.frames[0].called, self.called[:-1])
         start, end = (self.angles(side) for side in (self.path.start, self.path.end))
         cuts = (np.nan_to_num(end - start) != 0.0).any(axis=1) & (self.path.kind != gx.Kind.RAPID)
-        without = (bare[self.which] | (self.off & by_length)) & (turned_at(end) | cuts)
-        begins = (self.which != self.which_before) & turned_at(start)
+        without = (~self.called | (self.off & by_length)) & (turned_at(end) | cuts)
+        begins = (self.which != self.which_before) | (self.called != before)
+        begins &= turned_at(start)
         for rows, what in (
             (without, "axes are turned while the control does not follow the tip"),
             (begins, "the control begins or ends to follow the tip while axes are turned"),
