@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -15,12 +16,14 @@ from gcxform.compensated import check_compensated, whole_stretches
 from gcxform.contract import Pass, resolved
 from gcxform.cuts import whole_cuts, whole_sections
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
-from gcxform.dialect import LINEAR, Dialect
+from gcxform.dialect import LINEAR
+from gcxform.emit.centres import in_words_of
 from gcxform.emit.emitter import Emitted, Emitter
 from gcxform.flow.written_out import located, written_out
 from gcxform.heap import Heap
 from gcxform.inventory import Account
 from gcxform.inventoryproof import Books, Others
+from gcxform.mixedfeed import check_mixed
 from gcxform.modal.ending import Ending, Frame, frame_for, with_ends
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.reader import Apart, WindowReader
@@ -308,8 +311,18 @@ class Run:
             if step.resolves:
                 self._prove(step, meant, path, window)
                 meant = path
-        path = _in_words_of(self.pipeline.target, path)
+        with self._placing(window):
+            check_mixed(read.path, path, self.pipeline.context)
+        path = in_words_of(self.pipeline.target, path)
         return Transformed(window, table, read, meant, path)
+
+    @contextmanager
+    def _placing(self, window: Window) -> Iterator[None]:
+        """Give the text of their lines to errors about lines of a window."""
+        try:
+            yield
+        except GcxformError as error:
+            raise _located(error, window, self.source.name) from None
 
     def _held(self, number: int, path: Toolpath) -> Toolpath:
         """Return a path that knows where what a step has written before has left the axes."""
@@ -319,18 +332,14 @@ class Run:
         """Let a pass that resolves prove its path, against the one that the program means."""
         if self.verify == "off":
             return
-        try:
+        with self._placing(window):
             step.prove(before, after, self.pipeline.context)
-        except GcxformError as error:
-            raise _located(error, window, self.source.name) from None
 
     def _apply(self, step: Pass, path: Toolpath, window: Window) -> Toolpath:
-        try:
+        with self._placing(window):
             after = step.apply(path, self.pipeline.context)
             if not step.resolves:
                 check_compensated(step, path, after)
-        except InputError as error:
-            raise _located(error, window, self.source.name) from None
         for what, size in step.measure(path, after, self.pipeline.context).items():
             self.measured[what] = max(size, self.measured.get(what, size))
         for what, number in step.added(path, after, self.pipeline.context).items():
@@ -355,14 +364,6 @@ class Run:
         enough = math.ceil(out.growth or 0)
         hint = f"give a step that cuts moves a larger tolerance, or growth = {enough} in [budget]"
         raise InputError.one("GX507", message, Location(self.source.name, out.lines_in), hint)
-
-
-def _in_words_of(target: type[Dialect], path: Toolpath) -> Toolpath:
-    """Return the path written without absolute arc centres if the target has none."""
-    if "G90.1" in target.codes or not path.blocks.absolute_centre.any():
-        return path
-    never = np.zeros(len(path.blocks.absolute_centre), np.bool_)
-    return path.replace(blocks=replace(path.blocks, absolute_centre=never))
 
 
 def _with_assumed_start(pipeline: Pipeline, axes: str) -> Reading:

@@ -195,6 +195,26 @@ def test_skipped_blocks(tmp_path: Path) -> None:
     assert "G0 X1." in call(*words, "--block-delete", "execute", "--line", "5").stdout
 
 
+COMPENSATED = b"""G21 G90 G17 G94 G40
+G0 X0 Y0 Z0
+G41.1 D2
+G1 X10 Y0 F100
+Y20
+G40
+G1 X0
+X5
+M2
+"""
+
+
+@pytest.mark.parametrize("line", [6, 7, 8])
+def test_compensation_that_is_over_is_not_begun_again(tmp_path: Path, line: int) -> None:
+    found = restarted(tmp_path, COMPENSATED, "linuxcnc", line)
+    assert (found is None) == (line == 6)  # there it is on
+    if found is not None:
+        assert b"G41" not in found[0]
+
+
 def test_usage(tmp_path: Path) -> None:
     (tmp_path / "p.nc").write_text(HEAD + "X2.\nM2\n")
     words = ["resume", "-f", "linuxcnc", str(tmp_path / "p.nc")]

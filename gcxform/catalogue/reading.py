@@ -335,7 +335,11 @@ CODES: dict[str, tuple[str, str]] = {
         "Between G93 and G94 a feed is converted by the length of its move, as the control "
         "measures it. Here that length is not known, or controls do not agree about it, or the "
         "speed is not the program's: G95 depends on the spindle. Let the CAM write this part in "
-        "the feed mode that is wanted, or leave the pass out.",
+        "the feed mode that is wanted, or leave the pass out. A feed per minute of X, Y or Z "
+        "together with rotary axes is such a feed by itself: LinuxCNC counts it along X Y Z, "
+        "others add up millimetres and degrees, or inches and degrees. So it is not taken to "
+        "another control, nor, where it may be such a sum, from inches to millimetres; in inverse "
+        "time (G93) it can be.",
     ),
     "GX321": (
         "The program has no end at which its feed mode could be restored",

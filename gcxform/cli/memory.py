@@ -33,7 +33,7 @@ class How(Enum):
 
 
 HANDLED: Final[Mapping[str, How]] = {
-    "cutter-comp": How.LAST,
+    "cutter-comp": How.NOTHING,  # no restart is inside it
     "tool-length": How.LAST,
     "path": How.LAST,
     "retract": How.LAST,
@@ -123,7 +123,7 @@ class Memory:
             self.codes["D"] = words_of(block, "D"), inch
         elif what[0] == "G" and what not in ONE_BLOCK:
             code = self.dialect.codes[what]
-            if code.act == "work":
+            if code.act == "work" or HANDLED.get(code.group) is How.NOTHING:
                 return
             how = HANDLED.get(code.group)
             self._enter(what if how is How.EACH else code.group, block, event, inch)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError
+from gcxform.dialect import Dialect
 from gcxform.emit.arcs import ArcEnds, centre_words
 from gcxform.emit.copying import EXACT, Copying
 from gcxform.emit.manner import Task
 from gcxform.emit.positions import Positions
 from gcxform.modal.arcs import TURN
-from gcxform.toolpath.path import FeedMode, Kind, Plane, Small
+from gcxform.toolpath.path import FeedMode, Kind, Plane, Small, Toolpath
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -126,3 +129,11 @@ class Centres:
         raise InputError(
             tuple(Diagnostic(code, message, self.task.location(line), hint) for line in lines)
         )
+
+
+def in_words_of(target: type[Dialect], path: Toolpath) -> Toolpath:
+    """Return the path written without absolute arc centres if the target has none."""
+    if "G90.1" in target.codes or not path.blocks.absolute_centre.any():
+        return path
+    never = np.zeros(len(path.blocks.absolute_centre), np.bool_)
+    return path.replace(blocks=replace(path.blocks, absolute_centre=never))

@@ -34,6 +34,13 @@ MUTATIONS = (
         "tests/test_resume.py",
     ),
     Mutation(
+        "resume: compensation that is over begins again",
+        "gcxform/cli/memory.py",
+        " or HANDLED.get(code.group) is How.NOTHING:",
+        ":",
+        "tests/test_resume.py",
+    ),
+    Mutation(
         "resume: frames are not compared",
         "gcxform/cli/restart.py",
         "[mine != theirs for theirs in other.frames]",

@@ -17,6 +17,34 @@ from faults.mutation import (
 )
 
 MUTATIONS = (
+    Mutation(
+        "mixed feeds: every control counts as the other",
+        "gcxform/mixedfeed.py",
+        "same_rule = source is target or",
+        "same_rule = True or",
+        f"{CORPUS}[bad/gx320-across]",
+    ),
+    Mutation(
+        "mixed feeds: inches add up as mm do",
+        "gcxform/mixedfeed.py",
+        "if same_rule and (",
+        "if same_rule or (",
+        f"{CORPUS}[bad/gx320-inches]",
+    ),
+    Mutation(
+        "mixed feeds: what is converted is refused",
+        "gcxform/mixedfeed.py",
+        "rows = (path.kind != Kind.RAPID) & (path.feed_mode != FeedMode.INVERSE_TIME)",
+        "rows = path.kind != Kind.RAPID",
+        f"{CORPUS}[bad/gx320-inches]",
+    ),
+    Mutation(
+        "mixed feeds: axes that turn alone are refused",
+        "gcxform/mixedfeed.py",
+        "(rotary > 0) & (kinds > 1)",
+        "(rotary > 0)",
+        f"{CORPUS}[bad/gx320-inches]",
+    ),
     # the error model and the search for commands
     Mutation(
         "compensate: the sign of the error is swapped",
