@@ -201,6 +201,8 @@ class Dialect:
     """How a comment may begin: any of "(" and ";"."""
     active_comments: ClassVar[tuple[str, ...]] = ()
     """How comments begin that the control executes, in capitals."""
+    acts_anywhere: ClassVar[str] = ""
+    """Characters on which the control acts as they come in, also in a comment."""
     has_percent: ClassVar[bool] = True
     has_program_number: ClassVar[bool] = True
     program_number_digits: ClassVar[int] = 0

@@ -215,6 +215,12 @@ def test_compensation_that_is_over_is_not_begun_again(tmp_path: Path, line: int)
         assert b"G41" not in found[0]
 
 
+def test_a_length_is_added_to_one_that_is_not_known(tmp_path: Path) -> None:
+    text = b"G21 G90 G17 G94 G49\nG0 X0 Y0 Z0\nF200\nG43.2 H2\nG1 X-22 Y24\nX5\nM2\n"
+    assert restarted(tmp_path, text, "linuxcnc", 4) is not None
+    assert restarted(tmp_path, text, "linuxcnc", 5) is None
+
+
 def test_usage(tmp_path: Path) -> None:
     (tmp_path / "p.nc").write_text(HEAD + "X2.\nM2\n")
     words = ["resume", "-f", "linuxcnc", str(tmp_path / "p.nc")]

@@ -164,6 +164,8 @@ class TemplateWriter:
             self.draft.raise_at(item, f"{self.target.name} does not execute this comment")
         if not executed and self.target.executes(text):
             text = f"{text[0]}-{text[1:]}"
+        if self.source is not self.target:
+            text = text.translate({ord(each): "-" for each in self.target.acts_anywhere})
         return comment_in(self.target, text)
 
     def _mark(self, item: Mark, lead: bytes) -> None:

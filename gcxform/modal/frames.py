@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import isfinite
+from math import isfinite, nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,8 +111,12 @@ class FrameState:
         return replace(self, work=work, known=True)
 
     def with_tool(self, vector: tuple[float, float, float], name: str) -> FrameState:
-        """Return the state with another tool vector; `name` says whose it is."""
-        return replace(self, tool=vector, tool_name=name)
+        """Return the state with another tool vector; `name` says whose it is.
+
+        What is not known is one and the same nan, so that frames of the same tool are equal.
+        """
+        x, y, z = (length if length == length else nan for length in vector)
+        return replace(self, tool=(x, y, z), tool_name=name)
 
     def frame(self) -> Frame:
         """Return the frame in force."""

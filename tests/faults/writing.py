@@ -6,6 +6,13 @@ from faults.mutation import CORPUS, FIGURES, FOUND, LAWS, VERIFY, Mutation
 
 MUTATIONS = (
     Mutation(
+        "comments: what acts at once is taken over",
+        "gcxform/emit/templates.py",
+        "in self.target.acts_anywhere}",
+        "in self.source.acts_anywhere}",
+        "tests/test_corpus.py::test_case[dialects/across/comment-of-real-time]",
+    ),
+    Mutation(
         "writing: numbers are cut off, not rounded",
         "gcxform/emit/numbers.py",
         "(0.5 + TIE))\n    return np.copysign",

@@ -15,6 +15,7 @@
 | G93 on an arc | its source takes F as mm/min there: refused where feeds are converted |
 | another feed mode | the feed is not known until it is programmed |
 | G38.2 to G38.5 | end at the target at the latest; the axes named then stand nowhere known |
+| `!` `?` `~`, bytes from 0x80 | act at once, also in a comment: hold, state, resume, overrides |
 | block | at most 79 characters after comments and blanks |
 """
 
@@ -52,6 +53,7 @@ class Grbl(gx.Dialect):
         if code not in (6,)  # M6 is error 20
     }
     initial: ClassVar[Mapping[str, str]] = {**gx.Dialect.initial, "motion": "G0"}
+    acts_anywhere = "!?~\x18" + "".join(map(chr, range(0x80, 0x100)))
     axis_words_once = True
     g80_beside_motion = False
     g49_takes_axes = True
