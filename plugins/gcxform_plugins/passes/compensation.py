@@ -83,6 +83,7 @@ class Compensation:
     def run(self) -> gx.Toolpath:
         """Return the commands."""
         self._refuse_splines()
+        self._check_own()
         self._check_known()
         check_inside(self.step, self.path, self.offset, np.flatnonzero(~self.left))
         self.entry_command = self._first_command()
@@ -169,6 +170,15 @@ class Compensation:
             hint = 'segment arcs="split" arc-step="360 deg", before this pass'
             raise self.path.refuse("GX761", rows, message, hint)
 
+    def _check_own(self) -> None:
+        """Refuse feed moves to points of the machine."""
+        feeds = self.path.kind != gx.Kind.RAPID
+        own = np.flatnonzero(feeds & (self.path.form == gx.Form.MACHINE))
+        if len(own):
+            message = "a feed move to a point of the machine (G53) is not compensated"
+            hint = "write it without G53, in a work offset; or as a rapid, G53 G0"
+            raise self.path.refuse("GX317", own[:1], message, hint)
+
     def _check_known(self) -> None:
         unknown = np.isnan(self.end) & ~self.left[:, None]
         if unknown.any():
@@ -182,18 +192,13 @@ class Compensation:
             )
 
     def _check_begins(self, commands: Floats) -> None:
-        """Refuse feed moves from where the machine is not, and those to points of the machine.
+        """Refuse feed moves from where the machine is not.
 
         Behind what is left to the machine, and at the start, the tool is off by the error there.
         Where nothing is promised the proof measures how far.
         """
         path = self.path
         feeds = path.kind != gx.Kind.RAPID
-        own = np.flatnonzero(feeds & (path.form == gx.Form.MACHINE))
-        if len(own):
-            message = "a feed move to a point of the machine (G53) is not compensated"
-            hint = "write it without G53, in a work offset; or as a rapid, G53 G0"
-            raise path.refuse("GX317", own[:1], message, hint)
         known = path.held is not None and bool(np.isfinite(self.start[0]).all())
         behind = np.append(known, self.left[:-1])
         rows = np.flatnonzero(feeds & behind)
