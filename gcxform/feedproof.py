@@ -159,12 +159,11 @@ class FeedProof:
     def _may_be_converted(self, owner: Ints) -> NDArray[np.bool_]:
         """Return the rows whose feeds a pass may have converted, there and back if there are two.
 
-        One pass alone leaves what is in its mode; blocks after which another program may run keep
-        their mode.
+        Passes leave what is in their mode; blocks after which another program may run keep theirs.
         """
         before = self.trace.before
         kept = before.blocks.leaves[before.block]
-        if len(self.modes) == 1:
+        if len(set(self.modes)) == 1:
             kept = kept | (before.feed_mode == self.modes[0])
         return np.asarray(~kept[owner])
 

@@ -7,8 +7,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.contract import PassContext
+from gcxform.diagnostics import InputError, Location
 from gcxform.dialect import INCH
-from gcxform.toolpath.path import Event, Toolpath
+from gcxform.toolpath.path import Event, Kind, Toolpath
+from gcxform.trace import Trace
 
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -71,3 +74,31 @@ def in_mm(event: Event, path: Toolpath) -> Event:
         return event
     values = tuple((a, v * INCH if a in LENGTHS else v) for a, v in event.values)
     return replace(event, values=values)
+
+
+def lost_in_target(
+    trace: Trace, written: Toolpath, context: PassContext, file: str
+) -> InputError | None:
+    """Return what to raise if the target knows less of where axes stand than the source does.
+
+    `written` is the path as the target reads it. Between two controls that is what their codes do
+    to positions, and no fault of what was written; on one control it would be.
+    """
+    if context.source is context.target or not len(written):
+        return None
+    owner = trace.owners(written)
+    lost = np.isnan(written.end) & np.isfinite(trace.before.end[owner])
+    begins = np.append(True, owner[1:] != owner[:-1]) & (written.kind != Kind.RAPID)
+    was = np.isfinite(trace.before.start[owner, :3]) & begins[:, None]
+    lost[:, :3] |= np.isnan(written.start[:, :3]) & was
+    if not lost.any():
+        return None
+    row = int(np.argmax(lost.any(axis=1)))
+    axis = written.axes[int(np.argmax(lost[row]))]
+    name, line = context.target.name, trace.line_of(int(written.source[row]))
+    return InputError.one(
+        "GX509",
+        f"where {axis} stands is not known to {name} here, as a code before it may have moved it",
+        Location(file, line + 1),
+        f"program {axis} behind the last code that moves it on {name}: tool change, tool length",
+    )

@@ -266,6 +266,11 @@ class Pipeline:
         """Return the sum of what the passes promise (mm); inf if one promises nothing."""
         return sum(step.promise for step in self.path_passes)
 
+    @property
+    def bounded(self) -> bool:
+        """Whether the steps promise how far the path may be off, all of them together."""
+        return self.promised() < np.inf and self.words != "programmed"
+
     def limit(self, inch: bool = False, compensated: bool = False, arcs: bool = True) -> float:
         """Return the deviation (mm) that a run may have, in blocks of a unit.
 
@@ -302,15 +307,15 @@ class Pipeline:
 
     def _check_budget(self) -> None:
         """Refuse a budget that the steps cannot keep, and steps without bound or budget."""
-        bounded = self.promised() < np.inf and self.words != "programmed"
+        total = self.promised() + self.manner.rounding(False)
         if self.budget is None:
-            if not bounded:
+            if not self.bounded:
                 raise UsageError.one(
                     "GX723",
                     "a step promises no bound, so the pipeline needs an explicit budget",
                     hint='deviation = "20 um" in [budget]; the certificate says what was measured',
                 )
-        elif bounded and self.promised() + self.manner.rounding(False) > self.budget * (1 + 1e-9):
+        elif self.bounded and total > self.budget * (1 + 1e-9):
             raise UsageError.one(
                 "GX724",
                 f"the steps may deviate by {self.promised() * 1000:g} um and rounding by "

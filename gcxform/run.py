@@ -127,12 +127,14 @@ class Run:
                 self.source.name,
                 any(step.folds for step in self.steps),
                 self._switches(),
+                pipeline.bounded,
             )
 
     def _frame(self) -> Frame:
         """Return the percent signs that the program lacks for the target."""
         try:
-            return frame_for(self.source, self.dialect, self.pipeline.target)
+            executes = self.pipeline.reading.block_delete == "execute"
+            return frame_for(self.source, self.dialect, self.pipeline.target, executes)
         except GcxformError as error:
             raise located(error, self.source) from None
 

@@ -16,11 +16,17 @@ from numpy.typing import NDArray
 
 from gcxform.centrepath import CentreProof
 from gcxform.contract import Pass, PassContext
-from gcxform.diagnostics import Diagnostic, GcxformError, Location, VerificationError
+from gcxform.diagnostics import (
+    Diagnostic,
+    GcxformError,
+    InputError,
+    Location,
+    VerificationError,
+)
 from gcxform.dialect import LINEAR
 from gcxform.feedproof import FeedProof
 from gcxform.inventoryproof import Whole, Written, assignments_differ, not_taken
-from gcxform.known import as_known, in_mm
+from gcxform.known import as_known, in_mm, lost_in_target
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.meaning import FRAMING
 from gcxform.modal.reader import WindowReader
@@ -91,10 +97,12 @@ class Verifier:
         file: str = "-",
         folded: bool = False,
         switches: frozenset[str] = frozenset(),
+        bounded: bool = True,
     ) -> None:
         self.passes = passes
         self.folded = folded
         self.switches = switches
+        self.bounded = bounded
         self.context = context
         self.reader = WindowReader(context.target)
         self.interpreter = Interpreter(context.target, reading, axes, "output")
@@ -171,6 +179,8 @@ class Verifier:
         self._missing(trace, runs)
         if not len(trace.owner):
             return
+        if lost := lost_in_target(trace, written, self.context, self.file):
+            raise lost
         off = deviation_of_runs(before, after, runs, self.budget)
         self.findings.unknown_starts += int(off.unknown_start.sum())
         self._start(trace)
@@ -183,8 +193,7 @@ class Verifier:
             self._note_worst(float(distance[worst]), trace, worst)
         self.findings.angle = max(self.findings.angle, float(off.angle.max()))
         if not distance[worst] <= self.budget:
-            size = f"{distance[worst]:.5f} mm" if np.isfinite(distance[worst]) else "far"
-            self._fail(f"the path is {size} off, the budget is {self.budget:.5f} mm", trace, worst)
+            self._over_budget(float(distance[worst]), trace, worst)
         turned = self._turned_too_far(trace, runs, off.angle)
         if turned is not None:
             self._fail(f"a rotary axis is {off.angle[turned]:.5f} degrees off", trace, turned)
@@ -192,6 +201,16 @@ class Verifier:
         self._sides(trace)
         for wrong in self._proof(trace).wrong():
             self._raise(*wrong)
+
+    def _over_budget(self, distance: float, trace: Trace, row: int) -> None:
+        """Raise: InputError where no step has promised the budget, which then was a wish."""
+        size = f"{distance:.5f} mm" if np.isfinite(distance) else "far"
+        message = f"the path is {size} off, the budget is {self.budget:.5f} mm"
+        if self.bounded or not np.isfinite(distance):
+            self._fail(message, trace, row)
+        where = Location(self.file, trace.line_of(int(trace.after.source[row])) + 1)
+        hint = "a larger deviation in [budget], or a tolerance for the step that has none"
+        raise InputError.one("GX510", message, where, hint)
 
     def _turned_too_far(self, trace: Trace, runs: Runs, angle: Floats) -> int | None:
         """Return the row in which a rotary axis is farthest beyond its budget, if one is.

@@ -142,12 +142,24 @@ CODES: dict[str, tuple[str, str]] = {
         "pole, near which pieces become short.",
     ),
     # --- 6xx: verification ---
+    "GX509": (
+        "The target loses an axis that the source knows",
+        "Some codes move axes on one control and not on another: a tool change, a tool length. "
+        "Behind one of them the control that is written for stands where the program does not "
+        "say, and a block that names only some axes moves from there. Program all linear axes "
+        "between that code and this block.",
+    ),
+    "GX510": (
+        "The path is farther off than the budget",
+        "A step that promises no bound, or blocks in which axes that a step has moved are left "
+        "out, took the path farther from the program than `deviation` in [budget] allows. "
+        "Nothing was written. Allow more, or give the step a tolerance.",
+    ),
     "GX601": (
         "The output does not do what the program does",
         "The written text was read again, taken through the models of the machine and compared "
         "with the input, and differs by more than the budget, or in a feed, an event or a kind "
-        "of move. Nothing was written. If the budget was set by hand it may be too small for "
-        "what the steps do; otherwise this is a bug of gcxform or of a plugin, and a report "
+        "of move. Nothing was written. This is a bug of gcxform or of a plugin, and a report "
         "with the program and the pipeline helps.",
     ),
     "GX602": (

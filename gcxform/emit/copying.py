@@ -61,6 +61,7 @@ class Copying:
         self.believed_exact = believed.exact
         self.believed_said = believed.said
         self.believed_position = believed.position
+        self._polar = np.array([frame.polar for frame in self.path.frames], np.bool_)
         self.lines = (old_count == 0) & (pieces.count == 0) & ~pieces.expanded_line
         self.converted = np.zeros(live, np.bool_)
         stands = self._standing(old_count, pieces)
@@ -82,6 +83,7 @@ class Copying:
         self.lines &= ~pieces.taps.lines
         self._skipped()
         self._refuse_unknown()
+        self._refuse_polar()
 
     def _refuse_changed(self, stands: Flags, pieces: Pieces) -> None:
         """Refuse blocks that move in a way of their own and would have to move otherwise.
@@ -113,6 +115,17 @@ class Copying:
             message = f"the block would be written anew, and where {axis} goes is not known"
             hint = f"program {axis} before, or give a machine file with the offsets"
             raise InputError.one("GX506", message, where, hint)
+
+    def _refuse_polar(self) -> None:
+        """Refuse blocks that have to be written anew while words are radius and angle."""
+        if not self._polar.any():
+            return
+        words = self.positions.write[:, :3].any(axis=1) & self._polar[self.path.frame]
+        rows = np.flatnonzero(words & ~self.lines[self.path.block])
+        if len(rows):
+            message = "the block would be written anew, in radius and angle (G16)"
+            where = self.task.location(int(self.path.block[rows[0]]))
+            raise InputError.one("GX506", message, where, 'put the pass "offsets" before')
 
     def _refuse_presets(self) -> None:
         """Refuse blocks that set coordinates from where the axes stand if they stand elsewhere."""
@@ -268,16 +281,24 @@ class Copying:
         same = now[self.path.frame[rows]] == was[self.original.frame[others]]
         return np.asarray(same | ~self.positions.programmed[rows, 0])
 
+    def _same_polar(self, rows: Ints, others: Ints) -> Flags:
+        """Return which rows are in frames that agree on whether words are radius and angle."""
+        was = np.array([frame.polar for frame in self.original.frames], np.bool_)
+        return np.asarray(self._polar[self.path.frame[rows]] == was[self.original.frame[others]])
+
     def _same_ends(self, rows: Ints, others: Ints) -> Flags:
         """Return which rows end where their source ends and need no word it does not have."""
         good = np.ones(len(rows), np.bool_)
         words, original = self.positions.end, self._old_words(rows, others)
+        polar = self._polar[_take(self.path.frame, rows)]
         for k in range(len(self.path.axes)):
             end, old = _take(words[:, k], rows), original[:, k]
             held = _take(self.positions.held[:, k], rows)
             programmed = _take(self.positions.programmed[:, k], rows)
             same = (np.abs(held - old) <= EXACT) | (end == old)
-            good &= np.where(programmed, same, ~_take(self.positions.write[:, k], rows))
+            left = ~_take(self.positions.write[:, k], rows)
+            left |= polar & (end == old)  # one word moves two axes: it says both
+            good &= np.where(programmed, same, left)
             if not good.any():
                 break
         return good
@@ -300,7 +321,7 @@ class Copying:
         good = (same | as_far | self._other_axes(rows, others)).all(axis=1)
         if self.path.frames == self.original.frames:
             return np.asarray(good)
-        good &= self._same_diameters(rows, others)
+        good &= self._same_diameters(rows, others) & self._same_polar(rows, others)
         words, before = self.positions.end[rows], self.original.words[others]
         alike = (np.abs(words - before) <= EXACT) | (np.isnan(words) & np.isnan(before))
         one_move = np.isin(self.path.form[rows], (Form.PROBE, Form.SYNCHRONISED))

@@ -267,10 +267,17 @@ class Pieces:
     def _reads_alike(self, slot: NDArray[np.int64]) -> Flags:
         """Return, per piece, whether its feed word is the same number to the target.
 
-        It is not where a point decides on the unit, to the target or in the word as it stands.
+        It is not where a point decides on the unit, to the target or in the word as it stands: in
+        another feed mode 1 without a point counts something else.
         """
         manner, task = self.task.manner, self.task
-        if not (manner.crossing and manner.source.point_required and (slot >= 0).any()):
+        if not (slot >= 0).any():
+            return np.ones(len(self.line), np.bool_)
+        if not manner.crossing and manner.source.point_required and self.other_mode.any():
+            number = np.where(slot >= 0, task.window.first_number[: len(slot)] + slot, 0)
+            pointed = (slot < 0) | (task.window.decimals[number] >= 0)
+            return np.asarray(~self.other_mode | pointed[self.line])
+        if not (manner.crossing and manner.source.point_required):
             keeps = not (manner.crossing and manner.target.point_required)
             return np.full(len(self.line), keeps)
         number = np.where(slot >= 0, task.window.first_number[: len(slot)] + slot, 0)

@@ -39,14 +39,18 @@ class Frame:
         before, behind = self.before and first, self.behind and last
         if before:
             text = b"%" + end + text
-        if behind and not text.endswith((b"\n", b"\r")):
+        if behind and text and not text.endswith((b"\n", b"\r")):
             text += end
         return text + (b"%" + end) * behind, int(before), int(behind)
 
 
-def frame_for(source: Source, dialect: type[Dialect], target: type[Dialect]) -> Frame:
+def frame_for(
+    source: Source, dialect: type[Dialect], target: type[Dialect], executes: bool = False
+) -> Frame:
     """Return what a program of one control lacks at its ends for another.
 
+    `executes`: blocks with a slash are executed, so that one of them may end the program; what is
+    written then ends there too, with a block that the other control may skip.
     Raises InputError where a percent sign in the middle would end it there.
     """
     if dialect.name == target.name or not target.needs_end:
@@ -59,7 +63,11 @@ def frame_for(source: Source, dialect: type[Dialect], target: type[Dialect]) -> 
             continue
         window = reader.read(text)
         reader.table.update()
-        ending.look(window, reader.table)
+        ends = executes & reader.table.flag("ends", window.shape)
+        ends = ends & reader.table.flag("deleted", window.shape)
+        ending.look(window, reader.table, int(np.argmax(ends)) + 1 if ends.any() else None)
+        if ends.any() and not ending.ended:
+            return Frame(before=not ending.framed, behind=True)
     if not ending.wrong:
         return Frame()
     if not ending.ended:
@@ -106,13 +114,13 @@ class Ending:
         self.goes_on = False
         self._lone: Diagnostic | None = None
 
-    def look(self, window: Window, table: MeaningTable) -> None:
-        """Look for the end in a window; the table has the meanings of its lines."""
+    def look(self, window: Window, table: MeaningTable, lines: int | None = None) -> None:
+        """Look for the end in a window, or its first lines; the table has what they mean."""
         self.lines += len(window)
         percent = table.flag("percent", window.shape)
         ends = table.flag("ends", window.shape) & ~table.flag("deleted", window.shape)
         seen = 0
-        for line in np.flatnonzero(percent | ends).tolist():
+        for line in np.flatnonzero((percent | ends)[:lines]).tolist():
             if self.ended:
                 self.goes_on |= self._lone is not None
                 return
