@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 import test_corpus
+from check_kit import new_in_output
 from hypothesis import settings
 from oracles import rs274, ways
 from oracles.canon import CanonProgram
@@ -20,10 +21,12 @@ from properties import chains
 from seeds_kit import shares
 
 import gcxform as gx
+from gcxform.registry import default_registry
 from gcxform.testing.cases import read_case
 
 LONG = settings.default.max_examples > 1000
 COUNT = 20_000 if LONG else 500
+TARGETS = ("fanuc", "grbl", "haas", "linuxcnc")
 CASES = [case for case in map(read_case, test_corpus.paths()) if not case.xfail]
 
 judged = pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
@@ -41,7 +44,10 @@ def test_a_chain_that_is_accepted_is_proved_and_right_or_refuses(seeds: range) -
 
 @shares(len(CASES), 150)
 def test_every_case_of_the_corpus_ends_so_too(seeds: range, tmp_path: Path) -> None:
-    """With two random steps in the place of its own; all of them in the long profile."""
+    """With two random steps in the place of its own, for any target, which takes what is written.
+
+    All of them in the long profile.
+    """
     passed = 0
     for number in seeds[:: 1 if LONG else 6]:
         case, folder = CASES[number], tmp_path / str(number)
@@ -50,12 +56,16 @@ def test_every_case_of_the_corpus_ends_so_too(seeds: range, tmp_path: Path) -> N
         chain, pipeline = chains.of_case(case, folder, choose, test_corpus.PLACES)
         if pipeline is None:
             continue
+        program, other = case.sections["input.nc"], choose.choice(TARGETS)
         try:
-            pipeline.run(case.sections["input.nc"], verify="full")
+            if choose.random() < 0.4:
+                pipeline = replace(pipeline, target=default_registry().dialect(other))
+            found = pipeline.run(program, verify="full").text
         except gx.VerificationError as error:
             pytest.fail(f"{case.path}: {chain}: {error}")
-        except gx.InputError:
+        except (gx.InputError, gx.UsageError):
             continue
+        assert not new_in_output(program, found, pipeline), f"{case.path}: {chain}"
         passed += 1
     assert passed
 
