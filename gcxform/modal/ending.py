@@ -67,7 +67,7 @@ def frame_for(
         ends = ends & reader.table.flag("deleted", window.shape)
         ending.look(window, reader.table, int(np.argmax(ends)) + 1 if ends.any() else None)
         if ends.any() and not ending.ended:
-            return Frame(before=not ending.framed, behind=True)
+            break
     if not ending.wrong:
         return Frame()
     if not ending.ended:
