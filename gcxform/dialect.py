@@ -116,6 +116,8 @@ class Dialect:
     """A distance without a point counts in increments of the control, or in units: a setting."""
     feed_point_required: ClassVar[bool] = False
     """An F without a point counts in a unit of the control, which must be configured."""
+    feed_of_linear_axes: ClassVar[bool] = False
+    """A feed per minute counts the way of X, Y and Z where they move, and no degrees beside it."""
     calculator_words: ClassVar[str] = "XYZUVWABCIJKRQF"
     """Words to which the control can be set to add a point where they have none."""
     feed_steps: ClassVar[Mapping[str, tuple[float, float]]] = {}

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gcxform.dialect import LINEAR
 from gcxform.distinct import distinct
 from gcxform.modal.interpreter import Interpreted
+from gcxform.modal.moves import moves_linear, turns_only
 from gcxform.toolpath.path import FeedMode, Kind
 from gcxform.toolpath.runs import SAME_FEED
 from gcxform.toolpath.travel import Lengths, lengths
@@ -68,6 +69,23 @@ class FeedProof:
             yield from self._times()
         if self.modes or (moving & inverse).any():
             yield from self._paces()
+
+    def turned_alone(self) -> Iterator[Wrong]:
+        """Yield moves of rotary axes alone to which a linear axis was added, in feeds per minute.
+
+        Where the control counts those along linear axes, the others are as fast as they can.
+        """
+        written, owner = self.trace.written, self.trace.written_owner
+        alone = turns_only(self.trace.before)[owner] & (written.kind == Kind.LINE)
+        if not alone.any():
+            return
+        if self.modes:
+            alone &= ~self._may_be_converted(owner)
+        alone &= (written.feed_mode != FeedMode.INVERSE_TIME) & moves_linear(written)
+        if alone.any():
+            row = int(written.source[np.argmax(alone)])
+            message = "a linear axis moves where rotary ones turned alone, at another speed"
+            yield Wrong(message, self.trace.line_of(row), row)
 
     def _times(self) -> Iterator[Wrong]:
         """Add up the times of the written moves, before the models cut them further."""

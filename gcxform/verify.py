@@ -199,7 +199,15 @@ class Verifier:
             self._fail(f"a rotary axis is {off.angle[turned]:.5f} degrees off", trace, turned)
         self._kinds(trace)
         self._sides(trace)
-        for wrong in self._proof(trace).wrong():
+        self._feeds(self._proof(trace))
+
+    def _feeds(self, proof: FeedProof) -> None:
+        if self.context.target.feed_of_linear_axes:
+            for wrong in proof.turned_alone():
+                where = Location(self.file, wrong.line + 1)
+                hint = "write it in inverse time: feed mode=inverse-time, before this step"
+                raise InputError.one("GX316", wrong.message, where, hint)
+        for wrong in proof.wrong():
             self._raise(*wrong)
 
     def _over_budget(self, distance: float, trace: Trace, row: int) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -419,3 +420,14 @@ def test_a_last_move_from_nowhere_known_is_not_left_out() -> None:
     assert b"Z3." in run(program=program)
     with pytest.raises(gx.VerificationError, match="a move of the source is missing"):
         run(dropped(2), program=program)
+
+
+def test_what_turns_alone_goes_on_turning_alone() -> None:
+    """With a linear axis that moves by a rounding the feed is that axis's, and the turn a rapid."""
+    program = b"G21 G90 G94 G17 G54\nG0 X1. Y2. A0.\nG1 A90. F100\nX2.\nM2\n"
+    roomy = replace(gx.Pipeline.parse(CHAIN, "linuxcnc"), budget=0.01)
+    assert b"A90. F100" in run(chain=roomy, program=program)
+    with pytest.raises(gx.InputError, match="rotary ones turned alone"):
+        run(said("G1 A90.", "G1 X1.0005 A90."), roomy, program)
+    timed = program.replace(b"G94 ", b"G93 ").replace(b"F100\nX2.", b"F2\nX2. F2")
+    assert b"X1.0005" in run(said("G1 A90.", "G1 X1.0005 A90."), roomy, timed)

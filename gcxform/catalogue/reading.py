@@ -316,11 +316,11 @@ CODES: dict[str, tuple[str, str]] = {
         "a smaller `min-length`.",
     ),
     "GX316": (
-        "A turn of the head whose feed a correction would change",
-        "With angular errors the tip is moved while the head turns, and the correction makes the "
-        "linear axes move, by micrometres. A control that measures the feed along them would then "
-        "turn the head in no time. Write such moves in inverse time (G93): `rtcp` does, and the "
-        "pass `feed` before this one.",
+        "A turn whose feed a correction would change",
+        "With angular errors the tip is moved while the head turns, and behind a point of the "
+        "machine (G53) a correction sets in: it makes the linear axes move, by micrometres. A "
+        "control that measures the feed along them would then turn the axis in no time. Write such "
+        "moves in inverse time (G93): `rtcp` does, and the pass `feed` before this one.",
     ),
     "GX317": (
         "A feed move that begins or ends where nothing is compensated",

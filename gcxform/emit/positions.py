@@ -9,7 +9,7 @@ from gcxform.dialect import LINEAR
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.numbers import quantise
 from gcxform.modal.lines import fill
-from gcxform.modal.moves import SAME_PLACE
+from gcxform.modal.moves import SAME_PLACE, turns_only
 from gcxform.toolpath.path import Form, Kind, Small, Toolpath, column_major
 
 Floats = NDArray[np.float64]
@@ -43,6 +43,7 @@ class Positions:
         self._mixed = bool(path.blocks.inch.any()) and not path.blocks.inch.all()
         self._mixed |= bool(path.blocks.inch[:1].any()) != bool(believed.inch)
         self._mixed |= self._off_grid()
+        self._turning = turns_only(path) & (path.kind == Kind.LINE) & (path.form == Form.PLAIN)
         self.step: list[Floats | float] = []
         self.programmed = np.empty((axes, rows), np.bool_).T
         self.write = np.empty((axes, rows), np.bool_).T
@@ -97,14 +98,14 @@ class Positions:
         held, programmed = self.held[:, column], self.programmed[:, column]
         known = ~np.isnan(held)
         if words == "programmed":
-            self.write[:, column] = programmed & known
+            self.write[:, column] = programmed & known & ~self.stays[:, column]
         elif words == "all":
             beside = (self.task.path.form == Form.SYNCHRONISED) & (column > 2)  # X, Y, Z alone tap
             self.write[:, column] = known & ~self.stays[:, column] & ~beside
         else:
             moved = ~(np.abs(held - self.before[:, column]) < 0.5 * self.step[column])
             said = programmed & self._last & (self.task.path.nth == 0)
-            self.write[:, column] = (moved | said) & known
+            self.write[:, column] = (moved | said) & known & ~self.stays[:, column]
 
     def _off_grid(self) -> bool:
         """Whether the control stands at a place that cannot be written in the present unit."""
@@ -119,16 +120,18 @@ class Positions:
         """Return the rows in which an axis stands still that the source line does not name.
 
         Where the program changes its unit, such an axis may be off by the rounding in the unit
-        before; it stays there, because to write it would make it move.
+        before; it stays there, because to write it would make it move. Where rotary axes turn alone
+        no linear axis is written: one that moved by a rounding would take over the feed.
         """
         path, manner = self.task.path, self.task.manner
-        if not self._mixed or not len(path) or not path.plainly_framed:
-            return np.zeros(len(path), np.bool_)
         axis = path.axes[column]
+        alone = self._turning if axis in LINEAR else np.zeros(len(path), np.bool_)
+        if not self._mixed or not len(path) or not path.plainly_framed:
+            return alone
         still = np.abs(path.end[:, column] - path.start[:, column]) < SAME_PLACE
         both = 0.505 * (manner.step(axis, False) + manner.step(axis, True))
         still[0] &= abs(held[0] - self.entry[column]) < both
-        return np.asarray(still & ~self.programmed[:, column])
+        return np.asarray(still & ~self.programmed[:, column]) | alone
 
     def local(self, words: Floats) -> Floats:
         """Return words (rows, 3) as coordinates: half of what is written as a diameter."""

@@ -395,15 +395,25 @@ class Moves:
 
 def turns_only(path: Toolpath) -> Flags:
     """Return the moves (n,) in which no linear axis moves and a rotary one does."""
-    linear = [k for k, axis in enumerate(path.axes) if axis in LINEAR]
     rotary = [k for k, axis in enumerate(path.axes) if axis not in LINEAR]
     if not rotary or not len(path):
         return np.zeros(len(path), np.bool_)
+    return np.asarray(~moves_linear(path) & ~_still(path)[:, rotary].all(axis=1))
+
+
+def moves_linear(path: Toolpath) -> Flags:
+    """Return the moves (n,) in which a linear axis moves."""
+    linear = [k for k, axis in enumerate(path.axes) if axis in LINEAR]
+    return np.asarray(~_still(path)[:, linear].all(axis=1))
+
+
+def _still(path: Toolpath) -> Flags:
+    """Return which axes (n, axes) stay where they are."""
     start, ends = path.start, path.end
     still = (start == ends) | (np.isnan(start) & np.isnan(ends))
     with np.errstate(invalid="ignore"):  # an axis that was left where it is (inf) stays there
         still |= np.abs(start - ends) < SAME_PLACE
-    return np.asarray(still[:, linear].all(axis=1) & ~still[:, rotary].all(axis=1))
+    return np.asarray(still)
 
 
 def _at(column: NDArray[Any], rows: Ints) -> NDArray[Any]:

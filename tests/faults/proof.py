@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import VERIFY, Mutation
+from faults.mutation import CORPUS, VERIFY, Mutation
 
 
 def _verifier(
@@ -57,5 +57,26 @@ MUTATIONS = (
         "self.distance = np.full(len(owner), np.inf)",
         "self.distance = np.zeros(len(owner))",
         VERIFY,
+    ),
+    Mutation(
+        "proof: what turns alone may be given a linear axis",
+        "gcxform/feedproof.py",
+        "        if alone.any():\n            row = int(written",
+        "        if not len(alone):\n            row = int(written",
+        VERIFY,
+    ),
+    Mutation(
+        "proof: an axis that only the target loses is a bug",
+        "gcxform/known.py",
+        "    if not lost.any():\n        return None",
+        "    if len(lost):\n        return None",
+        CORPUS,
+    ),
+    Mutation(
+        "proof: a budget that nobody promised is a bug",
+        "gcxform/verify.py",
+        "if self.bounded or not np.isfinite(distance):",
+        "if True:",
+        CORPUS,
     ),
 )

@@ -82,4 +82,32 @@ MUTATIONS = (
         "not numbers",
         CORPUS + "[bad/gx506-home]",
     ),
+    Mutation(
+        "writing: a linear axis is written where rotary ones turn alone",
+        "gcxform/emit/positions.py",
+        "alone = self._turning if axis in LINEAR",
+        "alone = self._turning if not axis",
+        CORPUS,
+    ),
+    Mutation(
+        "writing: words of radius and angle are X and Y",
+        "gcxform/emit/copying.py",
+        "        if not self._polar.any():\n            return",
+        "        if len(self._polar):\n            return",
+        CORPUS,
+    ),
+    Mutation(
+        "writing: a cycle does not mind whether words are radius and angle",
+        "gcxform/emit/copying.py",
+        " & self._same_polar(rows, others)\n",
+        "\n",
+        CORPUS,
+    ),
+    Mutation(
+        "writing: a feed without a point is the same in every feed mode",
+        "gcxform/emit/pieces.py",
+        "return np.asarray(~self.other_mode | pointed[self.line])",
+        "return np.ones(len(self.line), np.bool_)",
+        CORPUS,
+    ),
 )

@@ -28,6 +28,7 @@ STILL = 1e-9
 PLANES = {"XY": (0, 1, 2), "ZX": (2, 0, 1), "YZ": (1, 2, 0)}
 RATE = 0.02  # relative: times of feed moves, whose feeds are rounded, and lengths changed
 SHORT = 0.02  # minutes or turns
+PRINTED = 0.005  # mm; by so much an axis that stands may seem to move, by the digits printed
 
 
 @dataclass(frozen=True)
@@ -172,7 +173,7 @@ def took(
         length = 0.0
         for point in points:
             length, here = length + math.dist(here[:3], point[:3]), point
-    elif length < 1e-6:
+    elif length < PRINTED and math.dist(start[3:], end[3:]) > PRINTED:
         length, rate = math.dist(start[3:], end[3:]), move.feed[1]
     unit = "turns" if move.feed_mode == "G95" else "minutes"
     if rate > 0:

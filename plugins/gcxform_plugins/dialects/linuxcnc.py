@@ -205,6 +205,7 @@ class LinuxCNC(gx.Dialect):
     )
     feed_mode_clears_feed = True
     feed_before_units = True
+    feed_of_linear_axes = True
     lone_cr_is_blank = True
     number_first = True
     needs_end = True
