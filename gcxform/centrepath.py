@@ -23,7 +23,8 @@ from gcxform.dialect import Dialect
 from gcxform.registry import default_registry
 from gcxform.stretches import Stretches
 from gcxform.toolpath.facts import NO_CUTTER_COMP
-from gcxform.toolpath.matching import match, measure
+from gcxform.toolpath.matched import measure
+from gcxform.toolpath.matching import match
 from gcxform.toolpath.path import Toolpath
 
 REACH = 1.0  # mm; what is farther off is not measured

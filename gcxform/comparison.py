@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 
@@ -17,7 +18,8 @@ from gcxform.machine.machine import Machine
 from gcxform.modal.codes import Effect
 from gcxform.modal.meaning import FRAMING
 from gcxform.toolpath.circles import radius_and_angle
-from gcxform.toolpath.matching import Matching, Pieces, cut, match, measure
+from gcxform.toolpath.matched import known_alone, measure
+from gcxform.toolpath.matching import Matching, Pieces, cut, match
 from gcxform.toolpath.path import (
     WHOLE,
     Event,
@@ -57,6 +59,8 @@ class Comparison:
     parted          lines of A and B from which nothing fits, None if everything does
     spared          rapids of B that are left to where the machine goes, off by up to `spared_by`
                     (mm) if that is known; they are compared by what the control is told
+    places          axes whose place only one program knows, where it first is so: their deviation
+                    there is not known, and not counted
     """
 
     deviation: float
@@ -71,12 +75,14 @@ class Comparison:
     events: tuple[Difference, ...] = ()
     spared: int = 0
     spared_by: float = 0.0
+    places: tuple[Difference, ...] = ()
 
     @property
     def same(self) -> bool:
         """Whether path, feeds and events are the same within the tolerance."""
         near = self.deviation <= self.tolerance and self.angle <= self.tolerance
-        return near and self.parted is None and not self.feeds and not self.events
+        near = near and self.parted is None and not self.places
+        return near and not self.feeds and not self.events
 
 
 def compare(
@@ -102,8 +108,8 @@ def compare(
         left = _Left.of(path_b, undone, through)
         path_b = left.path
     path_a, path_b = (straightened(path, STRAIGHT) for path in (path_a, path_b))
-    matching = match(path_a, path_b, tolerance, max(REACH, tolerance))
-    found = measure(path_a, path_b, matching)
+    matching = match(path_a, path_b, tolerance, max(REACH, tolerance), partly=True)
+    found = measure(path_a, path_b, matching, partly=True)
     if len(path_b) == len(left.path) and len(matching.a) and through is not None:
         found = replace(found, distance=np.maximum(found.distance, left.begins(path_a, matching)))
     worst = int(np.argmax(found.distance)) if len(matching.a) else -1
@@ -120,6 +126,7 @@ def compare(
         tuple(_events((path_a, a.dialect), (path_b, b.dialect), matching, tolerance)),
         int(left.rows.sum()),
         left.size,
+        tuple(_places(path_a, path_b, matching)),
     )
     return _in_lines_of(a, b, compared)
 
@@ -193,6 +200,7 @@ def _in_lines_of(a: Program, b: Program, found: Comparison) -> Comparison:
         parted=parted,
         feeds=tuple(map(moved, found.feeds)),
         events=tuple(map(moved, found.events)),
+        places=tuple(map(moved, found.places)),
     )
 
 
@@ -226,6 +234,15 @@ def _parted(a: Toolpath, b: Toolpath, matching: Matching) -> tuple[int, int] | N
         for path, row in zip((a, b), matching.parted, strict=True)
     )
     return one, other
+
+
+def _places(a: Toolpath, b: Toolpath, matching: Matching) -> Iterator[Difference]:
+    """Return the axes whose place only one path knows, where it first is so."""
+    alone = known_alone(a, b, matching)
+    for axis, first in zip(a.axes, (alone != 0).argmax(axis=0) if len(alone) else (), strict=False):
+        if who := int(alone[first, a.axes.index(axis)]):
+            lines = _line(a, matching.a, int(first)), _line(b, matching.b, int(first))
+            yield Difference(f"only {'AB'[who - 1]} says where {axis} is", *lines)
 
 
 @dataclass(frozen=True)

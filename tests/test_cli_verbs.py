@@ -307,3 +307,15 @@ def test_every_number_of_a_group_has_its_code() -> None:
 @pytest.mark.parametrize("kind", ["pipeline", "machine", "model"])
 def test_schemas(kind: str) -> None:
     assert json.loads(call("schema", kind).stdout)
+
+
+def test_compare_names_a_place_that_one_program_keeps_to_itself(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("a.nc").write_text("G0 X1 Y1\nG0 Z5\nG1 F100 X10\nM2\n")
+    Path("b.nc").write_text("G0 X1 Y1 Z50\nG0 Z5\nG1 F100 X10\nM2\n")
+    words = ("compare", "-f", "linuxcnc", "a.nc", "b.nc")
+    done = call(*words)
+    assert done.exit_code == 1
+    assert "only B says where Z is (line 1 of A, 1 of B): not compared there\n" in done.stdout
+    assert "largest deviation 0.000000 mm" in done.stdout
+    assert call(*words, "--start", "Z=50").stdout.endswith("SAME\n")

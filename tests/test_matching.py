@@ -15,7 +15,9 @@ from gcxform.api import Program, read
 from gcxform.comparison import Comparison, compare
 from gcxform.pipeline import Pipeline
 from gcxform.source import WINDOW
-from gcxform.toolpath.matching import match, measure
+from gcxform.toolpath.evenly import evenly_apart
+from gcxform.toolpath.matched import measure
+from gcxform.toolpath.matching import match
 
 HEAD = "G1 F100 X0 Y0 Z0\n"
 Polyline = list[tuple[float, float, float]]
@@ -166,6 +168,64 @@ def test_going_back_counts() -> None:
         assert 0.25 <= found.deviation <= 0.51
 
 
+# --- what is moved as a whole, and hair's breadths ---
+
+
+def test_what_is_left_of_a_move_before_a_rapid_is_its_shift() -> None:
+    """A twin that is shifted along its way: what a cut leaves is a point of the other path."""
+    a = "G1 X10\nX10 Y0.05\nG0 Z5\nX20 Y9\nG1 Z0\nX30\nG0 Z5\n"
+    b = "G1 X9.99\nX9.99 Y0.0502\nG0 Z5\nX19.99 Y9\nG1 Z0\nX29.99 Y9.0002\nG0 Z5\n"
+    for found in (compared(a, b), compared(b, a)):
+        assert found.parted is None
+        assert found.deviation == pytest.approx(0.01, rel=0.05)
+        assert not found.same
+
+
+def test_a_path_that_lags_does_not_lag_more() -> None:
+    """Short rows beside long ones that are 5 um off: pairs at their ends would run ahead."""
+    arc = [(math.cos(t), math.sin(t)) for t in np.linspace(0.0, 3.0, 400)]
+    fine = "".join(f"X{x:.5f} Y{y:.5f}\n" for x, y in arc)
+    rough = "".join(f"X{1.005 * x:.5f} Y{1.005 * y:.5f}\n" for x, y in [*arc[::13], arc[-1]])
+    for found in (compared(fine, rough, head=HEAD), compared(rough, fine, head=HEAD)):
+        assert found.deviation <= 0.008
+
+
+@pytest.mark.parametrize("rise", [0.002, 0.02])
+def test_arcs_of_other_senses_that_are_a_hair_apart(rise: float) -> None:
+    """Arcs over one chord of 1 mm: as far apart as both rise over it, and 1 % at most."""
+    radius = (0.25 + rise**2) / (2.0 * rise)
+    one, other = (f"G{code} X1 Y0 R{radius:.9f}\n" for code in (2, 3))
+    found = compared(one, other)
+    assert found.deviation == pytest.approx(2.0 * rise, rel=0.01)
+    assert not found.same
+    assert compared(one, other, 2.0 * rise * 1.01).same
+
+
+def test_arcs_of_other_senses_differ_by_what_else_they_do() -> None:
+    one, other = "G2 X1 Y0 Z0 R60\n", "G3 X1 Y0 Z0 R60\n"
+    assert compared(one, other, 0.01).same
+    assert not compared(one, other.replace("Z0", "Z0.02"), 0.01).same
+    assert compared("A0\nG2 X1 Y0 A1 R60\n", "A0\nG3 X1 Y0 A2 R60\n", 0.01).deviation == math.inf
+
+
+def test_the_bound_between_parts_holds() -> None:
+    """Whole circles, one of them a little larger: no part is farther than is said."""
+    one = program("G1 F100 X10 Y0 Z0\nG3 X10 Y0 I-10 J0\n").path
+    other = program("G1 F100 X10 Y0 Z0\nG3 X10 Y0 Z1 I-11 J0\n").path
+    (found,) = evenly_apart(one, other, np.array([1]))
+    t = np.linspace(0.0, 2.0 * math.pi, 20001)
+    away = np.stack([np.cos(t) * 10 - (11 * np.cos(t) - 1), -np.sin(t), -t / 2 / math.pi])
+    farthest = np.sqrt((away**2).sum(axis=0)).max()
+    assert farthest <= found <= farthest + 21 * (2 * math.pi / 64) ** 2 / 8 + 1e-9
+
+
+def test_what_one_path_does_not_know_is_infinitely_far() -> None:
+    one = program("G1 F100 X0 Y0\nG2 X1 Y0 R60\n").path
+    other = program("G1 F100 X0 Y0 Z0\nG3 X1 Y0 R60\n").path
+    assert evenly_apart(one, other, np.array([1])).tolist() == [math.inf]
+    assert evenly_apart(one, one, np.array([1])) <= 2e-6
+
+
 # --- paths that are not the same ---
 
 DIFFERENT = {
@@ -205,11 +265,38 @@ def test_the_place_where_paths_part() -> None:
     assert found.parted == (4, 4)
     assert found.deviation == math.inf
     assert compared("X10\n", "").parted == (2, 1)
+    assert compared("G2 X0 Y0 I5\nG0 X9\n", "G0 X9\n").parted == (2, 2)
 
 
 def test_a_position_that_only_one_program_knows() -> None:
     one, other = program("G1 F100 X0 Y0\nX5\n"), program("G1 F100 X0 Y0 Z0\nX5\n")
-    assert not compare(one, other).same
+    for found in (compare(one, other), compare(other, one)):
+        assert not found.same
+        assert (found.parted, found.deviation) == (None, 0.0)
+        assert [(d.line_a, d.line_b) for d in found.places] == [(1, 1)]
+    assert compare(one, other).places[0].what == "only B says where Z is"
+    assert compare(other, one).places[0].what == "only A says where Z is"
+
+
+def test_the_rest_is_compared_where_a_first_move_names_one_axis_more() -> None:
+    one = program("G0 X1 Y1\nG0 Z5\nG1 F100 X10\n")
+    for z, x, off in ((50, 10, 0.01), (50, 10.03, 0.03)):
+        found = compare(one, program(f"G0 X1.01 Y1 Z{z}\nG0 Z5\nG1 F100 X5\nX{x}\n"))
+        assert found.parted is None
+        assert found.deviation == pytest.approx(off)
+        assert not compare(one, program(f"G0 X1 Y1 Z{z}\nG0 Z5\nG1 F100 X5\nX{x}\n")).same
+    known = program("G0 X1 Y1\nG0 Z5\nG1 F100 X10\n", start={"Z": 50.0})
+    assert compare(known, program("G0 X1 Y1 Z50\nG0 Z5\nG1 F100 X10\n")).same
+
+
+def test_a_proof_takes_no_place_for_granted() -> None:
+    """What `compare` leaves out is infinitely far for whoever proves by it."""
+    one, other = program("G0 X1 Y1\nG0 Z5\n").path, program("G0 X1 Y1 Z50\nG0 Z5\n").path
+    assert match(one, other, 0.001, 1.0).parted is not None
+    lenient = match(one, other, 0.001, 1.0, partly=True)
+    assert lenient.parted is None
+    assert measure(one, other, lenient).distance.max() == math.inf
+    assert measure(one, other, lenient, partly=True).distance.max() == 0.0
 
 
 def test_axes_that_one_program_does_not_have() -> None:

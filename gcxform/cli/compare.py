@@ -117,6 +117,12 @@ def report(found: Comparison, a: Program, b: Program) -> str:
         lines.append(f"largest deviation {found.deviation:.6f} mm ({limit}){place}")
         if found.angle:
             lines.append(f"largest difference of a rotary axis {found.angle:.6f} degrees")
+    for lone in found.places:
+        lines.append(
+            f"{lone.what} (line {lone.line_a} of A, {lone.line_b} of B): not compared there"
+        )
+    if found.places:
+        lines.append("say where the axes are at the start (--start), if the programs do not")
     if found.ends_only:
         lines.append(f"{found.ends_only} moves only at their ends: rapids, unknown starts")
     if found.spared:

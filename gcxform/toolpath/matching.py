@@ -14,23 +14,23 @@ best can only make it larger. What does not fit anywhere within `reach` is where
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.toolpath.circles import points_on_arcs
-from gcxform.toolpath.deviation import deviation
 from gcxform.toolpath.path import Kind, Plane, Toolpath
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 Point = Sequence[float]
+Apart = Callable[[Point, Point], float]
 
 LEAST = 1e-9  # part of a row; cuts are no nearer to each other
-PREFERRED = 3.0  # two ends are a pair also this many times farther apart than a cut would be
+PREFERRED = 3.0  # two ends are a pair also this many times farther apart than a late cut would be
 CLEAR = 4.0  # two ends are surely a pair if the rows about them are this many times longer
 STREAK = 8  # pairs in a row after which many are looked at together
 RUN = 1 << 12  # rows looked at together
@@ -62,36 +62,17 @@ class Matching:
     parted: tuple[int, int] | None = None
 
 
-@dataclass(frozen=True)
-class Distance:
-    """Per pair of pieces: distance (mm), angle (degrees), and whether only ends were compared."""
-
-    distance: Floats
-    angle: Floats
-    ends_only: Flags
-
-
-def match(a: Toolpath, b: Toolpath, tolerance: float, reach: float) -> Matching:
+def match(
+    a: Toolpath, b: Toolpath, tolerance: float, reach: float, partly: bool = False
+) -> Matching:
     """Return the pieces of two paths over the same axes that belong together.
 
-    Ends within `tolerance` (mm, degrees) are one point; beyond `reach` nothing fits.
+    Ends within `tolerance` (mm, degrees) are one point; beyond `reach` nothing fits. An axis whose
+    place is known in one path only fits nothing, or `partly` anything: see `matched`.
     """
-    walk = _Walk(_Side(a), _Side(b), tolerance, reach)
+    walk = _Walk(_Side(a), _Side(b), tolerance, reach, partly)
     parted = walk.run()
     return Matching(walk.a.pieces(), walk.b.pieces(), parted)
-
-
-def measure(a: Toolpath, b: Toolpath, matching: Matching) -> Distance:
-    """Return how far the matched pieces are apart, along each of them and not only at its end."""
-    one, other = cut(a, matching.a), cut(b, matching.b)
-    owner = np.arange(len(one))
-    there, back = deviation(one, other, owner), deviation(other, one, owner)
-    out, home = there.distance + a.slack, back.distance + b.slack
-    return Distance(
-        np.minimum(out, home),
-        np.where(out <= home, there.angle, back.angle),
-        there.unknown_start | back.unknown_start | (one.kind == Kind.RAPID),
-    )
 
 
 def cut(path: Toolpath, pieces: Pieces) -> Toolpath:
@@ -123,8 +104,9 @@ def moving_rows(path: Toolpath) -> Ints:
 class _Walk:
     """Two paths, each done up to some place."""
 
-    def __init__(self, a: _Side, b: _Side, tolerance: float, reach: float) -> None:
+    def __init__(self, a: _Side, b: _Side, tolerance: float, reach: float, partly: bool) -> None:
         self.a, self.b = a, b
+        self.apart = _partly_apart if partly else _apart
         self.tolerance, self.reach = tolerance, reach
         self.streak = 0
 
@@ -134,7 +116,7 @@ class _Walk:
         while not (a.over and b.over):
             if self.streak >= STREAK:
                 self._many()
-            elif not (self._step() or self._wait(a, b) or self._wait(b, a)):
+            elif not (self._step() or self._waits()):
                 return a.row, b.row
         return None
 
@@ -162,15 +144,16 @@ class _Walk:
         if a.over or b.over or a.rapid != b.rapid:
             return False
         otherwise = _turns_otherwise(a.sweep_left, b.sweep_left)
-        pair = math.inf if otherwise else _apart(a.goal, b.goal)
+        pair = math.inf if otherwise else self.apart(a.goal, b.goal)
         if pair <= min(self.tolerance, a.clear[a.at], b.clear[b.at]):
             return self._take(1.0, 1.0)
-        on_a, to_a = a.nearest(b)
-        on_b, to_b = b.nearest(a)
+        on_a, to_a = a.nearest(b, self.apart)
+        on_b, to_b = b.nearest(a, self.apart)
         least = min(to_a, to_b, pair)
         if not least <= self.reach:
             return False
-        if pair <= PREFERRED * least:
+        late = on_a >= (1.0 + a.part) / 2 if to_a <= to_b else on_b >= (1.0 + b.part) / 2
+        if pair <= least or (late and pair <= PREFERRED * least):
             return self._take(1.0, 1.0)
         return self._take(on_a, 1.0) if to_a <= to_b else self._take(1.0, on_b)
 
@@ -180,14 +163,20 @@ class _Walk:
         self.b.take(high_b)
         return True
 
-    def _wait(self, moving: _Side, waiting: _Side) -> bool:
-        """Let one path go a little way, which the other does not have; return whether it can."""
-        if moving.over or moving.turn_left > self.tolerance or not len(waiting.rows):
+    def _waits(self) -> bool:
+        """Let one path go a little way, which the other does not have; return whether one can.
+
+        It is the one that stays nearer to where the other stands. Where a path is moved as a whole
+        along its way, such is what is left of a move before a rapid.
+        """
+        a, b = self.a, self.b
+        one, other = a.away_from(b), b.away_from(a)
+        if not min(one, other) <= self.reach:
             return False
-        if not _apart(moving.goal, waiting.here()) <= self.tolerance:
-            return False
+        moving, waiting = (a, b) if one <= other else (b, a)
         moving.take(1.0)
         waiting.stay()
+        self.streak = 0
         return True
 
 
@@ -280,7 +269,16 @@ class _Side:
             return self._point(self.part)
         return _listed(self.end[self.at - 1] if self.at else self.start[0])
 
-    def nearest(self, other: _Side) -> tuple[float, float]:
+    def away_from(self, other: _Side) -> float:
+        """Return how far the rest of the present row goes at most from where another path stands.
+
+        It is inf if there is no row, or the other path has no place.
+        """
+        if self.over or not len(other.rows):
+            return math.inf
+        return max(_apart(self.goal, other.here()), self.turn_left)
+
+    def nearest(self, other: _Side, apart: Apart) -> tuple[float, float]:
         """Return the part of this row nearest to where the other one's row ends, and how far it is.
 
         Only what is inside the rest of the row counts: otherwise the distance is inf.
@@ -291,15 +289,15 @@ class _Side:
         turned = float(self.sweep[self.at]) * (part - self.part)
         if part > 1.0 - LEAST or _turns_otherwise(turned, other.sweep_left):
             return 1.0, math.inf
-        return part, _apart(self._point(part), goal)
+        return part, apart(self._point(part), goal)
 
     def _on_line(self, point: Point) -> float:
         """Return the part of the present line at which a point stands; 1 if it is not known."""
         along, square = 0.0, 0.0
         for p, q, x in zip(_listed(self.start[self.at]), self.goal, point, strict=True):
-            if math.isnan(p) != math.isnan(q) or math.isnan(q) != math.isnan(x):
+            if math.isnan(p) != math.isnan(q):
                 return 1.0
-            if not math.isnan(p):
+            if not (math.isnan(p) or math.isnan(x)):
                 along += (x - p) * (q - p)
                 square += (q - p) ** 2
         return along / square if square else 1.0
@@ -358,3 +356,9 @@ def _apart(p: Point, q: Point) -> float:
         if not (math.isnan(x) and math.isnan(y)):
             square += (x - y) ** 2
     return math.inf if math.isnan(square) else math.sqrt(square)
+
+
+def _partly_apart(p: Point, q: Point) -> float:
+    """Return the distance of two positions by the axes that both know."""
+    gaps = (x - y for x, y in zip(p, q, strict=True))
+    return math.sqrt(sum(gap**2 for gap in gaps if not math.isnan(gap)))
