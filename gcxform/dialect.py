@@ -169,6 +169,8 @@ class Dialect:
     """Whether G52 and G92 mean what they mean on most controls; otherwise a setting decides."""
     mirrors_at_zero: ClassVar[bool] = False
     """A mirror stands at the zero of the work offset; other places are refused."""
+    tools_aside: ClassVar[bool] = False
+    """The control's tool table has lengths along X and Y too."""
     g43_takes_spindle_tool: ClassVar[bool] = False
     """G43 without H takes the length of the tool in the spindle."""
     length_may_move: ClassVar[bool] = False

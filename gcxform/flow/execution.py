@@ -75,6 +75,7 @@ class Execution:
         self.at = 0
         self.line = 0
         self.ended = self.acted = False
+        self.skipped: set[int] = set()
         self.percents = 0
         self.text: list[bytes] = []
         self.origin: list[np.ndarray[Any, np.dtype[np.int64]]] = []
@@ -115,6 +116,7 @@ class Execution:
         self._refuse_lone_cr()
         block = self.listing.block(self.line)
         if self._skips(block):
+            self.skipped.add(self.line)
             self._copy_line()
         elif block.error is None and self.act(block):
             self.acted = True

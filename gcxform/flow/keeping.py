@@ -1,6 +1,7 @@
 """Subprograms that nothing calls: they stay behind the end of the program, as they stand.
 
-With them stay those that they call.
+With them stay those that they call, and those that a skipped block would call: it is copied, and
+with the switch off the control executes it.
 """
 
 from __future__ import annotations
@@ -35,12 +36,15 @@ class Definition:
 
 
 def kept(program: Execution) -> tuple[Definition, ...]:
-    """Return the subprograms that nothing has called.
+    """Return the subprograms that nothing has called, or what is copied may call.
 
     What they do is not transformed, so a file in which nothing else moves is refused: InputError.
     """
     every = tuple(program.definitions())
-    found = tuple(each for each in every if not program.times[each.lines].any())
+    skipped = {name for line in program.skipped for name in program.callees(line) or ()}
+    found = tuple(
+        each for each in every if each.name in skipped or not program.times[each.lines].any()
+    )
     if not found:
         return ()
     first, names = found[0], ", ".join(each.name for each in found[:NAMED])

@@ -29,6 +29,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+ALONG_Z = "tools whose lengths are not known have them along Z alone: there is no tool table"
 LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar", "no-polar"})
 FRAMELESS = frozenset({"change-tool", "set-tool", "user-code", "store-home"})
 LENGTHENED = frozenset(
@@ -127,6 +128,8 @@ class Track:
             self._lose(line, 0 if self._upright() else SPATIAL)
         if act.name in LENGTHENED and self.dialect.length_may_move and frames.frame() != old:
             self._lose(line, 4)
+        if np.isnan(frames.tool[2]) and frames.tool[0] == 0.0 and self.dialect.tools_aside:
+            self.state.assumed[ALONG_Z] = None
         if act.name == "polar":
             self.state.polar = np.nan, np.nan
         if act.name in LOST_BY_TURN:

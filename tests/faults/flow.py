@@ -26,9 +26,10 @@ MUTATIONS = (
     _flow(
         "a subprogram that is called is kept",
         "keeping",
-        "if not program.times[each.lines].any()",
-        "if True",
+        "or not program.times[each.lines].any()",
+        "or True",
     ),
+    _flow("what a skipped block calls is gone", "keeping", "each.name in skipped or ", ""),
     _flow("what is kept calls what is gone", "keeping", "each not in keeps]", "False]"),
     _flow("a count hides what is called", "macros", "numbers[0] % PACKED", "numbers[0]"),
     _flow("M98 is no call", "owords", "in (98, None) for w", "in (None,) for w"),

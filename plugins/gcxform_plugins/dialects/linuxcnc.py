@@ -191,6 +191,7 @@ class LinuxCNC(gx.Dialect):
     g10_rotates = True
     g52_is_g92 = True
     g43_takes_spindle_tool = True
+    tools_aside = True
     units_spoil_length = True
     g28_without_axes = True
     cutter_comp = gx.CutterComp(
