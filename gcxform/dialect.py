@@ -252,7 +252,8 @@ class Dialect:
     """What the control makes of canned cycles; None: it has none, or they are not known."""
 
     cycles_stop: ClassVar[bool] = False
-    """The moves of a cycle end exactly, also where G64 rounds corners."""
+    """The moves of a cycle end exactly, also where G64 rounds corners: G61 is in force in its
+    block, and behind it G64 as it was stated."""
 
     differs: ClassVar[Mapping[str, str]] = {}
     """What is otherwise here than on controls that agree, on purpose: a code or the name of one of

@@ -18,9 +18,13 @@ from gcxform.modal.tables import MeaningTable
 from gcxform.syntax.tree import Block, Comment, Mark, Number, Statement, Word
 
 Ints = NDArray[np.int64]
-KINDS = ("motions", "definitions", "assignments", "messages", "stops", "ends", "m_codes")
+KINDS = (
+    *("motions", "definitions", "assignments", "messages", "stops", "ends", "m_codes"),
+    "path_modes",
+)
 """Blocks that move; subprograms and names of programs; parameters that are set; comments that are
-executed; M0, M1 and their like; M2 and M30; all other M codes but those of calls."""
+executed; M0, M1 and their like; M2 and M30; all other M codes but those of calls; G61,
+G64 and their like."""
 OF_CALLS = frozenset({70, 71, 72, 73, 97, 98, 99})
 STOPS = frozenset({0, 1, 60})
 
@@ -86,7 +90,9 @@ def _held(block: Block, meaning: Meaning, dialect: type[Dialect]) -> list[int]:
     stops = sum(code in STOPS for code in codes)
     others = sum(code not in OF_CALLS for code in codes) - ends - stops
     told = sum(map(dialect.executes, texts))
-    return [int(moves), int(defines(block)), sets, told, stops, ends, others]
+    named = (dialect.codes[name] for name in meaning.groups.values() if name in dialect.codes)
+    modes = sum(code.group == "path" for code in named)
+    return [int(moves), int(defines(block)), sets, told, stops, ends, others, modes]
 
 
 def _code(word: Word) -> int:

@@ -157,7 +157,7 @@ class Books:
         self.switches = switches
         self.crossing = context.source is not context.target
         self.held, self.behind, self.live = Tally(), Tally(), Tally()
-        self.set_aside = self.done = self.inner = 0
+        self.set_aside = self.done = self.inner = self.given = 0
         self.assigned: list[tuple[Key, float]] = []
         self.text_behind = sha256()
 
@@ -170,11 +170,17 @@ class Books:
         self.text_behind.update(behind_end(window, read.live))
         events = read.path.events
         self.done += sum(event.what in self.switches for event in events)
+        self.given += given
         self.inner += given + sum(event.within for event in events)
         self.assigned += [(each.key, each.value) for each in read.assigned]
 
-    def close(self, output: Written, executed: Executed | None) -> tuple[Account, str]:
-        """Return the account, and what is wrong with it: nothing if it balances."""
+    def close(
+        self, output: Written, executed: Executed | None, path_modes: int
+    ) -> tuple[Account, str]:
+        """Return the account, and what is wrong with it: nothing if it balances.
+
+        `path_modes` of the output stand around cycles, as the proof of the moves has found.
+        """
         source, target = self.held.total, self.context.target.name
         account = Account(source, output.held)
         if executed is not None:
@@ -188,8 +194,9 @@ class Books:
                 account.rule(f"no name of programs in {target}", named, ("definitions",))
         account.rule_of("done by a step instead of the control", "m_codes", -self.done)
         account.rule("moves cut, joined or written out by steps", account.rest, ("motions",))
+        account.rule_of("G61 and G64 around cycles written out", "path_modes", path_modes)
         if self.inner:
-            kinds = ("stops", "m_codes")
+            kinds = ("stops", "m_codes", *(("path_modes",) if self.given else ()))
             account.rule("cycles written out, and blocks that are given", account.rest, kinds)
         if not self.crossing and output.behind != self.text_behind.hexdigest():
             return account, "what stands behind the end of the program has changed"

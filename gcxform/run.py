@@ -113,7 +113,8 @@ class Run:
         self.interpreter = Interpreter(self.dialect, reading, axes, self.source.name)
         self.frame = self._frame()
         start = self.interpreter.state.position
-        self.emitter = Emitter(pipeline.manner, start, self.source.name)
+        called = self.source.is_called
+        self.emitter = Emitter(pipeline.manner, start, self.source.name, called)
         self.emitter.believed.inch = int(_first_units(pipeline) == "in")
         self.books = Books(pipeline.context, self._switches())
         if self.verify != "off":
@@ -244,7 +245,9 @@ class Run:
 
     def _check_whole(self) -> None:
         """Check that nothing is lost, and that the target takes the file if the source's did."""
-        self.account, wrong = self.books.close(self.findings.file, self.executed)
+        self.account, wrong = self.books.close(
+            self.findings.file, self.executed, self.findings.path_modes
+        )
         if wrong:
             where = Location(self.source.name, max(self.reader.lines, 1))
             raise VerificationError.one("GX601", wrong, where)

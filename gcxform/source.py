@@ -83,6 +83,10 @@ class Source:
         """Return the line of the file, from 1, that a line of the text came from; 0 for 0."""
         return line
 
+    def is_called(self, line: int) -> bool:
+        """Whether a line of the text, from 0, came from a subprogram that was called."""
+        return False
+
     def shown(self, where: Location) -> Location:
         """Return a place in the file for one in the text."""
         return replace(where, line=self.line_of(where.line))

@@ -33,6 +33,7 @@ from gcxform.modal.reader import WindowReader
 from gcxform.modal.sorting import only_for_cycles
 from gcxform.modal.state import Reading
 from gcxform.modal.tables import PROBES
+from gcxform.pathmodeproof import PathModes
 from gcxform.spared import led_elsewhere, spared_rows, told
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.facts import IN_AIR, between_taps
@@ -60,6 +61,7 @@ class Findings:
     between_taps, aside   moves between taps that are off by more than the budget, and how far (mm)
     spared      rapids left to go where the machine does, of which `spared_unknown` are off by what
                 nobody knows, and the others by up to `spared_by` (mm)
+    path_modes  blocks with a path mode that stand around cycles which are written out
     """
 
     moves: int = 0
@@ -78,6 +80,7 @@ class Findings:
     spared: int = 0
     spared_unknown: int = 0
     spared_by: float = 0.0
+    path_modes: int = 0
     inch: bool = False
     file: Written = field(default_factory=Written)
     arcs: bool = False
@@ -109,6 +112,7 @@ class Verifier:
         self.whole = Whole(context.target)
         self.limit = limit
         self.centres = CentreProof(context, file)
+        self.path_modes = PathModes(context)
         self.feed_modes = [step.feed_mode for step in passes if step.feed_mode is not None]
         self.speeds = _speeds(context) if any(step.slows for step in passes) else {}
         self.angle_budgets = angle_budgets
@@ -153,7 +157,12 @@ class Verifier:
         if self.feed_modes:
             for wrong in self._proof(trace).left_behind(read, back):
                 self._raise(*wrong)
-        self._events(self._without_switches(read.path), self._told(back.path), trace)
+        old = self._without_switches(read.path)
+        new, moded = self.path_modes.check(old, self._told(back.path), trace, read, self.budget)
+        if moded is not None:
+            self._raise(*moded)
+        self.findings.path_modes = self.path_modes.added
+        self._events(old, new, trace)
         lost = assignments_differ(read.assigned, back.assigned, trace, self.context)
         if lost is not None:
             self._raise(*lost)

@@ -124,7 +124,10 @@ CODES: dict[str, tuple[str, str]] = {
         "again with their ends moved, if the place, which is one for top and bottom, is right for "
         "both within what the passes promise; otherwise give the pass a larger tolerance. G28, G30 "
         "and G53 are written in another unit where it is known where they lead (G53 needs a "
-        "machine file with work offsets), and if their numbers have points where these decide.",
+        "machine file with work offsets), and if their numbers have points where these decide. "
+        "The moves of a cycle end exactly: under G64 a LinuxCNC program gets G61 before them and "
+        "G64, with its words, behind them. Where that cannot be said again, or means something "
+        "else to the control, write G61 before the cycle.",
     ),
     "GX507": (
         "The program grows beyond the budget",

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from gcxform.diagnostics import InputError
 from gcxform.emit.centres import Centres
 from gcxform.emit.copying import Copying
+from gcxform.emit.exactness import ENDS_EXACTLY, Exactness, PathMode
 from gcxform.emit.fields import Role
 from gcxform.emit.manner import Believed, Manner, Task
 from gcxform.emit.pieces import Pieces
@@ -40,10 +41,6 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 LOST = 1e-3  # relative; of the time of a block that pieces without words would take along
-
-ENDS_EXACTLY = (
-    "moves of expanded cycles end exactly (G61): no path mode is stated, and G64 would round them"
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,12 +68,19 @@ class Emitted:
 class Emitter:
     """Writes the windows of one program in order."""
 
-    def __init__(self, manner: Manner, start: Floats, file: str = "-") -> None:
+    def __init__(
+        self,
+        manner: Manner,
+        start: Floats,
+        file: str = "-",
+        called: Callable[[int], bool] = lambda _: False,
+    ) -> None:
         self.manner = manner
         self.file = file
+        self.called = called
         self.believed = Believed.at_start(manner, start)
         self.style = Style()
-        self.path_mode = ""
+        self.path_mode = PathMode()
         self.over = False
         self.assumed: dict[str, None] = {}
 
@@ -99,7 +103,8 @@ class _Job:
         self.positions = Positions(task, emitter.believed)
         self.taps = Taps(task, self.positions, emitter.believed)
         self.kind = motion_kinds(task, self.positions)
-        self.pieces = Pieces(task, self.kind, emitter.believed, self.taps)
+        self.exactness = Exactness(task, emitter.path_mode, emitter.called)
+        self.pieces = Pieces(task, self.kind, emitter.believed, self.taps, self.exactness.around)
         self.copying = Copying(task, self.pieces, self.positions, emitter.believed)
 
     def run(self) -> Emitted:
@@ -217,25 +222,9 @@ class _Job:
 
     def _refuse_rounding(self) -> None:
         """Refuse moves of cycles where corners are rounded: the bottom would not be reached."""
-        manner, path = self.task.manner, self.path
-        coded = {code for code, what in manner.source.codes.items() if what.group == "path"}
-        modes = [event for event in path.events if event.what in coded]
-        rounding = manner.source.cycles_stop or manner.target.rounds_corners
-        if rounding and self.pieces.expanded_line.any():
-            rows = np.flatnonzero(self.pieces.expanded_line[path.block])
-            last = np.searchsorted([event.row for event in modes], rows, "right")
-            rounds = np.array(
-                [e == "G64" for e in [self.emitter.path_mode, *(e.what for e in modes)]]
-            )
-            silent = np.array([not e for e in [self.emitter.path_mode, *(e.what for e in modes)]])
-            if silent[last].any() and manner.target.rounds_corners:
-                self.emitter.assumed[ENDS_EXACTLY] = None
-            if rounds[last].any():
-                message = "the moves of a cycle end exactly, and G64 would round their ends"
-                first = rows[rounds[last]][:1]
-                self.task.refuse(first, "GX506", message, "write G61 before the cycle")
-        if modes:
-            self.emitter.path_mode = modes[-1].what
+        if self.exactness.refuse(self.pieces.expanded_line):
+            self.emitter.assumed[ENDS_EXACTLY] = None
+        self.emitter.path_mode = self.exactness.after
 
     def _refuse_lost_times(self, chosen: Ints) -> None:
         """Refuse blocks in inverse time whose pieces are too short to be written.

@@ -6,7 +6,7 @@ the piece needs with what the control believes before it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,8 @@ Small = NDArray[np.int8]
 Flags = NDArray[np.bool_]
 
 NOTHING = np.int8(-1)
+Around = Callable[[Flags], tuple[list[Event], list[Event]]]
+"""What stands before and behind the moves of lines whose cycles are expanded."""
 PLACES = (Form.HOME, Form.MACHINE)
 """Forms whose axis words may be converted where they stand."""
 
@@ -48,12 +50,16 @@ class Pieces:
     special   (pieces,) whether it stands for all moves of a block that is written as it stands
     converted (pieces,) whether such a block, to a place of the machine, is written in another unit
     event     (pieces,) index into `events`, one of each kind, -1 for none: what a cycle does
-              between its moves, and blocks that the user gives, of which some are moves
+              between its moves, blocks that the user gives, of which some are moves, and path
+              modes around expanded cycles; what stands before one does not lead its line
     repaired  (pieces,) whether something is stated that the source line did not state
     """
 
-    def __init__(self, task: Task, kind: Small, believed: Believed, taps: Taps) -> None:
+    def __init__(
+        self, task: Task, kind: Small, believed: Believed, taps: Taps, around: Around
+    ) -> None:
         self.task = task
+        self.around = around
         self.taps = taps
         self.kind = kind
         self.believed = believed
@@ -85,7 +91,9 @@ class Pieces:
         self.expanded_line = drilling & ~special & ~self.taps.lines & self.task.manner.expands
         first, expanded = path.blocks.first, self.expanded_line.tolist()
         inner = [e for e in path.events if e.within and expanded[e.line - first]]
-        between: list[Event | Given] = [*inner, *(given for given in path.given if not given.moves)]
+        opens, closes = self.around(self.expanded_line)
+        still = (given for given in path.given if not given.moves)
+        between: list[Event | Given] = [*opens, *inner, *still, *closes]
         said = [*between, *(given for given in path.given if given.moves)]
         self.events = list({_said(each): each for each in reversed(said)}.values())
         number = {_said(each): n for n, each in enumerate(self.events)}
@@ -104,6 +112,11 @@ class Pieces:
         self.shape = self.task.shape[self.line]
         self._moving = np.flatnonzero(self.has_row)
         self._rows = self.row[self._moving]
+        self.opens = self._first_of(self.line)
+        self.opens &= np.isin(self.event, [number[_said(each)] for each in opens[:1]])
+        self.closes = self._first_of(self.line[::-1])[::-1]
+        closing = {number[_said(each)] for each in closes}
+        self.closes = self.closes & np.isin(self.event, list(closing))
         self._give_roles(special)
 
     def _put_between(self, inner: Sequence[Event | Given], which: list[int]) -> None:
@@ -116,13 +129,19 @@ class Pieces:
         self.line, self.row = all_lines[order], np.concatenate([self.row, nothing])[order]
         self.event = np.concatenate([self.event, np.array(which, np.int64)])[order]
 
+    @staticmethod
+    def _first_of(line: Ints) -> Flags:
+        """Return which pieces have another line than the one before."""
+        return np.append(True, line[1:] != line[:-1])[: len(line)]
+
     def _give_roles(self, special: Flags) -> None:
-        self.leads = np.append(True, self.line[1:] != self.line[:-1])[: len(self.line)]
-        self.ends = np.append(self.line[1:] != self.line[:-1], True)[: len(self.line)]
+        first, self.ends = self._first_of(self.line), self._first_of(self.line[::-1])[::-1]
+        self.leads = (first & ~self.opens) | np.roll(self.opens, 1)
+        last = (self.ends & ~self.closes) | np.roll(self.closes, -1)
         role = np.where(self.has_row, np.int8(Role.MIDDLE), np.int8(Role.NONE))
         role[self.has_row & self.leads] = Role.FIRST
-        role[self.has_row & self.ends] = Role.LAST
-        role[self.has_row & self.leads & self.ends] = Role.ONLY
+        role[self.has_row & last] = Role.LAST
+        role[self.has_row & self.leads & last] = Role.ONLY
         self.special = special[self.line]
         self.converted = self._converted()
         cycle = self.task.read.modes.cycle[: len(special)] != CYCLE_OFF

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
+import numpy as np
+
 from gcxform.dialect import Dialect
 from gcxform.emit.manner import Manner
 from gcxform.machine.machine import SWITCHES
@@ -103,6 +105,9 @@ def is_foreign(item: Item, target: type[Dialect]) -> bool:
 
 def event_text(event: Event, target: type[Dialect], gap: bytes) -> bytes | None:
     """Return the block that does what a cycle does between its moves; None if there is none."""
+    if event.what in target.codes:
+        words = (f"{a}{np.format_float_positional(v, trim='-')}" for a, v in event.values)
+        return gap.join(word.encode() for word in (event.what, *words))
     if event.what != "DWELL":
         known = event.what[0] == "M" and int(event.what[1:]) in target.m_codes
         return event.what.encode() if known else None

@@ -74,11 +74,16 @@ class WrittenOut(Source):
         self.origin = origin
         self.assumed = tuple(assumed)
         self.executed: Executed | None = None
+        self.called = np.zeros(0, np.bool_)
 
     def line_of(self, line: int) -> int:
         """Return the line of the program that an executed line stands for."""
         inside = 0 < line <= len(self.origin)
         return int(self.origin[line - 1]) + 1 if inside else line
+
+    def is_called(self, line: int) -> bool:
+        """Whether a line of the text, from 0, came from a subprogram that was called."""
+        return bool(line < len(self.called) and self.called[line])
 
 
 def written_out(
@@ -108,7 +113,16 @@ def written_out(
     lines = np.concatenate([np.empty(0, np.int64), *run.origin])
     found = WrittenOut(source, b"".join(run.text), lines, run.assumed)
     found.executed = _account(run)
+    found.called = _inside(run)[lines]
     return found
+
+
+def _inside(run: Execution) -> NDArray[np.bool_]:
+    """Return which lines of a program stand in its subprograms."""
+    inside = np.zeros(len(run.listing.window), np.bool_)
+    for definition in run.definitions():
+        inside[definition.lines] = True
+    return inside
 
 
 def _account(run: Execution) -> Executed:

@@ -18,6 +18,10 @@ class ExpandCycles(gx.Pass):
     what the spindle does within a cycle become blocks of their own. Tapping stays as it stands,
     for its feed is tied to the spindle only as long as it is a cycle; so do cycles that orient the
     spindle, and the cycles between which and one of these there is no other move.
+
+    LinuxCNC ends the moves of a cycle exactly, also under G64: where that is stated they get G61
+    before them, and G64 with its words behind them; where no path mode is stated they are written
+    without, and the certificate says so in `assumed`.
     """
 
     name = "cycles"
