@@ -24,7 +24,7 @@ TWO_CYCLES = HEAD + (
     b"G64 P0.5 Q0.050\n"
     b"G1 X5 F200\n"
     b"N10 G98 G82 X10 Z-5 R2 P1 F100 (first) M8\n"
-    b"N20 X20\n"
+    b"N20 X20 M1\n"
     b"G80\n"
     b"G1 X30 Y5\n"
     b"G64\n"
@@ -205,6 +205,12 @@ TAMPERED: dict[str, Change] = {
 def test_the_proof_finds_other_path_modes(name: str) -> None:
     with pytest.raises(gx.VerificationError, match=r"G61|G64|path mode"):
         run(TAMPERED[name], SIMPLE)
+
+
+def test_the_proof_looks_at_what_is_left_behind() -> None:
+    last = SIMPLE.replace(b"G1 X30\n", b"")
+    with pytest.raises(gx.VerificationError, match=r"G64 P0\.5 is left as G64 P0\.6"):
+        run(said("P0.5", "P0.6", 4), last)
 
 
 def test_what_is_not_tampered_with_passes() -> None:

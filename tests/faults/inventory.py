@@ -38,7 +38,14 @@ MUTATIONS = (
         "lines need not follow", "plain & (behind < times)", "plain & (behind < 0)", "flow/walk"
     ),
     _proof("loops need not go on", "and not times[last + 1]:", "and False:", "flow/walk"),
-    _proof("M codes are not counted", "stops, ends, others]", "stops, ends, 0]", "inventory"),
+    _proof("M codes are not counted", "ends, others, modes]", "ends, 0, modes]", "inventory"),
+    Mutation(
+        "inventory: path modes are not counted",
+        "gcxform/inventory.py",
+        "others, modes]",
+        "others, 0]",
+        "tests/test_path_modes.py",
+    ),
     Mutation(
         "inventory: other programs may move",
         "gcxform/run.py",

@@ -32,8 +32,8 @@ MUTATIONS = (
     _feeds("times are ignored", "if len(wrong):"),
     _verifier(
         "events are ignored",
-        "self._events(self._without_switches(read.path), self._told(back.path), trace)",
-        "",
+        "self._events(old, new, trace)\n        lost",
+        "lost",
     ),
     _verifier("missing events are ignored", "if len(old) != len(new):"),
     _verifier(
