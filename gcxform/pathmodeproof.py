@@ -62,9 +62,9 @@ class PathModes:
         after = self._modes(new, self.output)
         was = np.searchsorted(_rows(old, self.coded), owner, "right")
         now = np.searchsorted(_rows(new, self.coded), np.arange(len(owner)), "right")
-        wanted = [self._wanted(before[m], e) for m, e in zip(was.tolist(), expanded, strict=True)]
-        wrong = self._at_rows(wanted, [after[m] for m in now.tolist()], trace)
-        wrong = wrong or self._joined(trace, read, [m[0] == "G64" for m in before], was, budget)
+        blends = np.array([mode[0] == "G64" for mode in before], np.bool_)[was]
+        wrong = self._at_rows((before, was, expanded & blends), (after, now), trace)
+        wrong = wrong or self._joined(trace, read, blends, budget)
         self.source, self.output = before[-1], after[-1]
         if wrong is None and self.source != self.output:
             wrong = (
@@ -78,36 +78,41 @@ class PathModes:
     def _modes(self, events: Sequence[Event], before: Stated) -> list[Stated]:
         return [before, *((e.what, e.values) for e in events if e.what in self.coded)]
 
-    @staticmethod
-    def _wanted(mode: Stated, expanded: bool) -> Stated:
-        return EXACT if expanded and mode[0] == "G64" else mode
-
-    def _expanded(self, trace: Trace, read: Interpreted) -> list[bool]:
+    def _expanded(self, trace: Trace, read: Interpreted) -> Flags:
         """Return, per move of the output, whether it stands for a move of a cycle, and is plain."""
         line = trace.source[trace.written.source - trace.first] - read.path.blocks.first
         cycles = read.modes.cycle[line] != CYCLE_OFF
-        plain: list[bool] = (cycles & (trace.written.form == Form.PLAIN)).tolist()
-        return plain
+        return np.asarray(cycles & (trace.written.form == Form.PLAIN))
 
     @staticmethod
-    def _at_rows(wanted: list[Stated], found: list[Stated], trace: Trace) -> Wrong | None:
-        """Return the first move that is made in another path mode than it should be."""
-        for row, (one, other) in enumerate(zip(wanted, found, strict=True)):
-            if one != other:
-                output = int(trace.written.source[row])
-                message = f"a move in {_said(one)} is made in {_said(other)}"
-                return message, trace.line_of(output), output
-        return None
-
-    @staticmethod
-    def _joined(
-        trace: Trace, read: Interpreted, blends: list[bool], was: Ints, budget: float
+    def _at_rows(
+        wanted: tuple[list[Stated], Ints, Flags], found: tuple[list[Stated], Ints], trace: Trace
     ) -> Wrong | None:
+        """Return the first move that is made in another path mode than it should be.
+
+        Modes are given with which of them holds in each row; where a flag is set it is `EXACT`.
+        """
+        before, was, exactly = wanted
+        after, now = found
+        number = {mode: k for k, mode in enumerate(dict.fromkeys([EXACT, *before, *after]))}
+        one = np.array([number[mode] for mode in before])[was]
+        other = np.array([number[mode] for mode in after])[now]
+        rows = np.flatnonzero(np.where(exactly, number[EXACT], one) != other)
+        if not len(rows):
+            return None
+        row = int(rows[0])
+        output = int(trace.written.source[row])
+        mode = EXACT if exactly[row] else before[was[row]]
+        message = f"a move in {_said(mode)} is made in {_said(after[now[row]])}"
+        return message, trace.line_of(output), output
+
+    @staticmethod
+    def _joined(trace: Trace, read: Interpreted, blends: Flags, budget: float) -> Wrong | None:
         """Return a move under G64 that stands for moves of a cycle and for others."""
         block = trace.before.source - read.path.blocks.first
         cycles = read.modes.cycle[block] != CYCLE_OFF
         owner, through = trace.written_owner, trace.through
-        apart = (cycles[owner] != cycles[through]) & np.array(blends, np.bool_)[was]
+        apart = (cycles[owner] != cycles[through]) & blends
         for row in np.flatnonzero(apart).tolist():
             rows = np.arange(owner[row], through[row] + 1)
             if ways(trace.before, rows[cycles[rows] != cycles[owner[row]]]).sum() > budget:

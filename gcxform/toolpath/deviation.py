@@ -18,11 +18,13 @@ from gcxform.dialect import LINEAR
 from gcxform.modal.arcs import TURN, swept
 from gcxform.toolpath.beside_splines import beside_splines
 from gcxform.toolpath.path import Kind, Plane, Toolpath
+from gcxform.toolpath.spirals import Spirals, spirals_apart
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+ROUND = 1e-9  # mm; by so much the radius of a circle may change
 SWEEP_SLIP = 0.05  # rad; rows whose sweeps differ by more do not follow their owner
 
 
@@ -244,17 +246,21 @@ class _BesideArc:
         ends = np.maximum(np.abs(np.hypot(*u.T) - r0), np.abs(np.hypot(*v.T) - r1))
         ends = np.where(self.all.last[self.rows], np.maximum(ends, self._end_gap()), ends)
         chord = np.minimum(r0, r1) - _nearest(u, v)
-        inner = np.where(self.is_arc, self._arc_beside(u, r0, r1), np.abs(chord))
+        round_ = self._arc_beside(u, r0, r1)
+        spirals = np.flatnonzero(self.is_arc & np.isfinite(round_) & self._uneven_arcs(r0, r1))
+        if len(spirals):
+            round_[spirals] = self._spirals(spirals, u, (r0, r1), reach - begin)
+        inner = np.where(self.is_arc, round_, np.abs(chord))
         return np.asarray(np.maximum(ends, inner))
 
     def _end_gap(self) -> Floats:
         return np.asarray(np.hypot(*(self.b - self.goal)[:, self.axes].T))
 
     def _arc_beside(self, u: Floats, r0: Floats, r1: Floats) -> Floats:
-        """Return the largest radial distance of an arc about another centre.
+        """Return the largest radial distance of a circle about another centre.
 
         The extremes are at the ends and where the arc's own radius points along the line between
-        the two centres.
+        the two centres. Where a radius changes on the way they are elsewhere: see `spirals.py`.
         """
         shift = self.after_centre - self.centre
         size = np.hypot(*shift.T)
@@ -271,6 +277,21 @@ class _BesideArc:
             worst = np.maximum(worst, np.where(reached, there, 0.0))
         spiral = np.abs((own1 - own0) - (r1 - r0)) + np.where(size > 0, 0.0, np.abs(own0 - r0))
         return np.where(np.isnan(worst), np.inf, np.maximum(worst, np.minimum(spiral, size)))
+
+    def _uneven_arcs(self, r0: Floats, r1: Floats) -> Flags:
+        """Return which arcs, or parts of their owners from `r0` to `r1`, change their radius."""
+        first, last = (
+            np.hypot(*(end[:, self.axes] - self.after_centre).T) for end in (self.a, self.b)
+        )
+        return np.asarray((np.abs(last - first) > ROUND) | (np.abs(r1 - r0) > ROUND))
+
+    def _spirals(self, rows: Ints, u: Floats, radii: tuple[Floats, Floats], step: Floats) -> Floats:
+        begin, end = ((point[:, self.axes] - self.after_centre)[rows] for point in (self.a, self.b))
+        sense = self.sense[rows]
+        angles = (np.arctan2(point[:, 1], point[:, 0]) for point in (begin, u[rows]))
+        mine = Spirals(np.hypot(*begin.T), np.hypot(*end.T), next(angles), self.after_sweep[rows])
+        its = Spirals(radii[0][rows], radii[1][rows], next(angles), step[rows])
+        return spirals_apart(mine, its, (self.after_centre - self.centre)[rows], sense)
 
     def _other_axes(self, begin: Floats, reach: Floats, step: Floats) -> tuple[Floats, Floats]:
         """Return how far (mm, deg) the axes outside the plane are from turning with the angle.

@@ -76,7 +76,8 @@ def _alike(path: Toolpath, base: Ints) -> Flags:
 def _joinable(path: Toolpath) -> Flags:
     """Return which rows may be a part of a run: plain feed moves of X, Y, Z from a known place."""
     start, end = path.start, path.end
-    free = (path.kind != Kind.RAPID) & (path.form == Form.PLAIN) & (path.side == 0)
+    plain = (path.form == Form.PLAIN) | (path.form == Form.SPLINE)
+    free = plain & (path.kind != Kind.RAPID) & (path.side == 0)
     free &= np.isfinite(start[:, :3]).all(axis=1) & np.isfinite(end[:, :3]).all(axis=1)
     free &= (path.feed_mode != FeedMode.INVERSE_TIME) & (path.lost == 0)
     for k in range(3, len(path.axes)):
@@ -103,14 +104,14 @@ def deviation_of_runs(
     lengths = runs.through[first] - runs.owner[first] + 1
     sources = _ranges(runs.owner[first], lengths)
     distance, angle = np.array(off.distance), np.array(off.angle)
-    one = Chain(before, sources, np.repeat(np.arange(len(first)), lengths))
+    one = _straightened(Chain(before, sources, np.repeat(np.arange(len(first)), lengths)))
     other = Chain(after, rows, group)
     for part in _portions(len(first), one, other):
         mine, theirs = one.of(*part), other.of(*part)
         distance[theirs.rows] = along_chains(mine, theirs)
     aside, turned = _other_axes(before, after, runs.owner, rows)
     distance[rows], angle[rows] = np.hypot(distance[rows], aside), turned
-    distance[rows] += before.slack + after.slack
+    distance[rows] += before.slack + after.slack + (STRAIGHT if one.path is not before else 0.0)
     slight = _left_over(before, runs, rows) <= ahead
     distance[rows] = np.where(slight, np.minimum(distance, off.distance)[rows], distance[rows])
     return Deviation(distance, angle, off.unknown_start)
@@ -141,6 +142,19 @@ def _arcs_beside_splines(before: Toolpath, after: Toolpath, owner: Ints, distanc
         distance[theirs.rows] = along_chains(mine, theirs)
     aside, _ = _other_axes(before, after, owner, rows)
     distance[rows] = np.hypot(distance[rows] + STRAIGHT, aside) + after.slack
+
+
+def _straightened(chain: Chain) -> Chain:
+    """Return a chain with lines for its splines, as near to them as `STRAIGHT`."""
+    path, rows = chain.path, chain.rows
+    splines = distinct(rows[path.is_spline[rows]])
+    if not len(splines):
+        return chain
+    pieces = np.ones(len(path), np.int64)
+    pieces[splines] = spline_chords(path, splines, STRAIGHT)
+    first, count = np.cumsum(pieces) - pieces, pieces[rows]
+    lines = splines_as_lines(path, pieces)
+    return Chain(lines, _ranges(first[rows], count), np.repeat(chain.group, count))
 
 
 def _left_over(before: Toolpath, runs: Runs, rows: Ints) -> Floats:

@@ -106,8 +106,8 @@ MUTATIONS = (
     Mutation(
         "runs: rapids are joined",
         "gcxform/toolpath/runs.py",
-        "free = (path.kind != Kind.RAPID) & (path.form",
-        "free = (path.kind >= Kind.RAPID) & (path.form",
+        "free = plain & (path.kind != Kind.RAPID)",
+        "free = plain & (path.kind >= Kind.RAPID)",
         ARCS,
     ),
     Mutation(

@@ -79,4 +79,32 @@ MUTATIONS = (
         "if True:",
         CORPUS,
     ),
+    Mutation(
+        "deviation: a radius that changes is that of a circle",
+        "gcxform/toolpath/deviation.py",
+        "return np.asarray((np.abs(last - first) > ROUND) | (np.abs(r1 - r0) > ROUND))",
+        "return np.zeros(len(r0), np.bool_)",
+        "tests/test_spirals.py",
+    ),
+    Mutation(
+        "spirals: the other keeps its radius",
+        "gcxform/toolpath/spirals.py",
+        "radius = its.first + its.grows * np",
+        "radius = its.first + 0.0 * np",
+        "tests/test_spirals.py",
+    ),
+    Mutation(
+        "spirals: far centres count as near ones",
+        "gcxform/toolpath/spirals.py",
+        "_at_parts(mine.of(far), its.of(far), shift[far], sense[far])",
+        "_at_parts(mine.of(far), mine.of(far), 0 * shift[far], sense[far])",
+        "tests/test_spirals.py",
+    ),
+    Mutation(
+        "runs: splines end a run",
+        "gcxform/toolpath/runs.py",
+        "plain = (path.form == Form.PLAIN) | (path.form == Form.SPLINE)",
+        "plain = path.form == Form.PLAIN",
+        CORPUS,
+    ),
 )
