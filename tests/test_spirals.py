@@ -80,6 +80,26 @@ def test_a_spiral_that_bulges_is_seen() -> None:
     assert 0.0149 < bound < 0.0151
 
 
+@pytest.mark.parametrize(
+    ("radius", "sweep", "first", "second"),
+    [
+        (1.0, 1.5, (0.0105, 0.0084), (-0.0052, 0.0079)),
+        (5.0, 5.5, (-0.0135, 0.0128), (-0.0107, 0.0021)),
+        (5.0, 3.0, (-0.0081, 0.0156), (-0.0005, -0.0112)),
+        (5.0, 5.5, (-0.0148, 0.0166), (-0.001, 0.0032)),
+    ],
+)
+def test_no_spiral_counts_as_a_circle(
+    radius: float, sweep: float, first: Point, second: Point
+) -> None:
+    """Bounds for circles were up to 3 % less than how far these are apart."""
+    start, end = (radius, 0.0), (radius * np.cos(sweep), radius * np.sin(sweep))
+    one, two = arc(start, end, first), arc(start, end, second)
+    bound = float(gx.deviation(one, two, np.arange(2)).distance[1])
+    p, q = sampled(one), sampled(two)
+    assert max(farthest(p, q), farthest(q, p)) <= bound + 1e-9
+
+
 @pytest.mark.parametrize("bulge", [0.05, 0.3])
 def test_flat_arcs_about_far_centres(bulge: float) -> None:
     """Of two flat arcs on one chord the sagittas differ; their centres are a radius apart."""
@@ -87,7 +107,7 @@ def test_flat_arcs_about_far_centres(bulge: float) -> None:
     paths, sagittas = [], []
     for height in (0.01, 0.01 + bulge / 10):
         radius = (0.25 + height**2) / (2 * height)
-        paths.append(arc(start, end, (1.0 + height - radius + 1e-4, 0.0)))
+        paths.append(arc(start, end, (1.0 + height - radius, 1e-4)))
         sagittas.append(height)
     bound = float(gx.deviation(*paths, np.arange(2)).distance[1])
     truth = max(farthest(*map(sampled, paths)), farthest(*map(sampled, paths[::-1])))
