@@ -138,13 +138,6 @@ MUTATIONS = (
         RIGID_PASS,
     ),
     Mutation(
-        "volumetric: what the proof adds is not counted",
-        f"{PASSES}/compensation.py",
-        "step.limit - min(PROOF, PROOF_SHARE * step.limit)",
-        "step.limit",
-        CUTTING,
-    ),
-    Mutation(
         "volumetric: centres of short pieces of arcs are as far off as they were",
         f"{PASSES}/fitting.py",
         "_as_far(moved, *points[::2])",
