@@ -2,75 +2,75 @@
 
 from __future__ import annotations
 
-from faults.mutation import ARCS, PASSES, Mutation
+from faults.mutation import ARCS, Mutation
 
 MUTATIONS = (
     Mutation(
         "arcs: the sense is swapped",
-        f"{PASSES}/fit.py",
+        "plugins/gcxform_plugins/passes/fit.py",
         "np.where(self._sum(y) < 0, 1.0, -1.0)",
         "np.where(self._sum(y) < 0, -1.0, 1.0)",
         ARCS,
     ),
     Mutation(
         "arcs: the sagitta of the lines is not looked at",
-        f"{PASSES}/fit.py",
+        "plugins/gcxform_plugins/passes/fit.py",
         "flat = np.maximum(np.abs(size - inside), sagitta)",
         "flat = np.abs(size - inside)",
         ARCS,
     ),
     Mutation(
         "arcs: corners are not looked at",
-        f"{PASSES}/fit.py",
+        "plugins/gcxform_plugins/passes/fit.py",
         "flat = np.maximum(np.abs(size - inside), sagitta)",
         "flat = sagitta",
         ARCS,
     ),
     Mutation(
         "arcs: lines may go back",
-        f"{PASSES}/fit.py",
+        "plugins/gcxform_plugins/passes/fit.py",
         "good = (angle > 0) & (angle <= WIDEST) & self._points_along(x, y, size, wx, wy, length)",
         "good = angle <= WIDEST",
         ARCS,
     ),
     Mutation(
         "arcs: a break between lines is explained away",
-        f"{PASSES}/fit.py",
+        "plugins/gcxform_plugins/passes/fit.py",
         "(angle <= WIDEST) & self._points_along(x, y, size, wx, wy, length)",
         "(angle <= WIDEST)",
         ARCS,
     ),
     Mutation(
         "arcs: the axis of a helix is not looked at",
-        f"{PASSES}/fit.py",
+        "plugins/gcxform_plugins/passes/fit.py",
         "axial = self._off_axis(turned / sweep[self.run])",
         "axial = np.zeros(len(turned))",
         ARCS,
     ),
     Mutation(
         "arcs: what happens between lines is ignored",
-        f"{PASSES}/arcs.py",
+        "plugins/gcxform_plugins/passes/arcs.py",
         "follows[[e.row for e in path.events if e.row < len(path)]] = False",
         "pass",
         ARCS,
     ),
     Mutation(
         "arcs: another feed is ignored",
-        f"{PASSES}/arcs.py",
+        "plugins/gcxform_plugins/passes/arcs.py",
         "(path.plane, path.feed, path.feed_mode, path.frame)",
         "(path.plane, path.feed_mode, path.frame)",
         ARCS,
     ),
     Mutation(
         "arcs: they end inside blocks",
-        f"{PASSES}/reach.py",
+        "plugins/gcxform_plugins/passes/reach.py",
         "return np.where(self._own(first, stop), stop, self.before[stop])",
         "return stop",
         ARCS,
     ),
     Mutation(
         "arcs: a way straight ahead is an arc",
-        f"{PASSES}/fit.py",
+        "plugins/gcxform_plugins/passes/fit.py",
         "curved = near & (rises > self.limits.tolerance + self.limits.step)",
         "curved = near.copy()",
         ARCS,

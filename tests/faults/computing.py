@@ -7,35 +7,61 @@ from faults.mutation import Mutation
 
 def _computed(name: str, file: str, old: str, new: str) -> Mutation:
     tests = "tests/test_expressions.py"
-    return Mutation(f"computing: {name}", f"gcxform/modal/{file}.py", old, new, tests)
+    return Mutation(f"computing: {name}", file, old, new, tests)
 
 
 MUTATIONS = (
-    _computed("relations are as close as sums", "arithmetic", "EQUAL = 1e-4", "EQUAL = 1e-9"),
     _computed(
-        "fractions are cut towards zero", "arithmetic", "float(math.floor(a))", "float(int(a))"
+        "relations are as close as sums",
+        "gcxform/modal/arithmetic.py",
+        "EQUAL = 1e-4",
+        "EQUAL = 1e-9",
     ),
-    _computed("MOD keeps the sign", "arithmetic", "rest if rest >= 0 else rest + abs(b)", "rest"),
-    _computed("XOR is OR", "arithmetic", "(a != 0) != (b != 0)", "a != 0 or b != 0"),
-    _computed("angles are in radians", "arithmetic", "np.longdouble(a) * PI / 180", "a"),
-    _computed("a sign is lost", "expressions", "-value if children[0]", "value if children[0]"),
-    _computed("operands are swapped", "expressions", "(left), self", "(right), self"),
-    _computed("names have their case", "expressions", "BLANKS).lower()", "BLANKS)"),
+    _computed(
+        "fractions are cut towards zero",
+        "gcxform/modal/arithmetic.py",
+        "float(math.floor(a))",
+        "float(int(a))",
+    ),
+    _computed(
+        "MOD keeps the sign",
+        "gcxform/modal/arithmetic.py",
+        "rest if rest >= 0 else rest + abs(b)",
+        "rest",
+    ),
+    _computed(
+        "XOR is OR", "gcxform/modal/arithmetic.py", "(a != 0) != (b != 0)", "a != 0 or b != 0"
+    ),
+    _computed(
+        "angles are in radians", "gcxform/modal/arithmetic.py", "np.longdouble(a) * PI / 180", "a"
+    ),
+    _computed(
+        "a sign is lost",
+        "gcxform/modal/expressions.py",
+        "-value if children[0]",
+        "value if children[0]",
+    ),
+    _computed(
+        "operands are swapped", "gcxform/modal/expressions.py", "(left), self", "(right), self"
+    ),
+    _computed(
+        "names have their case", "gcxform/modal/expressions.py", "BLANKS).lower()", "BLANKS)"
+    ),
     _computed(
         "what nobody set is zero",
-        "expressions",
+        "gcxform/modal/expressions.py",
         "value = self.parameters.get(key)\n",
         "value = self.parameters.get(key, 0.0)\n",
     ),
     _computed(
         "assignments act at once",
-        "computing",
+        "gcxform/modal/computing.py",
         "return key, evaluator.value(expression)",
         "self.lines.parameters[key] = evaluator.value(expression)\n            return None",
     ),
     _computed(
         "parameters end with their window",
-        "interpreter",
+        "gcxform/modal/interpreter.py",
         "self.state.parameters = lines.parameters",
         "pass",
     ),

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from faults.mutation import CUTTER, PASSES, Mutation
+from faults.mutation import CUTTER, Mutation
 
 PLANTED = "tests/test_planted_comp.py"
 
 
 def _offsetting(name: str, old: str, new: str) -> Mutation:
-    return Mutation(f"offsetting: {name}", f"{PASSES}/offsetting.py", old, new, CUTTER)
+    return Mutation(
+        f"offsetting: {name}", "plugins/gcxform_plugins/passes/offsetting.py", old, new, CUTTER
+    )
 
 
 def _beside(name: str, old: str, new: str) -> Mutation:
-    return Mutation(f"beside: {name} not looked at", f"{PASSES}/beside.py", old, new, CUTTER)
+    return Mutation(
+        f"beside: {name} not looked at",
+        "plugins/gcxform_plugins/passes/beside.py",
+        old,
+        new,
+        CUTTER,
+    )
 
 
 MUTATIONS = (
@@ -61,21 +69,21 @@ MUTATIONS = (
     _offsetting("the inside is the outside", "elif turn < 0 or", "elif turn > 0 or"),
     Mutation(
         "cutter-comp: corners go the wrong way",
-        f"{PASSES}/cutter_comp.py",
+        "plugins/gcxform_plugins/passes/cutter_comp.py",
         "gx.Kind.ARC_CW if path.side[row] > 0",
         "gx.Kind.ARC_CW if path.side[row] < 0",
         CUTTER,
     ),
     Mutation(
         "cutter-comp: still moves stay on the contour",
-        f"{PASSES}/cutter_comp.py",
+        "plugins/gcxform_plugins/passes/cutter_comp.py",
         "            self.end[inside, axis] = self.end[mover, axis]",
         "            pass",
         CUTTER,
     ),
     Mutation(
         "cutter-comp: the speed in inverse time is that of the centre",
-        f"{PASSES}/cutter_comp.py",
+        "plugins/gcxform_plugins/passes/cutter_comp.py",
         "np.where(change, feed * programmed / np.where(change, mine, 1.0), feed)",
         "feed",
         CUTTER,
@@ -159,7 +167,7 @@ MUTATIONS = (
     ),
     Mutation(
         "offsetting: LinuxCNC never looks back",
-        f"{PASSES}/offsetting.py",
+        "plugins/gcxform_plugins/passes/offsetting.py",
         "> manner.straight\n\n\ndef _turn(",
         "> 9.9\n\n\ndef _turn(",
         "tests/test_corpus.py::test_case",

@@ -5,9 +5,9 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 LANGUAGES = "plugins/gcxform_plugins/languages"
-BLOCKS = f"{LANGUAGES}/fagor.py"
-PLACES = f"{LANGUAGES}/fagor_places.py"
-TABLES = f"{LANGUAGES}/fagor_tables.py"
+BLOCKS = "plugins/gcxform_plugins/languages/fagor.py"
+PLACES = "plugins/gcxform_plugins/languages/fagor_places.py"
+TABLES = "plugins/gcxform_plugins/languages/fagor_tables.py"
 TRANSLATION = "gcxform/flow/translation.py"
 CASE = "tests/test_corpus.py::test_case[dialects/fagor/"
 READS = "tests/test_fagor.py::test_it_reads_what_another_reader_reads"

@@ -8,8 +8,10 @@ PLANTED = "tests/test_planted_inventory.py"
 MESSAGES = "tests/test_corpus.py::test_case"
 
 
-def _proof(name: str, old: str, new: str = "if False:", file: str = "inventoryproof") -> Mutation:
-    return Mutation(f"inventory: {name}", f"gcxform/{file}.py", old, new, PLANTED)
+def _proof(
+    name: str, old: str, new: str = "if False:", file: str = "gcxform/inventoryproof.py"
+) -> Mutation:
+    return Mutation(f"inventory: {name}", file, old, new, PLANTED)
 
 
 MUTATIONS = (
@@ -27,18 +29,27 @@ MUTATIONS = (
         "what loops have set is ignored",
         "if executed is not None and not executed.agrees(self.assigned):",
     ),
-    _proof("the end is ignored", "if self.findings.file.no_end and not faulty:", file="run"),
+    _proof(
+        "the end is ignored", "if self.findings.file.no_end and not faulty:", file="gcxform/run.py"
+    ),
     _proof(
         "lines need not be written out",
         "plain & (times != _written(program))",
         "plain & (times < 0)",
-        "flow/walk",
+        "gcxform/flow/walk.py",
     ),
     _proof(
-        "lines need not follow", "plain & (behind < times)", "plain & (behind < 0)", "flow/walk"
+        "lines need not follow",
+        "plain & (behind < times)",
+        "plain & (behind < 0)",
+        "gcxform/flow/walk.py",
     ),
-    _proof("loops need not go on", "and not times[last + 1]:", "and False:", "flow/walk"),
-    _proof("M codes are not counted", "ends, others, modes]", "ends, 0, modes]", "inventory"),
+    _proof(
+        "loops need not go on", "and not times[last + 1]:", "and False:", "gcxform/flow/walk.py"
+    ),
+    _proof(
+        "M codes are not counted", "ends, others, modes]", "ends, 0, modes]", "gcxform/inventory.py"
+    ),
     Mutation(
         "inventory: path modes are not counted",
         "gcxform/inventory.py",

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from faults.mutation import CORPUS, PASSES, Mutation
+from faults.mutation import CORPUS, Mutation
 
 PLANTED = "tests/test_planted_volumetric.py"
 SPARED = "gcxform/spared.py"
-COMPENSATION = f"{PASSES}/compensation.py"
-UNDOING = f"{PASSES}/undoing.py"
+COMPENSATION = "plugins/gcxform_plugins/passes/compensation.py"
+UNDOING = "plugins/gcxform_plugins/passes/undoing.py"
 
 MUTATIONS = (
     Mutation(

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from faults.mutation import PASSES, Mutation
+from faults.mutation import Mutation
 
-CUTTING = f"{PASSES}/rtcp_cutting.py"
-PLACE = f"{PASSES}/rtcp_place.py"
+CUTTING = "plugins/gcxform_plugins/passes/rtcp_cutting.py"
+PLACE = "plugins/gcxform_plugins/passes/rtcp_place.py"
 TRACK = "gcxform/modal/track.py"
 KNOWN = "gcxform/known.py"
 TESTS = "tests/test_tip_switches.py"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import PASSES, RIGID, Mutation
+from faults.mutation import RIGID, Mutation
 
 NUMBERS = "tests/test_thermal.py"
 FILES = "tests/test_thermal_files.py"
@@ -92,7 +92,7 @@ MUTATIONS = (
     ),
     _fault(
         "the pass forgets its time",
-        f"{PASSES}/volumetric.py",
+        "plugins/gcxform_plugins/passes/volumetric.py",
         "self.model.at_time(self.time)",
         "self.model",
         PASS,

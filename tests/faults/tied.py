@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import PASSES, Mutation
+from faults.mutation import Mutation
 
 TIED = "tests/properties/test_tied.py"
 TAPPING = "tests/properties/test_tapping.py"
@@ -82,7 +82,7 @@ MUTATIONS = (
     ),
     Mutation(
         "the way of a thread is not looked at",
-        f"{PASSES}/splitting.py",
+        "plugins/gcxform_plugins/passes/splitting.py",
         "((path.form == gx.Form.PLAIN) | whole)",
         "(path.form == gx.Form.PLAIN)",
         "tests/test_corpus.py::test_case[tied/thread-not-straight]",

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from faults.mutation import PASSES, Mutation
+from faults.mutation import Mutation
 
 TESTS = "tests/test_rtcp_vectors.py"
 PROVED = "tests/test_rtcp_vectors_proof.py"
 READING = "gcxform/modal/pointing.py"
-POINTING = f"{PASSES}/rtcp_pointing.py"
-POINTED = f"{PASSES}/rtcp_pointed.py"
-VECTORS = f"{PASSES}/rtcp_vectors.py"
-DRIVEN = f"{PASSES}/rtcp_driven.py"
+POINTING = "plugins/gcxform_plugins/passes/rtcp_pointing.py"
+POINTED = "plugins/gcxform_plugins/passes/rtcp_pointed.py"
+VECTORS = "plugins/gcxform_plugins/passes/rtcp_vectors.py"
+DRIVEN = "plugins/gcxform_plugins/passes/rtcp_driven.py"
 ANY = f"{TESTS}::test_any_vectors"
 ANGLES = f"{TESTS}::test_it_does_what_angles_do"
 LIMITS = f"{TESTS}::test_turns_go_on_and_limits_hold"
