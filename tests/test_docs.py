@@ -18,15 +18,15 @@ from console_kit import check_block
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
 from gcxform.cli import VERBS
-from gcxform.flow.written_out import EXECUTED
+from gcxform.contract.options import describe
+from gcxform.deviation.deviation import deviation
+from gcxform.dialect.codes import Effect
+from gcxform.flow.straightened import EXECUTED
 from gcxform.machine.chain import chain_of
-from gcxform.machine.machinefile import load_machine
-from gcxform.modal.codes import Effect
-from gcxform.options import describe
-from gcxform.pipelinefile import KEYS, SECTIONS
-from gcxform.registry import default_registry
+from gcxform.machine.file import load_machine
+from gcxform.pipeline.file import KEYS, SECTIONS
+from gcxform.plugin.registry import default_registry
 from gcxform.testing import check_dialect, check_pass
-from gcxform.toolpath.deviation import deviation
 from gcxform.version import VERSION
 
 ROOT = Path(__file__).parents[1]

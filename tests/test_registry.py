@@ -13,7 +13,7 @@ import pytest
 
 from gcxform.catalogue import CATALOGUE
 from gcxform.diagnostics import Location, Severity, UsageError
-from gcxform.registry import KINDS, Registry, default_registry
+from gcxform.plugin.registry import KINDS, Registry, default_registry
 
 PASSES = """
 from __future__ import annotations
@@ -229,7 +229,7 @@ def test_loading_is_fast() -> None:
 
 
 def test_importing_the_registry_imports_no_plugin() -> None:
-    code = "import gcxform.registry, sys; print('gcxform_plugins' in sys.modules)"
+    code = "import gcxform.plugin.registry, sys; print('gcxform_plugins' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
 

@@ -22,13 +22,13 @@ from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
-from gcxform.dialect import Dialect
-from gcxform.flow.written_out import WrittenOut
-from gcxform.limits import how_to_raise, limits
+from gcxform.dialect.dialect import Dialect
+from gcxform.flow.straightened import WrittenOut
 from gcxform.modal.state import Reading
-from gcxform.source import Source
-from gcxform.syntax import kept
+from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.grammar import parsed, refusal_of, rule_of, span_of
+from gcxform.syntax.source import Source
+from gcxform.system.limits import how_to_raise, limits
 
 NUMBER = "NUMBER"
 """The terminal of a grammar that stands for numbers."""

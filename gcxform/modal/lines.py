@@ -8,12 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import INCH, LINEAR, Dialect
-from gcxform.modal.arithmetic import Key
+from gcxform.dialect.arithmetic import Key
+from gcxform.dialect.dialect import INCH, LINEAR, Dialect
 from gcxform.modal.findings import Findings
-from gcxform.modal.pointless import Pointless
-from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
-from gcxform.modal.tables import (
+from gcxform.modal.meaning.tables import (
     COLUMNS,
     CYCLES,
     FLAGS,
@@ -23,6 +21,8 @@ from gcxform.modal.tables import (
     MeaningTable,
     of_splines,
 )
+from gcxform.modal.numbers_without_point import Pointless
+from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
 from gcxform.syntax.scan import Window
 
 Floats = NDArray[np.float64]

@@ -20,7 +20,9 @@ MUTATIONS = (
     _flow(
         "names are not local", "gcxform/flow/owords.py", "not RS274.outlives(key)", "key in LOCALS"
     ),
-    _flow("nothing lasts", "gcxform/flow/lasting.py", "if not self.program.keeps:", "if True:"),
+    _flow(
+        "nothing lasts", "gcxform/flow/lasting_values.py", "if not self.program.keeps:", "if True:"
+    ),
     _flow(
         "a message counts from before its block",
         "gcxform/flow/execution.py",
@@ -29,18 +31,21 @@ MUTATIONS = (
     ),
     _flow(
         "a subprogram that is called is kept",
-        "gcxform/flow/keeping.py",
+        "gcxform/flow/uncalled_subprograms.py",
         "or not program.times[each.lines].any()",
         "or True",
     ),
     _flow(
         "what a skipped block calls is gone",
-        "gcxform/flow/keeping.py",
+        "gcxform/flow/uncalled_subprograms.py",
         "each.name in skipped or ",
         "",
     ),
     _flow(
-        "what is kept calls what is gone", "gcxform/flow/keeping.py", "each not in keeps]", "False]"
+        "what is kept calls what is gone",
+        "gcxform/flow/uncalled_subprograms.py",
+        "each not in keeps]",
+        "False]",
     ),
     _flow(
         "a count hides what is called",
@@ -136,7 +141,7 @@ MUTATIONS = (
     ),
     _flow(
         "lines are those that were executed",
-        "gcxform/flow/written_out.py",
+        "gcxform/flow/straightened.py",
         "int(self.origin[line - 1]) + 1 if inside else line",
         "line",
         "tests/test_flow.py",

@@ -7,12 +7,12 @@ from faults.mutation import Mutation
 TESTS = "tests/test_path_modes.py"
 
 
-def _writing(name: str, old: str, new: str, file: str = "gcxform/emit/exactness.py") -> Mutation:
+def _writing(name: str, old: str, new: str, file: str = "gcxform/emit/path_modes.py") -> Mutation:
     return Mutation(f"path modes: {name}", file, old, new, TESTS)
 
 
 def _proof(name: str, old: str, new: str) -> Mutation:
-    return _writing(name, old, new, "gcxform/pathmodeproof.py")
+    return _writing(name, old, new, "gcxform/proof/path_modes.py")
 
 
 MUTATIONS = (

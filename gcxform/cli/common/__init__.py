@@ -1,0 +1,1 @@
+"""What verbs share: options, files in and out, failures."""
