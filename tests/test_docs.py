@@ -109,8 +109,9 @@ def codes_table():
         said = dialect.__doc__.partition("\n")[0]
         lines.append(f"| **`{name}`** | axes {' '.join(dialect.axes)} | {said} |")
         if dialect.translator is not None:
-            place = f"plugins/gcxform_plugins/dialects/{name}.py"
-            lines.append(f"| | read | what the table at the top of [{name}.py]({place}) says |")
+            file = f"{name}/dialect.py"
+            place = f"plugins/gcxform_plugins/dialects/{file}"
+            lines.append(f"| | read | what the table at the top of [{file}]({place}) says |")
             codes = [dialect.spelled.get(c, c) for c in dialect.tip_switches.values()]
             lines.append(f"| | for `tip-codes` | {', '.join(codes)} |")
             continue

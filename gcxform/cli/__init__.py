@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, Final, NoReturn
 
+from gcxform.cli.common import DEBUG
 from gcxform.cli.common.signals import end_quietly
 
 end_quietly()  # before the first import that takes time
@@ -40,7 +41,6 @@ VERBS: Final = {
     "schema": "Print the JSON Schema of a kind of files.",
 }
 FILES: Final = {"list": "listing"}  # a module named `list` would hide the builtin in this one
-DEBUG: Final = "show_traceback"
 OBJECTS_BETWEEN: Final = 50_000  # new objects before garbage is looked for
 
 

@@ -25,8 +25,9 @@ class Effect(Enum):
 class Code:
     """One G code. `takes` are the address letters of the words that are parameters to it.
 
-    `act` names what a code with Effect.FRAME does (`gcxform/modal/frames/acts.py`). `lengths` are those of
-    the words it takes that are in the unit of the program; of a code with an act, all axis words.
+    `act` names what a code with Effect.FRAME does (`gcxform/modal/frames/acts.py`). `lengths` are
+    those of the words it takes that are in the unit of the program; of a code with an act, all axis
+    words.
     `after`: it acts at the end of its block, which is that of the last piece where the block is
     cut.
     """

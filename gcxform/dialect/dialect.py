@@ -15,17 +15,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from gcxform.config import arguments
 from gcxform.dialect.arithmetic import Arithmetic
 from gcxform.dialect.codes import ISO, ISO_M, Code, CutterComp, MCode
 from gcxform.dialect.cycle_rule import CycleRule
+from gcxform.dialect.language import Language
 from gcxform.machine.control import Setting, declare
 from gcxform.syntax.grammar import Grammar, load
-
-if TYPE_CHECKING:
-    from gcxform.flow.translation import Translator
 
 MOST_DECIMALS = 15  # what a double holds
 INCH = 25.4  # mm, exact by definition
@@ -237,7 +235,7 @@ class Dialect:
     "tip-off", as in the machine file."""
     follows_at_start: ClassVar[bool | None] = None
     """Whether the control follows the tip when a program starts; None where that is not known."""
-    translator: ClassVar[type[Translator] | None] = None
+    translator: ClassVar[type[Language] | None] = None
     """What turns programs that are not written in words into blocks that are, which is what all
     else here is about. Such a dialect is only read: see `gcxform/flow/translation.py`."""
     spelled: ClassVar[Mapping[str, str]] = {}

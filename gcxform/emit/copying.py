@@ -13,7 +13,7 @@ from gcxform.emit.converting import convertible
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, as_written
-from gcxform.modal.lines import fill
+from gcxform.modal.columns import fill
 from gcxform.modal.meaning.meaning import FRAMING
 from gcxform.modal.meaning.tables import GROUPS
 from gcxform.system.distinct import distinct

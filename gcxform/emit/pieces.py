@@ -15,7 +15,7 @@ from gcxform.dialect.dialect import INCH
 from gcxform.emit.fields import Feed, Role
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.tapping import Taps
-from gcxform.modal.lines import fill
+from gcxform.modal.columns import fill
 from gcxform.modal.meaning.tables import GROUPS, NUMBER, TAP, THREAD
 from gcxform.modal.moves.moves import turns_only
 from gcxform.modal.state import CYCLE_OFF

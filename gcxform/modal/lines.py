@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect.arithmetic import Key
 from gcxform.dialect.dialect import INCH, LINEAR, Dialect
+from gcxform.modal.columns import fill
 from gcxform.modal.findings import Findings
 from gcxform.modal.meaning.tables import (
     COLUMNS,
@@ -43,15 +44,6 @@ class Assigned(NamedTuple):
 
 LENGTHS = LINEAR + "IJKR"
 NOTHING = 0  # the shape of an empty line
-
-
-def fill(values: NDArray[Any], present: Flags, initial: float) -> NDArray[Any]:
-    """Return a column in which every line has the value last set before or on it."""
-    rows = np.flatnonzero(present)
-    if len(rows) == len(values):
-        return values
-    given = np.append(np.array(initial, values.dtype), values[rows])
-    return np.repeat(given, np.diff(rows, prepend=0, append=len(values)))
 
 
 class Lines:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +13,9 @@ from gcxform.config.quantities import AXIS_LETTERS
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.dialect.increments import Increments
 from gcxform.machine.machine import TIP_AT_START, Machine, Tool
+from gcxform.modal.cycles.expansion import Cycles
 from gcxform.modal.frames.state import FrameState
 from gcxform.toolpath.frames import Frame
-
-if TYPE_CHECKING:
-    from gcxform.modal.cycles.expansion import Cycles
 
 Floats = NDArray[np.float64]
 Small = NDArray[np.int8]

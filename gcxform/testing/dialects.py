@@ -11,7 +11,7 @@ from gcxform.diagnostics import GcxformError
 from gcxform.dialect.codes import ISO, Effect
 from gcxform.dialect.dialect import INCH, Dialect
 from gcxform.emit.numbers import MOST_DECIMALS
-from gcxform.flow.translation import Translator, translated
+from gcxform.flow.translation import Translator, translated, translator_of
 from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.meaning.sorting import meaning_of
 from gcxform.modal.meaning.tables import COLUMNS, GROUPS, NUMBER
@@ -68,7 +68,7 @@ def check_dialect(dialect: type[Dialect]) -> None:
     _check_refusals(dialect)
     check_doing(dialect)
     if dialect.translator is not None:
-        _check_translator(dialect, dialect.translator)
+        _check_translator(dialect, translator_of(dialect))
         return
     _check_program(dialect)
     _check_planes(dialect)

@@ -22,7 +22,7 @@ MUTATIONS = (
     ),
     Mutation(
         "reading: a full circle has no sweep",
-        "gcxform/modal/moves/arcs.py",
+        "gcxform/toolpath/angles.py",
         "return np.where(same, TURN, angle)",
         "return np.where(same, 0.0, angle)",
         READING,

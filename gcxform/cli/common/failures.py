@@ -16,7 +16,7 @@ from typing import Any, Final, TextIO
 import click
 
 from gcxform.catalogue.settings import for_chain
-from gcxform.cli import DEBUG
+from gcxform.cli.common import DEBUG
 from gcxform.cli.common.options import ENVIRONMENT
 from gcxform.cli.common.signals import Ended, ending
 from gcxform.diagnostics import Diagnostic, FileError, GcxformError, render_all

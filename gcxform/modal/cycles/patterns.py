@@ -1,9 +1,9 @@
 """Canned cycles in a program: where each pattern leaves the tool, and the rows that it becomes.
 
 What follows a pattern begins where it ends, so that end is found at once, from the columns of
-`gcxform/modal/cycles/calls.py`. The moves themselves are made by `gcxform/modal/cycles/expansion.py`, in the
-coordinates of the program, for all patterns of a window together: that is what makes many short
-patterns cheap.
+`gcxform/modal/cycles/calls.py`. The moves themselves are made by
+`gcxform/modal/cycles/expansion.py`, in the coordinates of the program, for all patterns of a window
+together: that is what makes many short patterns cheap.
 """
 
 from __future__ import annotations

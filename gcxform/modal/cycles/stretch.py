@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from gcxform.dialect.cycle_rule import CycleRule
-from gcxform.modal.lines import fill
+from gcxform.modal.columns import fill
 from gcxform.toolpath.path import Flags, Floats, Ints, Plane, constant
 
 STICKY = ("r", "normal", "p", "q", "i", "j", "k")

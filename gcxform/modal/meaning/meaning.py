@@ -39,7 +39,9 @@ class EventShape:
 
 @dataclass(frozen=True, slots=True)
 class Act:
-    """Something that a block does to the frame, or a move of its own: see `gcxform/modal/frames/acts.py`.
+    """Something that a block does to the frame, or a move of its own.
+
+    What it does is in `gcxform/modal/frames/acts.py`.
 
     `slots` are those of the words it takes; `column` and `width` where its code stands.
     """

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import INCH
 from gcxform.machine.machine import Tool
+from gcxform.modal.columns import fill
 from gcxform.modal.findings import Findings
-from gcxform.modal.lines import Lines, fill
+from gcxform.modal.lines import Lines
 from gcxform.modal.state import CYCLE_OFF, Modes
 from gcxform.toolpath.path import Kind, Plane, constant
 

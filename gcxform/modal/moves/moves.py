@@ -1,8 +1,9 @@
 """Moves of a window: which lines move, from where to where, and at what feed.
 
-Lines become rows in stretches of one frame (`gcxform/modal/frames/track.py`). A plain line is one row; G28
-and G53 move in a way of their own (`gcxform/modal/moves/home.py`), and so do canned cycles
-(`gcxform/modal/cycles/patterns.py`), threads, taps and probes (`gcxform/modal/moves/spindle_and_probe.py`).
+Lines become rows in stretches of one frame (`gcxform/modal/frames/track.py`). A plain line is one
+row; G28 and G53 move in a way of their own (`gcxform/modal/moves/home.py`), and so do canned cycles
+(`gcxform/modal/cycles/patterns.py`), threads, taps and probes
+(`gcxform/modal/moves/spindle_and_probe.py`).
 """
 
 from __future__ import annotations

@@ -13,8 +13,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.modal.columns import fill
 from gcxform.modal.findings import Findings
-from gcxform.modal.lines import Lines, fill
+from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import NUMBER
 from gcxform.modal.state import CYCLE_OFF, Modes
 from gcxform.toolpath.path import Kind

@@ -1,4 +1,4 @@
-"""Blocks of a Fagor 8065 as blocks of words; the table of facts is in `dialects/fagor.py`."""
+"""Blocks of a Fagor 8065 as blocks of words; the table of facts is in `dialect.py`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fagor CNC 8065 and 8070, mill: read, not written (`languages/fagor.py` makes blocks of it).
+"""Fagor CNC 8065 and 8070, mill: read, not written (`blocks.py` makes blocks of it).
 
 Sources: [post] the open post-processor of Autodesk for DMS routers with a Fagor; [8070] the control
 service of the 4DIAC runtime for the 8070; [stone] the open CAM of a bridge saw with a Fagor; [isg]
