@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from gcxform.contract.passes import Pass as Pass
     from gcxform.contract.passes import PassContext as PassContext
     from gcxform.contract.passes import TextPass as TextPass
-    from gcxform.deviation.deviation import deviation as deviation
+    from gcxform.deviations.deviation import deviation as deviation
     from gcxform.diagnostics import Diagnostic as Diagnostic
     from gcxform.diagnostics import FileError as FileError
     from gcxform.diagnostics import GcxformError as GcxformError
@@ -168,7 +168,7 @@ _HOMES = {
     "toolpath.circles": "arc_cuts arc_extremes circle_through points_on_arcs radius_and_angle "
     "swept_anew",
     "toolpath.crossings": "line_crossings",
-    "deviation.deviation": "deviation",
+    "deviations.deviation": "deviation",
     "toolpath.facts": "ABSOLUTE AXIS_POSITIONS COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC "
     "NO_CUTTER_COMP NO_CYCLES NOMINAL TIP_POSITIONS WORKPIECE_FRAME XY_ARCS Fact "
     "inseparable_cycles",

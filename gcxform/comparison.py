@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from gcxform.api import Program
 from gcxform.config import arguments
 from gcxform.contract.passes import Pass, PassContext
-from gcxform.deviation.matching import Matching, Pieces, cut, match
-from gcxform.deviation.paired_pieces import known_alone, measure
+from gcxform.deviations.matching import Matching, Pieces, cut, match
+from gcxform.deviations.paired_pieces import known_alone, measure
 from gcxform.diagnostics import InputError
 from gcxform.dialect.codes import Effect
 from gcxform.dialect.dialect import LINEAR, Dialect

@@ -25,7 +25,7 @@ from test_verify import Change, dropped, inserted, said, swapped
 from test_verify import run as lie
 
 import gcxform as gx
-from gcxform.deviation.runs import Runs, deviation_of_runs, runs_of
+from gcxform.deviations.runs import Runs, deviation_of_runs, runs_of
 from gcxform.pipeline.certify import certificate
 from gcxform.pipeline.output import Output
 from gcxform.pipeline.run import Run

@@ -19,7 +19,7 @@ import gcxform as gx
 from gcxform.catalogue import CATALOGUE
 from gcxform.cli import VERBS
 from gcxform.contract.options import describe
-from gcxform.deviation.deviation import deviation
+from gcxform.deviations.deviation import deviation
 from gcxform.dialect.codes import Effect
 from gcxform.flow.straightened import EXECUTED
 from gcxform.machine.chain import chain_of

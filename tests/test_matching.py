@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 from gcxform.api import Program, read
 from gcxform.comparison import Comparison, compare
-from gcxform.deviation.even_travel import evenly_apart
-from gcxform.deviation.matching import match
-from gcxform.deviation.paired_pieces import measure
+from gcxform.deviations.even_travel import evenly_apart
+from gcxform.deviations.matching import match
+from gcxform.deviations.paired_pieces import measure
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax.source import WINDOW
 

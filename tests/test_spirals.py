@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 import gcxform as gx
-from gcxform.deviation.spirals import NEAR
+from gcxform.deviations.spirals import NEAR
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading

@@ -11,6 +11,8 @@ import pytest
 from importlinter import Contract
 from importlinter.contracts.layers import LayersContract
 
+import gcxform as gx
+
 ROOT = Path(__file__).parents[1]
 ROOTS = ("gcxform", "gcxform_plugins")
 MOST_ROWS = 25
@@ -132,3 +134,9 @@ def test_no_package_is_part_of_a_circle() -> None:
     for found in circles(every):
         inside = [at for at in LEFT if all(name.startswith(f"{at}.") for name in found)]
         assert inside, found
+
+
+def test_no_module_hides_a_public_name() -> None:
+    """`import gcxform.deviation` would set `gx.deviation`, and what it is would depend on order."""
+    modules = {name.split(".")[1] for name in graph(False).modules if name.startswith("gcxform.")}
+    assert not modules & set(gx.__all__)

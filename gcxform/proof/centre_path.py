@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.contract.passes import Pass, PassContext
-from gcxform.deviation.matching import match
-from gcxform.deviation.paired_pieces import measure
+from gcxform.deviations.matching import match
+from gcxform.deviations.paired_pieces import measure
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
 from gcxform.plugin.registry import default_registry

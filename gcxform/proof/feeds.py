@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.deviation.runs import SAME_FEED
+from gcxform.deviations.runs import SAME_FEED
 from gcxform.dialect.dialect import LINEAR
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.moves.moves import moves_linear, turns_only

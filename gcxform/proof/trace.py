@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.deviation.runs import Runs, runs_of
+from gcxform.deviations.runs import Runs, runs_of
 from gcxform.toolpath.path import Toolpath
 from gcxform.toolpath.travel import ways
 

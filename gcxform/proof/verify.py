@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.contract.passes import Pass, PassContext
-from gcxform.deviation.runs import Runs, deviation_of_runs
+from gcxform.deviations.runs import Runs, deviation_of_runs
 from gcxform.diagnostics import (
     Diagnostic,
     GcxformError,

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.api import Program
-from gcxform.deviation.deviation import deviation
-from gcxform.deviation.matching import Pieces, cut, moving_rows
+from gcxform.deviations.deviation import deviation
+from gcxform.deviations.matching import Pieces, cut, moving_rows
 from gcxform.diagnostics import InputError, UsageError
 from gcxform.errormodel.model import FloatArray
 from gcxform.pipeline.pipeline import Pipeline, Result

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from gcxform.contract.options import build, describe, to_toml
 from gcxform.contract.passes import Pass, PassContext, TextPass
-from gcxform.deviation.runs import Runs, deviation_of_runs, runs_of
+from gcxform.deviations.runs import Runs, deviation_of_runs, runs_of
 from gcxform.diagnostics import GcxformError, InputError, Location
 from gcxform.machine.machine import Machine
 from gcxform.pipeline.text_passes import TextRun

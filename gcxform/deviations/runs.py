@@ -4,7 +4,7 @@ A row that joins several moves carries the line of the first. The rows of the ot
 without any row of their own, directly after the one they were joined to: from that, and from
 nothing that a pass or the writer says, a run is known. What must be the same along a run is looked
 at here, and the path along it is compared in both directions and in the order of travel
-(`gcxform.deviation.chains`); what is left out of every run has to be too short to matter.
+(`gcxform.deviations.chains`); what is left out of every run has to be too short to matter.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.deviation.chains import ROOM, Chain, along_chains
-from gcxform.deviation.deviation import Deviation, deviation
+from gcxform.deviations.chains import ROOM, Chain, along_chains
+from gcxform.deviations.deviation import Deviation, deviation
 from gcxform.dialect.dialect import LINEAR
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import FeedMode, Form, Kind, Toolpath

@@ -3,8 +3,8 @@
 A chain is cut where the other one has its joints: every joint is put beside the point of the other
 chain that is nearest to it, none before the joint that went before. What lies between two cuts are
 pairs of single moves, and the distance of a pair is bounded along both of them: of two lines by
-their ends, of a line beside an arc and of two arcs by `gcxform.deviation.deviation`. Any pairing in
-the order of travel gives an upper bound (of the Frechet distance); one that does not find the
+their ends, of a line beside an arc and of two arcs by `gcxform.deviations.deviation`. Any pairing
+in the order of travel gives an upper bound (of the Frechet distance); one that does not find the
 nearest points only makes it larger.
 """
 
@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.deviation.deviation import deviation
+from gcxform.deviations.deviation import deviation
 from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.circles import points_on_arcs, radius_and_angle
 from gcxform.toolpath.path import Kind, Plane, Toolpath, constant

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.deviation.deviation import deviation
-from gcxform.deviation.even_travel import evenly_apart
-from gcxform.deviation.matching import Matching, cut
+from gcxform.deviations.deviation import deviation
+from gcxform.deviations.even_travel import evenly_apart
+from gcxform.deviations.matching import Matching, cut
 from gcxform.toolpath.path import Kind, Toolpath
 
 Floats = NDArray[np.float64]

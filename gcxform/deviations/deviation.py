@@ -4,7 +4,7 @@ Every row of the second path belongs to one row of the first, its owner. For eac
 gives an upper bound of the distance (mm) of any of its points from the owner's curve, where points
 are paired in order of travel. Where the pairing goes backwards, half the way back is added to the
 account. The bounds are exact for lines beside lines, and for arcs and chords beside arcs of the
-same plane; splines are in `gcxform/deviation/splines.py`.
+same plane; splines are in `gcxform/deviations/splines.py`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.deviation.spirals import Spirals, spirals_apart
-from gcxform.deviation.splines import beside_splines
+from gcxform.deviations.spirals import Spirals, spirals_apart
+from gcxform.deviations.splines import beside_splines
 from gcxform.dialect.dialect import LINEAR
 from gcxform.toolpath.angles import TURN, swept
 from gcxform.toolpath.path import Kind, Plane, Toolpath
