@@ -137,13 +137,6 @@ MUTATIONS = (
         RIGID_PASS,
     ),
     Mutation(
-        "volumetric: what the proof adds is not counted",
-        "plugins/gcxform_plugins/passes/volumetric/forward/compensation.py",
-        "step.limit - min(PROOF, PROOF_SHARE * step.limit)",
-        "step.limit",
-        CUTTING,
-    ),
-    Mutation(
         "volumetric: centres of short pieces of arcs are as far off as they were",
         "plugins/gcxform_plugins/passes/volumetric/forward/arcs.py",
         "_as_far(moved, *points[::2])",

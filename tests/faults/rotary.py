@@ -9,10 +9,14 @@ CIRCLES = "tests/test_ball_circles.py"
 CHECK = "tests/test_rotary_check.py"
 FILES = "tests/test_rotary_files.py"
 BUNDLE = "tests/test_bundle.py"
+SPECIAL = {
+    "gcxform/calibrate/rotary/circle.py": CIRCLES,
+    "gcxform/calibrate/rotary/check.py": CHECK,
+}
 
 
 def _rotary(file: str, name: str, old: str, new: str, tests: str = "") -> Mutation:
-    by = tests or {"circle": CIRCLES, "rotarycheck": CHECK}.get(file, FIGURES)
+    by = tests or SPECIAL.get(file, FIGURES)
     return Mutation(f"rotary: {name}", file, old, new, by)
 
 
