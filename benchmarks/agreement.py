@@ -27,7 +27,7 @@ from oracles.canon import parsed  # noqa: E402
 from oracles.toolpaths import difference, read  # noqa: E402
 
 import gcxform as gx  # noqa: E402
-from gcxform.dialect import INCH  # noqa: E402
+from gcxform.dialect.dialect import INCH  # noqa: E402
 from gcxform.machine.machine import Tool  # noqa: E402
 
 TABLE = {number: Tool(radius=0.05 * INCH) for number in range(1, 60)}

@@ -24,9 +24,9 @@ from pathlib import Path
 import gcxform as gx
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
-from gcxform.pipeline import Pipeline
-from gcxform.registry import default_registry
-from gcxform.source import Source
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
 from gcxform.syntax.tree import print_block
 
 HERE = Path(__file__).resolve().parent

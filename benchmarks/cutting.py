@@ -25,7 +25,7 @@ import numpy as np
 from fewest import fewest
 
 import gcxform as gx
-from gcxform.machine.modelfile import load_model
+from gcxform.errormodel.model_file import load_model
 
 HERE = Path(__file__).resolve().parent
 EXAMPLES = HERE.parent / "examples"

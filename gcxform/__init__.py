@@ -16,9 +16,19 @@ if TYPE_CHECKING:
     from gcxform.comparison import Comparison as Comparison
     from gcxform.comparison import Difference as Difference
     from gcxform.comparison import compare as compare
-    from gcxform.contract import Pass as Pass
-    from gcxform.contract import PassContext as PassContext
-    from gcxform.contract import TextPass as TextPass
+    from gcxform.config.toml_text import did_you_mean as did_you_mean
+    from gcxform.config.toml_text import read_text as read_text
+    from gcxform.contract.options import Angle as Angle
+    from gcxform.contract.options import KinematicsFile as KinematicsFile
+    from gcxform.contract.options import Length as Length
+    from gcxform.contract.options import Lines as Lines
+    from gcxform.contract.options import ModelFile as ModelFile
+    from gcxform.contract.options import Option as Option
+    from gcxform.contract.options import Vector as Vector
+    from gcxform.contract.passes import Pass as Pass
+    from gcxform.contract.passes import PassContext as PassContext
+    from gcxform.contract.passes import TextPass as TextPass
+    from gcxform.deviations.deviation import deviation as deviation
     from gcxform.diagnostics import Diagnostic as Diagnostic
     from gcxform.diagnostics import FileError as FileError
     from gcxform.diagnostics import GcxformError as GcxformError
@@ -26,75 +36,66 @@ if TYPE_CHECKING:
     from gcxform.diagnostics import Location as Location
     from gcxform.diagnostics import UsageError as UsageError
     from gcxform.diagnostics import VerificationError as VerificationError
-    from gcxform.dialect import ArcRule as ArcRule
-    from gcxform.dialect import Dialect as Dialect
-    from gcxform.dialect import NumberFormat as NumberFormat
+    from gcxform.dialect.codes import Code as Code
+    from gcxform.dialect.codes import CutterComp as CutterComp
+    from gcxform.dialect.codes import MCode as MCode
+    from gcxform.dialect.dialect import ArcRule as ArcRule
+    from gcxform.dialect.dialect import Dialect as Dialect
+    from gcxform.dialect.dialect import NumberFormat as NumberFormat
+    from gcxform.errormodel.converting import Fit as Fit
+    from gcxform.errormodel.converting import to_functions as to_functions
+    from gcxform.errormodel.converting import to_lattice as to_lattice
+    from gcxform.errormodel.converting import to_nine as to_nine
+    from gcxform.errormodel.converting import to_pitch as to_pitch
+    from gcxform.errormodel.formats import ErrorFormat as ErrorFormat
+    from gcxform.errormodel.formats import cannot_hold as cannot_hold
+    from gcxform.errormodel.formats import head_of as head_of
+    from gcxform.errormodel.functions import AxisFunction as AxisFunction
+    from gcxform.errormodel.functions import AxisFunctions as AxisFunctions
+    from gcxform.errormodel.functions import Fault as Fault
+    from gcxform.errormodel.functions import faults as faults
+    from gcxform.errormodel.lattice import Lattice as Lattice
+    from gcxform.errormodel.linear import Linear as Linear
+    from gcxform.errormodel.mean import Mean as Mean
+    from gcxform.errormodel.model import ErrorModel as ErrorModel
+    from gcxform.errormodel.model import Outside as Outside
+    from gcxform.errormodel.model import check_contraction as check_contraction
+    from gcxform.errormodel.model import compensate as compensate
+    from gcxform.errormodel.model import reach_of as reach_of
+    from gcxform.errormodel.pitch import PitchTable as PitchTable
+    from gcxform.errormodel.pitch import PitchTables as PitchTables
+    from gcxform.errormodel.rigid import RigidBody as RigidBody
+    from gcxform.errormodel.sum import Sum as Sum
+    from gcxform.errormodel.text_tables import TextRow as TextRow
+    from gcxform.errormodel.text_tables import decimal as decimal
+    from gcxform.errormodel.text_tables import number_findings as number_findings
+    from gcxform.errormodel.text_tables import placed as placed
+    from gcxform.errormodel.text_tables import text_rows as text_rows
     from gcxform.flow.translation import Item as Item
     from gcxform.flow.translation import Translator as Translator
     from gcxform.guess import Evidence as Evidence
     from gcxform.guess import Guess as Guess
     from gcxform.guess import guess_dialect as guess_dialect
-    from gcxform.hookspecs import hookimpl as hookimpl
-    from gcxform.limits import Limits as Limits
     from gcxform.machine.chain import Chain as Chain
     from gcxform.machine.chain import Rotary as Rotary
     from gcxform.machine.chain import chain_of as chain_of
     from gcxform.machine.control import Setting as Setting
-    from gcxform.machine.converting import Fit as Fit
-    from gcxform.machine.converting import to_functions as to_functions
-    from gcxform.machine.converting import to_lattice as to_lattice
-    from gcxform.machine.converting import to_nine as to_nine
-    from gcxform.machine.converting import to_pitch as to_pitch
-    from gcxform.machine.errors import ErrorModel as ErrorModel
-    from gcxform.machine.errors import Outside as Outside
-    from gcxform.machine.errors import check_contraction as check_contraction
-    from gcxform.machine.errors import compensate as compensate
-    from gcxform.machine.errors import reach_of as reach_of
-    from gcxform.machine.formats import ErrorFormat as ErrorFormat
-    from gcxform.machine.formats import cannot_hold as cannot_hold
-    from gcxform.machine.formats import head_of as head_of
-    from gcxform.machine.functions import AxisFunction as AxisFunction
-    from gcxform.machine.functions import AxisFunctions as AxisFunctions
-    from gcxform.machine.functions import Fault as Fault
-    from gcxform.machine.functions import faults as faults
     from gcxform.machine.inverse import Attitudes as Attitudes
     from gcxform.machine.inverse import Poses as Poses
     from gcxform.machine.inverse import State as State
     from gcxform.machine.inverse import attitudes as attitudes
     from gcxform.machine.inverse import inverse as inverse
     from gcxform.machine.inverse import turns as turns
-    from gcxform.machine.lattice import Lattice as Lattice
-    from gcxform.machine.linear import Linear as Linear
-    from gcxform.machine.mean import Mean as Mean
-    from gcxform.machine.pitch import PitchTable as PitchTable
-    from gcxform.machine.pitch import PitchTables as PitchTables
-    from gcxform.machine.presets import Kinematics as Kinematics
-    from gcxform.machine.rigid import RigidBody as RigidBody
-    from gcxform.machine.sums import Sum as Sum
-    from gcxform.machine.texttables import TextRow as TextRow
-    from gcxform.machine.texttables import decimal as decimal
-    from gcxform.machine.texttables import number_findings as number_findings
-    from gcxform.machine.texttables import placed as placed
-    from gcxform.machine.texttables import text_rows as text_rows
-    from gcxform.modal.codes import Code as Code
-    from gcxform.modal.codes import CutterComp as CutterComp
-    from gcxform.modal.codes import MCode as MCode
-    from gcxform.options import Angle as Angle
-    from gcxform.options import KinematicsFile as KinematicsFile
-    from gcxform.options import Length as Length
-    from gcxform.options import Lines as Lines
-    from gcxform.options import ModelFile as ModelFile
-    from gcxform.options import Option as Option
-    from gcxform.options import Vector as Vector
-    from gcxform.pipeline import Pipeline as Pipeline
-    from gcxform.pipeline import Result as Result
-    from gcxform.registry import Registry as Registry
+    from gcxform.machine.kinds import Kinematics as Kinematics
+    from gcxform.pipeline.pipeline import Pipeline as Pipeline
+    from gcxform.pipeline.pipeline import Result as Result
+    from gcxform.plugin.hookspecs import hookimpl as hookimpl
+    from gcxform.plugin.registry import Registry as Registry
     from gcxform.syntax.tree import Block as Block
     from gcxform.syntax.tree import Comment as Comment
     from gcxform.syntax.tree import Number as Number
     from gcxform.syntax.tree import Word as Word
-    from gcxform.tomltext import did_you_mean as did_you_mean
-    from gcxform.tomltext import read_text as read_text
+    from gcxform.system.limits import Limits as Limits
     from gcxform.toolpath.circles import arc_cuts as arc_cuts
     from gcxform.toolpath.circles import arc_extremes as arc_extremes
     from gcxform.toolpath.circles import circle_through as circle_through
@@ -102,7 +103,6 @@ if TYPE_CHECKING:
     from gcxform.toolpath.circles import radius_and_angle as radius_and_angle
     from gcxform.toolpath.circles import swept_anew as swept_anew
     from gcxform.toolpath.crossings import line_crossings as line_crossings
-    from gcxform.toolpath.deviation import deviation as deviation
     from gcxform.toolpath.facts import ABSOLUTE as ABSOLUTE
     from gcxform.toolpath.facts import AXIS_POSITIONS as AXIS_POSITIONS
     from gcxform.toolpath.facts import COMPENSATED as COMPENSATED
@@ -136,39 +136,39 @@ if TYPE_CHECKING:
 _HOMES = {
     "api": "Program read write",
     "comparison": "Comparison Difference compare",
-    "contract": "Pass PassContext TextPass",
+    "contract.passes": "Pass PassContext TextPass",
     "diagnostics": "Diagnostic FileError GcxformError InputError Location UsageError "
     "VerificationError",
-    "dialect": "ArcRule Dialect NumberFormat",
+    "dialect.dialect": "ArcRule Dialect NumberFormat",
     "flow.translation": "Item Translator",
     "guess": "Evidence Guess guess_dialect",
-    "hookspecs": "hookimpl",
-    "limits": "Limits",
+    "plugin.hookspecs": "hookimpl",
+    "system.limits": "Limits",
     "machine.chain": "Chain Rotary chain_of",
     "machine.inverse": "Attitudes Poses State attitudes inverse turns",
-    "machine.errors": "ErrorModel Outside check_contraction compensate reach_of",
+    "errormodel.model": "ErrorModel Outside check_contraction compensate reach_of",
     "machine.control": "Setting",
-    "machine.converting": "Fit to_functions to_lattice to_nine to_pitch",
-    "machine.functions": "AxisFunction AxisFunctions Fault faults",
-    "machine.lattice": "Lattice",
-    "machine.linear": "Linear",
-    "machine.mean": "Mean",
-    "machine.presets": "Kinematics",
-    "machine.rigid": "RigidBody",
-    "machine.pitch": "PitchTable PitchTables",
-    "machine.sums": "Sum",
-    "machine.texttables": "TextRow decimal number_findings placed text_rows",
-    "tomltext": "did_you_mean read_text",
-    "machine.formats": "ErrorFormat cannot_hold head_of",
-    "modal.codes": "Code CutterComp MCode",
-    "options": "Angle KinematicsFile Length Lines ModelFile Option Vector",
-    "pipeline": "Pipeline Result",
-    "registry": "Registry",
+    "errormodel.converting": "Fit to_functions to_lattice to_nine to_pitch",
+    "errormodel.functions": "AxisFunction AxisFunctions Fault faults",
+    "errormodel.lattice": "Lattice",
+    "errormodel.linear": "Linear",
+    "errormodel.mean": "Mean",
+    "machine.kinds": "Kinematics",
+    "errormodel.rigid": "RigidBody",
+    "errormodel.pitch": "PitchTable PitchTables",
+    "errormodel.sum": "Sum",
+    "errormodel.text_tables": "TextRow decimal number_findings placed text_rows",
+    "config.toml_text": "did_you_mean read_text",
+    "errormodel.formats": "ErrorFormat cannot_hold head_of",
+    "dialect.codes": "Code CutterComp MCode",
+    "contract.options": "Angle KinematicsFile Length Lines ModelFile Option Vector",
+    "pipeline.pipeline": "Pipeline Result",
+    "plugin.registry": "Registry",
     "syntax.tree": "Block Comment Number Word",
     "toolpath.circles": "arc_cuts arc_extremes circle_through points_on_arcs radius_and_angle "
     "swept_anew",
     "toolpath.crossings": "line_crossings",
-    "toolpath.deviation": "deviation",
+    "deviations.deviation": "deviation",
     "toolpath.facts": "ABSOLUTE AXIS_POSITIONS COMPENSATED KNOWN_POSITIONS LINEAR_ONLY METRIC "
     "NO_CUTTER_COMP NO_CYCLES NOMINAL TIP_POSITIONS WORKPIECE_FRAME XY_ARCS Fact "
     "inseparable_cycles",

@@ -10,17 +10,17 @@ from typing import Any
 
 import numpy as np
 
-from gcxform import door
+from gcxform.config import arguments
 from gcxform.diagnostics import InputError, Location
-from gcxform.dialect import Dialect
-from gcxform.files import write_atomically
-from gcxform.flow.written_out import located, written_out
+from gcxform.dialect.dialect import Dialect
+from gcxform.flow.straightened import located, written_out
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
-from gcxform.pipeline import Result
-from gcxform.registry import dialect_of
-from gcxform.source import Source
+from gcxform.pipeline.pipeline import Result
+from gcxform.plugin.registry import dialect_of
+from gcxform.syntax.source import Source, program_of
+from gcxform.system.files import write_atomically
 from gcxform.toolpath.path import (
     BLOCK_MODES,
     COLUMNS,
@@ -31,8 +31,8 @@ from gcxform.toolpath.path import (
 def write(result: Result | bytes, path: str | Path) -> None:
     """Write a result's program to a file, whole or not at all. Raises FileError."""
     text = result.text if isinstance(result, Result) else result
-    door.instance("result", text, bytes, "the result of a run, or bytes")
-    door.instance("path", path, (str, Path), "a path")
+    arguments.instance("result", text, bytes, "the result of a run, or bytes")
+    arguments.instance("path", path, (str, Path), "a path")
     with write_atomically(Path(path)) as put:
         put(text)
 
@@ -101,7 +101,7 @@ def read(program: bytes | str | Path, dialect: str | type[Dialect], **reading: A
     `block_delete`, `units`, as in `Reading`. Raises FileError, and UsageError for the dialect.
     """
     kind, said = dialect_of(dialect), Reading(**reading)
-    source = door.program(program)
+    source = program_of(program)
     with source.stream as stream:
         return Program(stream.read(), kind, said, source.name)
 

@@ -9,17 +9,17 @@ from itertools import zip_longest
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform import door
 from gcxform.api import Program
-from gcxform.contract import Pass, PassContext
+from gcxform.config import arguments
+from gcxform.contract.passes import Pass, PassContext
+from gcxform.deviations.matching import Matching, Pieces, cut, match
+from gcxform.deviations.paired_pieces import known_alone, measure
 from gcxform.diagnostics import InputError
-from gcxform.dialect import LINEAR, Dialect
+from gcxform.dialect.codes import Effect
+from gcxform.dialect.dialect import LINEAR, Dialect
 from gcxform.machine.machine import Machine
-from gcxform.modal.codes import Effect
-from gcxform.modal.meaning import FRAMING
+from gcxform.modal.meaning.meaning import FRAMING
 from gcxform.toolpath.circles import radius_and_angle
-from gcxform.toolpath.matched import known_alone, measure
-from gcxform.toolpath.matching import Matching, Pieces, cut, match
 from gcxform.toolpath.path import (
     WHOLE,
     Event,
@@ -98,8 +98,8 @@ def compare(
     is compared. Raises InputError where one of them is refused.
     """
     for one in (a, b):
-        door.instance("program", one, Program, "a program, as `read` returns it")
-    tolerance = door.positive("tolerance", tolerance)
+        arguments.instance("program", one, Program, "a program, as `read` returns it")
+    tolerance = arguments.positive("tolerance", tolerance)
     path_a, path_b = _same_axes(a.path, b.path)
     left = _Left(path_b, path_b, np.zeros(len(path_b), np.bool_))
     if through is not None:

@@ -16,14 +16,14 @@ from pathlib import Path
 
 import numpy as np
 
-from gcxform.dialect import LINEAR, Dialect
+from gcxform.dialect.dialect import LINEAR, Dialect
 from gcxform.flow.translation import foreign_lines, has_signs
-from gcxform.modal.meaning import Meaning
+from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.reader import WindowReader
-from gcxform.registry import default_registry
-from gcxform.source import Source
+from gcxform.plugin.registry import default_registry
 from gcxform.syntax.scan import Window
 from gcxform.syntax.shapes import Shape
+from gcxform.syntax.source import Source
 from gcxform.syntax.tree import Comment, Number, Word
 
 FOREIGN = frozenset({"GX101", "GX201", "GX202", "GX203"})  # blocks the control itself refuses

@@ -1,7 +1,7 @@
 """The vocabulary for plugin authors who write a dialect's code tables."""
 
-from gcxform.modal.arithmetic import MACRO_B, RS274
-from gcxform.modal.codes import (
+from gcxform.dialect.arithmetic import MACRO_B, RS274
+from gcxform.dialect.codes import (
     AXES,
     CALL,
     COMP,
@@ -20,7 +20,7 @@ from gcxform.modal.codes import (
     frame,
     inert,
 )
-from gcxform.modal.cyclerule import (
+from gcxform.dialect.cycle_rule import (
     BORE_STOP,
     DRILL,
     DRILL_DWELL,

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from gcxform.calibrate.rotary import Centres
+from gcxform.calibrate.rotary.axis import Centres
+from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Rotary
-from gcxform.machine.errors import FloatArray
 from gcxform.simulate.balls import simulate_balls
 
 CENTRE = np.array((102.532, 51.230, 128.947))  # of the published simulation, mm

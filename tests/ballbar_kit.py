@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from gcxform.calibrate.ballbar import SetUp, Trace, eccentricity, identify
+from gcxform.calibrate.ballbar.ballbar import SetUp, Trace, eccentricity, identify
 from gcxform.machine.chain import Chain, Rotary
 
 PA, PC = np.array([5.0, -32.0, -95.0]), np.array([5.0, -20.0, -60.0])

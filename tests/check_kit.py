@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import gcxform as gx
 from gcxform.cli.check import reading_findings
-from gcxform.flow.written_out import written_out
-from gcxform.source import Source
+from gcxform.flow.straightened import written_out
+from gcxform.syntax.source import Source
 
 
 def found_by_check(text: bytes, pipeline: gx.Pipeline) -> set[str]:

@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gcxform.modal.cyclerule import TAPPING, CycleRule
-from gcxform.modal.cycles import Calls, Cycles, Steps
-from gcxform.modal.cyclesteps import Rows
-from gcxform.registry import default_registry
+from gcxform.dialect.cycle_rule import TAPPING, CycleRule
+from gcxform.modal.cycles.expansion import Calls, Cycles, Steps
+from gcxform.modal.cycles.steps import Rows
+from gcxform.plugin.registry import default_registry
 from gcxform.toolpath.path import Flags, Kind, Plane
 
 CODES = (73, 74, 81, 82, 83, 84, 85, 86, 87, 88, 89)

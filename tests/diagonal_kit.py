@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from gcxform.calibrate.diagonaldata import Diagonals, LinearTest, step_diagonals
-from gcxform.calibrate.stepdiagonal import Assumed
-from gcxform.machine.errors import FloatArray
-from gcxform.machine.functions import AxisFunction, AxisFunctions
-from gcxform.machine.modelfile import load_model
+from gcxform.calibrate.diagonal.readings import Diagonals, LinearTest, step_diagonals
+from gcxform.calibrate.diagonal.step_diagonal import Assumed
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.model import FloatArray
+from gcxform.errormodel.model_file import load_model
 from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "lddm"

@@ -10,12 +10,12 @@ import pytest
 
 from gcxform.catalogue import CATALOGUE
 from gcxform.diagnostics import Diagnostic, UsageError
-from gcxform.machine.converting import difference
-from gcxform.machine.errors import ErrorModel
-from gcxform.machine.formats import ErrorFormat
-from gcxform.machine.functions import AxisFunction, AxisFunctions
-from gcxform.machine.pitch import PitchTable, PitchTables
-from gcxform.machine.rigid import RigidBody
+from gcxform.errormodel.converting import difference
+from gcxform.errormodel.formats import ErrorFormat
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.model import ErrorModel
+from gcxform.errormodel.pitch import PitchTable, PitchTables
+from gcxform.errormodel.rigid import RigidBody
 
 
 def nodes(rng: Any, count: int, step: float = 0.0) -> Any:

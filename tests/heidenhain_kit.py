@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import gcxform as gx
+from gcxform.contract.tip_codes import with_switches
 from gcxform.machine.machine import Tool
-from gcxform.registry import default_registry
-from gcxform.tipcodes import with_switches
+from gcxform.plugin.registry import default_registry
 
 DIALECT = default_registry().dialect("heidenhain")
 SWITCHED = with_switches(DIALECT, {})

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from gcxform.machine.chain import Chain, Rotary
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 
 POSES = 100_000 if os.environ.get("HYPOTHESIS_PROFILE") == "long" else 2_000
 PRESETS = {n: k for n, k in default_registry().kinematics.items() if len(k.table + k.head) == 2}

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 import gcxform as gx
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 from gcxform.simulate.positions import Chain
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"

@@ -58,8 +58,8 @@ def workplace(folder: Path) -> Path:
 
 def pipeline(chain: str, folder: Path, dialect: str = "linuxcnc", **changes: Any) -> gx.Pipeline:
     """Return the pipeline of a chain; `machine` names a file of the folder."""
-    from gcxform.pipelinefile import OutputSpec, PipelineSpec, parse_chain
-    from gcxform.registry import default_registry
+    from gcxform.pipeline.file import OutputSpec, PipelineSpec, parse_chain
+    from gcxform.plugin.registry import default_registry
 
     registry = default_registry()
     machine = changes.pop("machine", None)

@@ -17,14 +17,14 @@ from scipy.stats import f as ratios
 from scipy.stats import norm
 from test_loop import LOW, TRAVEL, truth
 
-from gcxform.calibrate.angles import Angles, Field, Pattern, fields, normal_of_ratio
-from gcxform.calibrate.diagonaldata import Diagonals, LinearTest, step_diagonals
-from gcxform.calibrate.diagonalfile import diagonals_csv, linear_csv
-from gcxform.calibrate.plaindiagonal import squareness
-from gcxform.calibrate.stepdiagonal import Assumed, Identified, solved
-from gcxform.machine.errors import FloatArray
-from gcxform.machine.functions import AxisFunction
-from gcxform.machine.rigid import RigidBody
+from gcxform.calibrate.diagonal.angles import Angles, Field, Pattern, fields, normal_of_ratio
+from gcxform.calibrate.diagonal.file import diagonals_csv, linear_csv
+from gcxform.calibrate.diagonal.plain_diagonal import squareness
+from gcxform.calibrate.diagonal.readings import Diagonals, LinearTest, step_diagonals
+from gcxform.calibrate.diagonal.step_diagonal import Assumed, Identified, solved
+from gcxform.errormodel.functions import AxisFunction
+from gcxform.errormodel.model import FloatArray
+from gcxform.errormodel.rigid import RigidBody
 from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal
 
 ANGLE = 16e-6  # rad

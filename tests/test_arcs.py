@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 from arcs_kit import SPACING, arcs, ended, follows, points, polylines
-from gcxform_plugins.passes.fit import Fit, Limits
+from gcxform_plugins.passes.arcs.fit import Fit, Limits
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import rs274
@@ -25,11 +25,11 @@ from test_verify import Change, dropped, inserted, said, swapped
 from test_verify import run as lie
 
 import gcxform as gx
-from gcxform.certifying import certificate
-from gcxform.output import Output
-from gcxform.run import Run
-from gcxform.source import Source
-from gcxform.toolpath.runs import Runs, deviation_of_runs, runs_of
+from gcxform.deviations.runs import Runs, deviation_of_runs, runs_of
+from gcxform.pipeline.certify import certificate
+from gcxform.pipeline.output import Output
+from gcxform.pipeline.run import Run
+from gcxform.syntax.source import Source
 
 EXAMPLES = Path(__file__).parents[1] / "examples" / "lddm"
 ROUNDING = 0.004  # mm; what three decimals may add along an arc

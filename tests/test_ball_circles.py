@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from ball_kit import CENTRE, NOISE, UPRIGHT, around, measured, off, rms
 
-from gcxform.calibrate.circle import fit_circles, spread
-from gcxform.calibrate.rotary import condition
+from gcxform.calibrate.rotary.axis import condition
+from gcxform.calibrate.rotary.circle import fit_circles, spread
 from gcxform.simulate.balls import simulate_balls
 
 

@@ -22,11 +22,11 @@ from ballbar_kit import (
 )
 from kinematics_kit import skewed
 
-from gcxform.calibrate.axischeck import shown
-from gcxform.calibrate.ballbar import SetUp, eccentricity, identify
-from gcxform.calibrate.ballbarwords import check, warnings
-from gcxform.calibrate.bundle import moved
-from gcxform.calibrate.locations import locations, of_trunnion
+from gcxform.calibrate.ballbar.ballbar import SetUp, eccentricity, identify
+from gcxform.calibrate.ballbar.locations import locations, of_trunnion
+from gcxform.calibrate.ballbar.report import check, warnings
+from gcxform.calibrate.bundle.bundle import moved
+from gcxform.calibrate.rotary.predicted_check import shown
 from gcxform.diagnostics import InputError
 from gcxform.simulate.ballbar import simulate_tests, simulate_trace, standard_setups
 

@@ -10,10 +10,10 @@ import pytest
 from ballbar_kit import ERRORS, measured
 from cli_kit import call
 
-from gcxform.calibrate.ballbarfile import circles_csv, parse_circles
+from gcxform.calibrate.ballbar.file import circles_csv, parse_circles
 from gcxform.diagnostics import InputError
 from gcxform.machine.chain import chain_of
-from gcxform.machine.machinefile import load_machine
+from gcxform.machine.file import load_machine
 
 MACHINE = """# a mill
 format = 1

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from cli_kit import call
 
-from gcxform.calibrate.ballfile import poses_csv, read_poses
-from gcxform.calibrate.bundle import Bundled, Layout, Poses, blind, bundle, rank
-from gcxform.calibrate.bundlewords import check
+from gcxform.calibrate.bundle.bundle import Bundled, Layout, Poses, blind, bundle, rank
+from gcxform.calibrate.bundle.report import check
+from gcxform.calibrate.rotary.ball_file import poses_csv, read_poses
 from gcxform.diagnostics import InputError
+from gcxform.errormodel.linear import Linear
+from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Chain, Rotary, chain_of
-from gcxform.machine.errors import FloatArray
-from gcxform.machine.linear import Linear
-from gcxform.machine.machinefile import load_machine
+from gcxform.machine.file import load_machine
 
 NOISE = 0.005
 BELIEVED = Chain(

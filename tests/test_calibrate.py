@@ -10,8 +10,8 @@ import pytest
 from cli_kit import call
 from diagonal_kit import LENGTHS, apart, linear, published, readings
 
-from gcxform.calibrate.diagonalfile import diagonals_csv, linear_csv
-from gcxform.calibrate.plaindiagonal import ANGLES, BLIND
+from gcxform.calibrate.diagonal.file import diagonals_csv, linear_csv
+from gcxform.calibrate.diagonal.plain_diagonal import ANGLES, BLIND
 
 
 @pytest.fixture

@@ -21,12 +21,12 @@ from hypothesis import strategies as st
 
 from gcxform.api import read
 from gcxform.cli import VERBS
-from gcxform.cli.failures import paint
-from gcxform.cli.progress import Progress
-from gcxform.cli.sourcemap import SourceMap
+from gcxform.cli.common.failures import paint
+from gcxform.cli.common.progress import Progress
+from gcxform.cli.common.source_map import SourceMap
 from gcxform.comparison import compare
-from gcxform.pipeline import Pipeline
-from gcxform.source import Source
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.syntax.source import Source
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def test_help_waits_for_click_alone() -> None:
     code = (
         "import sys\nfrom gcxform.cli import verbs\n"
         "try: verbs.main(['--help'])\nexcept SystemExit: pass\n"
-        "heavy = {'numpy', 'lark', 'msgspec', 'pluggy', 'gcxform.pipeline'}\n"
+        "heavy = {'numpy', 'lark', 'msgspec', 'pluggy', 'gcxform.pipeline.pipeline'}\n"
         "sys.exit(len(heavy & set(sys.modules)))"
     )
     assert (
@@ -236,7 +236,7 @@ def test_progress_waits_and_goes_away(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [0.0]
     stream: Any = Terminal()
     monkeypatch.setattr("sys.stderr", stream)
-    monkeypatch.setattr("gcxform.cli.progress.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("gcxform.cli.common.progress.time.monotonic", lambda: now[0])
     progress = Progress(1000, quiet=False)
     progress(100)
     assert stream.text == ""

@@ -14,8 +14,8 @@ import pytest
 from cli_kit import PART, call, process, workplace
 
 from gcxform.diagnostics import VerificationError
-from gcxform.pipeline import Pipeline
-from gcxform.verify import Verifier
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.proof.verify import Verifier
 
 
 @pytest.fixture

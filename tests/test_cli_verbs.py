@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from cli_kit import ABSOLUTE, COMPENSATED, call, workplace
 
-from gcxform.modal.tables import FAMILIES, NUMBER, code_of
-from gcxform.source import WINDOW
+from gcxform.modal.meaning.tables import FAMILIES, NUMBER, code_of
+from gcxform.syntax.source import WINDOW
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 

@@ -10,9 +10,9 @@ from cli_kit import call, workplace
 from test_rigid import lattice, rigid
 from test_rigid_pass import MACHINE, PROGRAM
 
-from gcxform.machine.functions import AxisFunction, AxisFunctions
-from gcxform.machine.linear import Linear
-from gcxform.machine.modeltext import to_toml
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.linear import Linear
+from gcxform.errormodel.model_text import to_toml
 
 RIGID = rigid(1, size=0.01, angle=60e-6, tool=(0.0, 0.0, -30.0))
 STRAIGHT = AxisFunctions(tuple(AxisFunction(f.position, f.values[:, :3]) for f in RIGID.axes))

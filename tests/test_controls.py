@@ -11,12 +11,12 @@ from oracles.linuxcnc_kins import kinematics
 
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.machine.chain import chain_of
-from gcxform.machine.fanucfile import read_fanuc
-from gcxform.machine.halfile import machine_of, read_hal
+from gcxform.machine.controls.fanuc import read_fanuc
+from gcxform.machine.controls.linuxcnc_hal import machine_of, read_hal
+from gcxform.machine.controls.siemens import read_siemens
+from gcxform.machine.file import load_machine
 from gcxform.machine.machine import Axis, Machine, Tool
-from gcxform.machine.machinefile import load_machine
-from gcxform.machine.machinetext import to_toml
-from gcxform.machine.siemensfile import read_siemens
+from gcxform.machine.text import to_toml
 
 COUNT = 1000
 TRT = {

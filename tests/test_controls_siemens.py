@@ -6,10 +6,10 @@ import pytest
 from cli_kit import call
 
 from gcxform.diagnostics import UsageError
+from gcxform.machine.controls.siemens import read_siemens
+from gcxform.machine.file import load_machine
 from gcxform.machine.machine import Axis
-from gcxform.machine.machinefile import load_machine
-from gcxform.machine.machinetext import to_toml
-from gcxform.machine.siemensfile import read_siemens
+from gcxform.machine.text import to_toml
 
 SWIVEL = """; two tables
 $TC_CARR4[1]=5.0

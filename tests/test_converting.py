@@ -14,14 +14,14 @@ from thermal_kit import warm
 
 import gcxform as gx
 from gcxform.diagnostics import UsageError
-from gcxform.machine.converting import to_functions, to_lattice, to_nine, to_pitch
-from gcxform.machine.errors import Outside
-from gcxform.machine.lattice import Lattice
-from gcxform.machine.linear import Linear
-from gcxform.machine.modelfile import load_model
-from gcxform.machine.modeltext import to_toml
-from gcxform.machine.pitch import PitchTable, PitchTables
-from gcxform.machine.sums import Sum
+from gcxform.errormodel.converting import to_functions, to_lattice, to_nine, to_pitch
+from gcxform.errormodel.lattice import Lattice
+from gcxform.errormodel.linear import Linear
+from gcxform.errormodel.model import Outside
+from gcxform.errormodel.model_file import load_model
+from gcxform.errormodel.model_text import to_toml
+from gcxform.errormodel.pitch import PitchTable, PitchTables
+from gcxform.errormodel.sum import Sum
 
 SEEDS = st.integers(0, 10_000)
 

@@ -90,8 +90,8 @@ def joins(case):
 @pytest.mark.parametrize("case", [parameter(case) for case in CASES if not case.xfail])
 def test_windows_make_no_difference(case, tmp_path, monkeypatch):
     """Run every case line by line: what one window knows, the next one must know as well."""
-    monkeypatch.setattr("gcxform.source.WINDOW", 1)
-    monkeypatch.setattr("gcxform.worker.LINUX", False)  # test_worker.py has processes
+    monkeypatch.setattr("gcxform.syntax.source.WINDOW", 1)
+    monkeypatch.setattr("gcxform.system.worker.LINUX", False)  # test_worker.py has processes
     (tmp_path / "lines").mkdir()
     found = outcome(case, tmp_path / "lines", PLACES)
     if case.diagnostics:

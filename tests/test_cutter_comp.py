@@ -12,10 +12,10 @@ import pytest
 from oracles import rs274
 
 import gcxform as gx
-from gcxform.compensated import whole_stretches
-from gcxform.contract import PassContext
+from gcxform.contract.passes import PassContext
 from gcxform.machine.machine import Machine, Tool
-from gcxform.registry import default_registry
+from gcxform.pipeline.cutter_comp import whole_stretches
+from gcxform.plugin.registry import default_registry
 from gcxform.toolpath.path import Toolpath
 
 START = {"X": 0.0, "Y": 0.0, "Z": 0.0}
@@ -90,7 +90,7 @@ def test_an_offset_stays_in_force() -> None:
 def test_compensation_does_not_begin_again_without_a_move(
     size: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("gcxform.source.WINDOW", size)
+    monkeypatch.setattr("gcxform.syntax.source.WINDOW", size)
     again = HEAD + "G41 D1 G1 Y0\nY20\nG40\nG4 P1\nG41 D1\nX30\nG40 X40\nM2\n"
     assert refused(again) == "GX230"
     assert done(again.replace("G4 P1", "X-5"))
@@ -99,7 +99,7 @@ def test_compensation_does_not_begin_again_without_a_move(
 @pytest.mark.parametrize("size", [1, 20, 60, 200])
 def test_windows_make_no_difference(size: int, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = done(CONTOUR + "")
-    monkeypatch.setattr("gcxform.source.WINDOW", size)
+    monkeypatch.setattr("gcxform.syntax.source.WINDOW", size)
     assert done(CONTOUR) == whole
 
 

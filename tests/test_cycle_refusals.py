@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from cycle_kit import HOLE, START, Block, calls, cycles, expanded, refusals, rule, told, turned
 
-from gcxform.modal.cycles import UNKNOWN, Calls, Cycles
+from gcxform.modal.cycles.expansion import UNKNOWN, Calls, Cycles
 
 REFUSED: dict[str, tuple[str, Block, str]] = {
     "thread": ("linuxcnc", {"cycle": 76}, "G76 is not expanded"),

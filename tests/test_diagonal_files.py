@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 from diagonal_kit import ALIGNED, TRAVEL, apart, published, readings
 
-from gcxform.calibrate.csvtext import parse_csv, read_csv
-from gcxform.calibrate.diagonaldata import FOUR, Leg, Volume, plain_diagonals, step_diagonals
-from gcxform.calibrate.diagonalfile import (
+from gcxform.calibrate.csv_text import parse_csv, read_csv
+from gcxform.calibrate.diagonal.file import (
     diagonals_csv,
     parse_diagonals,
     parse_linear,
     read_diagonals,
     read_linear,
 )
-from gcxform.calibrate.stepdiagonal import identify
+from gcxform.calibrate.diagonal.readings import FOUR, Leg, Volume, plain_diagonals, step_diagonals
+from gcxform.calibrate.diagonal.step_diagonal import identify
 from gcxform.diagnostics import FileError, InputError
 from gcxform.simulate.stepdiagonal import simulate_step_diagonal
 

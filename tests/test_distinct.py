@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gcxform.distinct import distinct
+from gcxform.system.distinct import distinct
 
 
 @pytest.mark.parametrize("dtype", [np.int8, np.int64, np.float64, np.bool_])

@@ -18,15 +18,15 @@ from console_kit import check_block
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
 from gcxform.cli import VERBS
-from gcxform.flow.written_out import EXECUTED
+from gcxform.contract.options import describe
+from gcxform.deviations.deviation import deviation
+from gcxform.dialect.codes import Effect
+from gcxform.flow.straightened import EXECUTED
 from gcxform.machine.chain import chain_of
-from gcxform.machine.machinefile import load_machine
-from gcxform.modal.codes import Effect
-from gcxform.options import describe
-from gcxform.pipelinefile import KEYS, SECTIONS
-from gcxform.registry import default_registry
+from gcxform.machine.file import load_machine
+from gcxform.pipeline.file import KEYS, SECTIONS
+from gcxform.plugin.registry import default_registry
 from gcxform.testing import check_dialect, check_pass
-from gcxform.toolpath.deviation import deviation
 from gcxform.version import VERSION
 
 ROOT = Path(__file__).parents[1]
@@ -109,8 +109,9 @@ def codes_table():
         said = dialect.__doc__.partition("\n")[0]
         lines.append(f"| **`{name}`** | axes {' '.join(dialect.axes)} | {said} |")
         if dialect.translator is not None:
-            place = f"plugins/gcxform_plugins/dialects/{name}.py"
-            lines.append(f"| | read | what the table at the top of [{name}.py]({place}) says |")
+            file = f"{name}/dialect.py"
+            place = f"plugins/gcxform_plugins/dialects/{file}"
+            lines.append(f"| | read | what the table at the top of [{file}]({place}) says |")
             codes = [dialect.spelled.get(c, c) for c in dialect.tip_switches.values()]
             lines.append(f"| | for `tip-codes` | {', '.join(codes)} |")
             continue

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gcxform as gx
-from gcxform import door
+from gcxform.config import arguments
 from gcxform.modal.state import Reading
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 
 REGISTRY = default_registry()
 LINUXCNC = REGISTRY.dialect("linuxcnc")
@@ -214,7 +214,7 @@ def test_compare_asks_for_a_tolerance(tolerance) -> None:
 
 
 def test_plain_values_have_no_numpy_left() -> None:
-    found = door.plain({"X": (np.float32(0.5), np.array([1, 2]))})
+    found = arguments.plain({"X": (np.float32(0.5), np.array([1, 2]))})
     assert found == {"X": [0.5, [1, 2]]}
     assert type(found["X"][0]) is float
 

@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcxform.diagnostics import InputError, UsageError
-from gcxform.machine import functions as machine_functions
-from gcxform.machine.errors import BLOCK, Outside, check_contraction, compensate
-from gcxform.machine.functions import AxisFunction, AxisFunctions
-from gcxform.machine.modelfile import load_model
+from gcxform.errormodel import functions as machine_functions
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.model import BLOCK, Outside, check_contraction, compensate
+from gcxform.errormodel.model_file import load_model
 
 LDDM = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"
 

@@ -15,16 +15,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gcxform_plugins.dialects.linuxcnc import LinuxCNC
-from gcxform_plugins.passes.volumetric import Volumetric
+from gcxform_plugins.passes.volumetric.volumetric import Volumetric
 from hypothesis import event, given
 from hypothesis import strategies as st
 
 import gcxform as gx
+from gcxform.contract.options import ModelFile
 from gcxform.diagnostics import InputError
-from gcxform.machine.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 from gcxform.machine.machine import Machine
 from gcxform.modal.state import Reading
-from gcxform.options import ModelFile
 
 NODES = [-300.0, -40.0, 0.0, 35.0, 80.0, 300.0]
 OFFSETS = {"G54": (5.0, -8.0, 2.0), "G55": (-30.0, 20.0, 6.0)}

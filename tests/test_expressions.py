@@ -11,7 +11,7 @@ from oracles.canon import CanonProgram
 from oracles.expressions import program
 
 import gcxform as gx
-from gcxform.modal.expressions import parameter_key
+from gcxform.modal.expressions.value import parameter_key
 
 START = dict.fromkeys("XYZABC", 0.0)
 COUNT = 250

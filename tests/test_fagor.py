@@ -11,11 +11,11 @@ import pytest
 from reference import fagor as reference
 
 import gcxform as gx
-from gcxform.output import Output
-from gcxform.registry import default_registry
-from gcxform.run import Run
-from gcxform.source import Source
-from gcxform.tipcodes import with_switches
+from gcxform.contract.tip_codes import with_switches
+from gcxform.pipeline.output import Output
+from gcxform.pipeline.run import Run
+from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
 
 FAGOR = default_registry().dialect("fagor")
 LENGTH = {"tool-length-axis": "Z"}

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from gcxform import heap
+from gcxform.system import heap
 
 
 def test_more_than_at_first_is_given_back(monkeypatch):
@@ -23,7 +23,7 @@ def test_more_than_at_first_is_given_back(monkeypatch):
 
 
 HOLDS_MORE = """
-from gcxform import heap
+from gcxform.system import heap
 before = heap._resident()
 held = b"1" * (40 << 20)
 print(heap._resident() - before)

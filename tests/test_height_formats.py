@@ -18,9 +18,9 @@ from gcxform_plugins.formats.xyz import Xyz
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcxform.machine.errors import compensate
-from gcxform.machine.lattice import Lattice
-from gcxform.machine.linear import Linear
+from gcxform.errormodel.lattice import Lattice
+from gcxform.errormodel.linear import Linear
+from gcxform.errormodel.model import compensate
 
 XYZ = "0 0 0\n10 0 0.1\n0 20 0\n10 20 0.3\n0 40 0\n10 40 0\n"
 PROBE = "0 10 2\n0 40 3\n-5 2 100\n\n" + XYZ

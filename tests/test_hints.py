@@ -10,11 +10,11 @@ from rtcp_kit import chain_of_kind, machine_text
 from rtcp_kit import pipeline as rtcp
 
 import gcxform as gx
-from gcxform.cli.options import pipeline_options
-from gcxform.pipelinefile import SECTIONS
-from gcxform.registry import default_registry
+from gcxform.catalogue.settings import ON_COMMAND_LINE, for_chain, settings
+from gcxform.cli.common.options import pipeline_options
+from gcxform.pipeline.file import SECTIONS
+from gcxform.plugin.registry import default_registry
 from gcxform.testing.hints import try_hint
-from gcxform.wayout import ON_COMMAND_LINE, for_chain, settings
 
 
 @pytest.mark.parametrize(

@@ -16,9 +16,9 @@ import pytest
 from cli_kit import MODEL, PART, PIPELINE, call, process, workplace
 
 import gcxform as gx
-from gcxform.limits import Limits, in_force, limits
 from gcxform.modal.state import Reading
-from gcxform.source import Source
+from gcxform.syntax.source import Source
+from gcxform.system.limits import Limits, in_force, limits
 
 MEMORY = 500_000_000  # bytes
 TIME = 10.0  # s

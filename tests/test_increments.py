@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gcxform as gx
-from gcxform.modal.increments import Increments
+from gcxform.dialect.increments import Increments
 
 INCH = Fraction(254, 10)
 STEPS = {f"IS-{letter}": Fraction(10) ** (-2 - k) for k, letter in enumerate("ABCDE")}

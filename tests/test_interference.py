@@ -18,8 +18,8 @@ import pytest
 from cli_kit import MODEL, PART, PIPELINE, call, workplace
 
 import gcxform as gx
-from gcxform import inputs
-from gcxform.source import Source
+from gcxform.syntax.source import Source
+from gcxform.system import inputs
 
 SUM = 'format = 1\nkind = "sum"\nmodels = ["model.toml"]\n'
 MACHINE = 'format = 1\ntool-table = "tool.tbl"\ntool-table-units = "mm"\n'
@@ -218,7 +218,7 @@ def test_a_run_that_is_ended_leaves_nothing(here: Path, name: str) -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="workers are processes on Linux alone")
 def test_a_worker_ends_with_the_one_that_waits_whatever_it_is_at(here: Path) -> None:
     code = (
-        "import os, signal, time; from gcxform.worker import worker; "
+        "import os, signal, time; from gcxform.system.worker import worker; "
         "one = worker(lambda: time.sleep(20), True); one.begin(); "
         "print(one.process.pid, flush=True); time.sleep(0.5); os.kill(os.getpid(), signal.SIGKILL)"
     )

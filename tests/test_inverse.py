@@ -20,12 +20,12 @@ from test_rigid_pass import LENGTH, OFFSET, PROGRAM, SECOND_ORDER, pipeline, poi
 from test_volumetric import MODEL, distance_to_line, machine_at, moves_of
 
 import gcxform as gx
-from gcxform.machine.errors import Outside
-from gcxform.machine.functions import AxisFunction, AxisFunctions
-from gcxform.machine.modeltext import to_toml
-from gcxform.machine.rigid import RigidBody
-from gcxform.options import ModelFile
-from gcxform.registry import default_registry
+from gcxform.contract.options import ModelFile
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.model import Outside
+from gcxform.errormodel.model_text import to_toml
+from gcxform.errormodel.rigid import RigidBody
+from gcxform.plugin.registry import default_registry
 
 INVERSE = f"volumetric model={MODEL} part-origin=0,0,0 inverse=true"
 LINES = b"G1 X0 Y0 Z0 F500\nX480 Y330 Z450\nX120 Y48 Z60\nY330\nX0\nX47.99 Z450\nX48.01 Z0\nM2\n"

@@ -11,7 +11,7 @@ from pathlib import Path
 import lark
 import pytest
 
-from gcxform.syntax import kept
+from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.grammar import Grammar
 
 OURS = Path(__file__).parents[1] / "grammars" / "gcxform_grammars"

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import gcxform as gx
-from gcxform.machine.machinefile import load_machine
-from gcxform.options import ModelFile
-from gcxform.registry import default_registry
+from gcxform.contract.options import ModelFile
+from gcxform.machine.file import load_machine
+from gcxform.plugin.registry import default_registry
 from gcxform.testing import check_pass
 from gcxform.testing.paths import paths
 

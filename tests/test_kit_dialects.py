@@ -9,7 +9,7 @@ from typing import ClassVar
 import pytest
 
 import gcxform as gx
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 from gcxform.testing import check_dialect
 
 

@@ -10,9 +10,9 @@ from gcxform_plugins.formats.lddm import Lddm
 
 from gcxform.catalogue import CATALOGUE
 from gcxform.diagnostics import UsageError
-from gcxform.machine.functions import AxisFunctions
-from gcxform.machine.modelfile import load_model
-from gcxform.machine.modeltext import to_toml
+from gcxform.errormodel.functions import AxisFunctions
+from gcxform.errormodel.model_file import load_model
+from gcxform.errormodel.model_text import to_toml
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "lddm"
 SHARED = Path(__file__).parents[2] / "shared" / "data" / "lddm"

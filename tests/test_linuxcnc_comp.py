@@ -14,8 +14,8 @@ from gcxform_plugins.formats.linuxcnc_comp import LinuxCncComp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcxform.machine.converting import to_pitch
-from gcxform.machine.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.converting import to_pitch
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 
 TYPE0 = "0 0 0\n100 100.005 99.997\n200 200 200\n"
 TYPE1 = "0 0 0\n100 -0.005 0.003\n200 0 0\n"

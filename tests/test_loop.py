@@ -22,8 +22,7 @@ from test_rigid import scalar
 from test_rigid_pass import away, point
 
 import gcxform as gx
-from gcxform.calibrate.diagonaldata import FOUR
-from gcxform.calibrate.diagonalfile import (
+from gcxform.calibrate.diagonal.file import (
     diagonals_csv,
     linear_csv,
     parse_diagonals,
@@ -31,11 +30,12 @@ from gcxform.calibrate.diagonalfile import (
     read_diagonals,
     read_linear,
 )
-from gcxform.calibrate.stepdiagonal import Assumed, Identified, identify
-from gcxform.machine.functions import AxisFunction
-from gcxform.machine.modelfile import load_model
-from gcxform.machine.modeltext import to_toml
-from gcxform.machine.rigid import RigidBody
+from gcxform.calibrate.diagonal.readings import FOUR
+from gcxform.calibrate.diagonal.step_diagonal import Assumed, Identified, identify
+from gcxform.errormodel.functions import AxisFunction
+from gcxform.errormodel.model_file import load_model
+from gcxform.errormodel.model_text import to_toml
+from gcxform.errormodel.rigid import RigidBody
 from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal
 
 BRACKET = Path(__file__).parents[1] / "examples" / "bracket"

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from gcxform.catalogue import CATALOGUE
+from gcxform.config.quantities import ANGLE, LENGTH
 from gcxform.diagnostics import Diagnostic, FileError, UsageError
+from gcxform.machine.file import load_machine, schema
 from gcxform.machine.machine import Axis, Tool
-from gcxform.machine.machinefile import load_machine, schema
-from gcxform.machine.quantities import ANGLE, LENGTH
 
 TRUNNION = """format = 1
 name = "trunnion mill"

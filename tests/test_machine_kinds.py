@@ -10,9 +10,9 @@ import pytest
 import gcxform as gx
 from gcxform.diagnostics import UsageError
 from gcxform.machine.chain import Chain, Rotary, chain_of
+from gcxform.machine.file import load_machine
 from gcxform.machine.machine import Machine, Tool
-from gcxform.machine.machinefile import load_machine
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 
 KINDS = default_registry().kinematics
 SHORT = """format = 1

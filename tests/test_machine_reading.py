@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from cli_kit import call
 
-from gcxform.cli.restart import _differences
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
+from gcxform.resume.restart import _differences
 from gcxform.toolpath.path import Toolpath
 
 MACHINE = """format = 1

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 
 from gcxform.api import Program, read
 from gcxform.comparison import Comparison, compare
-from gcxform.pipeline import Pipeline
-from gcxform.source import WINDOW
-from gcxform.toolpath.evenly import evenly_apart
-from gcxform.toolpath.matched import measure
-from gcxform.toolpath.matching import match
+from gcxform.deviations.even_travel import evenly_apart
+from gcxform.deviations.matching import match
+from gcxform.deviations.paired_pieces import measure
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.syntax.source import WINDOW
 
 HEAD = "G1 F100 X0 Y0 Z0\n"
 Polyline = list[tuple[float, float, float]]

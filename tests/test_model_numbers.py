@@ -12,10 +12,10 @@ from test_modelfile import HEAD, X, Z, refused
 from test_rigid import lattice as grid_of_errors
 from test_rigid import rigid as rigid_body
 
-from gcxform.machine.lattice import Lattice
-from gcxform.machine.modelfile import load_model
-from gcxform.machine.modeltext import fingerprint, to_toml
-from gcxform.machine.rigid import RigidBody
+from gcxform.errormodel.lattice import Lattice
+from gcxform.errormodel.model_file import load_model
+from gcxform.errormodel.model_text import fingerprint, to_toml
+from gcxform.errormodel.rigid import RigidBody
 
 Y = X.replace("[X]", "[Y]").replace("X =", "Y =")
 TURNS = "ECX = [0, 1e-6, 0]\n"

@@ -12,7 +12,7 @@ from simulate_kit import EXAMPLE, functions
 
 import gcxform as gx
 from gcxform import plot
-from gcxform.machine.modelfile import load_model
+from gcxform.errormodel.model_file import load_model
 from gcxform.plot.models import curves, squareness
 
 EXAMPLES = EXAMPLE.parents[1]

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from gcxform.catalogue import CATALOGUE
+from gcxform.config.toml_text import locate_key
 from gcxform.diagnostics import Diagnostic, UsageError
-from gcxform.machine.errors import ErrorModel
-from gcxform.machine.formats import ErrorFormat
-from gcxform.machine.functions import AxisFunction, AxisFunctions
-from gcxform.machine.modelfile import load_model
-from gcxform.machine.modeltext import to_toml
-from gcxform.tomltext import locate_key
+from gcxform.errormodel.formats import ErrorFormat
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.model import ErrorModel
+from gcxform.errormodel.model_file import load_model
+from gcxform.errormodel.model_text import to_toml
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"
 SHARED = Path(__file__).parents[2] / "shared" / "data" / "lddm"

@@ -13,9 +13,9 @@ import sys, mutations
 from faults.mutation import Mutation
 def heap(*words): return Mutation(*words, "tests/test_heap.py")
 mutations.MUTATIONS = (
-    heap("harmless", "gcxform/heap.py", "what it does not use", "what is not used"),
-    heap("harmful", "gcxform/heap.py", "self._trim(0)", "self._trim(1)"),
-    heap("syntax", "gcxform/heap.py", "self._trim(0)", "self._trim(0"),
+    heap("harmless", "gcxform/system/heap.py", "what it does not use", "what is not used"),
+    heap("harmful", "gcxform/system/heap.py", "self._trim(0)", "self._trim(1)"),
+    heap("syntax", "gcxform/system/heap.py", "self._trim(0)", "self._trim(0"),
 )
 mutations.IMPORTED = ()
 noticed = "tests/test_heap.py::test_what_a_process_has_is_known"  # it is no more so

@@ -6,7 +6,7 @@ import pytest
 
 import gcxform as gx
 from gcxform import vocabulary as v
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 
 FANUC = default_registry().dialect("fanuc")
 TWO = "G21 G90 G94 G17\n{0}\nG0 X0. Y0. Z5.\nG1 X10. F100.\n{1}\nG0 X0. Y0. Z5.\nG1 X10.\nM30\n"

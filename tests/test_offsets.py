@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import gcxform as gx
-from gcxform.modal.meaning import FRAMING
-from gcxform.registry import default_registry
+from gcxform.modal.meaning.meaning import FRAMING
+from gcxform.plugin.registry import default_registry
 
 CASES = Path(__file__).parents[1] / "corpus" / "offsets"
 KINDS = {

@@ -13,9 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcxform.catalogue import CATALOGUE
-from gcxform.contract import Pass
-from gcxform.diagnostics import Diagnostic, Location, UsageError
-from gcxform.options import (
+from gcxform.contract.options import (
     Angle,
     Argument,
     Coordinates,
@@ -27,6 +25,8 @@ from gcxform.options import (
     describe,
     to_toml,
 )
+from gcxform.contract.passes import Pass
+from gcxform.diagnostics import Diagnostic, Location, UsageError
 
 MODEL = """format = 1
 kind = "axis-functions"

@@ -15,9 +15,9 @@ from gcxform_plugins.formats.isg_csv import IsgCsv
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcxform.machine.functions import AxisFunctions
-from gcxform.machine.modelfile import load_model
-from gcxform.machine.rigid import RigidBody
+from gcxform.errormodel.functions import AxisFunctions
+from gcxform.errormodel.model_file import load_model
+from gcxform.errormodel.rigid import RigidBody
 
 ISG = """\
 // machine 4711, measured at 20 degC

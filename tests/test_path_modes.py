@@ -12,9 +12,9 @@ from oracles.canon import CanonProgram
 
 import gcxform as gx
 from gcxform.emit.emitter import Emitted
-from gcxform.output import Output
-from gcxform.run import Run
-from gcxform.source import Source
+from gcxform.pipeline.output import Output
+from gcxform.pipeline.run import Run
+from gcxform.syntax.source import Source
 
 Line = tuple[bytes, int, int]  # text, line of the input from 0, which of its moves comes first
 Change = Callable[[list[Line]], list[Line]]

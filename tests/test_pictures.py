@@ -16,10 +16,10 @@ from picture_kit import SVG, assert_png, drawn, figures
 from simulate_kit import EXAMPLE, file_of, functions
 
 import gcxform as gx
-from gcxform.machine.machinefile import load_machine
-from gcxform.machine.modelfile import load_model
+from gcxform.errormodel.model_file import load_model
+from gcxform.machine.file import load_machine
 from gcxform.plot import canvas
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 from gcxform.simulate.heat import before_and_after, in_order
 
 EXAMPLES = EXAMPLE.parents[1]

@@ -11,12 +11,12 @@ import pytest
 
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
-from gcxform.contract import Pass, TextPass
+from gcxform.contract.options import Length, ModelFile, Option, Vector
+from gcxform.contract.passes import Pass, TextPass
 from gcxform.diagnostics import UsageError
-from gcxform.dialect import Dialect
-from gcxform.options import Length, ModelFile, Option, Vector
-from gcxform.pipelinefile import InputSpec, OutputSpec, PipelineSpec, load, parse_chain, schema
-from gcxform.registry import Registry, default_registry
+from gcxform.dialect.dialect import Dialect
+from gcxform.pipeline.file import InputSpec, OutputSpec, PipelineSpec, load, parse_chain, schema
+from gcxform.plugin.registry import Registry, default_registry
 
 MODEL = """format = 1
 kind = "axis-functions"

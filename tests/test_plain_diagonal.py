@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from diagonal_kit import ALIGNED, LOW, SLOPES, TRAVEL, readings, values
 
-from gcxform.calibrate.diagonaldata import plain_diagonals
-from gcxform.calibrate.plaindiagonal import BLIND, spread, squareness
-from gcxform.calibrate.stepdiagonal import identify
+from gcxform.calibrate.diagonal.plain_diagonal import BLIND, spread, squareness
+from gcxform.calibrate.diagonal.readings import plain_diagonals
+from gcxform.calibrate.diagonal.step_diagonal import identify
 from gcxform.simulate.stepdiagonal import simulate_step_diagonal
 
 

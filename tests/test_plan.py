@@ -11,13 +11,13 @@ from cli_kit import call
 from oracles import rs274
 
 import gcxform as gx
-from gcxform.calibrate.ballfile import read_balls, read_poses
-from gcxform.calibrate.bundle import Layout, bundle
-from gcxform.calibrate.plan import Wanted, planned
-from gcxform.calibrate.rotary import locate
-from gcxform.calibrate.touching import sides
+from gcxform.calibrate.bundle.bundle import Layout, bundle
+from gcxform.calibrate.bundle.plan import Wanted, planned
+from gcxform.calibrate.bundle.touching import sides
+from gcxform.calibrate.rotary.axis import locate
+from gcxform.calibrate.rotary.ball_file import read_balls, read_poses
 from gcxform.machine.chain import chain_of
-from gcxform.machine.machinefile import load_machine
+from gcxform.machine.file import load_machine
 
 MACHINE = """format = 1
 table = ["A", "C"]

@@ -16,14 +16,14 @@ from kinematics_kit import matrices, tool
 from oracles import rs274
 
 import gcxform as gx
-from gcxform.calibrate.ballfile import read_balls, read_poses
-from gcxform.calibrate.bundle import bundle, moved
-from gcxform.calibrate.clearance import clear, hangs, inside, least_height, upright
-from gcxform.calibrate.plan import Wanted, planned
-from gcxform.calibrate.rotary import locate
-from gcxform.calibrate.touching import sides
+from gcxform.calibrate.bundle.bundle import bundle, moved
+from gcxform.calibrate.bundle.clearance import clear, hangs, inside, least_height, upright
+from gcxform.calibrate.bundle.plan import Wanted, planned
+from gcxform.calibrate.bundle.touching import sides
+from gcxform.calibrate.rotary.axis import locate
+from gcxform.calibrate.rotary.ball_file import read_balls, read_poses
 from gcxform.machine.chain import Chain, Rotary, chain_of
-from gcxform.machine.machinefile import load_machine
+from gcxform.machine.file import load_machine
 from gcxform.simulate.balls import simulate_poses
 
 AXES = {

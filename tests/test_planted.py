@@ -19,7 +19,7 @@ from test_verify import swapped as swapped_lines
 import gcxform as gx
 from gcxform.machine.machine import Machine, Tool
 from gcxform.modal.state import Reading
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 from gcxform.toolpath.path import Form, Kind, Toolpath
 
 START = dict.fromkeys("XYZA", 0.0)

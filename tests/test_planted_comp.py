@@ -17,7 +17,7 @@ import pytest
 import gcxform as gx
 from gcxform.emit.emitter import Emitter
 from gcxform.machine.machine import Machine, Tool
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 
 Change = Callable[[gx.Toolpath], gx.Toolpath]
 TOOLS = {1: Tool(radius=2.0), 2: Tool(radius=2.02), 3: Tool(radius=10.0)}
@@ -164,7 +164,7 @@ FAULTS = {
 def test_a_wrong_pass_is_caught(name: str, alone: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     fault = FAULTS[name]
     if alone:
-        monkeypatch.setattr("gcxform.run.check_compensated", lambda *_: None)
+        monkeypatch.setattr("gcxform.pipeline.run.check_compensated", lambda *_: None)
     assert run(fault.program, fault.dialect, lambda path: path).certificate.verified
     with pytest.raises((gx.VerificationError, gx.InputError)) as error:
         run(fault.program, fault.dialect, fault.change, fault.budget)
@@ -178,8 +178,8 @@ def test_a_fault_is_caught_across_windows(window: int, monkeypatch: pytest.Monke
         here = np.flatnonzero(path.source == 3)
         return moved(int(here[0]), 1, 0.0005)(path) if len(here) else path
 
-    monkeypatch.setattr("gcxform.run.check_compensated", lambda *_: None)
-    monkeypatch.setattr("gcxform.source.WINDOW", window)
+    monkeypatch.setattr("gcxform.pipeline.run.check_compensated", lambda *_: None)
+    monkeypatch.setattr("gcxform.syntax.source.WINDOW", window)
     assert run(NARROW, "linuxcnc", lambda path: path).certificate.verified
     with pytest.raises(gx.InputError) as error:
         run(NARROW, "linuxcnc", change, budget=0.003)

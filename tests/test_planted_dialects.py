@@ -11,10 +11,11 @@ import pytest
 
 import gcxform as gx
 from gcxform import vocabulary as v
-from gcxform.modal import acts, tables
-from gcxform.registry import default_registry
+from gcxform.modal.frames import acts
+from gcxform.modal.meaning import tables
+from gcxform.plugin.registry import default_registry
 from gcxform.testing import check_dialect
-from gcxform.testing.doing import check_doing
+from gcxform.testing.behaviour import check_doing
 
 DIALECTS = default_registry().dialects
 FANUC, HAAS, NGC, GRBL, FAGOR, KLARTEXT = (

@@ -15,17 +15,17 @@ import pytest
 
 import gcxform as gx
 from gcxform.emit.emitter import Emitted, Emitter
-from gcxform.flow import lasting
+from gcxform.flow import lasting_values as lasting
 from gcxform.flow.execution import Execution
+from gcxform.flow.line_account import check_walk
 from gcxform.flow.listing import Listing
 from gcxform.flow.macros import MacroB
 from gcxform.flow.owords import OWords
-from gcxform.flow.walk import check_walk
-from gcxform.inventoryproof import assignments_differ
-from gcxform.modal.ending import Frame
 from gcxform.modal.lines import Assigned
+from gcxform.modal.program_end import Frame
 from gcxform.modal.state import Reading
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
+from gcxform.proof.inventory import assignments_differ
 
 STRAIGHT = b"""G21 G90 G94
 #<_deep>=2.5

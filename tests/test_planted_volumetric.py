@@ -12,19 +12,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gcxform_plugins.dialects.linuxcnc import LinuxCNC
-from gcxform_plugins.passes import compensation
-from gcxform_plugins.passes.volumetric import Volumetric
+from gcxform_plugins.passes.volumetric.forward import compensation
+from gcxform_plugins.passes.volumetric.volumetric import Volumetric
 
 import gcxform as gx
-from gcxform.certificate import Certificate
+from gcxform.contract.options import ModelFile
 from gcxform.diagnostics import InputError, VerificationError
 from gcxform.emit.emitter import Emitter
-from gcxform.machine.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 from gcxform.machine.machine import Machine
 from gcxform.modal.state import Reading
-from gcxform.options import ModelFile
-from gcxform.run import Output, Run
-from gcxform.source import Source
+from gcxform.pipeline.certificate import Certificate
+from gcxform.pipeline.run import Output, Run
+from gcxform.syntax.source import Source
 
 NODES = np.array([-500.0, -100.0, 0.0, 40.0, 100.0, 500.0])
 MACHINE = Machine(

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from cli_kit import call
 
-from gcxform.calibrate.ballfile import balls_csv, poses_csv, read_poses
-from gcxform.calibrate.bundle import Poses
-from gcxform.calibrate.rotary import Centres
+from gcxform.calibrate.bundle.bundle import Poses
+from gcxform.calibrate.rotary.axis import Centres
+from gcxform.calibrate.rotary.ball_file import balls_csv, poses_csv, read_poses
 from gcxform.machine.chain import chain_of
-from gcxform.machine.machinefile import load_machine
+from gcxform.machine.file import load_machine
 
 MACHINE = """format = 1
 table = ["A", "C"]

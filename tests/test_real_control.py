@@ -19,8 +19,8 @@ from oracles.linuxcnc_kins import kinematics
 from rtcp_kit import ROUNDED, aside, between
 
 import gcxform as gx
-from gcxform.machine.halfile import machine_of
-from gcxform.machine.machinetext import to_toml
+from gcxform.machine.controls.linuxcnc_hal import machine_of
+from gcxform.machine.text import to_toml
 
 DOME = Path(__file__).parents[1] / "examples" / "rtcp-loop" / "dome.nc"
 NUMBER = 97

@@ -20,11 +20,11 @@ from rtcp_kit import ROUNDED, aside, between
 from test_real_control import AXES, CHECKED, LENGTH, NUMBER, PRINTED, ZERO
 
 import gcxform as gx
-from gcxform.machine.halfile import machine_of
-from gcxform.machine.machinetext import to_toml
-from gcxform.output import Output
-from gcxform.run import Run
-from gcxform.source import Source
+from gcxform.machine.controls.linuxcnc_hal import machine_of
+from gcxform.machine.text import to_toml
+from gcxform.pipeline.output import Output
+from gcxform.pipeline.run import Run
+from gcxform.syntax.source import Source
 
 DEMOS = Path("corpus/programs/linuxcnc/LinuxCNC-linuxcnc/vismach/5axis/table-rotary-tilting/demos")
 TOLERANCE = 0.01

@@ -13,7 +13,7 @@ import pytest
 
 from gcxform.catalogue import CATALOGUE
 from gcxform.diagnostics import Location, Severity, UsageError
-from gcxform.registry import KINDS, Registry, default_registry
+from gcxform.plugin.registry import KINDS, Registry, default_registry
 
 PASSES = """
 from __future__ import annotations
@@ -92,12 +92,12 @@ def test_the_builtin_plugin_has_no_fault() -> None:
 
 
 def test_every_builtin_dialect_and_format_is_listed() -> None:
-    """The lists in the plugin and the files of its folders agree."""
+    """The lists in the plugin and what is in its folders agree."""
     folder = Path(gcxform_plugins.__file__).parent
     listed = gcxform_plugins.gcxform_dialects() + gcxform_plugins.gcxform_error_formats()
-    modules = {cls.__module__.rpartition(".")[2] for cls in listed}
-    files = [*folder.glob("dialects/*.py"), *folder.glob("formats/*.py")]
-    assert modules == {file.stem for file in files} - {"__init__"}
+    modules = {cls.__module__.split(".")[2] for cls in listed}
+    files = [*folder.glob("dialects/[!_]*"), *folder.glob("formats/[!_]*")]
+    assert modules == {file.stem for file in files} - {"shared"}
 
 
 def test_a_plugin_is_found(install: Install) -> None:
@@ -229,7 +229,7 @@ def test_loading_is_fast() -> None:
 
 
 def test_importing_the_registry_imports_no_plugin() -> None:
-    code = "import gcxform.registry, sys; print('gcxform_plugins' in sys.modules)"
+    code = "import gcxform.plugin.registry, sys; print('gcxform_plugins' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
 

@@ -11,12 +11,12 @@ from ballbar_kit import identified, measured
 from cli_kit import call
 
 from gcxform import plot
-from gcxform.calibrate.ballbar import identify
-from gcxform.calibrate.ballbarfile import circles_csv
-from gcxform.calibrate.ballfile import balls_csv, poses_csv
-from gcxform.calibrate.bundle import Poses, bundle
-from gcxform.calibrate.rotary import Centres, locate
-from gcxform.calibrate.rotarycheck import components
+from gcxform.calibrate.ballbar.ballbar import identify
+from gcxform.calibrate.ballbar.file import circles_csv
+from gcxform.calibrate.bundle.bundle import Poses, bundle
+from gcxform.calibrate.rotary.axis import Centres, locate
+from gcxform.calibrate.rotary.ball_file import balls_csv, poses_csv
+from gcxform.calibrate.rotary.check import components
 from gcxform.machine.chain import Chain
 from gcxform.plot import canvas
 

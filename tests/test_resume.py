@@ -15,10 +15,10 @@ from reference.interpreter import Move, interpret
 
 import gcxform as gx
 from gcxform import vocabulary as v
-from gcxform.cli.restart import Restart
 from gcxform.modal.state import Reading
-from gcxform.registry import default_registry
-from gcxform.source import Source
+from gcxform.plugin.registry import default_registry
+from gcxform.resume.restart import Restart
+from gcxform.syntax.source import Source
 from gcxform.testing.generate import Options, program
 
 NAMES = ("fanuc", "grbl", "haas", "linuxcnc")

@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from thermal_kit import warm
 
-from gcxform.machine.errors import Outside, compensate, reach_of
-from gcxform.machine.functions import AxisFunction, AxisFunctions
-from gcxform.machine.lattice import Lattice
-from gcxform.machine.linear import Linear
-from gcxform.machine.rigid import RigidBody
-from gcxform.machine.sums import Sum
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.lattice import Lattice
+from gcxform.errormodel.linear import Linear
+from gcxform.errormodel.model import Outside, compensate, reach_of
+from gcxform.errormodel.rigid import RigidBody
+from gcxform.errormodel.sum import Sum
 
 ORDERS = ["".join(p) for p in itertools.permutations("XYZ")]
 CHAINS = ["FXYZ", "XFYZ", "XYFZ", "XYZF", "YFXZ", "YXFZ", "ZFXY", "FZYX", "XFZY"]

@@ -15,8 +15,8 @@ from htm import actual
 from test_rigid import inside, lattice, rigid, scalar
 
 import gcxform as gx
-from gcxform.machine.modelfile import load_model
-from gcxform.machine.modeltext import to_toml
+from gcxform.errormodel.model_file import load_model
+from gcxform.errormodel.model_text import to_toml
 
 OFFSET = np.array([-20.0, 30.0, -60.0])
 LENGTH = 120.0

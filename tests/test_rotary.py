@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from ball_kit import CENTRE, NOISE, around, clean, measured, rms, skew
 
-from gcxform.calibrate.circle import fit_circles
-from gcxform.calibrate.rotary import Centres, fitted, locate, without_each
-from gcxform.calibrate.rotarycheck import warnings
+from gcxform.calibrate.rotary.axis import Centres, fitted, locate, without_each
+from gcxform.calibrate.rotary.check import warnings
+from gcxform.calibrate.rotary.circle import fit_circles
 from gcxform.diagnostics import InputError
+from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Rotary
-from gcxform.machine.errors import FloatArray
 
 
 @pytest.mark.parametrize("sign", [1, -1])

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from ball_kit import CENTRE, UPRIGHT, around, clean, off, skew
 
-from gcxform.calibrate.rotary import Centres, Placed, arc, fitted, locate, without_each
-from gcxform.calibrate.rotarycheck import (
+from gcxform.calibrate.rotary.axis import Centres, Placed, arc, fitted, locate, without_each
+from gcxform.calibrate.rotary.check import (
     advice,
     checked_angles,
     dial,

@@ -12,12 +12,12 @@ import pytest
 from cli_kit import call
 from console_kit import check_console
 
-from gcxform.calibrate.ballfile import balls_csv, parse_balls
-from gcxform.calibrate.rotary import Centres, locate
+from gcxform.calibrate.rotary.axis import Centres, locate
+from gcxform.calibrate.rotary.ball_file import balls_csv, parse_balls
 from gcxform.diagnostics import InputError
 from gcxform.machine.chain import Rotary
-from gcxform.machine.machinefile import load_machine
-from gcxform.registry import default_registry
+from gcxform.machine.file import load_machine
+from gcxform.plugin.registry import default_registry
 from gcxform.simulate.balls import simulate_balls
 
 TRUE = Rotary("A", (0.9999999354499963, -0.00021, 0.00029), (5.013, -32.017, -95.032), -1)

@@ -8,8 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from gcxform_plugins.passes.rtcp_bound import leaving
-from gcxform_plugins.passes.rtcp_undoing import SHARE
+from gcxform_plugins.passes.rtcp.proof.undoing import SHARE
+from gcxform_plugins.passes.shared.tip_bound import leaving
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from kinematics_kit import leaning, tool

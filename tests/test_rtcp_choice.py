@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from gcxform_plugins.passes.rtcp_choice import Choice, NoWayError, Trouble, nearest
-from gcxform_plugins.passes.rtcp_proof import Proof
+from gcxform_plugins.passes.rtcp.forward.choice import Choice, NoWayError, Trouble, nearest
+from gcxform_plugins.passes.rtcp.proof.proof import Proof
 from hypothesis import given
 from hypothesis import strategies as st
 from kinematics_kit import leaning, tool
@@ -28,7 +28,7 @@ from test_rtcp_repost import leaning_poses, posted, step_of
 from test_rtcp_retarget import retargeted, timed
 
 import gcxform as gx
-from gcxform.cuts import whole_cuts
+from gcxform.pipeline.whole_cuts import whole_cuts
 
 
 def trunnion(a=(-30.0, 110.0), c=(-270.0, 270.0)):

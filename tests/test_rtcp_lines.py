@@ -21,8 +21,8 @@ from test_rtcp_retract import BACK, FEED, LIMITS, OPTIONS, TOLERANCE, round_abou
 
 import gcxform as gx
 from gcxform.emit.emitter import Emitted, Emitter
-from gcxform.pipelinefile import parse_chain
-from gcxform.registry import default_registry
+from gcxform.pipeline.file import parse_chain
+from gcxform.plugin.registry import default_registry
 
 TOP = 700.0
 UP = {"retract_lines": ["M9", "(up)", f"G53 G0 Z{TOP}"], "return_lines": ["G4 X1.5", "M8"]}
@@ -200,9 +200,9 @@ def test_the_work_offset_is_that_of_the_target(tmp_path, kind):
 
 @pytest.mark.parametrize("processes", [False, True])
 def test_each_time_the_tool_is_drawn_back_has_its_lines(tmp_path, monkeypatch, processes):
-    monkeypatch.setattr("gcxform.source.WINDOW", 1)
+    monkeypatch.setattr("gcxform.syntax.source.WINDOW", 1)
     if not processes:
-        monkeypatch.setattr("gcxform.worker.LINUX", False)
+        monkeypatch.setattr("gcxform.system.worker.LINUX", False)
     steps, _, _ = steps_of(tmp_path, "ac-trunnion", LIMITS["ac-trunnion"], **OPTIONS, **UP)
     head, _, rest = round_about(tilt=25.0).partition(b"G0 X20.")
     cut = b"G0 X20." + rest.removesuffix(b"M30\n")

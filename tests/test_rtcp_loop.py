@@ -19,7 +19,7 @@ from cli_kit import call
 from console_kit import check_console
 from rtcp_kit import between, positions
 
-from gcxform.calibrate.ballbarfile import circles_csv
+from gcxform.calibrate.ballbar.file import circles_csv
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "rtcp-loop"
 LETTERS = "XYZAC"

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from gcxform_plugins.passes.rtcp_small import bend_of_correction
-from gcxform_plugins.passes.rtcp_undoing import SHARE
+from gcxform_plugins.passes.rtcp.forward.correction_bound import bend_of_correction
+from gcxform_plugins.passes.rtcp.proof.undoing import SHARE
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from kinematics_kit import tool

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gcxform_plugins.passes.rtcp_choice import nearest
-from gcxform_plugins.passes.rtcp_small import bend_of_correction
+from gcxform_plugins.passes.rtcp.forward.choice import nearest
+from gcxform_plugins.passes.rtcp.forward.correction_bound import bend_of_correction
 from hypothesis import given
 from hypothesis import strategies as st
 from kinematics_kit import tool

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from gcxform_plugins.passes.rtcp_cutting import Cutting
+from gcxform_plugins.passes.rtcp.forward.cutting import Cutting
 from rtcp_kit import ROUNDED, between, chain_of_kind, machine_text, pipeline, positions, program
 from rtcp_kit import tips as tips_of
 from test_rtcp import FORMS, ROOM

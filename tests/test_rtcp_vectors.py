@@ -36,10 +36,10 @@ from vectors_kit import (
 )
 
 import gcxform as gx
-from gcxform.cuts import whole_sections
-from gcxform.output import Output
-from gcxform.run import Run
-from gcxform.source import Source
+from gcxform.pipeline.output import Output
+from gcxform.pipeline.run import Run
+from gcxform.pipeline.whole_cuts import whole_sections
+from gcxform.syntax.source import Source
 
 EACH = settings(
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.filter_too_much],

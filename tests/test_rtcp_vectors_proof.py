@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gcxform_plugins.passes.rtcp_pointing import InProportion
+from gcxform_plugins.passes.rtcp.forward.vectors import InProportion
 from rtcp_kit import (
     LENGTH,
     axes,
@@ -20,7 +20,7 @@ from vectors_kit import (
 )
 
 import gcxform as gx
-from gcxform.tipcodes import with_vectors
+from gcxform.contract.tip_codes import with_vectors
 
 
 def proved(folder, change, mode="angles"):

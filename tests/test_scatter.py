@@ -17,7 +17,7 @@ from ballbar_kit import identified
 from ballbar_kit import measured as traces
 from scipy.stats import chi2
 
-from gcxform.calibrate.rotary import Centres, locate
+from gcxform.calibrate.rotary.axis import Centres, locate
 from gcxform.calibrate.solution import Scatter, belonging, plausible
 from gcxform.diagnostics import InputError
 

@@ -12,9 +12,9 @@ from oracles.toolpaths import moves_of
 from reference import siemens as reference
 
 import gcxform as gx
+from gcxform.contract.tip_codes import with_switches
 from gcxform.machine.machine import Tool
-from gcxform.registry import default_registry
-from gcxform.tipcodes import with_switches
+from gcxform.plugin.registry import default_registry
 
 BESIDE = Path(__file__).parents[2] / "shared" / "corpus" / "programs"
 SIEMENS = default_registry().dialect("siemens")

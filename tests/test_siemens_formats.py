@@ -19,7 +19,7 @@ from gcxform_plugins.formats.siemens_eec import SiemensEec
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gcxform.machine.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 
 EEC = """\
 %_N_AX_EEC_INI

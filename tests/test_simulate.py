@@ -12,7 +12,7 @@ import pytest
 from simulate_kit import EXAMPLE, TRAVEL, Loose, chain_of, functions, lddm
 
 import gcxform as gx
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 from gcxform.simulate.positions import Chain, VirtualMachine, points_at, senses
 from gcxform.simulate.programs import PLANES, circles, linear_cycles
 from gcxform.simulate.virtual import (

@@ -13,13 +13,13 @@ import pytest
 from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.deviations.spirals import NEAR
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 from gcxform.toolpath.circles import points_on_arcs
 from gcxform.toolpath.path import Toolpath
-from gcxform.toolpath.spirals import NEAR
 
 SAMPLES = 1500
 Point = tuple[float, float]

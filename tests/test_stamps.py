@@ -12,8 +12,8 @@ from cli_kit import call, expanded
 from oracles import rs274
 
 import gcxform as gx
-from gcxform.source import Source
-from gcxform.stamp import LONGEST, Stamp, Stamps, stamps_in
+from gcxform.stamps.comment import LONGEST, Stamp, Stamps, stamps_in
+from gcxform.syntax.source import Source
 
 LINES = "absolute | segment chord-error=1um"
 HEAD = "GCXFORM STAMP 0123456789AB COMPENSATED BY 0.1.0 VOLUMETRIC"
@@ -158,7 +158,7 @@ def test_linuxcnc_takes_stamped_programs(place, program):
 
 
 def test_a_stamp_that_is_not_written_is_noticed(place, monkeypatch):
-    monkeypatch.setattr("gcxform.stamping.Heads.edit", lambda self, text: (text, None))
+    monkeypatch.setattr("gcxform.stamps.writing.Heads.edit", lambda self, text: (text, None))
     with pytest.raises(gx.VerificationError, match="GX609"):
         kit.pipeline(kit.VOLUMETRIC, place).run(kit.PLATE)
 
@@ -166,14 +166,14 @@ def test_a_stamp_that_is_not_written_is_noticed(place, monkeypatch):
 def test_a_stamp_that_is_not_read_is_noticed(place, monkeypatch):
     pipe = kit.pipeline(kit.VOLUMETRIC, place)
     once = pipe.run(kit.PLATE).text
-    monkeypatch.setattr("gcxform.pipeline.stamps_in", lambda source: Stamps())
+    monkeypatch.setattr("gcxform.pipeline.pipeline.stamps_in", lambda source: Stamps())
     for stamp in (True, False):
         with pytest.raises(gx.VerificationError, match="GX609"):
             dataclasses.replace(pipe, stamp=stamp).run(once)
 
 
 def test_a_seal_of_another_text_is_noticed(place, monkeypatch):
-    monkeypatch.setattr("gcxform.stamping.short", lambda digest: "0" * 12)
+    monkeypatch.setattr("gcxform.stamps.writing.short", lambda digest: "0" * 12)
     with pytest.raises(gx.VerificationError, match="GX609"):
         kit.pipeline(kit.VOLUMETRIC, place).run(kit.PLATE)
 

@@ -21,10 +21,9 @@ from diagonal_kit import (
 )
 from gcxform_plugins.formats.lddm import Lddm
 
-from gcxform.calibrate.diagonaldata import step_diagonals
-from gcxform.calibrate.reframe import reframed
-from gcxform.calibrate.solution import plausible
-from gcxform.calibrate.stepdiagonal import (
+from gcxform.calibrate.diagonal.readings import step_diagonals
+from gcxform.calibrate.diagonal.reframe import reframed
+from gcxform.calibrate.diagonal.step_diagonal import (
     Assumed,
     identify,
     misalignment_gain,
@@ -32,9 +31,10 @@ from gcxform.calibrate.stepdiagonal import (
     together,
     worded,
 )
+from gcxform.calibrate.solution import plausible
 from gcxform.diagnostics import InputError, UsageError
-from gcxform.machine.functions import AxisFunctions
-from gcxform.machine.modelfile import load_model
+from gcxform.errormodel.functions import AxisFunctions
+from gcxform.errormodel.model_file import load_model
 from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal, step_positions
 
 SAMPLES = 700
@@ -143,7 +143,7 @@ def test_s2_hidden_directions_change_no_reading():
 
 
 def _rows(found):
-    from gcxform.calibrate.equations import equations
+    from gcxform.calibrate.diagonal.equations import equations
 
     noise = found.assumed.noise
     return equations(found.diagonals, found.linear, noise, noise, found.assumed.free_beams).matrix

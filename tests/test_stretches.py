@@ -14,7 +14,7 @@ import pytest
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 from gcxform.toolpath.path import Toolpath
 
 ZERO = dict.fromkeys("XYZ", 0.0)

@@ -11,11 +11,11 @@ from format_kit import apart, nine, pitch, rigid
 from gcxform_plugins.formats.isg_csv import IsgCsv
 from gcxform_plugins.formats.xyz import Xyz
 
-from gcxform.machine.errors import ErrorModel
-from gcxform.machine.lattice import Lattice
-from gcxform.machine.modelfile import load_model
-from gcxform.machine.modeltext import to_toml
-from gcxform.registry import default_registry
+from gcxform.errormodel.lattice import Lattice
+from gcxform.errormodel.model import ErrorModel
+from gcxform.errormodel.model_file import load_model
+from gcxform.errormodel.model_text import to_toml
+from gcxform.plugin.registry import default_registry
 
 LDDM = Path(__file__).parents[1] / "examples" / "lddm"
 COMP = "0 0 0\n100 100.005 99.997\n"

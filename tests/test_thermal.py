@@ -22,11 +22,11 @@ from thermal_kit import (
     written,
 )
 
-from gcxform.machine.errors import Outside, compensate
-from gcxform.machine.functions import AxisFunction, AxisFunctions
-from gcxform.machine.modelfile import load_model
-from gcxform.machine.sums import Sum
-from gcxform.machine.thermal import Held, Rod, Stretch, ThermalScrew, drift, stretch
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.model import Outside, compensate
+from gcxform.errormodel.model_file import load_model
+from gcxform.errormodel.sum import Sum
+from gcxform.errormodel.thermal import Held, Rod, Stretch, ThermalScrew, drift, stretch
 
 VECTOR = [0, 13.084, 30.636, 56.166, 91.270, 133.394, 176.795, 214.452, 242.535]
 VECTOR += [261.682, 275.086, 285.936]

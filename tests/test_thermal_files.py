@@ -20,7 +20,7 @@ from thermal_kit import (
 )
 
 import gcxform as gx
-from gcxform.machine.modelfile import load_model, schema
+from gcxform.errormodel.model_file import load_model, schema
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from console_kit import check_console
 from thermal_kit import ALPHA, AT, COLD, LOG, NAMES, PITCH, WARM, along, text, written
 
 import gcxform as gx
-from gcxform.machine.modelfile import load_model
+from gcxform.errormodel.model_file import load_model
 from gcxform.plot.models import curves
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "warm-screw"

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import gcxform as gx
+from gcxform.proof.trace import Trace
+from gcxform.proof.verify import Verifier
 from gcxform.toolpath.facts import between_taps
 from gcxform.toolpath.path import Form
-from gcxform.trace import Trace
-from gcxform.verify import Verifier
 
 
 def test_the_proof_compares_forms():

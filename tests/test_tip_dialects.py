@@ -9,7 +9,7 @@ import pytest
 from rtcp_kit import positions
 
 import gcxform as gx
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 
 FOLDER = Path(__file__).parents[1] / "examples" / "tip-codes"
 PROGRAMS = {"siemens": "dish.mpf", "heidenhain": "dish.h", "fagor": "dish.nc"}

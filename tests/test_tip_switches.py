@@ -6,15 +6,15 @@ import re
 
 import numpy as np
 import pytest
-from gcxform_plugins.passes.rtcp_cutting import Cutting
+from gcxform_plugins.passes.rtcp.forward.cutting import Cutting
 from rtcp_kit import LENGTH, axes, chain_of_kind, machine_text, pipeline, positions
 
 import gcxform as gx
-from gcxform.output import Output
-from gcxform.registry import default_registry
-from gcxform.run import Run
-from gcxform.source import Source
-from gcxform.tipcodes import with_switches
+from gcxform.contract.tip_codes import with_switches
+from gcxform.pipeline.output import Output
+from gcxform.pipeline.run import Run
+from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
 
 CONTROL = '[control]\ntip-on = "M428"\ntip-off = "M429"\n'
 NUTATING = '[control]\ntip-on = "M429"\ntip-off = "M428"\n'

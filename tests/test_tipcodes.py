@@ -8,9 +8,9 @@ import pytest
 from rtcp_kit import chain_of_kind, machine_text, pipeline
 
 import gcxform as gx
-from gcxform.registry import default_registry
-from gcxform.source import Source
-from gcxform.tipcodes import without_tip_codes
+from gcxform.contract.tip_codes import without_tip_codes
+from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
 
 FANUC = default_registry().dialect("fanuc")
 POINTS = "X10. Y5. Z3. A0. C0.\nX12. Y7. Z4. A20. C30.\nX9. Y2. Z2. A40. C-15.\nX9. Y2. A0. C0.\n"

@@ -10,9 +10,9 @@ import pytest
 from cli_kit import call, expanded
 
 import gcxform as gx
-from gcxform.output import Output
-from gcxform.run import Run
-from gcxform.source import Source
+from gcxform.pipeline.output import Output
+from gcxform.pipeline.run import Run
+from gcxform.syntax.source import Source
 
 PROGRAM = b"""%PART
 ; a comment of 3 (words)

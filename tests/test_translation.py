@@ -14,10 +14,10 @@ import gcxform as gx
 from gcxform import vocabulary as v
 from gcxform.flow import translation
 from gcxform.flow.translation import SLOT, translated
-from gcxform.limits import Limits, in_force
 from gcxform.modal.state import Reading
-from gcxform.registry import default_registry
-from gcxform.source import Source
+from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
+from gcxform.system.limits import Limits, in_force
 
 LARK = """
 start: block_delete? item*

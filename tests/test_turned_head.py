@@ -20,13 +20,13 @@ from test_rigid import lattice, rigid, scalar
 
 import gcxform as gx
 from gcxform.emit.emitter import Emitted
-from gcxform.machine.functions import AxisFunction
-from gcxform.machine.modeltext import to_toml
-from gcxform.machine.rigid import RigidBody
-from gcxform.machine.sums import Sum
-from gcxform.output import Output
-from gcxform.run import Run
-from gcxform.source import Source
+from gcxform.errormodel.functions import AxisFunction
+from gcxform.errormodel.model_text import to_toml
+from gcxform.errormodel.rigid import RigidBody
+from gcxform.errormodel.sum import Sum
+from gcxform.pipeline.output import Output
+from gcxform.pipeline.run import Run
+from gcxform.syntax.source import Source
 
 HEADS = ["cb-fork", "c-table-b-head", "nutating-head"]
 HELD = np.array([0.0, 0.0, -LENGTH])

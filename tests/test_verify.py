@@ -11,9 +11,9 @@ import pytest
 
 import gcxform as gx
 from gcxform.emit.emitter import Emitted
-from gcxform.output import Output
-from gcxform.run import Run
-from gcxform.source import Source
+from gcxform.pipeline.output import Output
+from gcxform.pipeline.run import Run
+from gcxform.syntax.source import Source
 
 MODEL = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"
 CHAIN = "absolute"

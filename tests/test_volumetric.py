@@ -16,8 +16,8 @@ from pathlib import Path
 import pytest
 
 import gcxform as gx
-from gcxform.pipelinefile import parse_chain
-from gcxform.registry import default_registry
+from gcxform.pipeline.file import parse_chain
+from gcxform.plugin.registry import default_registry
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "lddm"
 SHARED = Path(__file__).parents[2] / "shared" / "data" / "lddm"

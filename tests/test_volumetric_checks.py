@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 import gcxform as gx
-from gcxform.machine.errors import Outside, compensate
-from gcxform.machine.functions import AxisFunction, AxisFunctions
-from gcxform.machine.modelfile import load_model
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.model import Outside, compensate
+from gcxform.errormodel.model_file import load_model
 
 ROOT = Path(__file__).parents[1]
 LDDM = load_model(ROOT / "examples" / "lddm" / "model.toml")

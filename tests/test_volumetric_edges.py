@@ -7,16 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gcxform_plugins.passes.splitting import _farthest_reaching
+from gcxform_plugins.passes.volumetric.forward.lines import _farthest_reaching
 from hypothesis import given
 from hypothesis import strategies as st
 
 import gcxform as gx
-from gcxform.machine.functions import AxisFunction, AxisFunctions
-from gcxform.machine.rigid import RigidBody
-from gcxform.machine.sums import Sum
-from gcxform.options import ModelFile
-from gcxform.registry import default_registry
+from gcxform.contract.options import ModelFile
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.rigid import RigidBody
+from gcxform.errormodel.sum import Sum
+from gcxform.plugin.registry import default_registry
 
 
 def bent(travel=200.0, count=5, size=0.01, angle=0.0, seed=1) -> RigidBody | AxisFunctions:

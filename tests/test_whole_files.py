@@ -11,8 +11,8 @@ from check_kit import new_in_output
 from oracles import rs274
 
 import gcxform as gx
-from gcxform.pipeline import Pipeline
-from gcxform.registry import default_registry
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.plugin.registry import default_registry
 
 BODIES = (
     b"G21 G90 G94 G17\nG0 X1 Y0\nG1 Y2 F100\n",

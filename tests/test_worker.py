@@ -17,13 +17,13 @@ from test_corpus import CASES, PLACES, joins, name
 
 import gcxform as gx
 from gcxform.cli import main
-from gcxform.cli.failures import FAILED, INTERRUPTED
+from gcxform.cli.common.failures import FAILED, INTERRUPTED
 from gcxform.diagnostics import FileError, InputError, Location
 from gcxform.emit.emitter import Emitter
 from gcxform.modal.interpreter import Interpreter
+from gcxform.proof.verify import Verifier
+from gcxform.system.worker import DIED, Here, Process, _may_copy, ahead, worker
 from gcxform.testing.cases import outcome, run_case
-from gcxform.verify import Verifier
-from gcxform.worker import DIED, Here, Process, _may_copy, ahead, worker
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="no processes here")
 
@@ -188,7 +188,7 @@ def test_what_has_no_room_is_told():
 def test_large_columns_go_piece_by_piece(monkeypatch):
     """The system takes and gives less than two GiB at once, and may take less than it is given."""
     pwrite, pread, most = os.pwrite, os.pread, 1000
-    monkeypatch.setattr("gcxform.worker.PIECE", 3000)
+    monkeypatch.setattr("gcxform.system.worker.PIECE", 3000)
     monkeypatch.setattr(os, "pwrite", lambda file, part, at: pwrite(file, part[:most], at))
     monkeypatch.setattr(os, "pread", lambda file, size, at: pread(file, min(size, 3000), at))
     given = np.arange(10_000.0)
@@ -243,7 +243,7 @@ SOME = [case for case in CASES[::15] if not case.xfail]
 
 @pytest.mark.parametrize("case", SOME, ids=lambda case: name(case.path))
 def test_processes_make_no_difference(case, tmp_path, monkeypatch):
-    monkeypatch.setattr("gcxform.source.WINDOW", 1)
+    monkeypatch.setattr("gcxform.syntax.source.WINDOW", 1)
     assert _may_copy()
     (tmp_path / "lines").mkdir()
     found = outcome(case, tmp_path / "lines", PLACES)
@@ -262,7 +262,7 @@ def test_a_certificate_is_the_same(verify, monkeypatch):
     )
     pipeline = gx.Pipeline.parse("metric | absolute", "linuxcnc")
     here = pipeline.run(text, verify)
-    monkeypatch.setattr("gcxform.source.WINDOW", 700)
+    monkeypatch.setattr("gcxform.syntax.source.WINDOW", 700)
     there = pipeline.run(text, verify)
     assert there.text == here.text
     assert there.certificate.to_json() == here.certificate.to_json()
@@ -271,13 +271,13 @@ def test_a_certificate_is_the_same(verify, monkeypatch):
 def test_shapes_begin_anew_in_both(monkeypatch):
     """Every comment is a shape of its own; a table that is full is begun anew."""
     monkeypatch.setattr("gcxform.modal.reader.SHAPES_AT_MOST", 50)
-    monkeypatch.setattr("gcxform.source.WINDOW", 300)
+    monkeypatch.setattr("gcxform.syntax.source.WINDOW", 300)
     text = b"G21 G91 G94 G17\n" + b"".join(
         b"G1 X%d. Y1. F%d (%d)\nG4 P%d (TWO%d)\n" % (n, 100 + n, n, n, n) for n in range(1, 200)
     )
     pipeline = gx.Pipeline.parse("absolute", "linuxcnc")
     there = pipeline.run(b"G0 X0 Y0 Z0\n" + text)
-    monkeypatch.setattr("gcxform.worker.LINUX", False)
+    monkeypatch.setattr("gcxform.system.worker.LINUX", False)
     assert pipeline.run(b"G0 X0 Y0 Z0\n" + text).text == there.text
 
 
@@ -293,9 +293,9 @@ def test_a_wrong_output_is_found_there(monkeypatch):
     text = b"G21 G90 G94\nG0 X0. Y0. Z0.\n" + b"".join(b"G1 X%d. F100.\n" % n for n in range(20))
     pipeline = gx.Pipeline.parse("absolute", "linuxcnc")
     said = []
-    monkeypatch.setattr("gcxform.source.WINDOW", 20)
+    monkeypatch.setattr("gcxform.syntax.source.WINDOW", 20)
     for copies in (True, False):
-        monkeypatch.setattr("gcxform.worker.LINUX", copies)
+        monkeypatch.setattr("gcxform.system.worker.LINUX", copies)
         with pytest.raises(gx.VerificationError) as caught:
             pipeline.run(text)
         said.append(caught.value.diagnostics[0].render().splitlines()[0])
@@ -315,15 +315,15 @@ def test_nothing_ends_a_run_before_its_program(monkeypatch, copies, what):
         return done(self, *given)
 
     monkeypatch.setattr(kind, what, stop)
-    monkeypatch.setattr("gcxform.source.WINDOW", 20)
-    monkeypatch.setattr("gcxform.worker.LINUX", copies)
+    monkeypatch.setattr("gcxform.syntax.source.WINDOW", 20)
+    monkeypatch.setattr("gcxform.system.worker.LINUX", copies)
     text = b"G21 G90 G94\nG0 X0. Y0. Z0.\n" + b"".join(b"G1 X%d. F100.\n" % n for n in range(20))
     with pytest.raises((RuntimeError, StopIteration)):
         gx.Pipeline.parse("absolute", "linuxcnc").run(text)
 
 
 def test_the_command_line_says_that_one_has_died(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("gcxform.source.WINDOW", 20)
+    monkeypatch.setattr("gcxform.syntax.source.WINDOW", 20)
     monkeypatch.setattr(Verifier, "check", lambda *_: os.kill(os.getpid(), signal.SIGKILL))
     program = tmp_path / "a.nc"
     program.write_bytes(b"G21 G90 G94\nG0 X0. Y0. Z0.\nG1 X5. F100.\nM2\n")

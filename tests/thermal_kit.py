@@ -9,8 +9,8 @@ import pytest
 
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
-from gcxform.machine.modelfile import load_model
-from gcxform.machine.thermal import Held, Rod, ThermalScrew, stretch
+from gcxform.errormodel.model_file import load_model
+from gcxform.errormodel.thermal import Held, Rod, ThermalScrew, stretch
 
 ALPHA = 11.5e-6
 PITCH = 111.0

@@ -14,7 +14,7 @@ import math
 
 import numpy as np
 
-from gcxform.calibrate.circle import fit_circles
+from gcxform.calibrate.rotary.circle import fit_circles
 from gcxform.machine.chain import Rotary
 from gcxform.simulate.balls import simulate_balls
 

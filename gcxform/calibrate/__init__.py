@@ -1,30 +1,30 @@
 """From measurements to error models, with the covariance of what is found.
 
-    gcxform/calibrate/csvtext.py        tables: units in the header, places of faults
-    gcxform/calibrate/diagonaldata.py   readings along the body diagonals, and linear tests
-    gcxform/calibrate/diagonalfile.py   the same from CSV files, and back
-    gcxform/calibrate/equations.py      what a reading says about the errors of the axes
-    gcxform/calibrate/solution.py       weighted least squares that knows what it cannot tell
-    gcxform/calibrate/stepdiagonal.py   sequential step diagonal: the nine functions
-    gcxform/calibrate/angles.py         whether its residuals show angular errors
-    gcxform/calibrate/plaindiagonal.py  four lengths: the squareness
-    gcxform/calibrate/reframe.py        the reference frame of nine functions: end points
-    gcxform/calibrate/words.py          reports and comments for a person
-    gcxform/calibrate/circle.py         circles through points of space, many at once
-    gcxform/calibrate/ballfile.py       ball centres from CSV files, and back
-    gcxform/calibrate/rotary.py         ball centres at angles: where a rotary axis is
-    gcxform/calibrate/rotarymachine.py  the same for an axis of a machine file
-    gcxform/calibrate/rotarycheck.py    the check with RTCP on, warnings, advice
-    gcxform/calibrate/rotarywords.py    its report and comments
-    gcxform/calibrate/bundle.py         balls at any poses: all rotary axes, and squareness
-    gcxform/calibrate/axischeck.py      the check with RTCP on, from the covariance of such unknowns
-    gcxform/calibrate/bundlewords.py    its report and comments
-    gcxform/calibrate/plan.py           poses for a bundle, inside the limits and well conditioned
-    gcxform/calibrate/touching.py       the program that probes them, and the centres it found
-    gcxform/calibrate/ballbar.py        circular tests with RTCP on: the axes of the table
-    gcxform/calibrate/ballbarfile.py    their readings from CSV files, and back
-    gcxform/calibrate/locations.py      the names of location errors, and of those of a trunnion
-    gcxform/calibrate/ballbarwords.py   the report and comments of circular tests
+    csv_text.py                 tables: units in the header, places of faults
+    diagonal/readings.py        readings along the body diagonals, and linear tests
+    diagonal/file.py            the same from CSV files, and back
+    diagonal/equations.py       what a reading says about the errors of the axes
+    solution.py                 weighted least squares that knows what it cannot tell
+    diagonal/step_diagonal.py   sequential step diagonal: the nine functions
+    diagonal/angles.py          whether its residuals show angular errors
+    diagonal/plain_diagonal.py  four lengths: the squareness
+    diagonal/reframe.py         the reference frame of nine functions: end points
+    diagonal/report.py          reports and comments for a person
+    rotary/circle.py            circles through points of space, many at once
+    rotary/ball_file.py         ball centres from CSV files, and back
+    rotary/axis.py              ball centres at angles: where a rotary axis is
+    rotary/machine.py           the same for an axis of a machine file
+    rotary/check.py             the check with RTCP on, warnings, advice
+    rotary/report.py            its report and comments
+    bundle/bundle.py            balls at any poses: all rotary axes, and squareness
+    rotary/predicted_check.py   the check with RTCP on, from a covariance
+    bundle/report.py            its report and comments
+    bundle/plan.py              poses for a bundle: inside the limits, well conditioned
+    bundle/touching.py          the program that probes them, and its centres
+    ballbar/ballbar.py          circular tests with RTCP on: the axes of the table
+    ballbar/file.py             their readings from CSV files, and back
+    ballbar/locations.py        the names of location errors, also of a trunnion
+    ballbar/report.py           the report and comments of circular tests
 
 Nothing here prints. What is wrong with a measurement is an InputError, with file, line and column
 where there is one.

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.machine.errors import FloatArray
+from gcxform.errormodel.model import FloatArray
 
 FEW: Final = 8  # one in so many may be an outlier
 RANK: Final = 1e-9  # of the largest singular value: below it a direction is not determined

@@ -15,7 +15,8 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, Final, NoReturn
 
-from gcxform.cli.signals import end_quietly
+from gcxform.cli.common import DEBUG
+from gcxform.cli.common.signals import end_quietly
 
 end_quietly()  # before the first import that takes time
 
@@ -40,7 +41,6 @@ VERBS: Final = {
     "schema": "Print the JSON Schema of a kind of files.",
 }
 FILES: Final = {"list": "listing"}  # a module named `list` would hide the builtin in this one
-DEBUG: Final = "show_traceback"
 OBJECTS_BETWEEN: Final = 50_000  # new objects before garbage is looked for
 
 
@@ -83,7 +83,7 @@ class Verbs(click.Group):
         """Run a command line and exit."""
         if "_GCXFORM_COMPLETE" in os.environ:
             super().main(args, prog_name, complete_var, **extra)
-        from gcxform.cli.failures import guarded
+        from gcxform.cli.common.failures import guarded
 
         words = list(sys.argv[1:] if args is None else args)
         sys.exit(guarded(self, prog_name or "gcxform", words, extra))
@@ -112,8 +112,8 @@ def _limit_option() -> click.Option:
 
 def _set_limits(ctx: click.Context, _: click.Parameter, given: Sequence[str]) -> None:
     if given:
-        from gcxform.cli.described import limits_of
-        from gcxform.limits import in_force
+        from gcxform.cli.common.derived_options import limits_of
+        from gcxform.system.limits import in_force
 
         ctx.with_resource(in_force(limits_of(given)))
 
@@ -132,7 +132,7 @@ def _outside_option() -> click.Option:
 
 def _allow_outside(ctx: click.Context, _: click.Parameter, said: bool) -> None:
     if said:
-        from gcxform.inputs import allow_outside
+        from gcxform.system.inputs import allow_outside
 
         allow_outside()
 

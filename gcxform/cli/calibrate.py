@@ -10,10 +10,10 @@ from typing import Any
 import click
 
 from gcxform.cli import VERBS
-from gcxform.cli.axes import ballbar, bundle, rotary
-from gcxform.cli.measured import about, length_of, path_of, write
-from gcxform.cli.outputs import STDOUT, check_places
-from gcxform.cli.plan import centres, plan
+from gcxform.cli.calibration.plan import centres, plan
+from gcxform.cli.calibration.rotary_axes import ballbar, bundle, rotary
+from gcxform.cli.calibration.shared import about, length_of, path_of, write
+from gcxform.cli.common.outputs import STDOUT, check_places
 from gcxform.diagnostics import UsageError
 
 _FORMAT = """
@@ -125,10 +125,10 @@ def diagonal(
 
 def _plain(data: str, noise: float, wanted: bool) -> tuple[str, Mapping[str, Any]]:
     """Return the model, if it is wanted, and the report of a plain test."""
-    from gcxform.calibrate.diagonalfile import read_diagonals
-    from gcxform.calibrate.plaindiagonal import squareness
-    from gcxform.calibrate.words import plain_comments, plain_report
-    from gcxform.machine.modeltext import to_toml
+    from gcxform.calibrate.diagonal.file import read_diagonals
+    from gcxform.calibrate.diagonal.plain_diagonal import squareness
+    from gcxform.calibrate.diagonal.report import plain_comments, plain_report
+    from gcxform.errormodel.model_text import to_toml
 
     measured = read_diagonals(path_of(data), plain=True)
     found = squareness(measured.diagonals, noise)
@@ -141,10 +141,10 @@ def _steps(
     data: str, linear: tuple[str, ...], said: tuple[float, float | None, bool], wanted: bool
 ) -> tuple[str, Mapping[str, Any]]:
     """Return the model, if it is wanted, and the report of sequential steps."""
-    from gcxform.calibrate.diagonalfile import read_diagonals, read_linear
-    from gcxform.calibrate.stepdiagonal import Assumed, identify
-    from gcxform.calibrate.words import step_comments, step_report
-    from gcxform.machine.modeltext import to_toml
+    from gcxform.calibrate.diagonal.file import read_diagonals, read_linear
+    from gcxform.calibrate.diagonal.report import step_comments, step_report
+    from gcxform.calibrate.diagonal.step_diagonal import Assumed, identify
+    from gcxform.errormodel.model_text import to_toml
 
     measured = read_diagonals(path_of(data))
     beside = [read_linear(Path(name), measured.diagonals.volume) for name in linear]

@@ -8,24 +8,25 @@ from typing import Any
 import click
 import numpy as np
 
-from gcxform.centrepath import CentreProof
-from gcxform.certifying import assumptions
-from gcxform.chain import facts_after
-from gcxform.cli import VERBS, options
-from gcxform.cli.asked import Asked
-from gcxform.cli.failures import warn
-from gcxform.cli.programs import opened
-from gcxform.contract import Pass
+from gcxform.cli import VERBS
+from gcxform.cli.common import options
+from gcxform.cli.common.failures import warn
+from gcxform.cli.common.programs import opened
+from gcxform.cli.common.request import Asked
+from gcxform.contract.passes import Pass
 from gcxform.diagnostics import PRINTED_AT_MOST, Diagnostic, InputError, Severity
-from gcxform.flow.written_out import located, written_out
-from gcxform.modal.ending import Ending
+from gcxform.flow.straightened import located, written_out
 from gcxform.modal.interpreter import Interpreter
+from gcxform.modal.program_end import Ending
 from gcxform.modal.reader import windows_of
-from gcxform.pipeline import Pipeline
-from gcxform.registry import default_registry
-from gcxform.source import Source
-from gcxform.stamp import stamps_in
-from gcxform.stamped import edited, told
+from gcxform.pipeline.certify import assumptions
+from gcxform.pipeline.chain import facts_after
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.plugin.registry import default_registry
+from gcxform.proof.centre_path import CentreProof
+from gcxform.stamps.chain import edited, told
+from gcxform.stamps.comment import stamps_in
+from gcxform.syntax.source import Source
 from gcxform.toolpath.facts import Fact
 
 STATELESS = frozenset({"GX101", "GX201", "GX202", "GX205", "GX206", "GX210", "GX211"})

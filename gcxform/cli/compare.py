@@ -8,16 +8,17 @@ from typing import Any
 import click
 
 from gcxform.api import Program
-from gcxform.cli import VERBS, options
-from gcxform.cli.asked import Asked, excluding, needed_dialect
-from gcxform.cli.outputs import STDOUT
-from gcxform.cli.programs import opened
+from gcxform.cli import VERBS
+from gcxform.cli.common import options
+from gcxform.cli.common.outputs import STDOUT
+from gcxform.cli.common.programs import opened
+from gcxform.cli.common.request import Asked, excluding, needed_dialect
 from gcxform.comparison import TOLERANCE, Comparison, compare
-from gcxform.contract import Pass
+from gcxform.config.quantities import LENGTH
+from gcxform.contract.options import Argument, build
+from gcxform.contract.passes import Pass
 from gcxform.diagnostics import Location, UsageError
-from gcxform.machine.quantities import LENGTH
-from gcxform.options import Argument, build
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 
 MODEL_PASS = "volumetric"
 SHOWN = 10

@@ -10,9 +10,10 @@ from typing import Any
 import click
 
 from gcxform.catalogue import CATALOGUE
-from gcxform.cli import VERBS, options
+from gcxform.cli import VERBS
+from gcxform.cli.common import options
+from gcxform.config.toml_text import did_you_mean
 from gcxform.diagnostics import UsageError
-from gcxform.tomltext import did_you_mean
 
 _CODE = re.compile(r"GX\d+|\d{3}", re.IGNORECASE)
 _LINE = re.compile(r"(.+):(\d+)")
@@ -26,7 +27,7 @@ def command(what: str, dialect: str | None, **asked: Any) -> None:
     """Explain a code of the catalogue, or a line of a program."""
     line = _LINE.fullmatch(what)
     if line:
-        from gcxform.cli.block import explained  # what a code means is said without numpy
+        from gcxform.cli.program.block import explained  # what a code means is said without numpy
 
         click.echo("\n".join(explained(line[1], int(line[2]), dialect, asked)))
     else:

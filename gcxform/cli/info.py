@@ -10,27 +10,28 @@ from typing import Any
 import click
 import numpy as np
 
-from gcxform.cli import VERBS, options
-from gcxform.cli.asked import Asked
-from gcxform.cli.features import by_code, by_path
-from gcxform.cli.programs import opened
-from gcxform.cli.times import Times, lengths
-from gcxform.cli.tolerant import Tolerant
-from gcxform.cli.tools import Extents, Tools
+from gcxform.cli import VERBS
+from gcxform.cli.common import options
+from gcxform.cli.common.programs import opened
+from gcxform.cli.common.request import Asked
+from gcxform.cli.program.features import by_code, by_path
+from gcxform.cli.program.times import Times, lengths
+from gcxform.cli.program.tolerant import Tolerant
+from gcxform.cli.program.tools import Extents, Tools
 from gcxform.diagnostics import InputError
-from gcxform.dialect import Dialect
+from gcxform.dialect.dialect import Dialect
+from gcxform.flow.straightened import written_out
 from gcxform.flow.translation import translated_so_far
-from gcxform.flow.written_out import written_out
 from gcxform.guess import guess_dialect
 from gcxform.machine.machine import Machine
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
-from gcxform.registry import default_registry
-from gcxform.source import Source
-from gcxform.stamp import stamps_in
-from gcxform.stamped import told
+from gcxform.plugin.registry import default_registry
+from gcxform.stamps.chain import told
+from gcxform.stamps.comment import stamps_in
 from gcxform.syntax.scan import Window
 from gcxform.syntax.shapes import CODES, Shape
+from gcxform.syntax.source import Source
 from gcxform.syntax.tree import Comment, Expression, Number, Statement
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 

@@ -9,13 +9,13 @@ from typing import Any
 import click
 
 from gcxform.cli import VERBS
-from gcxform.cli.failures import warn
-from gcxform.contract import Pass, TextPass
+from gcxform.cli.common.failures import warn
+from gcxform.config.toml_text import did_you_mean
+from gcxform.contract.options import OptionDoc, describe
+from gcxform.contract.passes import Pass, TextPass
 from gcxform.diagnostics import UsageError
-from gcxform.dialect import Dialect
-from gcxform.options import OptionDoc, describe
-from gcxform.registry import Registry, default_registry
-from gcxform.tomltext import did_you_mean
+from gcxform.dialect.dialect import Dialect
+from gcxform.plugin.registry import Registry, default_registry
 
 KINDS = {"passes": "pass", "dialects": "dialect", "kinematics": "kinematics", "formats": "format"}
 

@@ -9,16 +9,16 @@ import click
 
 from gcxform import plot
 from gcxform.cli import VERBS
-from gcxform.cli.asked import Asked
-from gcxform.cli.outputs import STDOUT, check_places, destination
+from gcxform.cli.common.outputs import STDOUT, check_places, destination
+from gcxform.cli.common.request import Asked
 from gcxform.diagnostics import Location, UsageError
 from gcxform.machine.chain import Chain, chain_of
-from gcxform.machine.fanucfile import read_fanuc
-from gcxform.machine.halfile import UNITS, read_hal
+from gcxform.machine.controls.fanuc import read_fanuc
+from gcxform.machine.controls.linuxcnc_hal import UNITS, read_hal
+from gcxform.machine.controls.siemens import read_siemens
 from gcxform.machine.jog import jog_test
 from gcxform.machine.machine import Machine
-from gcxform.machine.machinetext import to_toml
-from gcxform.machine.siemensfile import read_siemens
+from gcxform.machine.text import to_toml
 
 
 @click.group("machine", help=VERBS["machine"], short_help=VERBS["machine"])

@@ -11,12 +11,13 @@ from typing import Any, Final
 
 import click
 
-from gcxform.cli import VERBS, options
-from gcxform.cli.asked import Asked, excluding
-from gcxform.cli.outputs import STDOUT, check_places
-from gcxform.cli.transform import Job, edited_since, transform
+from gcxform.cli import VERBS
+from gcxform.cli.common import options
+from gcxform.cli.common.outputs import STDOUT, check_places
+from gcxform.cli.common.request import Asked, excluding
+from gcxform.cli.common.transform import Job, edited_since, transform
 from gcxform.diagnostics import GcxformError
-from gcxform.stamped import DONE
+from gcxform.stamps.chain import DONE
 
 SHOWN: Final = 4  # findings that fit into a dialog box
 

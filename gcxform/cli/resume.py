@@ -8,20 +8,21 @@ from typing import Any
 
 import click
 
-from gcxform.cli import VERBS, options
-from gcxform.cli.asked import Asked, needed_dialect
-from gcxform.cli.failures import warn
-from gcxform.cli.preamble import Preamble
-from gcxform.cli.programs import opened
-from gcxform.cli.restart import Restart
+from gcxform.cli import VERBS
+from gcxform.cli.common import options
+from gcxform.cli.common.failures import warn
+from gcxform.cli.common.programs import opened
+from gcxform.cli.common.request import Asked, needed_dialect
+from gcxform.config.quantities import LENGTH
 from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
-from gcxform.dialect import Dialect
-from gcxform.machine.quantities import LENGTH
-from gcxform.pipeline import check_written
-from gcxform.registry import default_registry
-from gcxform.source import lines_in
-from gcxform.stamp import Stamps, stamps_in, without_lines
-from gcxform.stamping import Seal, comment_line
+from gcxform.dialect.dialect import Dialect
+from gcxform.pipeline.pipeline import check_written
+from gcxform.plugin.registry import default_registry
+from gcxform.resume.preamble import Preamble
+from gcxform.resume.restart import Restart
+from gcxform.stamps.comment import Stamps, stamps_in, without_lines
+from gcxform.stamps.writing import Seal, comment_line
+from gcxform.syntax.source import lines_in
 
 
 @click.command("resume", help=VERBS["resume"], short_help=VERBS["resume"])

@@ -7,14 +7,15 @@ from typing import Any
 
 import click
 
-from gcxform.certificate import Certificate
-from gcxform.cli import VERBS, options
-from gcxform.cli.asked import Asked, excluding
-from gcxform.cli.failures import say, warn
-from gcxform.cli.outputs import STDOUT, check_places, same
-from gcxform.cli.transform import Done, Job, edited_since, transform
-from gcxform.pipeline import Pipeline
-from gcxform.registry import default_registry
+from gcxform.cli import VERBS
+from gcxform.cli.common import options
+from gcxform.cli.common.failures import say, warn
+from gcxform.cli.common.outputs import STDOUT, check_places, same
+from gcxform.cli.common.request import Asked, excluding
+from gcxform.cli.common.transform import Done, Job, edited_since, transform
+from gcxform.pipeline.certificate import Certificate
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.plugin.registry import default_registry
 
 
 @click.command("run", help=VERBS["run"], short_help=VERBS["run"])

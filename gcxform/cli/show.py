@@ -10,18 +10,19 @@ import click
 
 from gcxform import plot
 from gcxform.api import Program
-from gcxform.cli import VERBS, options
-from gcxform.cli.asked import Asked, needed_dialect
-from gcxform.cli.described import built, options_of
-from gcxform.cli.outputs import check_places, destination
-from gcxform.cli.programs import opened
+from gcxform.cli import VERBS
+from gcxform.cli.common import options
+from gcxform.cli.common.derived_options import built, options_of
+from gcxform.cli.common.outputs import check_places, destination
+from gcxform.cli.common.programs import opened
+from gcxform.cli.common.request import Asked, needed_dialect
+from gcxform.contract.options import Length, ModelFile, Option, Vector
 from gcxform.diagnostics import Location, UsageError
-from gcxform.dialect import Dialect
-from gcxform.machine.errors import Outside
-from gcxform.options import Length, ModelFile, Option, Vector
-from gcxform.pipeline import Pipeline
-from gcxform.pipelinefile import parse_chain
-from gcxform.registry import default_registry
+from gcxform.dialect.dialect import Dialect
+from gcxform.errormodel.model import Outside
+from gcxform.pipeline.file import parse_chain
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.plugin.registry import default_registry
 from gcxform.simulate.heat import before_and_after
 
 PASS = "volumetric"

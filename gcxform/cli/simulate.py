@@ -14,13 +14,13 @@ import numpy as np
 
 from gcxform import plot
 from gcxform.cli import VERBS
-from gcxform.cli.described import built, options_of
-from gcxform.cli.outputs import STDOUT, check_places, destination
-from gcxform.cli.readings import ballbar_rtcp, balls
+from gcxform.cli.calibration.readings import ballbar_rtcp, balls
+from gcxform.cli.common.derived_options import built, options_of
+from gcxform.cli.common.outputs import STDOUT, check_places, destination
+from gcxform.contract.options import Length, ModelFile, Option, Vector
 from gcxform.diagnostics import Location, UsageError
-from gcxform.machine.errors import AXES, FloatArray, Outside
-from gcxform.options import Length, ModelFile, Option, Vector
-from gcxform.registry import default_registry
+from gcxform.errormodel.model import AXES, FloatArray, Outside
+from gcxform.plugin.registry import default_registry
 from gcxform.simulate import report
 from gcxform.simulate.positions import Chain
 from gcxform.simulate.programs import PLANES

@@ -11,19 +11,19 @@ import click
 import numpy as np
 
 from gcxform.cli import VERBS
-from gcxform.cli.failures import say
-from gcxform.cli.outputs import STDOUT, check_places, destination
+from gcxform.cli.common.failures import say
+from gcxform.cli.common.outputs import STDOUT, check_places, destination
+from gcxform.config.toml_text import did_you_mean
+from gcxform.contract.options import Argument, build, describe
 from gcxform.diagnostics import Location, UsageError, VerificationError
-from gcxform.machine import converting
-from gcxform.machine.errors import AXES, ErrorModel, FloatArray, check_contraction
-from gcxform.machine.formats import ErrorFormat, chosen_format
-from gcxform.machine.mean import Mean
-from gcxform.machine.modelfile import SUFFIX, load_model
-from gcxform.machine.modeltext import to_toml
-from gcxform.machine.pitch import PitchTables
-from gcxform.options import Argument, build, describe
-from gcxform.registry import default_registry
-from gcxform.tomltext import did_you_mean
+from gcxform.errormodel import converting
+from gcxform.errormodel.formats import ErrorFormat, chosen_format
+from gcxform.errormodel.mean import Mean
+from gcxform.errormodel.model import AXES, ErrorModel, FloatArray, check_contraction
+from gcxform.errormodel.model_file import SUFFIX, load_model
+from gcxform.errormodel.model_text import to_toml
+from gcxform.errormodel.pitch import PitchTables
+from gcxform.plugin.registry import default_registry
 
 NATIVE = "toml"
 TOOL = 100.0  # mm: by so much another tool differs, where angular errors are compared

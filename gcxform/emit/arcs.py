@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import ArcRule
-from gcxform.modal.arcs import TURN, accepts, swept
+from gcxform.dialect.dialect import ArcRule
+from gcxform.modal.moves.arcs import accepts
+from gcxform.toolpath.angles import TURN, swept
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]

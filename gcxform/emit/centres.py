@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError
-from gcxform.dialect import Dialect
+from gcxform.dialect.dialect import Dialect
 from gcxform.emit.arcs import ArcEnds, centre_words
 from gcxform.emit.copying import EXACT, Copying
 from gcxform.emit.manner import Task
 from gcxform.emit.positions import Positions
-from gcxform.modal.arcs import TURN
+from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Small, Toolpath
 
 Floats = NDArray[np.float64]

@@ -11,12 +11,12 @@ from __future__ import annotations
 from typing import Final, NoReturn
 
 from gcxform.emit.draft import Draft
+from gcxform.emit.expressible import STATED, TAPPING, like, other_in, same_m
 from gcxform.emit.fields import Key, Role
 from gcxform.emit.manner import Manner
-from gcxform.emit.saying import STATED, TAPPING, like, other_in, same_m
-from gcxform.modal.meaning import Meaning
-from gcxform.modal.sorting import only_for_cycles
-from gcxform.modal.tables import CYCLES
+from gcxform.modal.meaning.meaning import Meaning
+from gcxform.modal.meaning.sorting import only_for_cycles
+from gcxform.modal.meaning.tables import CYCLES
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import Number, Word
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import LINEAR
+from gcxform.dialect.dialect import LINEAR
 from gcxform.emit.manner import Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions

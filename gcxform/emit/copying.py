@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
-from gcxform.dialect import LINEAR
-from gcxform.distinct import distinct
+from gcxform.dialect.dialect import LINEAR
 from gcxform.emit.converting import convertible
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, as_written
-from gcxform.modal.arcs import TURN
-from gcxform.modal.lines import fill
-from gcxform.modal.meaning import FRAMING
-from gcxform.modal.tables import GROUPS
+from gcxform.modal.columns import fill
+from gcxform.modal.meaning.meaning import FRAMING
+from gcxform.modal.meaning.tables import GROUPS
+from gcxform.system.distinct import distinct
+from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Form
 

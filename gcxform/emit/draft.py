@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import NoReturn
 
-from gcxform.dialect import Dialect
+from gcxform.dialect.dialect import Dialect
+from gcxform.emit.expressible import CannotSayError
 from gcxform.emit.fields import Field, Literal
-from gcxform.emit.saying import CannotSayError
 from gcxform.syntax.tree import Item
 
 

@@ -18,20 +18,20 @@ from numpy.typing import NDArray
 from gcxform.diagnostics import InputError
 from gcxform.emit.centres import Centres
 from gcxform.emit.copying import Copying
-from gcxform.emit.exactness import ENDS_EXACTLY, Exactness, PathMode
+from gcxform.emit.expressible import left_out, nothing_left, same_dwell, seconds_of_p
 from gcxform.emit.fields import Role
 from gcxform.emit.manner import Believed, Manner, Task
+from gcxform.emit.path_modes import ENDS_EXACTLY, Exactness, PathMode
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, motion_kinds
 from gcxform.emit.render import interleave
-from gcxform.emit.saying import left_out, nothing_left, same_dwell, seconds_of_p
 from gcxform.emit.tapping import Taps
 from gcxform.emit.writing import Style, Writing
-from gcxform.inventory import defines
-from gcxform.modal.ending import Frame
 from gcxform.modal.interpreter import Interpreted
-from gcxform.modal.meaning import Meaning
-from gcxform.modal.tables import NUMBER, MeaningTable
+from gcxform.modal.inventory import defines
+from gcxform.modal.meaning.meaning import Meaning
+from gcxform.modal.meaning.tables import NUMBER, MeaningTable
+from gcxform.modal.program_end import Frame
 from gcxform.syntax.scan import Window
 from gcxform.syntax.tree import Comment, Item, Word
 from gcxform.toolpath.path import FeedMode, Form, Kind, Toolpath

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
-from gcxform.dialect import INCH, LINEAR, Dialect, NumberFormat
+from gcxform.dialect.dialect import INCH, LINEAR, Dialect, NumberFormat
 from gcxform.modal.interpreter import Interpreted
-from gcxform.modal.tables import NUMBER, MeaningTable
+from gcxform.modal.meaning.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Toolpath
 

@@ -11,14 +11,14 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import INCH
+from gcxform.dialect.dialect import INCH
 from gcxform.emit.fields import Feed, Role
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.tapping import Taps
-from gcxform.modal.lines import fill
-from gcxform.modal.moves import turns_only
+from gcxform.modal.columns import fill
+from gcxform.modal.meaning.tables import GROUPS, NUMBER, TAP, THREAD
+from gcxform.modal.moves.moves import turns_only
 from gcxform.modal.state import CYCLE_OFF
-from gcxform.modal.tables import GROUPS, NUMBER, TAP, THREAD
 from gcxform.toolpath.path import Event, FeedMode, Form, Given, Kind
 
 Floats = NDArray[np.float64]

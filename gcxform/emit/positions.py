@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import LINEAR
+from gcxform.dialect.dialect import LINEAR
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.numbers import quantise
-from gcxform.modal.lines import fill
-from gcxform.modal.moves import SAME_PLACE, turns_only
+from gcxform.modal.columns import fill
+from gcxform.modal.moves.moves import SAME_PLACE, turns_only
 from gcxform.toolpath.path import Form, Kind, Small, Toolpath, column_major
 
 Floats = NDArray[np.float64]

@@ -22,8 +22,8 @@ from gcxform.diagnostics import InputError
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.numbers import quantise
 from gcxform.emit.positions import Positions
+from gcxform.modal.meaning.tables import TAP
 from gcxform.modal.state import CYCLE_OFF
-from gcxform.modal.tables import TAP
 from gcxform.toolpath.facts import IN_AIR
 from gcxform.toolpath.path import Form, Kind, Plane
 

@@ -8,9 +8,20 @@ then a matter of whole arrays.
 
 from __future__ import annotations
 
-from gcxform.dialect import LINEAR
+from gcxform.dialect.dialect import LINEAR
 from gcxform.emit.codewords import CodeWords
 from gcxform.emit.draft import Draft
+from gcxform.emit.expressible import (
+    CannotSayError,
+    code_of,
+    comment_in,
+    is_foreign,
+    lasts_in,
+    left_out,
+    needs_assignment,
+    own_gap,
+    unsaid_words,
+)
 from gcxform.emit.fields import (
     Axis,
     Centre,
@@ -26,19 +37,8 @@ from gcxform.emit.fields import (
     Role,
 )
 from gcxform.emit.manner import Manner
-from gcxform.emit.saying import (
-    CannotSayError,
-    code_of,
-    comment_in,
-    is_foreign,
-    lasts_in,
-    left_out,
-    needs_assignment,
-    own_gap,
-    unsaid_words,
-)
-from gcxform.modal.meaning import DRILL_WORDS, Meaning
-from gcxform.modal.sorting import program_number_fits
+from gcxform.modal.meaning.meaning import DRILL_WORDS, Meaning
+from gcxform.modal.meaning.sorting import program_number_fits
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Item, Mark, Number, Statement, Word
 

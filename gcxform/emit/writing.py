@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
-from gcxform.dialect import INCH
+from gcxform.dialect.dialect import INCH
+from gcxform.emit.expressible import CannotSayError, event_text, gaps_between, slash_of
 from gcxform.emit.fields import (
     Axis,
     Centre,
@@ -33,13 +34,12 @@ from gcxform.emit.numbers import MOST_DECIMALS, decimals_for, decimals_of, quant
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions
 from gcxform.emit.render import Renderer, groups_of
-from gcxform.emit.saying import CannotSayError, event_text, gaps_between, slash_of
 from gcxform.emit.tapping import Taps
 from gcxform.emit.templates import TemplateWriter
-from gcxform.modal.arcs import TURN
-from gcxform.modal.limits import without_blanks
-from gcxform.modal.tables import MeaningTable
+from gcxform.modal.control_limits import without_blanks
+from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.syntax.scan import Window
+from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.path import Given, Kind
 
 Floats = NDArray[np.float64]

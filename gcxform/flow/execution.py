@@ -15,17 +15,17 @@ from typing import Any, ClassVar
 import numpy as np
 
 from gcxform.diagnostics import InputError
-from gcxform.flow.keeping import Definition, kept
-from gcxform.flow.lasting import Lasting
+from gcxform.dialect.arithmetic import Arithmetic, Key, NoValueError, whole
+from gcxform.flow.lasting_values import Lasting
 from gcxform.flow.listing import CODES_OF_CALLS, STORED_MODES, Listing, bare
 from gcxform.flow.text import DECIMALS, decimal
-from gcxform.limits import how_to_raise, limits
-from gcxform.modal.arithmetic import Arithmetic, Key, NoValueError, whole
-from gcxform.modal.expressions import Evaluator, LocatedError, parameter_key, settable
+from gcxform.flow.uncalled_subprograms import Definition, kept
+from gcxform.modal.expressions.value import Evaluator, LocatedError, parameter_key, settable
 from gcxform.modal.lines import DISTANCES
-from gcxform.modal.pointless import assumed_rounding, hint_of_rounding
+from gcxform.modal.numbers_without_point import assumed_rounding, hint_of_rounding
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statement, Word
+from gcxform.system.limits import how_to_raise, limits
 
 BYTES_AT_MOST = 1 << 28  # of executed blocks
 NAMED = 5  # of the calls that a refusal stands in

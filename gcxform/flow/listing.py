@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
-from gcxform.dialect import Dialect
+from gcxform.dialect.dialect import Dialect
 from gcxform.flow.messages import prints_values
-from gcxform.modal.meaning import Meaning
+from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.reader import WindowReader
 from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statement, Word
 

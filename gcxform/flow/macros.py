@@ -16,10 +16,10 @@ from typing import Any
 
 from lark import Token
 
+from gcxform.dialect.arithmetic import MACRO_B, Arithmetic, NoValueError
 from gcxform.flow.execution import HINT, UNKNOWN, Call, Execution, whole_number
-from gcxform.flow.keeping import Definition
 from gcxform.flow.listing import Listing, bare
-from gcxform.modal.arithmetic import MACRO_B, Arithmetic, NoValueError
+from gcxform.flow.uncalled_subprograms import Definition
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import BLANKS, Block, Mark, Number, Statement, Word
 

@@ -12,8 +12,8 @@ import math
 import re
 from collections.abc import Callable
 
-from gcxform.modal.arithmetic import Key, NoValueError
-from gcxform.modal.expressions import parameter_key
+from gcxform.dialect.arithmetic import Key, NoValueError
+from gcxform.modal.expressions.value import parameter_key
 
 PRINTS = re.compile(r"\([ \t]*(?:DEBUG|PRINT|LOG)[ \t]*,", re.IGNORECASE)
 PART = re.compile(r"#<[^<>]*>|#[0-9]+|%d|%f|%\.[0-9]f|%\.")

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gcxform.diagnostics import InputError
-from gcxform.dialect import INCH, LINEAR
+from gcxform.dialect.dialect import INCH, LINEAR
 from gcxform.flow.text import decimal
 from gcxform.modal.interpreter import Interpreter
+from gcxform.modal.meaning.tables import NUMBER
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import State
-from gcxform.modal.tables import NUMBER
 from gcxform.syntax.tree import Block, Word
 
 if TYPE_CHECKING:

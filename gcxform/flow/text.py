@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from decimal import Decimal
 
-from gcxform.modal.arithmetic import Arithmetic, Key
-from gcxform.modal.expressions import written
+from gcxform.dialect.arithmetic import Arithmetic, Key
+from gcxform.modal.expressions.value import written
 
 DECIMALS = 8
 """Of mm or inch: far below what any control resolves, and what is read as fast as any number."""

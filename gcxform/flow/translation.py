@@ -22,13 +22,13 @@ from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
-from gcxform.dialect import Dialect
-from gcxform.flow.written_out import WrittenOut
-from gcxform.limits import how_to_raise, limits
+from gcxform.dialect.dialect import Dialect
+from gcxform.flow.straightened import WrittenOut
 from gcxform.modal.state import Reading
-from gcxform.source import Source
-from gcxform.syntax import kept
+from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.grammar import parsed, refusal_of, rule_of, span_of
+from gcxform.syntax.source import Source
+from gcxform.system.limits import how_to_raise, limits
 
 NUMBER = "NUMBER"
 """The terminal of a grammar that stands for numbers."""
@@ -290,6 +290,14 @@ def translated(source: Source, dialect: type[Dialect], reading: Reading) -> Tran
     return found
 
 
+def translator_of(dialect: type[Dialect]) -> type[Translator]:
+    """Return what reads the language of a dialect that has one of its own."""
+    kind = dialect.translator
+    assert kind is not None
+    assert issubclass(kind, Translator), f"{kind.__name__} is no Translator"
+    return kind
+
+
 def translated_so_far(
     source: Source, dialect: type[Dialect], reading: Reading
 ) -> tuple[Translated, InputError | None]:
@@ -297,8 +305,7 @@ def translated_so_far(
     lines = _lines(b"".join(source.windows()))
     if lines and not lines[-1]:
         lines.pop()
-    assert dialect.translator is not None
-    kind: type[Translator] = dialect.translator
+    kind = translator_of(dialect)
     blocks, origin, refused = [], [], None
     try:
         for line, block in kind(lines, source.name, dialect, reading).run():
@@ -323,8 +330,7 @@ def has_signs(text: bytes, dialect: type[Dialect]) -> bool:
 
 def foreign_lines(text: bytes, dialect: type[Dialect]) -> tuple[int, int]:
     """Return how many lines a text has, empty ones left out, and how many the grammar refuses."""
-    assert dialect.translator is not None
-    kind: type[Translator] = dialect.translator
+    kind = translator_of(dialect)
     lines = [line for line in _lines(text) if line.strip()]
     reader = kind(lines, "", dialect, Reading())
     return len(lines), sum(not _accepted(reader, line) for line in range(len(lines)))

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gcxform.diagnostics import Location, UsageError
-from gcxform.machine.errors import FloatArray
+from gcxform.errormodel.model import FloatArray
 from gcxform.machine.machine import Axis, Machine, Tool
 
 Triple = tuple[float, float, float]

@@ -11,10 +11,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
+from gcxform.config.quantities import LENGTH
+from gcxform.config.toml_text import TomlText, did_you_mean
 from gcxform.diagnostics import Diagnostic
 from gcxform.machine.machine import SWITCHES, TIP_AT_START
-from gcxform.machine.quantities import LENGTH
-from gcxform.tomltext import TomlText, did_you_mean
 
 INERT: Final = "inert-m"
 """The setting that lists M codes which move nothing."""

@@ -26,8 +26,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import UsageError
+from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import EVERYWHERE, SPINDLE, Chain, Rotary, Triple, turned
-from gcxform.machine.errors import FloatArray
 
 TOLERANCE = 1e-9  # degrees; a tip of a tool of 100 mm is then off by 2e-9 mm
 SLACK = 1e-9  # degrees and mm that rounding may take a position beyond a limit

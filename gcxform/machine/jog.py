@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Chain, Rotary
-from gcxform.machine.errors import FloatArray
 
 SIDES = {
     "+X": "the right",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
-from gcxform.modal.tables import MeaningTable
+from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.syntax.scan import Window
 
 

@@ -14,19 +14,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.config.quantities import LENGTH
 from gcxform.diagnostics import UsageError
-from gcxform.dialect import INCH, Dialect
-from gcxform.machine.quantities import LENGTH
-from gcxform.modal.arithmetic import Key
-from gcxform.modal.computing import compute
-from gcxform.modal.cycles import Cycles
-from gcxform.modal.expressions import parameter_key
-from gcxform.modal.frames import FrameState
-from gcxform.modal.limits import refuse_limits
+from gcxform.dialect.arithmetic import Key
+from gcxform.dialect.dialect import INCH, Dialect
+from gcxform.modal.control_limits import refuse_limits
+from gcxform.modal.cycles.expansion import Cycles
+from gcxform.modal.expressions.assignments import compute
+from gcxform.modal.expressions.value import parameter_key
+from gcxform.modal.frames.state import FrameState
 from gcxform.modal.lines import Assigned, Lines
-from gcxform.modal.moves import Moves
+from gcxform.modal.meaning.tables import GROUPS, NUMBER, SPLINES, MeaningTable
+from gcxform.modal.moves.moves import Moves
 from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, State
-from gcxform.modal.tables import GROUPS, NUMBER, SPLINES, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.toolpath.path import Toolpath
 

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import INCH, LINEAR, Dialect
-from gcxform.modal.arithmetic import Key
+from gcxform.dialect.arithmetic import Key
+from gcxform.dialect.dialect import INCH, LINEAR, Dialect
+from gcxform.modal.columns import fill
 from gcxform.modal.findings import Findings
-from gcxform.modal.pointless import Pointless
-from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
-from gcxform.modal.tables import (
+from gcxform.modal.meaning.tables import (
     COLUMNS,
     CYCLES,
     FLAGS,
@@ -23,6 +22,8 @@ from gcxform.modal.tables import (
     MeaningTable,
     of_splines,
 )
+from gcxform.modal.numbers_without_point import Pointless
+from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
 from gcxform.syntax.scan import Window
 
 Floats = NDArray[np.float64]
@@ -43,15 +44,6 @@ class Assigned(NamedTuple):
 
 LENGTHS = LINEAR + "IJKR"
 NOTHING = 0  # the shape of an empty line
-
-
-def fill(values: NDArray[Any], present: Flags, initial: float) -> NDArray[Any]:
-    """Return a column in which every line has the value last set before or on it."""
-    rows = np.flatnonzero(present)
-    if len(rows) == len(values):
-        return values
-    given = np.append(np.array(initial, values.dtype), values[rows])
-    return np.repeat(given, np.diff(rows, prepend=0, append=len(values)))
 
 
 class Lines:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gcxform.dialect import Dialect
-from gcxform.modal.tables import MeaningTable
-from gcxform.source import Source
+from gcxform.dialect.dialect import Dialect
+from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.syntax.scan import Window, scan
 from gcxform.syntax.shapes import Shape, ShapeTable
+from gcxform.syntax.source import Source
 
 Apart = tuple[Window, int, list[Shape]]  # a window, how many shapes were known, those that are new
 SHAPES_AT_MOST = 20_000  # a table of shapes that grows beyond is begun anew

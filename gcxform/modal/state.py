@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform import door
+from gcxform.config import arguments
+from gcxform.config.quantities import AXIS_LETTERS
 from gcxform.diagnostics import Diagnostic, UsageError
+from gcxform.dialect.increments import Increments
 from gcxform.machine.machine import TIP_AT_START, Machine, Tool
-from gcxform.machine.quantities import AXIS_LETTERS
-from gcxform.modal.frames import FrameState
-from gcxform.modal.increments import Increments
+from gcxform.modal.cycles.expansion import Cycles
+from gcxform.modal.frames.state import FrameState
 from gcxform.toolpath.frames import Frame
-
-if TYPE_CHECKING:
-    from gcxform.modal.cycles import Cycles
 
 Floats = NDArray[np.float64]
 Small = NDArray[np.int8]
@@ -78,19 +75,21 @@ class Reading:
     def _taken(self) -> dict[str, object]:
         """Return the fields that a program cannot be read without understanding, converted."""
         start = {
-            door.chosen("start", axis, AXIS_LETTERS): door.number(f"start of {axis}", value)
-            for axis, value in door.table("start", self.start).items()
+            arguments.chosen("start", axis, AXIS_LETTERS): arguments.number(
+                f"start of {axis}", value
+            )
+            for axis, value in arguments.table("start", self.start).items()
         }
         parameters = {
-            name: door.number(f"parameter {name}", value)
-            for name, value in door.table("parameters", self.parameters).items()
+            name: arguments.number(f"parameter {name}", value)
+            for name, value in arguments.table("parameters", self.parameters).items()
         }
         return {
             "start": start,
             "parameters": parameters,
-            "feed": None if self.feed is None else door.positive("feed", self.feed),
-            "block_delete": door.chosen("block_delete", self.block_delete, BLOCK_DELETE),
-            "units": door.chosen("units", self.units, UNITS),
+            "feed": None if self.feed is None else arguments.positive("feed", self.feed),
+            "block_delete": arguments.chosen("block_delete", self.block_delete, BLOCK_DELETE),
+            "units": arguments.chosen("units", self.units, UNITS),
             "increment": _increment("increment", self.increment),
             "feed_increment": _increment("feed_increment", self.feed_increment),
         }
@@ -120,7 +119,7 @@ class Reading:
 
 def _increment(what: str, value: object) -> float | str | None:
     """Return an increment as `Increments` takes it: a length, or words."""
-    return value if value is None or isinstance(value, str) else door.positive(what, value)
+    return value if value is None or isinstance(value, str) else arguments.positive(what, value)
 
 
 @dataclass(slots=True)

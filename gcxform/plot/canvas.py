@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 import numpy as np
 
 from gcxform.diagnostics import Location, UsageError
-from gcxform.machine.errors import FloatArray
+from gcxform.errormodel.model import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

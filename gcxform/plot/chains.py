@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import SPINDLE, Chain, Rotary
-from gcxform.machine.errors import FloatArray
 from gcxform.plot.canvas import AFTER, BEFORE, GREY, figure, isometric, styled, triad
 
 if TYPE_CHECKING:

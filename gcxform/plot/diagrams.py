@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gcxform.machine.errors import FloatArray
+from gcxform.errormodel.model import FloatArray
 from gcxform.plot.canvas import AFTER, BEFORE, empty, figure, magnified, styled
 from gcxform.simulate.circles import Circles
 from gcxform.simulate.figures import Positioning

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gcxform.machine.errors import AXES, ErrorModel, FloatArray, Outside
-from gcxform.machine.pitch import PitchTables
-from gcxform.machine.sums import Sum
-from gcxform.machine.thermal import ThermalScrew
+from gcxform.errormodel.model import AXES, ErrorModel, FloatArray, Outside
+from gcxform.errormodel.pitch import PitchTables
+from gcxform.errormodel.sum import Sum
+from gcxform.errormodel.thermal import ThermalScrew
 from gcxform.plot.canvas import AFTER, BEFORE, GREY, empty, figure, isometric, nice, styled, triad
 from gcxform.simulate.virtual import ranges
 

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gcxform.calibrate.ballbar import Eccentricity, Identified
-from gcxform.calibrate.ballbarfile import bar_name
-from gcxform.calibrate.bundle import Bundled
-from gcxform.calibrate.rotary import Kept, Placed
-from gcxform.calibrate.rotarycheck import components
-from gcxform.machine.errors import AXES, FloatArray
+from gcxform.calibrate.ballbar.ballbar import Eccentricity, Identified
+from gcxform.calibrate.ballbar.file import bar_name
+from gcxform.calibrate.bundle.bundle import Bundled
+from gcxform.calibrate.rotary.axis import Kept, Placed
+from gcxform.calibrate.rotary.check import components
+from gcxform.errormodel.model import AXES, FloatArray
 from gcxform.plot.canvas import AFTER, BEFORE, MEAN, figure, magnified, styled
 
 if TYPE_CHECKING:

@@ -1,7 +1,7 @@
 """What a ballbar reads while the control follows the tip and a rotary axis of the table turns.
 
-The control knows one machine, the axes are another; `gcxform.calibrate.ballbar.readings` says what
-comes of it. Here noise is added, and the four tests of a trunnion are laid out.
+The control knows one machine, the axes are another; `gcxform.calibrate.ballbar.ballbar.readings`
+says what comes of it. Here noise is added, and the four tests of a trunnion are laid out.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from gcxform.calibrate.ballbar import SetUp, Trace, readings
+from gcxform.calibrate.ballbar.ballbar import SetUp, Trace, readings
+from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Chain, Triple
-from gcxform.machine.errors import FloatArray
 
 
 def simulate_trace(

@@ -14,10 +14,10 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from gcxform.calibrate.bundle import Poses
+from gcxform.calibrate.bundle.bundle import Poses
 from gcxform.diagnostics import UsageError
+from gcxform.errormodel.model import ErrorModel, FloatArray, compensate
 from gcxform.machine.chain import Chain, Rotary
-from gcxform.machine.errors import ErrorModel, FloatArray, compensate
 
 
 def simulate_balls(

@@ -17,7 +17,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gcxform.machine.errors import FloatArray
+from gcxform.errormodel.model import FloatArray
 
 STEPS = 20
 CONVERGED = 1e-12  # mm

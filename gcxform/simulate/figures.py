@@ -20,7 +20,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gcxform.machine.errors import FloatArray
+from gcxform.errormodel.model import FloatArray
 
 COVERAGE = 2.0  # the standard's factor for limits: mean plus and minus 2 s
 

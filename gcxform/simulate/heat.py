@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.api import Program
+from gcxform.deviations.deviation import deviation
+from gcxform.deviations.matching import Pieces, cut, moving_rows
 from gcxform.diagnostics import InputError, UsageError
-from gcxform.machine.errors import FloatArray
-from gcxform.pipeline import Pipeline, Result
+from gcxform.errormodel.model import FloatArray
+from gcxform.pipeline.pipeline import Pipeline, Result
 from gcxform.simulate.positions import parts_of
-from gcxform.toolpath.deviation import deviation
-from gcxform.toolpath.matching import Pieces, cut, moving_rows
 from gcxform.toolpath.path import Kind, Toolpath
 from gcxform.toolpath.splines import points_on_splines
 

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.api import read
-from gcxform.certificate import Certificate
-from gcxform.dialect import Dialect, NumberFormat
-from gcxform.machine.errors import ErrorModel, FloatArray, Outside
-from gcxform.options import ModelFile
-from gcxform.pipeline import Pipeline
-from gcxform.registry import default_registry
+from gcxform.contract.options import ModelFile
+from gcxform.dialect.dialect import Dialect, NumberFormat
+from gcxform.errormodel.model import ErrorModel, FloatArray, Outside
+from gcxform.pipeline.certificate import Certificate
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.plugin.registry import default_registry
 from gcxform.simulate.programs import StandardProgram
 from gcxform.toolpath.circles import points_on_arcs, radius_and_angle
 from gcxform.toolpath.path import Plane, Toolpath

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gcxform.dialect import Dialect
-from gcxform.machine.errors import AXES, FloatArray
+from gcxform.dialect.dialect import Dialect
+from gcxform.errormodel.model import AXES, FloatArray
 from gcxform.toolpath.path import Plane
 
 DWELL = 2.0  # s: the machine stands still before the instrument reads

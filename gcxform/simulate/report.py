@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gcxform.machine.errors import FloatArray
+from gcxform.errormodel.model import FloatArray
 from gcxform.simulate.circles import Circles
 from gcxform.simulate.figures import Positioning
 from gcxform.simulate.virtual import BODY, FACES, Outcome, largest

@@ -13,8 +13,8 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from gcxform.calibrate.diagonaldata import FOUR, Leg, LinearTest, Signs, beam, sideways
-from gcxform.machine.errors import FloatArray
+from gcxform.calibrate.diagonal.readings import FOUR, Leg, LinearTest, Signs, beam, sideways
+from gcxform.errormodel.model import FloatArray
 
 
 class HasError(Protocol):

@@ -14,7 +14,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from gcxform.diagnostics import UsageError
-from gcxform.machine.errors import AXES, ErrorModel, FloatArray, Outside
+from gcxform.errormodel.model import AXES, ErrorModel, FloatArray, Outside
 from gcxform.simulate.circles import Circles
 from gcxform.simulate.figures import Positioning
 from gcxform.simulate.positions import Chain, Compensated, Track

@@ -13,8 +13,7 @@ from typing import Any
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput
 
-from gcxform.limits import how_to_raise, limits
-from gcxform.syntax import kept
+from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.tree import (
     Block,
     Comment,
@@ -25,6 +24,7 @@ from gcxform.syntax.tree import (
     Statement,
     Word,
 )
+from gcxform.system.limits import how_to_raise, limits
 
 ABOVE = 3  # levels of a tree above the first of an expression: start, word
 MARKS = frozenset({"block_delete", "percent", "program_id", "program_name", "filler", "label"})

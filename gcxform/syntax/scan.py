@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.distinct import distinct
 from gcxform.syntax.shapes import OWN, NumberColumns, ShapeTable
+from gcxform.system.distinct import distinct
 
 Bytes = NDArray[np.uint8]
 Ints = NDArray[np.int64]

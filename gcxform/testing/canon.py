@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from itertools import pairwise
 
-from gcxform.modal.codes import Code, Effect
-from gcxform.modal.cyclerule import Level, Step
+from gcxform.dialect.codes import Code, Effect
+from gcxform.dialect.cycle_rule import Level, Step
 
 Steps = tuple[Step, ...]
 

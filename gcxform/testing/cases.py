@@ -36,10 +36,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from gcxform.certificate import Certificate
 from gcxform.diagnostics import Diagnostic, GcxformError
-from gcxform.pipeline import Pipeline
-from gcxform.registry import default_registry
+from gcxform.pipeline.certificate import Certificate
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.plugin.registry import default_registry
 from gcxform.testing.hints import try_hint
 
 SPECIAL = frozenset(

@@ -6,21 +6,21 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from gcxform.contract import Pass, PassContext
+from gcxform.contract.passes import Pass, PassContext
 from gcxform.diagnostics import GcxformError
-from gcxform.dialect import INCH, Dialect
+from gcxform.dialect.codes import ISO, Effect
+from gcxform.dialect.dialect import INCH, Dialect
 from gcxform.emit.numbers import MOST_DECIMALS
-from gcxform.flow.translation import Translator, translated
-from gcxform.modal.codes import ISO, Effect
-from gcxform.modal.meaning import Meaning
-from gcxform.modal.sorting import meaning_of
+from gcxform.flow.translation import Translator, translated, translator_of
+from gcxform.modal.meaning.meaning import Meaning
+from gcxform.modal.meaning.sorting import meaning_of
+from gcxform.modal.meaning.tables import COLUMNS, GROUPS, NUMBER
 from gcxform.modal.state import Reading
-from gcxform.modal.tables import COLUMNS, GROUPS, NUMBER
-from gcxform.pipeline import Pipeline
-from gcxform.source import Source
+from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax.shapes import Shape, slots_of
-from gcxform.testing.declared import check_declared
-from gcxform.testing.doing import check_doing
+from gcxform.syntax.source import Source
+from gcxform.testing.behaviour import check_doing
+from gcxform.testing.tables import check_declared
 from gcxform.toolpath.path import Plane, Toolpath
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
@@ -68,7 +68,7 @@ def check_dialect(dialect: type[Dialect]) -> None:
     _check_refusals(dialect)
     check_doing(dialect)
     if dialect.translator is not None:
-        _check_translator(dialect, dialect.translator)
+        _check_translator(dialect, translator_of(dialect))
         return
     _check_program(dialect)
     _check_planes(dialect)

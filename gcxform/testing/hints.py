@@ -7,11 +7,11 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+from gcxform.catalogue.settings import Setting, settings
+from gcxform.contract.options import build, describe
 from gcxform.diagnostics import Location, UsageError
-from gcxform.options import build, describe
-from gcxform.pipelinefile import SECTIONS
-from gcxform.registry import Registry
-from gcxform.wayout import Setting, settings
+from gcxform.pipeline.file import SECTIONS
+from gcxform.plugin.registry import Registry
 
 
 def try_hint(hint: str, registry: Registry) -> None:

@@ -18,11 +18,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.contract import Pass, PassContext, TextPass
+from gcxform.contract.options import build, describe, to_toml
+from gcxform.contract.passes import Pass, PassContext, TextPass
+from gcxform.deviations.runs import Runs, deviation_of_runs, runs_of
 from gcxform.diagnostics import GcxformError, InputError, Location
 from gcxform.machine.machine import Machine
-from gcxform.options import build, describe, to_toml
-from gcxform.registry import default_registry
+from gcxform.pipeline.text_passes import TextRun
+from gcxform.plugin.registry import default_registry
 from gcxform.testing.paths import (
     PROGRAMS,
     Plain,
@@ -33,11 +35,9 @@ from gcxform.testing.paths import (
     locked,
     paths,
 )
-from gcxform.textpasses import TextRun
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.facts import Fact
 from gcxform.toolpath.path import COLUMNS, FeedMode, Kind, Toolpath
-from gcxform.toolpath.runs import Runs, deviation_of_runs, runs_of
 from gcxform.toolpath.travel import lengths
 
 SLACK = 1e-7  # mm and degrees; what arithmetic may add to a promise

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import Dialect
+from gcxform.dialect.dialect import Dialect
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.toolpath.path import BLOCK_MODES, COLUMNS, Kind, Toolpath

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.modal.arcs import TURN, swept
+from gcxform.toolpath.angles import TURN, swept
 from gcxform.toolpath.crossings import arc_crossings
 from gcxform.toolpath.path import Plane, Toolpath
 

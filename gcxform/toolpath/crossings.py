@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.modal.arcs import TURN
+from gcxform.toolpath.angles import TURN
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

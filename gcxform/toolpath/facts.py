@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gcxform.distinct import distinct
+from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import OWN_DISTANCES, Flags, Form, Plane, Toolpath
 
 

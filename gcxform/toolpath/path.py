@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
-from gcxform.distinct import distinct
-from gcxform.limits import how_to_raise, limits
+from gcxform.system.distinct import distinct
+from gcxform.system.limits import how_to_raise, limits
 from gcxform.toolpath.frames import Frame, by_frame
 
 Floats = NDArray[np.float64]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.dialect import LINEAR
+from gcxform.dialect.dialect import LINEAR
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.path import Plane, Toolpath
 from gcxform.toolpath.splines import spline_lengths

@@ -8,13 +8,13 @@ import gcxform as gx
 @gx.hookimpl
 def gcxform_dialects() -> list[type[gx.Dialect]]:
     """Return one class for each controller family."""
-    from gcxform_plugins.dialects.fagor import Fagor
+    from gcxform_plugins.dialects.fagor.dialect import Fagor
     from gcxform_plugins.dialects.fanuc import Fanuc
     from gcxform_plugins.dialects.grbl import Grbl
     from gcxform_plugins.dialects.haas import Haas
-    from gcxform_plugins.dialects.heidenhain import Heidenhain
+    from gcxform_plugins.dialects.heidenhain.dialect import Heidenhain
     from gcxform_plugins.dialects.linuxcnc import LinuxCNC
-    from gcxform_plugins.dialects.siemens import Siemens
+    from gcxform_plugins.dialects.siemens.dialect import Siemens
 
     return [Fagor, Fanuc, Grbl, Haas, Heidenhain, LinuxCNC, Siemens]
 
@@ -23,18 +23,18 @@ def gcxform_dialects() -> list[type[gx.Dialect]]:
 def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
     """Return the passes on toolpaths, then those on text."""
     from gcxform_plugins.passes.absolute import Absolute
-    from gcxform_plugins.passes.arcs import Arcs
-    from gcxform_plugins.passes.cutter_comp import CutterComp
+    from gcxform_plugins.passes.arcs.arcs import Arcs
+    from gcxform_plugins.passes.cutter_comp.cutter_comp import CutterComp
     from gcxform_plugins.passes.cycles import ExpandCycles
     from gcxform_plugins.passes.feed import FeedPass
     from gcxform_plugins.passes.metric import Metric
     from gcxform_plugins.passes.offsets import Offsets
     from gcxform_plugins.passes.plane import PlanePass
     from gcxform_plugins.passes.renumber import Renumber
-    from gcxform_plugins.passes.rtcp import Rtcp
+    from gcxform_plugins.passes.rtcp.rtcp import Rtcp
     from gcxform_plugins.passes.segment import Segment
     from gcxform_plugins.passes.strip import Strip
-    from gcxform_plugins.passes.volumetric import Volumetric
+    from gcxform_plugins.passes.volumetric.volumetric import Volumetric
 
     return [
         Absolute,

@@ -17,12 +17,12 @@ from oracles.toolpaths import HOMES, OFFSETS, START, moves_of, resolved
 from reference.model import Move
 
 import gcxform as gx
-from gcxform.dialect import INCH
+from gcxform.dialect.dialect import INCH
 from gcxform.machine.machine import Tool
-from gcxform.modal.ending import Ending
+from gcxform.modal.program_end import Ending
 from gcxform.modal.reader import windows_of
-from gcxform.registry import default_registry
-from gcxform.source import Source
+from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
 from gcxform.toolpath.path import Toolpath
 
 REFUSED = {"refuse", "partial", "tool_refuse"}

@@ -13,11 +13,11 @@ ROUND_TRIP = "tests/properties/test_diagonal.py"
 
 
 def _calibrate(file: str, name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
-    return Mutation(f"diagonal: {name}", f"gcxform/calibrate/{file}.py", old, new, tests)
+    return Mutation(f"diagonal: {name}", file, old, new, tests)
 
 
 def _angles(name: str, old: str, new: str) -> Mutation:
-    return _calibrate("angles", name, old, new, ANGLES)
+    return _calibrate("gcxform/calibrate/diagonal/angles.py", name, old, new, ANGLES)
 
 
 def _simulate(name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
@@ -27,103 +27,114 @@ def _simulate(name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
 MUTATIONS = (
     # the equations
     _calibrate(
-        "equations", "a reversed step keeps its sign", "sign * along[direction]", "along[direction]"
+        "gcxform/calibrate/diagonal/equations.py",
+        "a reversed step keeps its sign",
+        "sign * along[direction]",
+        "along[direction]",
     ),
     _calibrate(
-        "equations",
+        "gcxform/calibrate/diagonal/equations.py",
         "cells are counted by time",
         "if sign < 0:\n                grown",
         "if sign < -1:\n                grown",
     ),
     _calibrate(
-        "equations",
+        "gcxform/calibrate/diagonal/equations.py",
         "axis and direction are swapped",
         "column = (3 * axis + direction) * layout.steps",
         "column = (3 * direction + axis) * layout.steps",
     ),
     _calibrate(
-        "equations",
+        "gcxform/calibrate/diagonal/equations.py",
         "a misaligned beam forgets the sense of a step",
         "= sign * step * aside",
         "= step * aside",
     ),
-    _calibrate("equations", "means count as single readings", "noise / np.sqrt(n)", "noise"),
     _calibrate(
-        "equations",
+        "gcxform/calibrate/diagonal/equations.py",
+        "means count as single readings",
+        "noise / np.sqrt(n)",
+        "noise",
+    ),
+    _calibrate(
+        "gcxform/calibrate/diagonal/equations.py",
         "a linear test begins at machine zero",
         "(test.position - volume.low[test.axis])",
         "test.position",
         ROUND_TRIP,
     ),
     _calibrate(
-        "equations",
+        "gcxform/calibrate/diagonal/equations.py",
         "a linear test has no constant of its own",
         "rows[:, layout.errors + 2 * layout.beams + run] = 1.0",
         "pass",
         ROUND_TRIP,
     ),
     _calibrate(
-        "equations",
+        "gcxform/calibrate/diagonal/equations.py",
         "scatter is divided by the number of readings",
         "int((count - 1).sum())",
         "int(count.sum())",
     ),
     # the solution
     _calibrate(
-        "solution",
+        "gcxform/calibrate/solution.py",
         "the covariance is of whitened directions",
         "back @ back.T, right",
         "right[known].T @ right[known], right",
     ),
     _calibrate(
-        "solution", "free directions are not seen", "RANK: Final = 1e-9", "RANK: Final = 1e-30"
+        "gcxform/calibrate/solution.py",
+        "free directions are not seen",
+        "RANK: Final = 1e-9",
+        "RANK: Final = 1e-30",
     ),
     _calibrate(
-        "solution",
+        "gcxform/calibrate/solution.py",
         "redundancy counts all readings",
         "return len(self.residual) - self.rank",
         "return len(self.residual)",
     ),
     _calibrate(
-        "solution",
+        "gcxform/calibrate/solution.py",
         "chi square may be what it is on average",
         "3.0902 * math.sqrt(part)",
         "0.0 * math.sqrt(part)",
     ),
     # the frame
     _calibrate(
-        "reframe",
+        "gcxform/calibrate/diagonal/reframe.py",
         "the turn about Z is the other way",
         "about_z = -slopes[..., 0, 1]",
         "about_z = slopes[..., 0, 1]",
     ),
     _calibrate(
-        "reframe",
+        "gcxform/calibrate/diagonal/reframe.py",
         "the turn about Y is the other way",
         "about_y = slopes[..., 0, 2]",
         "about_y = -slopes[..., 0, 2]",
     ),
     _calibrate(
-        "reframe",
+        "gcxform/calibrate/diagonal/reframe.py",
         "the turn about X is the other way",
         "about_x = -slopes[..., 1, 2]",
         "about_x = slopes[..., 1, 2]",
     ),
     _calibrate(
-        "reframe",
+        "gcxform/calibrate/diagonal/reframe.py",
         "removed slopes are not carried over",
         "    return slopes\n",
         "    return np.triu(slopes)\n",
     ),
     _calibrate(
-        "reframe",
+        "gcxform/calibrate/diagonal/reframe.py",
         "a frame turns about machine zero",
         "along = function.position - function.position[0]",
         "along = function.position",
         ROUND_TRIP,
     ),
     _calibrate(
-        "reframe",
+        "gcxform/calibrate/diagonal/reframe.py",
         "the low corner is not zero",
         "function.values - function.values[0]",
         "function.values",
@@ -131,43 +142,49 @@ MUTATIONS = (
     ),
     # what is observable, what is refused
     _calibrate(
-        "stepdiagonal",
+        "gcxform/calibrate/diagonal/step_diagonal.py",
         "functions that are not determined are given",
         "if not self.determined.all():",
         "if not self.determined.any():",
     ),
     _calibrate(
-        "stepdiagonal",
+        "gcxform/calibrate/diagonal/step_diagonal.py",
         "beams stay where they were in a turned frame",
         "angles - volume.diagonal * turned",
         "angles + volume.diagonal * turned",
     ),
     _calibrate(
-        "stepdiagonal",
+        "gcxform/calibrate/diagonal/step_diagonal.py",
         "contradictions are taken",
         "if not found.redundancy_rms > limit:",
         "if True:",
     ),
     _calibrate(
-        "stepdiagonal", "aligned beams are not questioned", "    if gain > limit:", "    if False:"
+        "gcxform/calibrate/diagonal/step_diagonal.py",
+        "aligned beams are not questioned",
+        "    if gain > limit:",
+        "    if False:",
     ),
     _calibrate(
-        "stepdiagonal", "scales are not questioned", "    if limit < gain:", "    if False:"
+        "gcxform/calibrate/diagonal/step_diagonal.py",
+        "scales are not questioned",
+        "    if limit < gain:",
+        "    if False:",
     ),
     _calibrate(
-        "stepdiagonal",
+        "gcxform/calibrate/diagonal/step_diagonal.py",
         "signs are not questioned",
         "if gain > plausible(1) * max(1.0, other.ratio**2):",
         "if gain > 1e9:",
     ),
     _calibrate(
-        "stepdiagonal",
+        "gcxform/calibrate/diagonal/step_diagonal.py",
         "linear tests are not questioned",
         "gain > REJECTED**2 * added",
         "gain > 1e9 * added",
     ),
     _calibrate(
-        "stepdiagonal",
+        "gcxform/calibrate/diagonal/step_diagonal.py",
         "the mean scale has equal weights",
         "square = self.diagonals.volume.travel**2",
         "square = self.diagonals.volume.travel**0",
@@ -175,62 +192,82 @@ MUTATIONS = (
     ),
     # the plain test
     _calibrate(
-        "plaindiagonal",
+        "gcxform/calibrate/diagonal/plain_diagonal.py",
         "squareness has the sides of another plane",
         "size / (x * y), size / (x * z)",
         "size / (x * z), size / (x * y)",
         PLAIN,
     ),
     _calibrate(
-        "plaindiagonal",
+        "gcxform/calibrate/diagonal/plain_diagonal.py",
         "the signs of a diagonal are mixed up",
         "(1.0, x * y, x * z, y * z)",
         "(1.0, x * y, y * z, x * z)",
         PLAIN,
     ),
     _calibrate(
-        "plaindiagonal",
+        "gcxform/calibrate/diagonal/plain_diagonal.py",
         "a way back counts as a way out",
         "deviation = leg.ahead[1]",
         "deviation = leg.deviation",
         f"{ROUND_TRIP}::test_the_squareness_of_any_machine",
     ),
     # reports
-    _calibrate("words", "the sign of C0Y is swapped", '("C0Y", -1.0)', '("C0Y", 1.0)', COMMAND),
-    _calibrate("words", "the sign of A0Z is swapped", '("A0Z", -1.0)', '("A0Z", 1.0)', COMMAND),
+    _calibrate(
+        "gcxform/calibrate/diagonal/report.py",
+        "the sign of C0Y is swapped",
+        '("C0Y", -1.0)',
+        '("C0Y", 1.0)',
+        COMMAND,
+    ),
+    _calibrate(
+        "gcxform/calibrate/diagonal/report.py",
+        "the sign of A0Z is swapped",
+        '("A0Z", -1.0)',
+        '("A0Z", 1.0)',
+        COMMAND,
+    ),
     # files
     _calibrate(
-        "diagonalfile",
+        "gcxform/calibrate/diagonal/file.py",
         "readings keep their nominal",
         "values = values - values[0] - nominal",
         "values = values - values[0]",
         FILES,
     ),
-    _calibrate("csvtext", "inches are millimetres", '"in": 25.4', '"in": 1.0', FILES),
-    _calibrate("diagonaldata", "steps may differ", "if not len(wrong):", "if True:", FILES),
     _calibrate(
-        "diagonaldata",
+        "gcxform/calibrate/csv_text.py", "inches are millimetres", '"in": 25.4', '"in": 1.0', FILES
+    ),
+    _calibrate(
+        "gcxform/calibrate/diagonal/readings.py",
+        "steps may differ",
+        "if not len(wrong):",
+        "if True:",
+        FILES,
+    ),
+    _calibrate(
+        "gcxform/calibrate/diagonal/readings.py",
         "volumes may differ",
         "(np.abs(corner - corners[0]) > TOLERANCE)",
         "(np.abs(corner - corners[0]) > 1e9)",
         FILES,
     ),
     _calibrate(
-        "diagonaldata",
+        "gcxform/calibrate/diagonal/readings.py",
         "a diagonal may be missing",
         "if signs not in lines]",
         "if signs in ()]",
         FILES,
     ),
     _calibrate(
-        "diagonaldata",
+        "gcxform/calibrate/diagonal/readings.py",
         "a diagonal may go the other way",
         "if way * sign * sense <= TOLERANCE:",
         "if abs(way) <= TOLERANCE:",
         FILES,
     ),
     _calibrate(
-        "diagonaldata",
+        "gcxform/calibrate/diagonal/readings.py",
         "a way back is a way out",
         "slice(None) if self.forward else slice(None, None, -1)",
         "slice(None)",
@@ -267,14 +304,14 @@ MUTATIONS = (
     _angles("the linear tests stand in the middle", "= place ** (power + 1)", "= 0.0"),
     _angles("alarms are ten times as many", "_QUANTILE: Final = 2.5758", "_QUANTILE: Final = 1.6"),
     _calibrate(
-        "stepdiagonal",
+        "gcxform/calibrate/diagonal/step_diagonal.py",
         "deviations are those of the stated noise",
         "self.scatter.factor**2 * (part",
         "1.0 * (part",
         ANGLES,
     ),
     _calibrate(
-        "plaindiagonal",
+        "gcxform/calibrate/diagonal/plain_diagonal.py",
         "four lengths are as good as they say",
         "self.scatter.factor * self._factors",
         "self._factors",

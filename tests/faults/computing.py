@@ -7,35 +7,64 @@ from faults.mutation import Mutation
 
 def _computed(name: str, file: str, old: str, new: str) -> Mutation:
     tests = "tests/test_expressions.py"
-    return Mutation(f"computing: {name}", f"gcxform/modal/{file}.py", old, new, tests)
+    return Mutation(f"computing: {name}", file, old, new, tests)
 
 
 MUTATIONS = (
-    _computed("relations are as close as sums", "arithmetic", "EQUAL = 1e-4", "EQUAL = 1e-9"),
     _computed(
-        "fractions are cut towards zero", "arithmetic", "float(math.floor(a))", "float(int(a))"
+        "relations are as close as sums",
+        "gcxform/dialect/arithmetic.py",
+        "EQUAL = 1e-4",
+        "EQUAL = 1e-9",
     ),
-    _computed("MOD keeps the sign", "arithmetic", "rest if rest >= 0 else rest + abs(b)", "rest"),
-    _computed("XOR is OR", "arithmetic", "(a != 0) != (b != 0)", "a != 0 or b != 0"),
-    _computed("angles are in radians", "arithmetic", "np.longdouble(a) * PI / 180", "a"),
-    _computed("a sign is lost", "expressions", "-value if children[0]", "value if children[0]"),
-    _computed("operands are swapped", "expressions", "(left), self", "(right), self"),
-    _computed("names have their case", "expressions", "BLANKS).lower()", "BLANKS)"),
+    _computed(
+        "fractions are cut towards zero",
+        "gcxform/dialect/arithmetic.py",
+        "float(math.floor(a))",
+        "float(int(a))",
+    ),
+    _computed(
+        "MOD keeps the sign",
+        "gcxform/dialect/arithmetic.py",
+        "rest if rest >= 0 else rest + abs(b)",
+        "rest",
+    ),
+    _computed(
+        "XOR is OR", "gcxform/dialect/arithmetic.py", "(a != 0) != (b != 0)", "a != 0 or b != 0"
+    ),
+    _computed(
+        "angles are in radians", "gcxform/dialect/arithmetic.py", "np.longdouble(a) * PI / 180", "a"
+    ),
+    _computed(
+        "a sign is lost",
+        "gcxform/modal/expressions/value.py",
+        "-value if children[0]",
+        "value if children[0]",
+    ),
+    _computed(
+        "operands are swapped",
+        "gcxform/modal/expressions/value.py",
+        "(left), self",
+        "(right), self",
+    ),
+    _computed(
+        "names have their case", "gcxform/modal/expressions/value.py", "BLANKS).lower()", "BLANKS)"
+    ),
     _computed(
         "what nobody set is zero",
-        "expressions",
+        "gcxform/modal/expressions/value.py",
         "value = self.parameters.get(key)\n",
         "value = self.parameters.get(key, 0.0)\n",
     ),
     _computed(
         "assignments act at once",
-        "computing",
+        "gcxform/modal/expressions/assignments.py",
         "return key, evaluator.value(expression)",
         "self.lines.parameters[key] = evaluator.value(expression)\n            return None",
     ),
     _computed(
         "parameters end with their window",
-        "interpreter",
+        "gcxform/modal/interpreter.py",
         "self.state.parameters = lines.parameters",
         "pass",
     ),
@@ -48,14 +77,14 @@ MUTATIONS = (
     ),
     Mutation(
         "what a macro may have set is still known",
-        "gcxform/modal/computing.py",
+        "gcxform/modal/expressions/assignments.py",
         "if self.meaning.runs_macro and",
         "if False and",
         "tests/test_corpus.py",
     ),
     Mutation(
         "computed distances are not rounded to the increment",
-        "gcxform/modal/pointless.py",
+        "gcxform/modal/numbers_without_point.py",
         "np.where(computed, rounded, np",
         "np.where(computed, value, np",
         "tests/test_expressions.py",

@@ -2,37 +2,49 @@
 
 from __future__ import annotations
 
-from faults.mutation import CUTTER, PASSES, Mutation
+from faults.mutation import CUTTER, Mutation
 
 PLANTED = "tests/test_planted_comp.py"
 
 
 def _offsetting(name: str, old: str, new: str) -> Mutation:
-    return Mutation(f"offsetting: {name}", f"{PASSES}/offsetting.py", old, new, CUTTER)
+    return Mutation(
+        f"offsetting: {name}",
+        "plugins/gcxform_plugins/passes/cutter_comp/offsetting.py",
+        old,
+        new,
+        CUTTER,
+    )
 
 
 def _beside(name: str, old: str, new: str) -> Mutation:
-    return Mutation(f"beside: {name} not looked at", f"{PASSES}/beside.py", old, new, CUTTER)
+    return Mutation(
+        f"beside: {name} not looked at",
+        "plugins/gcxform_plugins/passes/cutter_comp/proof.py",
+        old,
+        new,
+        CUTTER,
+    )
 
 
 MUTATIONS = (
     Mutation(
         "cutter: a negative diameter keeps its side",
-        "gcxform/modal/cutter.py",
+        "gcxform/modal/moves/cutter_comp.py",
         "np.where(radius < 0, -SIDES[code], SIDES[code])",
         "SIDES[code]",
         CUTTER,
     ),
     Mutation(
         "cutter: the diameter is taken for the radius",
-        "gcxform/modal/cutter.py",
+        "gcxform/modal/moves/cutter_comp.py",
         "value * unit / 2",
         "value * unit",
         CUTTER,
     ),
     Mutation(
         "cutter: T counts before it is in the spindle",
-        "gcxform/modal/cutter.py",
+        "gcxform/modal/moves/cutter_comp.py",
         "np.where(_is_m6(lines, changes), selected, np.nan), changes, state.tool",
         "selected, selected == selected, state.tool",
         CUTTER,
@@ -61,105 +73,105 @@ MUTATIONS = (
     _offsetting("the inside is the outside", "elif turn < 0 or", "elif turn > 0 or"),
     Mutation(
         "cutter-comp: corners go the wrong way",
-        f"{PASSES}/cutter_comp.py",
+        "plugins/gcxform_plugins/passes/cutter_comp/cutter_comp.py",
         "gx.Kind.ARC_CW if path.side[row] > 0",
         "gx.Kind.ARC_CW if path.side[row] < 0",
         CUTTER,
     ),
     Mutation(
         "cutter-comp: still moves stay on the contour",
-        f"{PASSES}/cutter_comp.py",
+        "plugins/gcxform_plugins/passes/cutter_comp/cutter_comp.py",
         "            self.end[inside, axis] = self.end[mover, axis]",
         "            pass",
         CUTTER,
     ),
     Mutation(
         "cutter-comp: the speed in inverse time is that of the centre",
-        f"{PASSES}/cutter_comp.py",
+        "plugins/gcxform_plugins/passes/cutter_comp/cutter_comp.py",
         "np.where(change, feed * programmed / np.where(change, mine, 1.0), feed)",
         "feed",
         CUTTER,
     ),
     Mutation(
         "compensated: windows end inside a stretch",
-        "gcxform/compensated.py",
+        "gcxform/pipeline/cutter_comp.py",
         'on = found[-1][1] != b"0"',
         "on = False",
         CUTTER,
     ),
     Mutation(
         "compensated: contours may be moved",
-        "gcxform/compensated.py",
+        "gcxform/pipeline/cutter_comp.py",
         "if type(step).undo is not Pass.undo and before.side.any():",
         "if False:",
         "tests/test_corpus.py::test_case",
     ),
     Mutation(
         "compensated: a contour may be cut",
-        "gcxform/compensated.py",
+        "gcxform/pipeline/cutter_comp.py",
         "elif len(rows) != len(new):",
         "elif False:",
         PLANTED,
     ),
     Mutation(
         "compensated: a point of a contour may be moved",
-        "gcxform/compensated.py",
+        "gcxform/pipeline/cutter_comp.py",
         "rows[_changed(before, rows, after, new)]",
         "rows[:0]",
         PLANTED,
     ),
     Mutation(
         "compensated: the move that ends compensation may be moved",
-        "gcxform/compensated.py",
+        "gcxform/pipeline/cutter_comp.py",
         "on | np.append(path.after_side != 0, on[:-1])[: len(on)]",
         "on",
         PLANTED,
     ),
     Mutation(
         "stretches: the move that ends compensation is none of it",
-        "gcxform/stretches.py",
+        "gcxform/proof/compensated_stretches.py",
         "first + int(off[0]) + 1",
         "first + int(off[0])",
         PLANTED,
     ),
     Mutation(
         "stretches: nothing goes on in the next window",
-        "gcxform/stretches.py",
+        "gcxform/proof/compensated_stretches.py",
         "whole = piece if self._open is None else _joined(self._open, piece)",
         "whole = piece",
         PLANTED,
     ),
     Mutation(
         "centrepath: how far the centre is off is not looked at",
-        "gcxform/centrepath.py",
+        "gcxform/proof/centre_path.py",
         "if not off.distance <= budget:",
         "if False:",
         PLANTED,
     ),
     Mutation(
         "centrepath: where the control stops is not looked at",
-        "gcxform/centrepath.py",
+        "gcxform/proof/centre_path.py",
         "if (stop := _stop(self.ways, one, self.context)) is not None:",
         "if (stop := None) is not None:",
         "tests/test_corpus.py::test_case",
     ),
     Mutation(
         "centrepath: what differs is taken for the same",
-        "gcxform/centrepath.py",
+        "gcxform/proof/centre_path.py",
         "    return all(np.array_equal",
         "    return any(np.array_equal",
         PLANTED,
     ),
     Mutation(
         "centrepath: one setting of a control is compared",
-        "gcxform/centrepath.py",
+        "gcxform/proof/centre_path.py",
         "for way in self.ways:",
         "for way in self.ways[:1]:",
         PLANTED,
     ),
     Mutation(
         "offsetting: LinuxCNC never looks back",
-        f"{PASSES}/offsetting.py",
+        "plugins/gcxform_plugins/passes/cutter_comp/offsetting.py",
         "> manner.straight\n\n\ndef _turn(",
         "> 9.9\n\n\ndef _turn(",
         "tests/test_corpus.py::test_case",

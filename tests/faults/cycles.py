@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from faults.mutation import CYCLES, Mutation
 
-LEVELS = "gcxform/modal/cycles.py"
-STRETCH = "gcxform/modal/cyclestretch.py"
-STEPS = "gcxform/modal/cyclesteps.py"
-DRILLING = "gcxform/modal/drilling.py"
+LEVELS = "gcxform/modal/cycles/expansion.py"
+STRETCH = "gcxform/modal/cycles/stretch.py"
+STEPS = "gcxform/modal/cycles/steps.py"
+DRILLING = "gcxform/modal/cycles/patterns.py"
 STRETCHES = "tests/test_stretches.py"
 
 FAULTS = (
@@ -204,7 +204,7 @@ MUTATIONS = (
     ),
     Mutation(
         "cycles: a hole above R",
-        "gcxform/modal/cyclechecks.py",
+        "gcxform/modal/cycles/checks.py",
         "stretch.bottom > stretch.clearance",
         "stretch.bottom > np.inf",
         "tests/test_cycle_refusals.py",

@@ -5,9 +5,9 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 LANGUAGES = "plugins/gcxform_plugins/languages"
-BLOCKS = f"{LANGUAGES}/fagor.py"
-PLACES = f"{LANGUAGES}/fagor_places.py"
-TABLES = f"{LANGUAGES}/fagor_tables.py"
+BLOCKS = "plugins/gcxform_plugins/dialects/fagor/blocks.py"
+PLACES = "plugins/gcxform_plugins/dialects/fagor/places.py"
+TABLES = "plugins/gcxform_plugins/dialects/fagor/tables.py"
 TRANSLATION = "gcxform/flow/translation.py"
 CASE = "tests/test_corpus.py::test_case[dialects/fagor/"
 READS = "tests/test_fagor.py::test_it_reads_what_another_reader_reads"
@@ -164,7 +164,7 @@ MUTATIONS = (
     ),
     Mutation(
         "translation: maps tell of blocks",
-        "gcxform/run.py",
+        "gcxform/pipeline/run.py",
         "lines = [self.source.line_of(k + 1) - 1 for k in lines]",
         "pass",
         RUNS,

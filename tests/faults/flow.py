@@ -9,113 +9,167 @@ AGREES = "tests/properties/test_flow.py"
 
 
 def _flow(name: str, file: str, old: str, new: str, tests: str = CASES) -> Mutation:
-    return Mutation(f"flow: {name}", f"gcxform/flow/{file}.py", old, new, tests)
+    return Mutation(f"flow: {name}", file, old, new, tests)
 
 
 MUTATIONS = (
-    _flow("a call keeps the values of its caller", "owords", "if k not in own}", "}"),
-    _flow("what is not given is one", "owords", "*[0.0] *", "*[1.0] *", AGREES),
-    _flow("names are not local", "owords", "not RS274.outlives(key)", "key in LOCALS"),
-    _flow("nothing lasts", "lasting", "if not self.program.keeps:", "if True:"),
+    _flow(
+        "a call keeps the values of its caller", "gcxform/flow/owords.py", "if k not in own}", "}"
+    ),
+    _flow("what is not given is one", "gcxform/flow/owords.py", "*[0.0] *", "*[1.0] *", AGREES),
+    _flow(
+        "names are not local", "gcxform/flow/owords.py", "not RS274.outlives(key)", "key in LOCALS"
+    ),
+    _flow(
+        "nothing lasts", "gcxform/flow/lasting_values.py", "if not self.program.keeps:", "if True:"
+    ),
     _flow(
         "a message counts from before its block",
-        "execution",
+        "gcxform/flow/execution.py",
         "self.set(dict(changes))\n        for",
         "for",
     ),
     _flow(
         "a subprogram that is called is kept",
-        "keeping",
+        "gcxform/flow/uncalled_subprograms.py",
         "or not program.times[each.lines].any()",
         "or True",
     ),
-    _flow("what a skipped block calls is gone", "keeping", "each.name in skipped or ", ""),
-    _flow("what is kept calls what is gone", "keeping", "each not in keeps]", "False]"),
-    _flow("a count hides what is called", "macros", "numbers[0] % PACKED", "numbers[0]"),
-    _flow("M98 is no call", "owords", "in (98, None) for w", "in (None,) for w"),
-    _flow("a count is cut", "owords", "times = round(", "times = int(", AGREES),
+    _flow(
+        "what a skipped block calls is gone",
+        "gcxform/flow/uncalled_subprograms.py",
+        "each.name in skipped or ",
+        "",
+    ),
+    _flow(
+        "what is kept calls what is gone",
+        "gcxform/flow/uncalled_subprograms.py",
+        "each not in keeps]",
+        "False]",
+    ),
+    _flow(
+        "a count hides what is called",
+        "gcxform/flow/macros.py",
+        "numbers[0] % PACKED",
+        "numbers[0]",
+    ),
+    _flow("M98 is no call", "gcxform/flow/owords.py", "in (98, None) for w", "in (None,) for w"),
+    _flow("a count is cut", "gcxform/flow/owords.py", "times = round(", "times = int(", AGREES),
     _flow(
         "a loop ends a round late",
-        "owords",
+        "gcxform/flow/owords.py",
         "self.counters[first] > 0",
         "self.counters[first] >= 0",
     ),
-    _flow("M98 runs once more", "owords", "int(times), {}", "int(times) + 1, {}"),
-    _flow("a value does not return", "owords", "self.returned(value)", "self.returned()", FACTS),
-    _flow("else is always taken", "owords", "self._truth(other)", "True", AGREES),
-    _flow("M73 is forgotten", "modes", "level.comes_back |= STORE_FOR_CALL in asked", "pass"),
+    _flow("M98 runs once more", "gcxform/flow/owords.py", "int(times), {}", "int(times) + 1, {}"),
     _flow(
-        "F does not come back", "modes", "(FEED, SPEED) if a in differ", "(SPEED,) if a in differ"
+        "a value does not return",
+        "gcxform/flow/owords.py",
+        "self.returned(value)",
+        "self.returned()",
+        FACTS,
     ),
-    _flow("units come back last", "modes", "(units, feed, codes,", "(feed, codes, units,"),
-    _flow("a coolant stays on", "modes", "off = any(", "off = not any("),
+    _flow("else is always taken", "gcxform/flow/owords.py", "self._truth(other)", "True", AGREES),
+    _flow(
+        "M73 is forgotten",
+        "gcxform/flow/modes.py",
+        "level.comes_back |= STORE_FOR_CALL in asked",
+        "pass",
+    ),
+    _flow(
+        "F does not come back",
+        "gcxform/flow/modes.py",
+        "(FEED, SPEED) if a in differ",
+        "(SPEED,) if a in differ",
+    ),
+    _flow(
+        "units come back last",
+        "gcxform/flow/modes.py",
+        "(units, feed, codes,",
+        "(feed, codes, units,",
+    ),
+    _flow("a coolant stays on", "gcxform/flow/modes.py", "off = any(", "off = not any("),
     _flow(
         "polar words turn the wrong way",
-        "places",
+        "gcxform/flow/places.py",
         "radius * math.sin(turned)",
         "-radius * math.sin(turned)",
     ),
     _flow(
-        "positions are always mm", "places", 'INCH if state.groups["units"] else 1.0', "1.0", AGREES
+        "positions are always mm",
+        "gcxform/flow/places.py",
+        'INCH if state.groups["units"] else 1.0',
+        "1.0",
+        AGREES,
     ),
-    _flow("a jump goes behind its label", "macros", "self.at = target", "self.at = target + 1"),
+    _flow(
+        "a jump goes behind its label",
+        "gcxform/flow/macros.py",
+        "self.at = target",
+        "self.at = target + 1",
+    ),
     _flow(
         "END leaves the loop",
-        "macros",
+        "gcxform/flow/macros.py",
         "self.back_to(self.loops[self.line].first)",
         "self.at = self.loops[self.line].last + 1",
     ),
-    _flow("P is never packed", "macros", "packed = number >= PACKED", "packed = number < 0"),
+    _flow(
+        "P is never packed",
+        "gcxform/flow/macros.py",
+        "packed = number >= PACKED",
+        "packed = number < 0",
+    ),
     _flow(
         "LT is LE",
-        "macros",
+        "gcxform/flow/macros.py",
         '"LT": lambda a, b: float(not _equal(a, b) and a < b)',
         '"LT": lambda a, b: float(a <= b)',
     ),
     _flow(
         "local variables are shared",
-        "macros",
+        "gcxform/flow/macros.py",
         "self.parameters |= dict.fromkeys(before, UNKNOWN)",
         "pass",
     ),
     _flow(
         "a distance is not rounded",
-        "execution",
+        "gcxform/flow/execution.py",
         "math.floor(abs(value) * steps + 0.5)",
         "abs(value) * steps",
         "tests/test_flow.py",
     ),
     _flow(
         "lines are those that were executed",
-        "written_out",
+        "gcxform/flow/straightened.py",
         "int(self.origin[line - 1]) + 1 if inside else line",
         "line",
         "tests/test_flow.py",
     ),
     _flow(
         "a loop behind break is run as it says",
-        "owords",
+        "gcxform/flow/owords.py",
         'self.broken |= self._has(construct, "break")\n        if not again',
         "if not again",
         "tests/test_corpus.py::test_case[flow/break-do]",
     ),
     _flow(
         "continue in a do loop forgets a break that is passed",
-        "owords",
+        "gcxform/flow/owords.py",
         'self.broken |= self._has(construct, "break")\n        self._note_left',
         "self._note_left",
         "tests/test_corpus.py::test_case[flow/do-continue-break]",
     ),
     _flow(
         "repeat behind continue is run as it says",
-        "owords",
+        "gcxform/flow/owords.py",
         'self.continued |= construct.kind == "do"\n',
         "self.continued = False\n",
         "tests/test_corpus.py::test_case[flow/do-continue-repeat]",
     ),
     _flow(
         "the number of a call is cut off, not rounded",
-        "owords",
+        "gcxform/flow/owords.py",
         "str(whole(value, self.arithmetic.whole_slip))",
         "str(int(value))",
         "tests/test_corpus.py::test_case[flow/call-by-a-value]",

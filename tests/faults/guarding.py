@@ -9,11 +9,11 @@ BESIDE = "tests/test_interference.py"
 
 
 def _door(name: str, old: str, new: str, test: str) -> Mutation:
-    return Mutation(f"door: {name}", "gcxform/inputs.py", old, new, test)
+    return Mutation(f"door: {name}", "gcxform/system/inputs.py", old, new, test)
 
 
 def _source(name: str, old: str, new: str, test: str) -> Mutation:
-    return Mutation(f"source: {name}", "gcxform/source.py", old, new, test)
+    return Mutation(f"source: {name}", "gcxform/syntax/source.py", old, new, test)
 
 
 MUTATIONS = (
@@ -58,21 +58,21 @@ MUTATIONS = (
     ),
     Mutation(
         "models: parts of parts are not counted",
-        "gcxform/machine/modelfile.py",
+        "gcxform/errormodel/model_file.py",
         "        self.files += 1\n",
         "",
         f"{HOSTILE}::test_a_sum_of_sums_of_sums",
     ),
     Mutation(
         "worker: it goes on without the one that waits",
-        "gcxform/worker.py",
+        "gcxform/system/worker.py",
         "    _end_with(parent)\n",
         "",
         f"{BESIDE}::test_a_worker_ends_with_the_one_that_waits_whatever_it_is_at",
     ),
     Mutation(
         "files: any may be replaced",
-        "gcxform/files.py",
+        "gcxform/system/files.py",
         "    _check_replaceable(path)\n",
         "",
         BESIDE,

@@ -5,12 +5,12 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 LANGUAGES = "plugins/gcxform_plugins/languages"
-CYCLES = f"{LANGUAGES}/heidenhain_cycles.py"
-LABELS = f"{LANGUAGES}/heidenhain_labels.py"
-MOVES = f"{LANGUAGES}/heidenhain_moves.py"
-SAID = f"{LANGUAGES}/heidenhain_said.py"
-WORDS = f"{LANGUAGES}/heidenhain_words.py"
-PROGRAM = f"{LANGUAGES}/heidenhain.py"
+CYCLES = "plugins/gcxform_plugins/dialects/heidenhain/cycles.py"
+LABELS = "plugins/gcxform_plugins/dialects/heidenhain/labels.py"
+MOVES = "plugins/gcxform_plugins/dialects/heidenhain/moves.py"
+SAID = "plugins/gcxform_plugins/dialects/heidenhain/positioning.py"
+WORDS = "plugins/gcxform_plugins/dialects/heidenhain/words.py"
+PROGRAM = "plugins/gcxform_plugins/dialects/heidenhain/klartext.py"
 TESTS = "tests/test_heidenhain.py"
 READ = f"{TESTS}::test_it_is_read_as_by_a_reader_of_one_line_at_a_time"
 REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"

@@ -8,8 +8,10 @@ PLANTED = "tests/test_planted_inventory.py"
 MESSAGES = "tests/test_corpus.py::test_case"
 
 
-def _proof(name: str, old: str, new: str = "if False:", file: str = "inventoryproof") -> Mutation:
-    return Mutation(f"inventory: {name}", f"gcxform/{file}.py", old, new, PLANTED)
+def _proof(
+    name: str, old: str, new: str = "if False:", file: str = "gcxform/proof/inventory.py"
+) -> Mutation:
+    return Mutation(f"inventory: {name}", file, old, new, PLANTED)
 
 
 MUTATIONS = (
@@ -27,42 +29,59 @@ MUTATIONS = (
         "what loops have set is ignored",
         "if executed is not None and not executed.agrees(self.assigned):",
     ),
-    _proof("the end is ignored", "if self.findings.file.no_end and not faulty:", file="run"),
+    _proof(
+        "the end is ignored",
+        "if self.findings.file.no_end and not faulty:",
+        file="gcxform/pipeline/run.py",
+    ),
     _proof(
         "lines need not be written out",
         "plain & (times != _written(program))",
         "plain & (times < 0)",
-        "flow/walk",
+        "gcxform/flow/line_account.py",
     ),
     _proof(
-        "lines need not follow", "plain & (behind < times)", "plain & (behind < 0)", "flow/walk"
+        "lines need not follow",
+        "plain & (behind < times)",
+        "plain & (behind < 0)",
+        "gcxform/flow/line_account.py",
     ),
-    _proof("loops need not go on", "and not times[last + 1]:", "and False:", "flow/walk"),
-    _proof("M codes are not counted", "ends, others, modes]", "ends, 0, modes]", "inventory"),
+    _proof(
+        "loops need not go on",
+        "and not times[last + 1]:",
+        "and False:",
+        "gcxform/flow/line_account.py",
+    ),
+    _proof(
+        "M codes are not counted",
+        "ends, others, modes]",
+        "ends, 0, modes]",
+        "gcxform/modal/inventory.py",
+    ),
     Mutation(
         "inventory: path modes are not counted",
-        "gcxform/inventory.py",
+        "gcxform/modal/inventory.py",
         "others, modes]",
         "others, 0]",
         "tests/test_path_modes.py",
     ),
     Mutation(
         "inventory: other programs may move",
-        "gcxform/run.py",
+        "gcxform/pipeline/run.py",
         "if self.marks.changes:\n                    self",
         "if True:\n                    self",
         CORPUS,
     ),
     Mutation(
         "inventory: what moves before is another program",
-        "gcxform/inventoryproof.py",
+        "gcxform/proof/inventory.py",
         "moves > begins[0]",
         "moves > -1",
         CORPUS,
     ),
     Mutation(
         "inventory: no percent signs",
-        "gcxform/modal/ending.py",
+        "gcxform/modal/program_end.py",
         "behind=True)",
         "behind=False)",
         CORPUS,

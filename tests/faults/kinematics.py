@@ -6,9 +6,9 @@ from faults.mutation import Mutation
 
 CHAIN = "gcxform/machine/chain.py"
 INVERSE = "gcxform/machine/inverse.py"
-KINDS = "gcxform/machine/presets.py"
-HAL = "gcxform/machine/halfile.py"
-FANUC = "gcxform/machine/fanucfile.py"
+KINDS = "gcxform/machine/kinds.py"
+HAL = "gcxform/machine/controls/linuxcnc_hal.py"
+FANUC = "gcxform/machine/controls/fanuc.py"
 JOG = "gcxform/machine/jog.py"
 TESTS = "tests/test_kinematics.py"
 MACHINES = "tests/test_machine_kinds.py"
@@ -206,7 +206,7 @@ MUTATIONS = (
     ),
     Mutation(
         "machine files: a line is turned around without its sign (C8)",
-        "gcxform/machine/machinefile.py",
+        "gcxform/machine/file.py",
         "sign = None if axis.sign is None else flip * axis.sign",
         "sign = axis.sign",
         MACHINES,
@@ -241,14 +241,14 @@ MUTATIONS = (
     ),
     Mutation(
         "Siemens: the second axis of the table is measured from the machine",
-        "gcxform/machine/siemensfile.py",
+        "gcxform/machine/controls/siemens.py",
         """_sum(vectors["I2"], vectors["I3"]))""",
         """_sum(vectors["I3"]))""",
         SINUMERIK,
     ),
     Mutation(
         "Siemens: vectors of axes are turned around",
-        "gcxform/machine/siemensfile.py",
+        "gcxform/machine/controls/siemens.py",
         "point=point, sign=1)",
         "point=point, sign=-1)",
         SINUMERIK,

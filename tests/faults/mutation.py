@@ -21,7 +21,7 @@ KIT = "tests/test_kit.py::test_registered_passes"
 LAWS = "tests/properties/test_laws.py"
 ARCS = "tests/test_arcs.py"
 CYCLES = "tests/test_cycles.py"
-LIMITS = "gcxform/modal/limits.py"
+LIMITS = "gcxform/modal/control_limits.py"
 FACTS = "tests/test_dialect_facts.py::test_our_facts"
 READING = "tests/test_verify.py::test_the_proof_reads_as_the_control_does"
 

@@ -7,12 +7,12 @@ from faults.mutation import Mutation
 TESTS = "tests/test_path_modes.py"
 
 
-def _writing(name: str, old: str, new: str, file: str = "emit/exactness") -> Mutation:
-    return Mutation(f"path modes: {name}", f"gcxform/{file}.py", old, new, TESTS)
+def _writing(name: str, old: str, new: str, file: str = "gcxform/emit/path_modes.py") -> Mutation:
+    return Mutation(f"path modes: {name}", file, old, new, TESTS)
 
 
 def _proof(name: str, old: str, new: str) -> Mutation:
-    return _writing(name, old, new, "pathmodeproof")
+    return _writing(name, old, new, "gcxform/proof/path_modes.py")
 
 
 MUTATIONS = (
@@ -20,7 +20,7 @@ MUTATIONS = (
         "the window before has stated none",
         "self.emitter.path_mode = self.exactness.after",
         "pass",
-        "emit/emitter",
+        "gcxform/emit/emitter.py",
     ),
     _writing(
         "units do not matter",
@@ -38,13 +38,13 @@ MUTATIONS = (
         "G61 leads the block",
         "(first & ~self.opens) | np.roll(self.opens, 1)",
         "first",
-        "emit/pieces",
+        "gcxform/emit/pieces.py",
     ),
     _writing(
         "G64 ends the block",
         "(self.ends & ~self.closes) | np.roll(self.closes, -1)",
         "self.ends",
-        "emit/pieces",
+        "gcxform/emit/pieces.py",
     ),
     _proof(
         "any mode is right",

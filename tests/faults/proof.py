@@ -6,13 +6,13 @@ from faults.mutation import CORPUS, VERIFY, Mutation
 
 
 def _verifier(
-    name: str, old: str, new: str = "if False:", file: str = "gcxform/verify.py"
+    name: str, old: str, new: str = "if False:", file: str = "gcxform/proof/verify.py"
 ) -> Mutation:
     return Mutation(f"verifier: {name}", file, old, new, VERIFY)
 
 
 def _feeds(name: str, old: str) -> Mutation:
-    return _verifier(name, old, file="gcxform/feedproof.py")
+    return _verifier(name, old, file="gcxform/proof/feeds.py")
 
 
 MUTATIONS = (
@@ -46,63 +46,63 @@ MUTATIONS = (
     _verifier("nothing is undone", "path = step.undo(path, self.context)", "pass"),
     Mutation(
         "deviation: the sense of arcs is ignored",
-        "gcxform/toolpath/deviation.py",
+        "gcxform/deviations/deviation.py",
         "(after.sense[rows] == self.sense)",
         "np.isfinite(self.sense)",
         VERIFY,
     ),
     Mutation(
         "deviation: what is compared with nothing passes",
-        "gcxform/toolpath/deviation.py",
+        "gcxform/deviations/deviation.py",
         "self.distance = np.full(len(owner), np.inf)",
         "self.distance = np.zeros(len(owner))",
         VERIFY,
     ),
     Mutation(
         "proof: what turns alone may be given a linear axis",
-        "gcxform/feedproof.py",
+        "gcxform/proof/feeds.py",
         "        if alone.any():\n            row = int(written",
         "        if not len(alone):\n            row = int(written",
         VERIFY,
     ),
     Mutation(
         "proof: an axis that only the target loses is a bug",
-        "gcxform/known.py",
+        "gcxform/proof/known_positions.py",
         "    if not lost.any():\n        return None",
         "    if len(lost):\n        return None",
         CORPUS,
     ),
     Mutation(
         "proof: a budget that nobody promised is a bug",
-        "gcxform/verify.py",
+        "gcxform/proof/verify.py",
         "if self.bounded or not np.isfinite(distance):",
         "if True:",
         CORPUS,
     ),
     Mutation(
         "deviation: a radius that changes is that of a circle",
-        "gcxform/toolpath/deviation.py",
+        "gcxform/deviations/deviation.py",
         "return np.asarray((np.abs(last - first) > ROUND) | (np.abs(r1 - r0) > ROUND))",
         "return np.zeros(len(r0), np.bool_)",
         "tests/test_spirals.py",
     ),
     Mutation(
         "spirals: the other keeps its radius",
-        "gcxform/toolpath/spirals.py",
+        "gcxform/deviations/spirals.py",
         "radius = its.first + its.grows * np",
         "radius = its.first + 0.0 * np",
         "tests/test_spirals.py",
     ),
     Mutation(
         "spirals: far centres count as near ones",
-        "gcxform/toolpath/spirals.py",
+        "gcxform/deviations/spirals.py",
         "_at_parts(mine.of(far), its.of(far), shift[far], sense[far])",
         "_at_parts(mine.of(far), mine.of(far), 0 * shift[far], sense[far])",
         "tests/test_spirals.py",
     ),
     Mutation(
         "runs: splines end a run",
-        "gcxform/toolpath/runs.py",
+        "gcxform/deviations/runs.py",
         "plain = (path.form == Form.PLAIN) | (path.form == Form.SPLINE)",
         "plain = path.form == Form.PLAIN",
         CORPUS,

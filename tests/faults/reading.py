@@ -8,7 +8,7 @@ MUTATIONS = (
     # reading
     Mutation(
         "reading: inches are millimetres",
-        "gcxform/modal/track.py",
+        "gcxform/modal/frames/track.py",
         "np.where(self.modes.inch, word[0] * INCH, word[0])",
         "np.where(self.modes.inch, word[0], word[0])",
         READING,
@@ -22,28 +22,28 @@ MUTATIONS = (
     ),
     Mutation(
         "reading: a full circle has no sweep",
-        "gcxform/modal/arcs.py",
+        "gcxform/toolpath/angles.py",
         "return np.where(same, TURN, angle)",
         "return np.where(same, 0.0, angle)",
         READING,
     ),
     Mutation(
         "reading: the long arc by radius is the short one",
-        "gcxform/modal/arcs.py",
+        "gcxform/modal/moves/arcs.py",
         "np.where(radius > 0, sense, -sense)",
         "np.where(radius > 0, sense, sense)",
         READING,
     ),
     Mutation(
         "reading: distances are added to the last absolute position only",
-        "gcxform/modal/track.py",
+        "gcxform/modal/frames/track.py",
         "np.where(placed, value - steps, 0.0)",
         "np.where(placed, value, 0.0)",
         READING,
     ),
     Mutation(
         "reading: positions are not carried into the next window",
-        "gcxform/modal/track.py",
+        "gcxform/modal/frames/track.py",
         "self.state.position = np.array(self.frame.positions(end[None, :])[0])",
         "pass",
         VERIFY,
@@ -93,14 +93,14 @@ MUTATIONS = (
     ),
     Mutation(
         "limits: arcs in inches are held to the tolerance of mm",
-        "gcxform/modal/arcs.py",
+        "gcxform/modal/moves/arcs.py",
         "np.where(inch, rule.in_inch, 1.0)",
         "np.where(inch, 1.0, 1.0)",
         FACTS,
     ),
     Mutation(
         "limits: one M word more",
-        "gcxform/modal/sorting.py",
+        "gcxform/modal/meaning/sorting.py",
         'word.address == "M"][most:][:1]',
         'word.address == "M"][most + 1 :][:1]',
         FACTS,

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from faults.mutation import CORPUS, PASSES, Mutation
+from faults.mutation import CORPUS, Mutation
 
 TESTS = "tests/test_rtcp.py"
-BOUND = f"{PASSES}/rtcp_bound.py"
-CUTTING = f"{PASSES}/rtcp_cutting.py"
-PLACE = f"{PASSES}/rtcp_place.py"
-UNDOING = f"{PASSES}/rtcp_undoing.py"
-SMALL = f"{PASSES}/rtcp_small.py"
-WAYS = f"{PASSES}/rtcp_ways.py"
+BOUND = "plugins/gcxform_plugins/passes/shared/tip_bound.py"
+CUTTING = "plugins/gcxform_plugins/passes/rtcp/forward/cutting.py"
+PLACE = "plugins/gcxform_plugins/passes/rtcp/place.py"
+UNDOING = "plugins/gcxform_plugins/passes/rtcp/proof/undoing.py"
+SMALL = "plugins/gcxform_plugins/passes/rtcp/forward/correction_bound.py"
+WAYS = "plugins/gcxform_plugins/passes/rtcp/forward/ways.py"
 REPOST = "tests/test_rtcp_repost.py"
 RETARGET = "tests/test_rtcp_retarget.py"
-CHOICE = f"{PASSES}/rtcp_choice.py"
-MOVING = f"{PASSES}/rtcp_moving.py"
-PROOF = f"{PASSES}/rtcp_proof.py"
-SWITCHES = f"{PASSES}/rtcp_switches.py"
-DRIVEN = f"{PASSES}/rtcp_driven.py"
-RETRACTED = f"{PASSES}/rtcp_retracted.py"
-RETRACTING = f"{PASSES}/rtcp_retracting.py"
+CHOICE = "plugins/gcxform_plugins/passes/rtcp/forward/choice.py"
+MOVING = "plugins/gcxform_plugins/passes/rtcp/forward/moving.py"
+PROOF = "plugins/gcxform_plugins/passes/rtcp/proof/proof.py"
+SWITCHES = "plugins/gcxform_plugins/passes/rtcp/switches.py"
+DRIVEN = "plugins/gcxform_plugins/passes/rtcp/proof/driven.py"
+RETRACTED = "plugins/gcxform_plugins/passes/rtcp/proof/retracted.py"
+RETRACTING = "plugins/gcxform_plugins/passes/rtcp/forward/retracting.py"
 DRAWN = "tests/test_rtcp_retract.py"
 CHOOSING = "tests/test_rtcp_choice.py"
 HOLDS = f"{TESTS}::test_the_bound_holds_for_any_piece"
@@ -111,7 +111,7 @@ MUTATIONS = (
     ),
     Mutation(
         "rtcp: the tool axis that stays off is that of one machine",
-        f"{PASSES}/rtcp_measured.py",
+        "plugins/gcxform_plugins/passes/rtcp/measured.py",
         "for p in (way.nominal, way.axes))",
         "for p in (way.nominal, way.nominal))",
         f"{REPOST}::test_reposted_before_rounding",
@@ -174,7 +174,7 @@ MUTATIONS = (
     ),
     Mutation(
         "rtcp: the tool axis goes evenly between its ends, and not on the circle",
-        f"{PASSES}/rtcp_circling.py",
+        "plugins/gcxform_plugins/passes/rtcp/forward/great_circles.py",
         "left = np.where(short, 1.0 - part, np.sin((1.0 - part) * angle) / whole)",
         "left = np.where(short, 1.0 - part, 1.0 - part)",
         f"{CHOOSING}::test_blocks_of_a_great_circle",
@@ -195,28 +195,28 @@ MUTATIONS = (
     ),
     Mutation(
         "feeds: a move may be late without an axis at full speed",
-        "gcxform/feedproof.py",
+        "gcxform/proof/feeds.py",
         "return np.asarray(timed & (least * written.feed >= 1.0 - TIME_ERROR))",
         "return np.asarray(timed & (least * written.feed >= 0.0))",
         f"{TESTS}::test_a_late_move_has_to_have_a_reason",
     ),
     Mutation(
         "rtcp: comments lose their codes",
-        "gcxform/tipcodes.py",
+        "gcxform/contract/tip_codes.py",
         'if found[0].startswith(b"("):',
         "if False:",
         "tests/test_tipcodes.py",
     ),
     Mutation(
         "rtcp: the control may begin with axes turned",
-        f"{PASSES}/rtcp_place.py",
+        "plugins/gcxform_plugins/passes/rtcp/place.py",
         "begins &= turned_at(start)",
         "begins[:] = False",
         "tests/test_corpus.py::test_case",
     ),
     Mutation(
         "rtcp: axes may be turned before the control follows",
-        f"{PASSES}/rtcp_place.py",
+        "plugins/gcxform_plugins/passes/rtcp/place.py",
         "(~self.called | (self.off & by_length)) & (turned_at(end) | cuts)",
         "np.zeros(len(self.which), np.bool_)",
         "tests/test_corpus.py::test_case",
@@ -314,28 +314,28 @@ MUTATIONS = (
     ),
     Mutation(
         "rtcp: on is off",
-        "gcxform/modal/lengths.py",
+        "gcxform/modal/frames/tool_lengths.py",
         "return replace(state, following=True)",
         "return replace(state, following=False)",
         "tests/test_tip_switches.py",
     ),
     Mutation(
         "rtcp: once on, the control stays on",
-        "gcxform/modal/lengths.py",
+        "gcxform/modal/frames/tool_lengths.py",
         "return replace(state, following=False)",
         "return state",
         "tests/test_tip_switches.py",
     ),
     Mutation(
         "rtcp: a frame does not say what follows the tip",
-        "gcxform/modal/frames.py",
+        "gcxform/modal/frames/state.py",
         "            self.following,\n",
         "            None,\n",
         "tests/test_tip_switches.py",
     ),
     Mutation(
         "rtcp: offsets forget what follows the tip",
-        f"{PASSES}/offsets.py",
+        "plugins/gcxform_plugins/passes/offsets.py",
         "following=frame.following",
         "following=None",
         "tests/test_tip_switches.py",
@@ -447,21 +447,21 @@ MUTATIONS = (
     ),
     Mutation(
         "what passes add is that of the last window",
-        "gcxform/run.py",
+        "gcxform/pipeline/run.py",
         "self.added[what] = self.added.get(what, 0) + number",
         "self.added[what] = number",
         f"{DRAWN}::test_several_cuts_are_counted_together",
     ),
     Mutation(
         "rtcp: the tool is not drawn back where limits lead to the pole",
-        f"{PASSES}/rtcp_choice.py",
+        "plugins/gcxform_plugins/passes/rtcp/forward/choice.py",
         "DRAWN_BACK = (Trouble.FLIP, Trouble.POLE)",
         "DRAWN_BACK = (Trouble.FLIP,)",
         CORPUS + "[rtcp/retract-pole]",
     ),
     Mutation(
         "rtcp: at the pole the free axis does not turn while the tool is drawn back",
-        f"{PASSES}/rtcp_choice.py",
+        "plugins/gcxform_plugins/passes/rtcp/forward/choice.py",
         "if turns or not self.cut[at]:",
         "if not self.cut[at]:",
         CORPUS + "[rtcp/retract-pole]",

@@ -6,13 +6,13 @@ from faults.mutation import Mutation
 
 
 def _worker(name: str, old: str, new: str) -> Mutation:
-    return Mutation(f"worker: {name}", "gcxform/worker.py", old, new, "tests/test_worker.py")
+    return Mutation(f"worker: {name}", "gcxform/system/worker.py", old, new, "tests/test_worker.py")
 
 
 MUTATIONS = (
     Mutation(
         "run: the last window is not proved",
-        "gcxform/run.py",
+        "gcxform/pipeline/run.py",
         "            if proof.busy and not",
         "            if False and not",
         "tests/test_verify.py",
@@ -38,7 +38,7 @@ MUTATIONS = (
     ),
     Mutation(
         "run: a pass can end it before its program",
-        "gcxform/run.py",
+        "gcxform/pipeline/run.py",
         "            for apart, first, last in with_ends(windows, self.frame.behind):\n"
         "                one = self._transform(apart)\n",
         "            first = last = False\n"
@@ -54,7 +54,7 @@ MUTATIONS = (
     ),
     Mutation(
         "heap: nothing is given back",
-        "gcxform/heap.py",
+        "gcxform/system/heap.py",
         "elif _resident() > MORE * self.needed:",
         "elif False:",
         "tests/test_heap.py",

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from faults.mutation import Mutation
 
-PLACE = "plugins/gcxform_plugins/languages/siemens_place.py"
-MOVES = "plugins/gcxform_plugins/languages/siemens_moves.py"
-ARCS = "plugins/gcxform_plugins/languages/siemens_arcs.py"
-BLOCKS = "plugins/gcxform_plugins/languages/siemens_blocks.py"
-READING = "plugins/gcxform_plugins/languages/siemens_reading.py"
-CYCLES = "plugins/gcxform_plugins/languages/siemens_cycles.py"
+PLACE = "plugins/gcxform_plugins/dialects/siemens/place.py"
+MOVES = "plugins/gcxform_plugins/dialects/siemens/moves.py"
+ARCS = "plugins/gcxform_plugins/dialects/siemens/arcs.py"
+BLOCKS = "plugins/gcxform_plugins/dialects/siemens/blocks.py"
+READING = "plugins/gcxform_plugins/dialects/siemens/reading.py"
+CYCLES = "plugins/gcxform_plugins/dialects/siemens/cycles.py"
 RANDOM = "tests/test_siemens.py::test_it_reads_what_the_reference_reads"
 CASES = "tests/test_corpus.py::test_case"
 TIPS = "tests/test_siemens.py::test_five_axes_become_what_the_same_program_by_hand_becomes"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from faults.mutation import CORPUS, PASSES, Mutation
+from faults.mutation import CORPUS, Mutation
 
 PLANTED = "tests/test_planted_volumetric.py"
-SPARED = "gcxform/spared.py"
-COMPENSATION = f"{PASSES}/compensation.py"
-UNDOING = f"{PASSES}/undoing.py"
+SPARED = "gcxform/proof/spared_rapids.py"
+COMPENSATION = "plugins/gcxform_plugins/passes/volumetric/forward/compensation.py"
+UNDOING = "plugins/gcxform_plugins/passes/volumetric/undo/machine.py"
 
 MUTATIONS = (
     Mutation(
@@ -33,7 +33,7 @@ MUTATIONS = (
     ),
     Mutation(
         "spared: what was written before is forgotten",
-        "gcxform/run.py",
+        "gcxform/pipeline/run.py",
         "self.held.get(number, path.entry)",
         "path.entry",
         f"{PLANTED}::test_windows_know_where_the_axes_were_left",
@@ -54,7 +54,7 @@ MUTATIONS = (
     ),
     Mutation(
         "spared: where feed moves begin is not compared in the first row",
-        "gcxform/verify.py",
+        "gcxform/proof/verify.py",
         "kind[trace.owner] != Kind.RAPID))\n        if not len(rows)",
         "kind[trace.owner] != Kind.RAPID))[1:]\n        if not len(rows)",
         PLANTED,
@@ -75,28 +75,28 @@ MUTATIONS = (
     ),
     Mutation(
         "promises: what proves itself has room for nothing",
-        "plugins/gcxform_plugins/passes/rtcp.py",
+        "plugins/gcxform_plugins/passes/rtcp/rtcp.py",
         "        return self.tolerance\n",
         "        return 0.0 if self.turns_anew else self.tolerance\n",
         "tests/test_promises.py",
     ),
     Mutation(
         "promises: the tip is left out of the largest",
-        "gcxform/certifying.py",
+        "gcxform/pipeline/certify.py",
         "largest[key] + off if proved else",
         "largest[key] if proved else",
         "tests/test_promises.py",
     ),
     Mutation(
         "promises: what is written may be off by all of the budget",
-        "gcxform/pipeline.py",
+        "gcxform/pipeline/pipeline.py",
         " - sum(step.promise for step in proved)",
         "",
         "tests/test_promises.py",
     ),
     Mutation(
         "promises: arcs that are not there have room",
-        "gcxform/pipeline.py",
+        "gcxform/pipeline/pipeline.py",
         "if arcs and LINEAR_ONLY",
         "if LINEAR_ONLY",
         "tests/test_promises.py",

@@ -9,60 +9,60 @@ SPLINE_LAWS = "tests/properties/test_splines.py"
 
 MUTATIONS = (
     *(
-        Mutation(f"splines: {name}", f"gcxform/{file}.py", old, new, tests)
+        Mutation(f"splines: {name}", file, old, new, tests)
         for name, file, old, new, tests in (
             (
                 "minus the P and Q before is plus",
-                "modal/splines",
+                "gcxform/modal/moves/splines.py",
                 "np.isnan(words.offset), -in_series,",
                 "np.isnan(words.offset), in_series,",
                 SPLINES,
             ),
             (
                 "P and Q from the start",
-                "modal/splines",
+                "gcxform/modal/moves/splines.py",
                 "second = end + np.where(cubic, pull,",
                 "second = start + np.where(cubic, pull,",
                 SPLINES,
             ),
             (
                 "a quadratic is cubic",
-                "modal/splines",
+                "gcxform/modal/moves/splines.py",
                 "offset, THIRDS * offset)",
                 "offset, offset)",
                 SPLINES,
             ),
             (
                 "the series goes on after a line",
-                "modal/splines",
+                "gcxform/modal/moves/splines.py",
                 "(np.diff(words.row) == 1) & words.cubic[:-1]",
                 "(np.diff(words.row) >= 1) & words.cubic[:-1]",
                 SPLINES,
             ),
             (
                 "half as many chords",
-                "toolpath/splines",
+                "gcxform/toolpath/splines.py",
                 "np.sqrt(0.75 * second",
                 "0.5 * np.sqrt(0.75 * second",
                 SPLINE_LAWS,
             ),
             (
                 "the bound is a quarter",
-                "toolpath/beside_splines",
+                "gcxform/deviations/splines.py",
                 "np.maximum.at(worst, self.group, bound)",
                 "np.maximum.at(worst, self.group, bound / 4)",
                 SPLINE_LAWS,
             ),
             (
                 "the bound forgets a part of each line",
-                "toolpath/beside_splines",
+                "gcxform/deviations/splines.py",
                 "for k in range(2**HALVINGS):",
                 "for k in range(2**HALVINGS - 1, 2**HALVINGS):",
                 SPLINE_LAWS,
             ),
             (
                 "a spline for a line is no matter",
-                "toolpath/deviation",
+                "gcxform/deviations/deviation.py",
                 "bent = before.is_spline[self.owner] | self.after.is_spline",
                 "bent = before.is_spline[self.owner]",
                 SPLINE_LAWS,

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from faults.mutation import PASSES, Mutation
+from faults.mutation import Mutation
 
-CUTTING = f"{PASSES}/rtcp_cutting.py"
-PLACE = f"{PASSES}/rtcp_place.py"
-TRACK = "gcxform/modal/track.py"
-KNOWN = "gcxform/known.py"
+CUTTING = "plugins/gcxform_plugins/passes/rtcp/forward/cutting.py"
+PLACE = "plugins/gcxform_plugins/passes/rtcp/place.py"
+TRACK = "gcxform/modal/frames/track.py"
+KNOWN = "gcxform/proof/known_positions.py"
 TESTS = "tests/test_tip_switches.py"
 TURNED = f"{TESTS}::test_switched_with_axes_turned"
 REFUSED = f"{TESTS}::test_it_is_refused_by_name"

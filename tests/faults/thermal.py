@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from faults.mutation import PASSES, RIGID, Mutation
+from faults.mutation import RIGID, Mutation
 
 NUMBERS = "tests/test_thermal.py"
 FILES = "tests/test_thermal_files.py"
 PASS = "tests/test_thermal_pass.py"
-ROD = "gcxform/machine/thermal.py"
-READINGS = "gcxform/machine/readings.py"
-FILE = "gcxform/machine/thermalfile.py"
+ROD = "gcxform/errormodel/thermal.py"
+READINGS = "gcxform/errormodel/temperatures.py"
+FILE = "gcxform/errormodel/thermal_file.py"
 
 
 def _fault(name: str, file: str, old: str, new: str, tests: str = NUMBERS) -> Mutation:
@@ -92,14 +92,14 @@ MUTATIONS = (
     ),
     _fault(
         "the pass forgets its time",
-        f"{PASSES}/volumetric.py",
+        "plugins/gcxform_plugins/passes/volumetric/volumetric.py",
         "self.model.at_time(self.time)",
         "self.model",
         PASS,
     ),
     _fault(
         "the readings are not in the fingerprint",
-        "gcxform/optionkinds.py",
+        "gcxform/contract/option_kinds.py",
         'data += fingerprint(model) if model.composed else b""',
         'data += b""',
         FILES,

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from faults.mutation import PASSES, Mutation
+from faults.mutation import Mutation
 
 TIED = "tests/properties/test_tied.py"
 TAPPING = "tests/properties/test_tapping.py"
 
 
 def _tied(name: str, old: str, new: str, tests: str = TIED) -> Mutation:
-    return Mutation(f"tied: {name}", "gcxform/modal/tied.py", old, new, tests)
+    return Mutation(f"tied: {name}", "gcxform/modal/moves/spindle_and_probe.py", old, new, tests)
 
 
 def _tapping(name: str, old: str, new: str, tests: str = TAPPING) -> Mutation:
@@ -75,14 +75,14 @@ MUTATIONS = (
     ),
     Mutation(
         "the proof takes a thread for a line",
-        "gcxform/verify.py",
+        "gcxform/proof/verify.py",
         "tied & (form != was)",
         "tied & (form < 0)",
         "tests/test_tied.py",
     ),
     Mutation(
         "the way of a thread is not looked at",
-        f"{PASSES}/splitting.py",
+        "plugins/gcxform_plugins/passes/volumetric/forward/lines.py",
         "((path.form == gx.Form.PLAIN) | whole)",
         "(path.form == gx.Form.PLAIN)",
         "tests/test_corpus.py::test_case[tied/thread-not-straight]",

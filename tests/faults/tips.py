@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from faults.mutation import PASSES, Mutation
+from faults.mutation import Mutation
 
-CUTTING = f"{PASSES}/rtcp_cutting.py"
-RTCP = f"{PASSES}/rtcp.py"
-TIPS = f"{PASSES}/rtcp_tips.py"
-DRIVEN = f"{PASSES}/rtcp_driven.py"
+CUTTING = "plugins/gcxform_plugins/passes/rtcp/forward/cutting.py"
+RTCP = "plugins/gcxform_plugins/passes/rtcp/rtcp.py"
+TIPS = "plugins/gcxform_plugins/passes/rtcp/proof/tips.py"
+DRIVEN = "plugins/gcxform_plugins/passes/rtcp/proof/driven.py"
 TESTS = "tests/test_rtcp_tips.py"
 WITHIN = f"{TESTS}::test_the_tip_is_within_its_tolerance"
 PROVED = f"{TESTS}::test_the_proof_follows_tips"

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from faults.mutation import CORPUS, PASSES, RIGID, Mutation
+from faults.mutation import CORPUS, RIGID, Mutation
 
 TURNED = "tests/test_turned_head.py"
 TIP = f"{TURNED}::test_the_tip_of_the_exact_machine_under_a_turning_head"
 UNDO = f"{TURNED}::test_the_undo_is_as_near_to_the_curve_as_it_says"
 BENT = f"{TURNED}::test_where_only_the_head_bends_the_error"
 BOUND = f"{RIGID}::test_no_turn_is_above_its_bound"
-LEVERS = f"{PASSES}/levers.py"
-SWINGING = f"{PASSES}/swinging.py"
-UNDOING = f"{PASSES}/undoing.py"
-RETRACING = f"{PASSES}/retracing.py"
-SPLITTING = f"{PASSES}/splitting.py"
-COMPENSATION = f"{PASSES}/compensation.py"
+LEVERS = "plugins/gcxform_plugins/passes/volumetric/levers.py"
+SWINGING = "plugins/gcxform_plugins/passes/volumetric/forward/turning_head.py"
+UNDOING = "plugins/gcxform_plugins/passes/volumetric/undo/machine.py"
+RETRACING = "plugins/gcxform_plugins/passes/volumetric/undo/commands.py"
+SPLITTING = "plugins/gcxform_plugins/passes/volumetric/forward/lines.py"
+COMPENSATION = "plugins/gcxform_plugins/passes/volumetric/forward/compensation.py"
 
 
 def _fault(name: str, file: str, old: str, new: str, tests: str = TIP) -> Mutation:
@@ -52,7 +52,7 @@ MUTATIONS = (
     ),
     _fault(
         "the tool before the window is that of its end",
-        f"{PASSES}/placing.py",
+        "plugins/gcxform_plugins/passes/volumetric/place.py",
         "return self.lever.starts[:1]",
         "return self.lever.ends[:1]",
         "tests/test_corpus.py::test_windows_make_no_difference[rtcp/volumetric-turned-head]",
@@ -99,28 +99,28 @@ MUTATIONS = (
     ),
     _fault(
         "the turns of one axis alone are bounded",
-        "gcxform/machine/rigid.py",
+        "gcxform/errormodel/rigid.py",
         "angle += float(",
         "angle = float(",
         BOUND,
     ),
     _fault(
         "beyond a lattice its turns are those of the border",
-        "gcxform/machine/lattice.py",
+        "gcxform/errormodel/lattice.py",
         "before = rows[:1] + cells *",
         "before = rows[:1] + 0.0 * cells *",
         BOUND,
     ),
     _fault(
         "turns alone take any time",
-        "gcxform/feedproof.py",
+        "gcxform/proof/feeds.py",
         "off = np.where(turns, self._uneven(self._turned()), off)",
         "pass",
         f"{TURNED}::test_turns_alone_share_their_time_by_angles",
     ),
     _fault(
         "tips are taken for axes",
-        f"{PASSES}/volumetric.py",
+        "plugins/gcxform_plugins/passes/volumetric/volumetric.py",
         "requires = frozenset({gx.NOMINAL, gx.AXIS_POSITIONS})",
         "requires = frozenset({gx.NOMINAL})",
         "tests/test_rtcp_volumetric.py",

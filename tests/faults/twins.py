@@ -9,15 +9,15 @@ PROPERTY = "tests/properties/test_twins.py"
 
 
 def _walk(name: str, old: str, new: str, tests: str = TESTS) -> Mutation:
-    return Mutation(f"twins: {name}", "gcxform/toolpath/matching.py", old, new, tests)
+    return Mutation(f"twins: {name}", "gcxform/deviations/matching.py", old, new, tests)
 
 
 def _even(name: str, old: str, new: str) -> Mutation:
-    return Mutation(f"twins: {name}", "gcxform/toolpath/evenly.py", old, new, TESTS)
+    return Mutation(f"twins: {name}", "gcxform/deviations/even_travel.py", old, new, TESTS)
 
 
 def _apart(name: str, old: str, new: str) -> Mutation:
-    return Mutation(f"twins: {name}", "gcxform/toolpath/matched.py", old, new, TESTS)
+    return Mutation(f"twins: {name}", "gcxform/deviations/paired_pieces.py", old, new, TESTS)
 
 
 def _compare(name: str, old: str, new: str) -> Mutation:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from faults.mutation import PASSES, Mutation
+from faults.mutation import Mutation
 
 TESTS = "tests/test_rtcp_lines.py"
-LINES = f"{PASSES}/rtcp_lines.py"
-MOVES = f"{PASSES}/rtcp_retracting.py"
-RETRACTED = f"{PASSES}/rtcp_retracted.py"
-PROOF = f"{PASSES}/rtcp_proof.py"
+LINES = "plugins/gcxform_plugins/passes/rtcp/user_lines.py"
+MOVES = "plugins/gcxform_plugins/passes/rtcp/forward/retracting.py"
+RETRACTED = "plugins/gcxform_plugins/passes/rtcp/proof/retracted.py"
+PROOF = "plugins/gcxform_plugins/passes/rtcp/proof/proof.py"
 STANDS = f"{TESTS}::test_lines_stand_where_they_should_and_the_tool_comes_back"
 FOLLOWS = f"{TESTS}::test_the_proof_follows_every_move"
 PLACES = f"{TESTS}::test_the_proof_wants_each_block_once_and_in_its_place"
@@ -48,14 +48,14 @@ MUTATIONS = (
     ),
     Mutation(
         "lines: the output is read with the work offset of the other machine",
-        "gcxform/run.py",
+        "gcxform/pipeline/run.py",
         "reading = replace(reading, work_offsets=offsets, homes=homes)",
         "reading = replace(reading, homes=homes)",
         OFFSET,
     ),
     Mutation(
         "lines: places of the machine are the same on any target",
-        f"{PASSES}/rtcp_moving.py",
+        "plugins/gcxform_plugins/passes/rtcp/forward/moving.py",
         "return homes or bool((self.place.zero != self.target.zero).any())",
         "return homes",
         OFFSET,
@@ -90,7 +90,7 @@ MUTATIONS = (
     ),
     Mutation(
         "lines: inches are taken for mm",
-        f"{PASSES}/rtcp_moving.py",
+        "plugins/gcxform_plugins/passes/rtcp/forward/moving.py",
         "if self.lines.in_mm:",
         "if not self.lines:",
         "tests/test_corpus.py::test_case",
@@ -153,7 +153,7 @@ MUTATIONS = (
     ),
     Mutation(
         "lines: what is written is not asked for the blocks",
-        "gcxform/verify.py",
+        "gcxform/proof/verify.py",
         "if [each for each in here if each in wanted] != wanted:",
         "if not here:",
         TEXT,

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from faults.mutation import PASSES, Mutation
+from faults.mutation import Mutation
 
 TESTS = "tests/test_rtcp_vectors.py"
 PROVED = "tests/test_rtcp_vectors_proof.py"
-READING = "gcxform/modal/pointing.py"
-POINTING = f"{PASSES}/rtcp_pointing.py"
-POINTED = f"{PASSES}/rtcp_pointed.py"
-VECTORS = f"{PASSES}/rtcp_vectors.py"
-DRIVEN = f"{PASSES}/rtcp_driven.py"
+READING = "gcxform/modal/moves/tool_vectors.py"
+POINTING = "plugins/gcxform_plugins/passes/rtcp/forward/vectors.py"
+POINTED = "plugins/gcxform_plugins/passes/rtcp/proof/vectors.py"
+VECTORS = "plugins/gcxform_plugins/passes/rtcp/tool_vectors.py"
+DRIVEN = "plugins/gcxform_plugins/passes/rtcp/proof/driven.py"
 ANY = f"{TESTS}::test_any_vectors"
 ANGLES = f"{TESTS}::test_it_does_what_angles_do"
 LIMITS = f"{TESTS}::test_turns_go_on_and_limits_hold"
@@ -70,14 +70,14 @@ MUTATIONS = (
     ),
     Mutation(
         "vectors: after G49 axes stand where G43.5 found them",
-        "gcxform/modal/track.py",
+        "gcxform/modal/frames/track.py",
         "self.state.position[:] = LEFT",
         "self.state.position[:2] = LEFT",
         f"{CORPUS}[rtcp/vectors-read]",
     ),
     Mutation(
         "vectors: steps are taken from where the control has left an axis",
-        "gcxform/modal/track.py",
+        "gcxform/modal/frames/track.py",
         "self._refuse_steps(incremental & ~np.isfinite(position), axis, here.start)",
         "self._refuse_steps(incremental & np.isnan(position), axis, here.start)",
         f"{CORPUS}[rtcp/vectors-incremental-after]",
@@ -91,7 +91,7 @@ MUTATIONS = (
     ),
     Mutation(
         "vectors: a section is divided",
-        "gcxform/cuts.py",
+        "gcxform/pipeline/whole_cuts.py",
         '(one[1], other[1]) == (b"9", b"3")',
         'other[1] == b"3" or other[1] == b"9"',
         f"{TESTS}::test_sections_are_not_divided",

@@ -19,10 +19,10 @@ from oracles.compare import move_difference
 from reference.model import Move
 
 import gcxform as gx
-from gcxform.contract import PassContext
-from gcxform.dialect import INCH
+from gcxform.contract.passes import PassContext
+from gcxform.dialect.dialect import INCH
 from gcxform.machine.machine import Tool
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 from gcxform.toolpath.path import FeedMode, Form, Kind, Plane, Toolpath
 
 KINDS = {Kind.RAPID: "RAPID", Kind.LINE: "LINE", Kind.ARC_CW: "ARC_CW", Kind.ARC_CCW: "ARC_CCW"}

@@ -17,16 +17,16 @@ from oracles.canon import CanonProgram
 from oracles.toolpaths import OFFSETS as CODES
 
 import gcxform as gx
-from gcxform import worker
-from gcxform.certifying import certificate
 from gcxform.machine.machine import Machine, Tool
 from gcxform.modal.state import Reading
-from gcxform.pipelinefile import parse_chain
-from gcxform.registry import default_registry
-from gcxform.run import Output, Run
-from gcxform.source import Source
+from gcxform.pipeline.certify import certificate
+from gcxform.pipeline.file import parse_chain
+from gcxform.pipeline.run import Output, Run
+from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
+from gcxform.system import worker
 from gcxform.testing.cases import SPECIAL, Case
-from gcxform.testing.everything import Drawn, Wishes, everything
+from gcxform.testing.linuxcnc_programs import Drawn, Wishes, everything
 
 INCH = 25.4
 PRINTED = 6e-4  # units: five numbers with four decimals are added up, in three axes

@@ -21,7 +21,7 @@ from properties import chains
 from seeds_kit import shares
 
 import gcxform as gx
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 from gcxform.testing.cases import read_case
 
 LONG = settings.default.max_examples > 1000

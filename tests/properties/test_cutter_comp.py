@@ -14,7 +14,7 @@ from seeds_kit import shares
 
 import gcxform as gx
 from gcxform.machine.machine import Machine, Tool
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 
 COUNT = 4 * settings.default.max_examples  # 400; the profile `long` asks for more
 CLOSE = 1.1e-4  # mm: twice the rounding of the print

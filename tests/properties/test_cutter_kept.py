@@ -21,7 +21,7 @@ from properties.test_cutter_comp import REFUSED_BY_US, centre_program, executed
 
 import gcxform as gx
 from gcxform.machine.machine import Machine, Tool
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 
 COUNT = settings.default.max_examples  # 100; the profile `long` asks for more
 STEPS = (

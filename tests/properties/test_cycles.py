@@ -11,7 +11,7 @@ from oracles import rs274, toolpaths
 from oracles.canon import CanonProgram
 
 import gcxform as gx
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 
 COUNT = 5 * settings.default.max_examples  # 500; the profile `long` asks for more
 CHUNK = 500

@@ -19,7 +19,7 @@ from properties.test_rs274 import chain, drawn
 from seeds_kit import shares
 
 import gcxform as gx
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 from gcxform.toolpath.path import COLUMNS
 
 COUNT = settings.default.max_examples

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import gcxform as gx
-from gcxform.registry import default_registry
+from gcxform.plugin.registry import default_registry
 
 
 def run(chain: str, dialect: str, program: str) -> str:

@@ -11,11 +11,11 @@ from reference.interpreter import Move, Refused, interpret
 
 import gcxform as gx
 from gcxform.modal.interpreter import Interpreter
-from gcxform.registry import default_registry
-from gcxform.source import Source
+from gcxform.plugin.registry import default_registry
+from gcxform.proof.verify import WindowReader
+from gcxform.syntax.source import Source
 from gcxform.testing.strategies import programs
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
-from gcxform.verify import WindowReader
 
 KINDS = {Kind.RAPID: "RAPID", Kind.LINE: "LINE", Kind.ARC_CW: "ARC_CW", Kind.ARC_CCW: "ARC_CCW"}
 MODES = {FeedMode.INVERSE_TIME: "G93", FeedMode.PER_MINUTE: "G94", FeedMode.PER_TURN: "G95"}

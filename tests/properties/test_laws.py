@@ -22,9 +22,9 @@ from hypothesis import strategies as st
 from reference.interpreter import Move, Program, interpret
 
 import gcxform as gx
-from gcxform.options import ModelFile
-from gcxform.pipelinefile import parse_chain
-from gcxform.registry import default_registry
+from gcxform.contract.options import ModelFile
+from gcxform.pipeline.file import parse_chain
+from gcxform.plugin.registry import default_registry
 from gcxform.testing.strategies import programs
 
 EXAMPLES = settings.default.max_examples

@@ -5,13 +5,13 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 import gcxform as gx
-from gcxform.registry import default_registry
-from gcxform.source import Source
+from gcxform.plugin.registry import default_registry
+from gcxform.proof.verify import WindowReader
 from gcxform.syntax.scan import Window
 from gcxform.syntax.shapes import Shape, instantiate, slots_of
+from gcxform.syntax.source import Source
 from gcxform.syntax.tree import Block, Expression, Statement, Word, print_block
 from gcxform.testing.strategies import lines_of_bytes, programs
-from gcxform.verify import WindowReader
 
 DIALECTS = ("fanuc", "grbl", "haas", "linuxcnc")
 in_every_dialect = pytest.mark.parametrize("name", DIALECTS)
@@ -119,7 +119,7 @@ def test_no_axis_is_overlooked(name: str, program: bytes, chunk: int) -> None:
     shapes = [reader.shapes.shapes[number].block for number in reader.read(program).shape]
     words = {w.address.upper() for block in shapes for w in block.items if isinstance(w, Word)}
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("gcxform.source.CHUNK", chunk)
+        patch.setattr("gcxform.syntax.source.CHUNK", chunk)
         assert words & {*axes} <= {*Source.of_bytes(program).axes(axes)}
 
 

@@ -18,8 +18,8 @@ from reference.interpreter import Move
 from seeds_kit import shares
 
 import gcxform as gx
-from gcxform.options import ModelFile
-from gcxform.registry import default_registry
+from gcxform.contract.options import ModelFile
+from gcxform.plugin.registry import default_registry
 from gcxform.testing.generate import Options, program
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 

@@ -18,9 +18,9 @@ from seeds_kit import shares
 import gcxform as gx
 from gcxform.machine.machine import Tool
 from gcxform.modal.state import Reading
-from gcxform.output import Output
-from gcxform.run import Run
-from gcxform.source import Source
+from gcxform.pipeline.output import Output
+from gcxform.pipeline.run import Run
+from gcxform.syntax.source import Source
 from gcxform.testing.generate import Options
 from gcxform.testing.shifts import ShiftingBuilder
 
@@ -156,7 +156,9 @@ def test_the_machine_goes_where_it_went(seeds: range, monkeypatch: pytest.Monkey
     jobs, refused = [], 0
     for seed in seeds:
         choose = random.Random(seed)
-        monkeypatch.setattr("gcxform.worker.LINUX", seed % 10 == 0)  # few are read by processes
+        monkeypatch.setattr(
+            "gcxform.system.worker.LINUX", seed % 10 == 0
+        )  # few are read by processes
         chain, source = choose.choice(CHAINS), drawn(seed, 20)
         try:
             text, lines = written(chain, source, choose.choice((30, 60, 100, 1 << 20)))

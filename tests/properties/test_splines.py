@@ -124,7 +124,7 @@ def one_spline(pick: random.Random) -> Toolpath:
 
 
 def context() -> gx.PassContext:
-    from gcxform.registry import default_registry
+    from gcxform.plugin.registry import default_registry
 
     dialect = default_registry().dialect("linuxcnc")
     return gx.PassContext(dialect, dialect, dialect.numbers)

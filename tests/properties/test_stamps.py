@@ -13,8 +13,8 @@ from oracles import rs274
 from test_corpus import CASES, PLACES, name
 
 import gcxform as gx
-from gcxform.source import Source
-from gcxform.stamp import stamps_in
+from gcxform.stamps.comment import stamps_in
+from gcxform.syntax.source import Source
 from gcxform.testing.strategies import programs
 
 WIDE = f"{kit.VOLUMETRIC} outside=clamp"

@@ -14,8 +14,8 @@ import pytest
 from seeds_kit import shares
 
 import gcxform as gx
-from gcxform.machine.functions import AxisFunction, AxisFunctions
-from gcxform.machine.modeltext import to_toml
+from gcxform.errormodel.functions import AxisFunction, AxisFunctions
+from gcxform.errormodel.model_text import to_toml
 
 COUNT = 80
 SIZE = 0.008  # mm, of the errors of an axis in each direction

@@ -14,7 +14,7 @@ from properties.test_shifts import TOOLS, vector
 from seeds_kit import shares
 
 from gcxform.testing.generate import Options
-from gcxform.testing.whole import WholeBuilder
+from gcxform.testing.linuxcnc_language import WholeBuilder
 
 COUNT = 20 * settings.default.max_examples  # 2,000; the profile `long` asks for more
 

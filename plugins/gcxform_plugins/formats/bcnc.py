@@ -9,8 +9,8 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.tables import heightpoints
-from gcxform_plugins.tables.heightpoints import UNITS
+from gcxform_plugins.formats.shared import height_points as heightpoints
+from gcxform_plugins.formats.shared.height_points import UNITS
 
 
 @dataclass(frozen=True)

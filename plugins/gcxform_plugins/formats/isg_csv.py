@@ -10,8 +10,8 @@ from typing import ClassVar
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.tables import parameters
-from gcxform_plugins.tables.parameters import Order, Parameters, Said, Tool, Values
+from gcxform_plugins.formats.shared import parameters
+from gcxform_plugins.formats.shared.parameters import Order, Parameters, Said, Tool, Values
 
 ARGUMENTS = "XYZABC"
 BREAK = "#"

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import ClassVar
 
 import gcxform as gx
-from gcxform_plugins.tables import pitches, positioning
-from gcxform_plugins.tables.positioning import Reading
+from gcxform_plugins.formats.shared import pitches, positioning
+from gcxform_plugins.formats.shared.positioning import Reading
 
 WORDS = r"[^\s,;]+"
 LONG = ("axis", "target_mm", "run", "direction", "deviation_um")

@@ -11,7 +11,7 @@ from typing import Annotated, ClassVar, NamedTuple
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.tables import heightpoints
+from gcxform_plugins.formats.shared import height_points as heightpoints
 
 POINTS_AT_MOST = 10_000  # on an axis: a slip in a count must not ask for all memory
 SAVED = r"#\*#"  # how Klipper marks the lines that it saves itself

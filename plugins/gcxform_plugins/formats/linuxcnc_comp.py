@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
-from gcxform_plugins.tables import pitches
+from gcxform_plugins.formats.shared import pitches
 
 ENTRIES_AT_MOST = 256
 

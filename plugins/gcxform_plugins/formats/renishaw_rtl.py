@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
 import gcxform as gx
-from gcxform_plugins.tables import pitches, positioning
-from gcxform_plugins.tables.positioning import UNITS, Reading
+from gcxform_plugins.formats.shared import pitches, positioning
+from gcxform_plugins.formats.shared.positioning import UNITS, Reading
 
 SECTION = re.compile(r"([A-Z][A-Z -]*)::")
 TARGETS = "TARGET DATA"

@@ -10,8 +10,9 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.tables import pitches, siemens
-from gcxform_plugins.tables.siemens import UNITS, Floats, Table
+from gcxform_plugins.formats.shared import pitches
+from gcxform_plugins.formats.shared import sinumerik as siemens
+from gcxform_plugins.formats.shared.sinumerik import UNITS, Floats, Table
 
 VALUE = "$AN_CEC"
 AXIS_KEYS = ("_INPUT_AXIS", "_OUTPUT_AXIS")

@@ -9,9 +9,9 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.tables import siemens
-from gcxform_plugins.tables.pitches import pitch_tables
-from gcxform_plugins.tables.siemens import UNITS, Table
+from gcxform_plugins.formats.shared import sinumerik as siemens
+from gcxform_plugins.formats.shared.pitches import pitch_tables
+from gcxform_plugins.formats.shared.sinumerik import UNITS, Table
 
 VALUE = "$AA_ENC_COMP"
 KEYS = ("_STEP", "_MIN", "_MAX", "_IS_MODULO")

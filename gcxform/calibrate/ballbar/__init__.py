@@ -1,0 +1,1 @@
+"""Rotary axes from circular tests with RTCP on."""

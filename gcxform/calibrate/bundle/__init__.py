@@ -1,0 +1,1 @@
+"""All rotary axes from balls at any poses, and where to probe them."""

@@ -1,0 +1,1 @@
+"""Where one rotary axis is, from centres of a ball."""

@@ -1,0 +1,1 @@
+"""What the verbs about measurements share, and their subverbs."""

@@ -1,0 +1,188 @@
+"""What a command line says of pipelines and programs, and the pipeline that is built from it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Final
+
+from gcxform.cli.common.options import ENVIRONMENT
+from gcxform.contract.options import Argument, build
+from gcxform.diagnostics import Location, UsageError
+from gcxform.machine.file import load_machine
+from gcxform.machine.machine import Machine
+from gcxform.modal.state import Reading
+from gcxform.pipeline.file import (
+    SECTIONS,
+    InputSpec,
+    OutputSpec,
+    PipelineSpec,
+    chain_doubts,
+    load,
+    parse_chain,
+)
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.plugin.registry import Registry, default_registry
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a command line says of a pipeline; names as typed, None where nothing was said."""
+
+    pipeline: str | None = None
+    chain: str | None = None
+    dialect: str | None = None
+    to: str | None = None
+    machine: str | None = None
+    start: str | None = None
+    increment: str | None = None
+    block_delete: str | None = None
+    feed_increment: str | None = None
+    feed: str | None = None
+    units: str | None = None
+    parameters: str | None = None
+    budget: str | None = None
+    growth: str | None = None
+    decimals: str | None = None
+    no_stamp: bool = False
+    again: bool = False
+
+    @property
+    def file(self) -> str | None:
+        """The pipeline file: that of the command line, else that of the environment."""
+        if self.pipeline is None and self.chain is None:
+            return os.environ.get(ENVIRONMENT) or None
+        return self.pipeline
+
+    @property
+    def says_chain(self) -> bool:
+        """Whether a pipeline is named at all."""
+        return self.chain is not None or self.file is not None
+
+    @cached_property
+    def loaded_machine(self) -> Machine | None:
+        """The machine that is named, None if none is. Raises UsageError for what is wrong in it."""
+        kinds = default_registry().kinematics
+        return load_machine(Path(self.machine), kinds) if self.machine else None
+
+    def build(self, registry: Registry | None = None) -> Pipeline:
+        """Return the pipeline. Raises UsageError."""
+        registry = registry or default_registry()
+        spec = self._spec(registry)
+        output = replace(spec.output, stamp=spec.output.stamp and not self.no_stamp)
+        spec = self._limited(replace(spec, input=self._merged(spec.input), output=output))
+        machine = Path(self.machine) if self.machine else None
+        return Pipeline.of_spec(spec, registry, self.dialect or "", self.to or "", machine)
+
+    def _spec(self, registry: Registry) -> PipelineSpec:
+        if self.pipeline is not None and self.chain is not None:
+            raise excluding("-p and -x")
+        if self.file is not None:
+            return load(Path(self.file), registry)
+        if self.chain is None:
+            raise UsageError.one(
+                "GX726",
+                "there is no pipeline",
+                hint=f"-p FILE, -x 'absolute | ...', or set {ENVIRONMENT}; "
+                "-x '' -f DIALECT is the pipeline that changes nothing",
+            )
+        passes = tuple(parse_chain(self.chain, Path.cwd(), registry))
+        return PipelineSpec(passes=passes, warnings=chain_doubts(self.chain))
+
+    def _merged(self, given: InputSpec) -> InputSpec:
+        """Return the section `[input]` of the file with what the command line says instead."""
+        said = self.input()
+        named = {key.replace("-", "_") for key in self._given()}
+        changes = {name: getattr(said, name) for name in named}
+        for name in named & {"start", "parameters"}:
+            changes[name] = {**getattr(given, name), **changes[name]}
+        return replace(given, again=given.again or self.again, **changes)
+
+    def _limited(self, spec: PipelineSpec) -> PipelineSpec:
+        """Return what a file says with the budget and the decimals of the command line."""
+        limits = {"deviation": self.budget, "growth": self.growth}
+        raw = {key: Argument(value) for key, value in limits.items() if value is not None}
+        said = self._built(SECTIONS["budget"], raw)
+        if said.deviation is not None:
+            spec = replace(spec, budget=said.deviation)
+        if said.growth is not None:
+            spec = replace(spec, growth=said.growth)
+        if self.decimals is None:
+            return spec
+        several = "=" in self.decimals
+        decimals = _pairs(self.decimals, "decimals") if several else Argument(self.decimals)
+        written = self._built(OutputSpec, {"decimals": decimals})
+        return replace(spec, output=replace(spec.output, decimals=written.decimals))
+
+    def input(self) -> InputSpec:
+        """Return what the command line says as the section `[input]`. Raises UsageError."""
+        said: InputSpec = self._built(InputSpec, self._given())
+        return said
+
+    def _given(self) -> dict[str, object]:
+        """Return what is said of the program, by the keys of `[input]`."""
+        keys = ("increment", "feed-increment", "block-delete", "feed", "units")
+        said = {key: getattr(self, key.replace("-", "_")) for key in keys}
+        raw: dict[str, object] = {key: Argument(v) for key, v in said.items() if v is not None}
+        if self.start:
+            raw["start"] = _pairs(self.start, "start")
+        if self.parameters:
+            raw["parameters"] = _pairs(self.parameters, "parameters")
+        return raw
+
+    @staticmethod
+    def _built(section: type[Any], raw: Mapping[str, object]) -> Any:
+        """Return a section of what was said. Raises UsageError."""
+        return build(section, raw, Path.cwd(), (), lambda key: Location(f"--{key}"), "input")
+
+    def reading(self) -> Reading:
+        """Return what the command line says for reading a program without a pipeline."""
+        said = self.input()
+        given = (dict(said.start), said.increment, said.feed, said.block_delete, said.units)
+        reading = Reading(*given, said.feed_increment, said.parameters)
+        return reading.on(self.loaded_machine) if self.loaded_machine else reading
+
+
+def excluding(what: str) -> UsageError:
+    """Return the error about options that cannot stand together."""
+    return UsageError.one("GX728", f"{what} exclude each other", hint="leave one of them out")
+
+
+def needed_dialect(name: str | None, option: str = "-f") -> str:
+    """Return the dialect named, or raise UsageError."""
+    if name:
+        return name
+    raise UsageError.one(
+        "GX722",
+        "which dialect is the program in?",
+        hint=f"{option} fanuc; `gcxform list dialects`",
+    )
+
+
+WHAT: Final = {
+    "start": "axis and its position",
+    "decimals": "address and its decimals",
+    "parameters": "parameter and its value",
+}
+EXAMPLES: Final = {"start": "X=4,Y=-2", "decimals": "X=4,A=3", "parameters": "100=1.5,<depth>=2"}
+
+
+def _pairs(text: str, option: str) -> dict[str, Argument]:
+    """Return `X=4,Y=-2` as a table; letters are those of axes or addresses."""
+    pairs: dict[str, Argument] = {}
+    for part in text.split(","):
+        axis, equals, value = part.strip().partition("=")
+        axis = axis.strip()
+        axis = axis if option == "parameters" else axis.upper()
+        if not equals or not axis or axis in pairs:
+            raise UsageError.one(
+                "GX702",
+                f"{part.strip()!r} is not one {WHAT[option]}",
+                Location(f"--{option}"),
+                f"write --{option} {EXAMPLES[option]}",
+            )
+        pairs[axis] = Argument(value.strip())
+    return pairs

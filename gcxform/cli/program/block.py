@@ -1,0 +1,217 @@
+"""One block of a program in words: its tree, the state before it, and the move it makes."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.cli.common.programs import opened
+from gcxform.cli.common.request import Asked, needed_dialect
+from gcxform.cli.program.tolerant import Tolerant
+from gcxform.diagnostics import Diagnostic, UsageError
+from gcxform.dialect.dialect import INCH, Dialect
+from gcxform.flow.translation import translated_so_far
+from gcxform.modal.meaning.tables import GROUPS, code_of
+from gcxform.modal.state import Reading, State
+from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
+from gcxform.syntax.tree import Block, Comment, Mark, Number, Word
+from gcxform.toolpath.circles import radius_and_angle
+from gcxform.toolpath.path import Event, FeedMode, Kind, Plane, Toolpath
+
+_MOVES = {
+    Kind.RAPID: "rapid",
+    Kind.LINE: "line",
+    Kind.ARC_CW: "clockwise arc",
+    Kind.ARC_CCW: "counter-clockwise arc",
+}
+_UNITS = {
+    FeedMode.INVERSE_TIME: "1/min",
+    FeedMode.PER_MINUTE: "mm/min",
+    FeedMode.PER_TURN: "mm/turn",
+}
+
+
+def explained(file: str, line: int, dialect: str | None, asked: Mapping[str, Any]) -> list[str]:
+    """Return a line, from 1, of a file in words. Raises UsageError if the file is shorter."""
+    kind = default_registry().dialect(needed_dialect(dialect))
+    reading = Asked(**asked).reading()
+    if kind.translator is not None:
+        with opened(file) as source:
+            return _foreign(source, line, kind, reading)
+    with opened(file) as source:
+        tolerant = Tolerant(kind, source, reading)
+        text = _up_to(tolerant, source, line)
+        earlier = sorted(tolerant.refused)
+        before = copy.deepcopy(tolerant.interpreter.state)
+        _, path = tolerant.window(text)
+    block = kind.load_grammar().parse(text.rstrip(b"\r\n").decode("latin-1"))
+    lines = [f"{file}:{line}  {block.text}", "", *_items(block)]
+    told = _told(before, tolerant.interpreter.axes, earlier, tolerant.refused.get(line), path)
+    return [*lines, *told]
+
+
+def _foreign(source: Source, line: int, kind: type[Dialect], reading: Reading) -> list[str]:
+    """Return a line of a program that is turned into blocks: those, and what they do."""
+    blocks, error = translated_so_far(source, kind, reading)
+    if line > len(blocks.lines):
+        message = f"{source.name} has {len(blocks.lines)} lines and no line {line}"
+        raise UsageError.one("GX731", message)
+    text = b"".join(blocks.windows()).splitlines(keepends=True)
+    first, last = _run_of(line - 1, blocks.origin)
+    tolerant = Tolerant(kind, blocks, reading)
+    tolerant.window(b"".join(text[:first]))
+    before = copy.deepcopy(tolerant.interpreter.state)
+    _, path = tolerant.window(b"".join(text[first:last]))
+    refused = {blocks.line_of(number): found for number, found in tolerant.refused.items()}
+    refused |= (
+        {found.where.line: found for found in error.diagnostics if found.where} if error else {}
+    )
+    own = [f"  {block.decode('latin-1').rstrip()}" for block in text[first:last]]
+    lines = [f"{source.name}:{line}  {blocks.lines[line - 1]}", "", *own]
+    lines += [] if own else ["  it stands for no block"]
+    earlier = sorted(number for number in refused if number < line)
+    axes = tolerant.interpreter.axes
+    return [*lines, *_told(before, axes, earlier, refused.get(line), path, kind.spelled)]
+
+
+def _run_of(line: int, origin: NDArray[np.int64]) -> tuple[int, int]:
+    """Return the blocks, from and to, that a line stands for when it is first executed."""
+    own = origin == line
+    if not own.any():
+        behind = origin > line
+        first = int(np.argmax(behind)) if behind.any() else len(origin)
+        return first, first
+    first = int(np.argmax(own))
+    others = np.flatnonzero(~own[first:])
+    return first, first + int(others[0]) if len(others) else len(origin)
+
+
+def _told(
+    before: State,
+    axes: str,
+    earlier: Sequence[int],
+    refusal: Diagnostic | None,
+    path: Toolpath | None,
+    spelled: Mapping[str, str] = MappingProxyType({}),
+) -> Iterator[str]:
+    """Yield what was before a block, and what it does."""
+    if earlier:
+        yield ""
+        yield f"read without {len(earlier)} refused line(s) before, first line {earlier[0]}"
+    yield from ["", "before it", *_state(before, axes), ""]
+    if refusal is not None:
+        yield from [f"refused [{refusal.code}]: {refusal.message}", *_hint(refusal.hint)]
+    elif before.ended:
+        yield "the program has ended: the control does not execute this block"
+    else:
+        yield from ["what it does", *_doings(path, spelled)]
+
+
+def _hint(hint: str) -> list[str]:
+    return [f"  {hint}"] if hint else []
+
+
+def _up_to(tolerant: Tolerant, source: Source, line: int) -> bytes:
+    """Read all before a line; return the text of that line."""
+    for text in source.windows():
+        first = tolerant.reader.lines
+        window = tolerant.reader.read(text)
+        tolerant.reader.lines = first
+        index = line - 1 - first
+        if 0 <= index < len(window):
+            start, end = int(window.start[index]), int(window.next[index])
+            if start:
+                tolerant.window(text[:start])
+            return text[start:end]
+        tolerant.window(text)
+    message = f"{source.name} has {tolerant.reader.lines} lines and no line {line}"
+    raise UsageError.one("GX731", message)
+
+
+def _items(block: Block) -> Iterator[str]:
+    """Yield the items of a block's tree."""
+    if block.error is not None:
+        yield f"  column {block.error[0]}: {block.error[1]}"
+    elif not block.items:
+        yield "  an empty block"
+    for item in block.items:
+        text = block.text[item.start : item.end]
+        if isinstance(item, Word):
+            kind = "number" if isinstance(item.value, Number) else "expression"
+            yield f"  word {item.address}, {kind} {block.text[item.value.start : item.value.end]}"
+        elif isinstance(item, Comment):
+            yield f"  comment {text}"
+        elif isinstance(item, Mark):
+            yield f"  {item.kind.replace('_', ' ')} {text}"
+        else:
+            yield f"  {item.kind.replace('_', ' ')}: {text}"
+
+
+def _state(state: State, axes: str) -> Iterator[str]:
+    """Yield the codes in force and the position."""
+    codes = [
+        state.frames.work if group == "frame" else code_of(group, state.groups[group])
+        for group in GROUPS
+    ]
+    feed = "none" if math.isnan(state.feed) else f"{state.feed:g}"
+    unit = " inch" if state.feed_unit == INCH else ""
+    yield f"  modal {' '.join(codes)}, F {feed}{unit if feed != 'none' else ''}"
+    words = state.frames.frame().words(state.position[None, :])[0]
+    yield f"  at    {_point(axes, words)}"
+
+
+def _point(axes: str, position: Any) -> str:
+    return " ".join(
+        f"{axis}{'?' if math.isnan(value) else f'{value:.6g}'}"
+        for axis, value in zip(axes, position.tolist(), strict=True)
+        if axis in "XYZ" or not math.isnan(value)
+    )
+
+
+def _doings(path: Toolpath | None, spelled: Mapping[str, str]) -> Iterator[str]:
+    """Yield moves and events."""
+    if path is None or not (len(path) or path.events):
+        yield "  it moves nothing and switches nothing"
+        return
+    events = iter(path.events)
+    told = [event for event in path.events if event.row == 0]
+    yield from (f"  {_event(event, spelled)}" for event in told)
+    for row in range(len(path)):
+        yield from _move(path, row)
+    yield from (f"  {_event(event, spelled)}" for event in events if event not in told)
+
+
+def _event(event: Event, spelled: Mapping[str, str]) -> str:
+    values = " ".join(f"{name} {value:g}" for name, value in event.values)
+    name = "dwell" if event.what == "DWELL" else spelled.get(event.what, event.what)
+    return f"{name} {values}".rstrip()
+
+
+def _move(path: Toolpath, row: int) -> Iterator[str]:
+    """Yield a move, and the circle of an arc."""
+    kind = Kind(int(path.kind[row]))
+    unit = _UNITS[FeedMode(int(path.feed_mode[row]))]
+    feed = "" if kind == Kind.RAPID else f" at {path.feed[row]:g} {unit}"
+    spline = bool(path.is_spline[row])
+    yield f"  {'spline' if spline else _MOVES[kind]}{feed}"
+    yield f"    from {_point(path.axes, path.in_frames(path.start)[row])}"
+    yield f"    to   {_point(path.axes, path.words[row])}"
+    if spline:
+        first, second = (path.local(path.control[:, k]) for k in range(2))
+        yield f"    by   {_point('XYZ', first[row])}"
+        yield f"    and  {_point('XYZ', second[row])}"
+    if path.is_arc[row]:
+        plane = Plane(int(path.plane[row]))
+        u, v, _ = plane.axes
+        first, _, _ = radius_and_angle(path, np.array([row]))
+        middle = path.local(path.centre)[row]
+        centre = f"{'XYZ'[u]}{middle[u]:.6g} {'XYZ'[v]}{middle[v]:.6g}"
+        yield f"    about {centre}, radius {first[0]:.6g} mm, in the plane {plane.name}"
+        yield f"    through {math.degrees(path.sweep[row]):.6g} degrees"

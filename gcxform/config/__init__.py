@@ -1,0 +1,1 @@
+"""Text of the TOML files that users write, and the units in them."""

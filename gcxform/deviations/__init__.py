@@ -1,0 +1,1 @@
+"""How far two toolpaths are apart, along whole moves."""

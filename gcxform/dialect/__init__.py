@@ -1,0 +1,1 @@
+"""What a controller is: its codes, arithmetic, cycles and limits, as data."""

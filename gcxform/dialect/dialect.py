@@ -1,0 +1,280 @@
+"""A dialect: one controller's language, as class attributes that a plugin overrides.
+
+A new dialect inherits its nearest relative and overrides what differs:
+
+    class Acme(gx.Dialect):
+        "Acme 9000, firmware 3."
+        name = "acme"
+        axes = "XYZ"
+        arc_planes = frozenset({"XY"})
+
+Everything is data; the reader, the emitter and the verifier ask here and nowhere else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from gcxform.config import arguments
+from gcxform.dialect.arithmetic import Arithmetic
+from gcxform.dialect.codes import ISO, ISO_M, Code, CutterComp, MCode
+from gcxform.dialect.cycle_rule import CycleRule
+from gcxform.dialect.language import Language
+from gcxform.machine.control import Setting, declare
+from gcxform.syntax.grammar import Grammar, load
+
+MOST_DECIMALS = 15  # what a double holds
+INCH = 25.4  # mm, exact by definition
+LINEAR = "XYZUVW"
+ROTARY = "ABC"
+
+
+@dataclass(frozen=True, slots=True)
+class NumberFormat:
+    """How numbers are written: decimals of lengths in mm and inch, of angles and of feeds.
+
+    A number always has its point on a distance word; trailing zeros are cut unless `zeros`.
+    """
+
+    mm: int = 3
+    inch: int = 4
+    angle: int = 3
+    feed: int = 3
+    zeros: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what is no number of decimals. Raises UsageError."""
+        for name in ("mm", "inch", "angle", "feed"):
+            object.__setattr__(
+                self, name, arguments.whole(name, getattr(self, name), MOST_DECIMALS)
+            )
+        object.__setattr__(self, "zeros", arguments.flag("zeros", self.zeros))
+
+
+@dataclass(frozen=True, slots=True)
+class ArcRule:
+    """When the control accepts an arc whose start and end radius differ by `delta` (mm).
+
+    Accepted if delta <= `absolute`, or if delta <= `relative` * radius and delta <= `largest`.
+    `smallest` is the least radius; `r_short` is how much an R may fall short of the half chord.
+    `in_inch`: how many times as large `absolute` and `largest` are in blocks in inches.
+    """
+
+    absolute: float
+    relative: float = 0.0
+    largest: float = float("inf")
+    smallest: float = 0.0
+    r_short: float = 0.0
+    in_inch: float = 1.0
+
+
+class Dialect:
+    """The base every controller dialect inherits: the common part of ISO word-address programs."""
+
+    name: ClassVar[str] = ""
+    grammar: ClassVar[tuple[str, str]] = ("gcxform_grammars", "iso")
+    axes: ClassVar[str] = "XYZABC"
+    codes: ClassVar[Mapping[str, Code]] = ISO
+    m_codes: ClassVar[Mapping[int, MCode]] = ISO_M
+    m_order_chosen: ClassVar[bool] = False
+    """Whether the machine decides when an M code beside a move acts, so that it is assumed."""
+    chosen: ClassVar[Mapping[str, str]] = {}
+    """What is taken for the meaning of a code, or of words of an axis, where a parameter decides:
+    a sentence for the certificate."""
+    rounds_corners: ClassVar[bool] = False
+    """Whether corners are rounded where no path mode is stated, as they are in G64."""
+    unknown_m: ClassVar[MCode | None] = None
+    """What an M code outside `m_codes` is; None: it is refused."""
+    m_first: ClassVar[bool] = False
+    """Whether M codes that may move axes do so before the motion of their block, for certain."""
+    initial: ClassVar[Mapping[str, str]] = {
+        "motion": "G80",
+        "plane": "G17",
+        "distance": "G90",
+        "arc-distance": "G91.1",
+        "feed-mode": "G94",
+        "units": "G21",
+        "frame": "G54",
+        "cutter-comp": "G40",
+    }
+    """The modal state a program is taken to start in; the certificate says what was taken."""
+    settings: ClassVar[tuple[Setting, ...]] = ()
+    """Settings in [control] of a machine file that the dialect asks for, beside the common ones."""
+    lone_codes_count: ClassVar[bool] = False
+    """G1, G2 and G3 are executed without axis words too: G1 asks for a feed, arcs for words."""
+    axis_words_once: ClassVar[bool] = False
+    """A motion code beside a code that takes the axis words for itself (G92, G28) is refused."""
+    g80_beside_motion: ClassVar[bool] = True
+    """G80 beside another motion code says nothing; otherwise the block is refused."""
+    last_code_wins: ClassVar[bool] = False
+    """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
+    cutter_comp: ClassVar[CutterComp] = CutterComp()
+    """How G41 and G42 are read, where the dialect has them."""
+    point_required: ClassVar[bool] = False
+    """A distance without a point counts in increments of the control, or in units: a setting."""
+    feed_point_required: ClassVar[bool] = False
+    """An F without a point counts in a unit of the control, which must be configured."""
+    feed_of_linear_axes: ClassVar[bool] = False
+    """A feed per minute counts the way of X, Y and Z where they move, and no degrees beside it."""
+    calculator_words: ClassVar[str] = "XYZUVWABCIJKRQF"
+    """Words to which the control can be set to add a point where they have none."""
+    feed_steps: ClassVar[Mapping[str, tuple[float, float]]] = {}
+    """Steps in mm/min and inch/min of an F without a point, by the system in which it counts."""
+    circle_needs_axis_word: ClassVar[bool] = False
+    turns_address: ClassVar[str] = ""
+    """The word that counts the turns of an arc (n - 1 full turns beyond the arc itself)."""
+    feed_mode_clears_feed: ClassVar[bool] = False
+    feed_before_units: ClassVar[bool] = False
+    """F is read in the unit that was in force before a G20 or G21 of its own block."""
+    change_clears_feed: ClassVar[bool] = False
+    """After another unit the feed is not known until it is programmed; after another feed mode it
+    never is."""
+    feed_along_lines: ClassVar[bool] = False
+    """In moves of several kinds of axes a feed counts along X Y Z, or along all rotary axes where
+    they move alone; otherwise the length of such moves is not known."""
+    inverse_time_arcs: ClassVar[bool] = True
+    """Whether arcs take the time that G93 gives them."""
+    least_inverse_rate: ClassVar[float] = 0.0
+    """Units of the program per minute: in G93 the control moves no slower."""
+    lone_cr_is_blank: ClassVar[bool] = False
+    """A CR without LF is a blank inside a block, and no line end."""
+    resets_at_end: ClassVar[Mapping[str, str]] = {}
+    """Where M2 and M30 do not stop the control: the modes they leave behind."""
+    dwell: ClassVar[Mapping[str, float]] = {"P": 1.0}
+    """Seconds for one unit of each word that G4 takes."""
+    dwell_point_is_seconds: ClassVar[bool] = False
+    """A dwell that is written with a point is in seconds."""
+    spindle_stands: ClassVar[bool] = False
+    """Whether the spindle stands still, as far as the control knows, when a program starts."""
+    starts_in_frame: ClassVar[bool] = False
+    """Whether the work offset of `initial` is in force for certain when a program starts."""
+    work_names: ClassVar[Mapping[str, str]] = {}
+    """Work offsets that have a second code: the code, and the name by which they are known."""
+    g10_offsets: ClassVar[tuple[str, ...]] = ("G54", "G55", "G56", "G57", "G58", "G59")
+    """The work offsets that P1, P2 ... of G10 L2 name."""
+    g10_p0_is_active: ClassVar[bool] = False
+    g10_needs_p: ClassVar[bool] = True
+    length_axes: ClassVar[str] = "XYZ"
+    """The axes along which G43.1 gives a length."""
+    g10_sets_position: ClassVar[bool] = False
+    """G10 L20 makes the present position read what is given."""
+    g10_ignores_g91: ClassVar[bool] = False
+    g10_rotates: ClassVar[bool] = False
+    """R in G10 L2 turns the work offset about Z."""
+    g52_is_g92: ClassVar[bool] = False
+    """G52 and G92 set one and the same shift."""
+    g52_known: ClassVar[bool] = True
+    """Whether G52 and G92 mean what they mean on most controls; otherwise a setting decides."""
+    mirrors_at_zero: ClassVar[bool] = False
+    """A mirror stands at the zero of the work offset; other places are refused."""
+    tools_aside: ClassVar[bool] = False
+    """The control's tool table has lengths along X and Y too."""
+    g43_takes_spindle_tool: ClassVar[bool] = False
+    """G43 without H takes the length of the tool in the spindle."""
+    length_may_move: ClassVar[bool] = False
+    """Another tool length may move the axis by itself; where it stands is then not known."""
+    units_spoil_length: ClassVar[bool] = False
+    """A tool length in force keeps its number when the unit changes, so that it is another one."""
+    g49_takes_axes: ClassVar[bool] = False
+    """G49 takes the axis words of its block, and leaves them out."""
+    g53_in_g91: ClassVar[str] = "refused"
+    """What G53 does under G91: "absolute", or "refused" by the control or by us."""
+    g53_is_rapid: ClassVar[bool] = False
+    """G53 moves in rapid whatever motion code is in force."""
+    g28_without_axes: ClassVar[bool] = False
+    """G28 without an axis word sends all axes home."""
+    block_delete: ClassVar[str] = ""
+    """What the control does with `/` blocks: "execute", "skip", or "" when a switch decides."""
+    needs_end: ClassVar[bool] = False
+    """A file without M2 or M30, and not between two percent signs, is refused by the control."""
+    stops_at_end: ClassVar[bool] = True
+    skips_first_text: ClassVar[bool] = False
+    lower_case: ClassVar[bool] = True
+    """Whether words may be written in small letters."""
+    number_first: ClassVar[bool] = False
+    """A sequence number anywhere but at the head of its block is refused."""
+    largest_number: ClassVar[int] = 0
+    """The largest sequence number the control takes; 0: no limit."""
+    line_length: ClassVar[int] = 0
+    """The longest block the control takes, in characters; 0: no limit."""
+    length_without_blanks: ClassVar[bool] = False
+    """The limit counts neither blanks nor comments."""
+    comments: ClassVar[str] = "("
+    """How a comment may begin: any of "(" and ";"."""
+    active_comments: ClassVar[tuple[str, ...]] = ()
+    """How comments begin that the control executes, in capitals."""
+    acts_anywhere: ClassVar[str] = ""
+    """Characters on which the control acts as they come in, also in a comment."""
+    has_percent: ClassVar[bool] = True
+    has_program_number: ClassVar[bool] = True
+    program_number_digits: ClassVar[int] = 0
+    """How many digits a program number may have; 0: any number."""
+    most_m_words: ClassVar[int] = 0
+    """How many M words a block may have; 0: any number."""
+    tools_in_table: ClassVar[bool] = False
+    """A tool that the tool table does not have is refused where it is named."""
+    spindle_words: ClassVar[frozenset[str]] = frozenset()
+    """Codes, and S, beside which a word `$` says which spindle is meant."""
+    words: ClassVar[str] = "DEFHIJKLNPQRST"
+    """Addresses the control knows, besides its axes and G, M, O."""
+    arithmetic: ClassVar[Arithmetic | None] = None
+    """How the control computes expressions; None: they are refused."""
+    flow: ClassVar[str] = ""
+    """How subprograms and loops are written: "o-words", "macro-b", or "": the control has none."""
+    tip_codes: ClassVar[Mapping[str, str]] = {}
+    """Codes from which on the control follows the tip, each with the one that only takes the tool
+    length into account."""
+    vector_codes: ClassVar[Mapping[str, str]] = {}
+    """The same of codes with which I, J and K of lines are the tool axis, from tip to holder."""
+    takes_vectors: ClassVar[bool] = False
+    """Whether what is left of such codes is in the program: see `gcxform/contract/tip_codes.py`."""
+    tip_switches: ClassVar[Mapping[str, str]] = {}
+    """M codes that follow the tip, and leave it, on every machine with this control: "tip-on" and
+    "tip-off", as in the machine file."""
+    follows_at_start: ClassVar[bool | None] = None
+    """Whether the control follows the tip when a program starts; None where that is not known."""
+    translator: ClassVar[type[Language] | None] = None
+    """What turns programs that are not written in words into blocks that are, which is what all
+    else here is about. Such a dialect is only read: see `gcxform/flow/translation.py`."""
+    spelled: ClassVar[Mapping[str, str]] = {}
+    """What codes of such blocks are called in the program: `M128` may be `TRAORI`."""
+    calls_own_lines: ClassVar[bool] = False
+    """M97 calls lines of the same program, up to M99."""
+    numbers: ClassVar[NumberFormat] = NumberFormat()
+    arc_planes: ClassVar[frozenset[str]] = frozenset({"XY", "ZX", "YZ"})
+    """Planes in which the control can cut arcs."""
+    arc_rotary: ClassVar[bool] = False
+    """Whether a rotary axis may turn along an arc."""
+    arc_rule: ClassVar[ArcRule] = ArcRule(absolute=0.01)
+    cycle_rule: ClassVar[CycleRule | None] = None
+    """What the control makes of canned cycles; None: it has none, or they are not known."""
+
+    cycles_stop: ClassVar[bool] = False
+    """The moves of a cycle end exactly, also where G64 rounds corners: G61 is in force in its
+    block, and behind it G64 as it was stated."""
+
+    differs: ClassVar[Mapping[str, str]] = {}
+    """What is otherwise here than on controls that agree, on purpose: a code or the name of one of
+    these attributes, and from where that is known. The conformance kit asks for it."""
+
+    def __init_subclass__(cls) -> None:
+        """Let machine files have the settings that the dialect asks for."""
+        super().__init_subclass__()
+        declare(cls.settings)
+
+    @classmethod
+    def executes(cls, comment: str) -> bool:
+        """Whether the control does something when it reads a comment."""
+        return comment.lstrip("(; \t").upper().startswith(cls.active_comments)
+
+    @classmethod
+    def load_grammar(cls) -> Grammar:
+        """Return the dialect's grammar, built once."""
+        return load(*cls.grammar)
+
+    @classmethod
+    def number_format(cls, **changes: object) -> NumberFormat:
+        """Return the number format with changes."""
+        return replace(cls.numbers, **changes)  # type: ignore[arg-type]

@@ -1,0 +1,235 @@
+"""What a target dialect has words for, and what is left of a block in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+
+import numpy as np
+
+from gcxform.dialect.codes import Code, MCode
+from gcxform.dialect.dialect import Dialect
+from gcxform.emit.manner import Manner
+from gcxform.machine.machine import SWITCHES
+from gcxform.modal.expressions.value import key_set, sets_number, written
+from gcxform.modal.meaning.meaning import FRAMING, Meaning
+from gcxform.modal.meaning.sorting import only_for_cycles
+from gcxform.syntax.shapes import CODES, Shape
+from gcxform.syntax.tree import BLANKS, Item, Mark, Number, Statement, Word
+from gcxform.toolpath.path import Event
+
+STATED: Mapping[str, tuple[str, Mapping[int, str] | tuple[str, ...]]] = {
+    "units": ("inch", ("G21", "G20")),
+    "distance": ("incremental", ("G90", "G91")),
+    "arc-distance": ("absolute_centre", ("G91.1", "G90.1")),
+    "feed-mode": ("feed_mode", {93: "G93", 94: "G94", 95: "G95"}),
+    "motion": ("motion", ("G0", "G1", "G2", "G3")),
+}
+"""Groups whose code may have to be stated: field of the key, and codes by value."""
+TAPPING = ("G74", "G84")
+
+
+class CannotSayError(Exception):
+    """The target dialect has no words for something: column from 0, width, message, hint."""
+
+    def __init__(self, column: int, width: int, message: str, hint: str = "") -> None:
+        super().__init__(message)
+        self.column = column
+        self.width = width
+        self.message = message
+        self.hint = hint
+
+
+def code_of(word: Word) -> str:
+    """Return the code of a G, M or O word."""
+    assert isinstance(word.value, Number)
+    return f"{word.address}{round(word.value.value, 6):g}"
+
+
+def unsaid_words(meaning: Meaning, work: str) -> frozenset[str]:
+    """Return codes and addresses that are not written.
+
+    They are codes of what a pass does instead of the control; and where frames are folded into the
+    words (`work`, if it is not "", is where the program then stays) those that set frames. The code
+    of the work offset in which the program stays is written as it was.
+    """
+    gone = {act.code for act in meaning.acts if act.name in SWITCHES}
+    for act in meaning.acts if work else ():
+        if act.name in FRAMING and act.code != work:
+            gone |= {act.code, *(address for address, _ in act.slots)}
+    return frozenset(gone)
+
+
+def gaps_between(text: str, words: list[Word]) -> Iterator[bool]:
+    """Yield, for each two words that follow one another, whether blanks are between them."""
+    for one, other in pairwise(words):
+        between = text[one.end : other.start]
+        if not between.strip(" \t"):
+            yield bool(between)
+
+
+def lasts_in(statement: Statement, target: type[Dialect]) -> bool:
+    """Whether a control takes an assignment, of a number, to a parameter that outlives programs."""
+    key, known = key_set(statement), target.arithmetic
+    return known is not None and sets_number(statement) and key is not None and known.can_say(key)
+
+
+def needs_assignment(statement: Statement, source: type[Dialect], target: type[Dialect]) -> str:
+    """Return what is lost without an assignment that another control cannot be told, or nothing.
+
+    Nothing is lost where parameters end with the program, and on a control that has none: nobody
+    there could read them. Which they are is known by now, but for dialects without flow words.
+    """
+    key, known = key_set(statement), source.arithmetic
+    if target.arithmetic is None or known is None or (key is None and source.flow):
+        return ""
+    if key is not None and not known.outlives(key):
+        return ""
+    name = "a parameter" if key is None else written(key)
+    return f"the assignment to {name}, which lasts longer than the program"
+
+
+def is_foreign(item: Item, target: type[Dialect]) -> bool:
+    """Whether an item has no place in another dialect: assignments, frames that it has not.
+
+    An assignment of a number to a parameter that lasts, in a control that has it, is no such item.
+    """
+    if isinstance(item, Statement):
+        return item.kind == "assignment" and not lasts_in(item, target)
+    if not isinstance(item, Mark):
+        return False
+    if item.kind == "percent":
+        return not target.has_percent
+    return item.kind.startswith("program") and not target.has_program_number
+
+
+def event_text(event: Event, target: type[Dialect], gap: bytes) -> bytes | None:
+    """Return the block that does what a cycle does between its moves; None if there is none."""
+    if event.what in target.codes:
+        words = (f"{a}{np.format_float_positional(v, trim='-')}" for a, v in event.values)
+        return gap.join(word.encode() for word in (event.what, *words))
+    if event.what != "DWELL":
+        known = event.what[0] == "M" and int(event.what[1:]) in target.m_codes
+        return event.what.encode() if known else None
+    seconds = event.values[0][1]
+    for address, unit in target.dwell.items():
+        count = seconds / unit
+        whole = abs(count - round(count)) < 1e-9
+        if unit != 1.0 and (not whole or (target.dwell_point_is_seconds and not whole)):
+            continue
+        number = f"{round(count)}" if unit != 1.0 else f"{seconds:.6f}".rstrip("0")
+        return b"G4" + gap + f"{address}{number}".encode()
+    return None
+
+
+def nothing_left(items: tuple[Item, ...], meaning: Meaning, manner: Manner, work: str) -> bool:
+    """Whether of a block that has items nothing but its number would be written.
+
+    That is so for parts of the program frame that the target has not, and for codes that are not
+    written (`unsaid_words`).
+    """
+    unsaid = unsaid_words(meaning, work)
+
+    def goes(item: Item) -> bool:
+        if isinstance(item, Word):
+            name = code_of(item) if item.address in CODES else item.address
+            idle = only_for_cycles(name, manner.source, manner.target)
+            return name == "N" or name in unsaid or idle
+        slash = isinstance(item, Mark) and item.kind == "block_delete"
+        if isinstance(item, Statement) and needs_assignment(item, manner.source, manner.target):
+            return False
+        return slash or (manner.crossing and is_foreign(item, manner.target))
+
+    kept = [item for item in items if not (isinstance(item, Word) and item.address == "N")]
+    kept = [item for item in kept if not (isinstance(item, Mark) and item.kind == "block_delete")]
+    return bool(kept) and all(goes(item) for item in items)
+
+
+def left_out(item: Item, meaning: Meaning) -> bool:
+    """Whether an item turns cutter compensation on, and is left out once that is resolved."""
+    if not isinstance(item, Word) or not meaning.compensates:
+        return False
+    if item.address == "G" and isinstance(item.value, Number):
+        return f"G{round(item.value.value, 6):g}" == meaning.groups["cutter-comp"]
+    return item.address == "D"
+
+
+def same_dwell(one: type[Dialect], other: type[Dialect]) -> bool:
+    """Whether a dwell of one dialect is as long in the other, however it is written."""
+    return one.dwell == other.dwell and one.dwell_point_is_seconds == other.dwell_point_is_seconds
+
+
+def seconds_of_p(dialect: type[Dialect], pointed: bool) -> float:
+    """Return how long (s) a P of 1 in a canned cycle waits, with a point or without."""
+    return 1.0 if pointed and dialect.dwell_point_is_seconds else dialect.dwell.get("P", 1.0)
+
+
+def like(text: str, code: str) -> str:
+    """Return a code written like another: `g01` for G3 gives `g03`."""
+    letter, digits = text[0], text[1:].translate(BLANKS)
+    number = code[1:]
+    if digits[:1] == "0" and len(digits.split(".")[0]) == 2 and len(number.split(".")[0]) == 1:
+        number = "0" + number
+    return letter + number
+
+
+def other_in(
+    source: type[Dialect], target: type[Dialect], name: str, code: Code, dwells: bool
+) -> str:
+    """Return what the target cannot say, if a G code means something else there, or nothing."""
+    other = target.codes.get(name)
+    if other is None or (other.group, other.effect, other.act, other.takes) != (
+        code.group,
+        code.effect,
+        code.act,
+        code.takes,
+    ):
+        return name
+    if name in TAPPING:
+        return f"{name} with the spindle tied to the feed in the same way"
+    if code.act == "home" and stores_home(source) != stores_home(target):
+        return f"{name}: it goes to a point of another kind there"
+    if code.act == "local" and source.g52_is_g92 != target.g52_is_g92:
+        return f"{name} without changing what G92 has set"
+    if dwells and code.group == "non-modal" and not same_dwell(source, target):
+        return "this dwell"
+    return ""
+
+
+def stores_home(dialect: type[Dialect]) -> bool:
+    """Whether a program can choose the point to which G28 goes."""
+    return any(code.act == "store-home" for code in dialect.codes.values())
+
+
+def same_m(code: MCode, other: MCode, words: set[str]) -> bool:
+    """Whether an M code of a block that has `words` does the same in another dialect.
+
+    What builders have put there does not.
+    """
+    if "user" in (code.group, other.group) or code.group != other.group:
+        return False
+    return code.takes == other.takes or not words & {*code.takes, *other.takes}
+
+
+def comment_in(target: type[Dialect], text: str) -> str:
+    """Return a comment as a dialect writes it."""
+    if text[0] in target.comments:
+        return text
+    inner = text[1:-1] if text[0] == "(" else text[1:]
+    if target.comments.startswith("("):
+        return "(" + inner.replace("(", "[").replace(")", "]") + ")"
+    return ";" + inner
+
+
+def slash_of(shape: Shape) -> bytes:
+    """Return the slash with which the blocks of a shape may be skipped, if they have one."""
+    marks = [i for i in shape.block.items if isinstance(i, Mark) and i.kind == "block_delete"]
+    return "".join(shape.block.text[mark.start : mark.end] for mark in marks).encode("latin-1")
+
+
+def own_gap(shape: Shape, usual: bytes) -> bytes:
+    """Return what stands between the words of a block, or what is usual in the program."""
+    words = list(shape.block.words)
+    if len(words) < 2:
+        return usual
+    return b" " if any(gaps_between(shape.block.text, words)) else b""

@@ -1,0 +1,1 @@
+"""Error models of machines: the volumetric error as a function of the position."""

@@ -1,0 +1,75 @@
+"""Does a program have calls, loops, or codes that are computed? Asked of every program, so quickly.
+
+A byte that most windows of a long program do not have is looked for first, then a pattern that
+begins with a letter, which is fast, and only then is the text looked at without its comments. What
+is not seen here is refused where it is read.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from gcxform.dialect.dialect import Dialect
+from gcxform.syntax.source import COMMENT, Source
+
+TO_THE_END = re.compile(rb";[^\r\n]*")
+NUMBERED = rb"(?:N[ \t]*[0-9.]+[ \t]*)?"
+MODES = rb"M[ \t]*0*(?:98|7[0-3])(?![0-9])"
+CALLS = rb"M[ \t]*0*9[789](?![0-9])"
+COMPUTED = (
+    (b"#", rb"G[ \t]*#"),
+    (b"#", rb"M[ \t]*#"),
+    (b"[", rb"G[ \t]*\["),
+    (b"[", rb"M[ \t]*\["),
+)
+POSITION = rb"#[ \t]*5[ \t]*4[ \t]*2"
+SIGNS: dict[str, tuple[tuple[bytes, bytes], ...]] = {
+    "o-words": (
+        (b"O", rb"O[ \t]*[0-9<#]"),
+        (b"M", MODES),
+        *COMPUTED,
+        (b"#", POSITION),
+        (b"@", rb"@"),
+        (b"^", rb"\^"),
+    ),
+    "macro-b": ((b"M", CALLS), (b"O", rb"GOTO"), (b"[", rb"WHILE"), (b"[", rb"IF[ \t]*\[")),
+}
+"""A byte, and what a program with flow has where it has that byte."""
+PROOFS = {
+    "o-words": re.compile(
+        rb"^[/ \t]*"
+        + NUMBERED
+        + rb"O[^\n\r;]*?[A-Z]{2}|[@^]|[GM][ \t]*[#\[]|"
+        + b"|".join((MODES, POSITION)),
+        re.IGNORECASE | re.MULTILINE,
+    ),
+    "macro-b": re.compile(CALLS + rb"|GOTO|WHILE|IF[ \t]*\[", re.IGNORECASE),
+}
+"""What that looks like outside of comments."""
+
+
+def has_flow(source: Source, dialect: type[Dialect]) -> bool:
+    """Whether a program may have calls, loops or codes that are computed."""
+    if dialect.flow not in SIGNS:
+        return False
+    signs = [(byte, re.compile(pattern)) for byte, pattern in _cased(dialect)]
+    return any(
+        any(byte in text and pattern.search(text) for byte, pattern in signs)
+        and PROOFS[dialect.flow].search(_without_comments(text, dialect))
+        for text in source.windows()
+    )
+
+
+def _cased(dialect: type[Dialect]) -> Iterator[tuple[bytes, bytes]]:
+    """Yield the signs, in small letters too where the control takes these."""
+    for byte, pattern in SIGNS[dialect.flow]:
+        yield byte, pattern
+        small = re.sub(rb"[A-Z]+", lambda letters: letters[0].lower(), pattern)
+        if dialect.lower_case and small != pattern:
+            yield byte.lower(), small
+
+
+def _without_comments(text: bytes, dialect: type[Dialect]) -> bytes:
+    bare = COMMENT.sub(b"", text)
+    return TO_THE_END.sub(b"", bare) if ";" in dialect.comments else bare

@@ -1,0 +1,66 @@
+"""What a program that is executed leaves behind: parameters that last, messages with values."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from gcxform.dialect.arithmetic import Key, NoValueError
+from gcxform.flow.messages import prints_values, told
+from gcxform.flow.text import assignment
+from gcxform.modal.expressions.value import written
+from gcxform.syntax.tree import Block, Comment
+
+if TYPE_CHECKING:
+    from gcxform.flow.execution import Edit, Execution
+
+
+class Lasting:
+    """Keeps account of one execution.
+
+    assigned    the parameters that outlive the program, with the line that set each, and its value
+    locals_set  how often one was set that ends with its call, or with the program
+    """
+
+    def __init__(self, program: Execution) -> None:
+        self.program = program
+        self.assigned: list[tuple[int, Key, float]] = []
+        self.locals_set = 0
+
+    def account(self, key: Key, value: float) -> str:
+        """Return an assignment as it is written: nothing for a parameter that ends with the run."""
+        if not self.program.arithmetic.outlives(key):
+            self.locals_set += 1
+            return ""
+        if not self.program.keeps:
+            return ""
+        self.assigned.append((self.program.line, key, value))
+        return assignment(key, value, self.program.arithmetic)
+
+    def messages(self, block: Block) -> list[Edit]:
+        """Return the executed comments that print values, with the values in them.
+
+        The control prints what parameters are worth behind the assignments of the block.
+        Raises InputError.
+        """
+        edits: list[Edit] = []
+        for item in block.items:
+            text = block.text[item.start : item.end]
+            if not isinstance(item, Comment) or not prints_values(text):
+                continue
+            place = item.start, item.end
+            try:
+                edits.append((*place, told(text, self._printed)))
+            except NoValueError as why:
+                raise self.program.refusal(why.code, why.message, why.hint, place) from None
+        return edits
+
+    def _printed(self, key: Key) -> float | None:
+        """Return what a message prints for a parameter; None where the control knows it as well."""
+        known, arithmetic = self.program.parameters.get(key), self.program.arithmetic
+        if known is None or not math.isnan(known):
+            return known
+        if arithmetic.owns(key) and not arithmetic.outlives(key):
+            message = f"{written(key)}, which this message prints, is not known here"
+            raise NoValueError(message, code="GX220")
+        return None

@@ -1,0 +1,172 @@
+"""A source whose calls and loops are written out, or the source itself if it has none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.diagnostics import GcxformError
+from gcxform.dialect.arithmetic import Key
+from gcxform.dialect.dialect import Dialect
+from gcxform.flow.detection import has_flow
+from gcxform.modal.inventory import Account, Ints, Tally, nothing_held
+from gcxform.modal.state import Reading
+from gcxform.syntax.source import Source
+
+if TYPE_CHECKING:
+    from gcxform.flow.execution import Execution
+
+EXECUTED = {"o-words": (70, 71, 72, 73, 98, 99), "macro-b": (97, 98, 99)}
+"""M codes that are executed, and do not stand in what is written; M97 where a dialect has it."""
+
+
+NEAR = 1e-11  # of a value: as many digits as are written
+
+
+@dataclass(frozen=True, slots=True)
+class Executed:
+    """What calls and loops did with what the lines of a program hold, as counts (kinds,).
+
+    held        in the lines of the program as they stand
+    idle        in lines that are not executed, and are not kept either
+    locals_set  how often a parameter was set that ends with its call, or with the program
+    assigned    the others, with their values, in order
+    kept        how many subprograms stay: nothing calls them, or one of them does
+    """
+
+    held: Ints
+    idle: Ints
+    locals_set: int
+    assigned: tuple[tuple[Key, float], ...]
+    kept: int
+
+    def explain(self, account: Account, written: Ints) -> None:
+        """Say by which rules the lines became the blocks that were written out."""
+        account.rule("not executed: behind the end, or in a branch not taken", -self.idle)
+        ended = "parameters that end with the program: their values are in the words"
+        account.rule_of(ended, "assignments", -self.locals_set)
+        rest = written - account.source - sum(account.rules.values(), nothing_held())
+        account.rule("calls and loops written out", rest)
+
+    def agrees(self, read: Sequence[tuple[Key, float]]) -> bool:
+        """Whether the blocks, read again, set the same parameters."""
+        return len(read) == len(self.assigned) and all(
+            key == other and abs(value - now) <= NEAR * abs(value)
+            for (key, value), (other, now) in zip(self.assigned, read, strict=True)
+        )
+
+
+class WrittenOut(Source):
+    """The blocks a program executes, in their order; `origin` are their lines, from 0."""
+
+    def __init__(
+        self,
+        source: Source,
+        text: bytes,
+        origin: NDArray[np.int64],
+        assumed: Iterable[str] = (),
+    ) -> None:
+        super().__init__(Source.of_bytes(text).stream, source.name)
+        self.origin = origin
+        self.assumed = tuple(assumed)
+        self.executed: Executed | None = None
+        self.called = np.zeros(0, np.bool_)
+
+    def line_of(self, line: int) -> int:
+        """Return the line of the program that an executed line stands for."""
+        inside = 0 < line <= len(self.origin)
+        return int(self.origin[line - 1]) + 1 if inside else line
+
+    def is_called(self, line: int) -> bool:
+        """Whether a line of the text, from 0, came from a subprogram that was called."""
+        return bool(line < len(self.called) and self.called[line])
+
+
+def written_out(
+    source: Source,
+    dialect: type[Dialect],
+    reading: Reading,
+    target: type[Dialect] | None = None,
+) -> Source:
+    """Return a source with the blocks that the control executes.
+
+    That is the source itself if it has neither calls nor loops. With a `target` the blocks are to
+    be written for it: parameters that last are set in them, and subprograms that nothing calls
+    stand behind the end. Raises InputError where what is executed is not known before the control
+    runs.
+    """
+    if dialect.translator is not None:
+        from gcxform.flow.translation import translated
+
+        return translated(source, dialect, reading)
+    assigns = target is not None and _assigns_for(source, dialect, target)
+    if not assigns and not has_flow(source, dialect):
+        return source
+    keeps = target is not None
+    run = _executed(b"".join(source.windows()), source.name, dialect, reading, keeps)
+    if not run.acted and not (assigns and run.lasting.assigned):
+        return source
+    lines = np.concatenate([np.empty(0, np.int64), *run.origin])
+    found = WrittenOut(source, b"".join(run.text), lines, run.assumed)
+    found.executed = _account(run)
+    found.called = _inside(run)[lines]
+    return found
+
+
+def _inside(run: Execution) -> NDArray[np.bool_]:
+    """Return which lines of a program stand in its subprograms."""
+    inside = np.zeros(len(run.listing.window), np.bool_)
+    for definition in run.definitions():
+        inside[definition.lines] = True
+    return inside
+
+
+def _account(run: Execution) -> Executed:
+    """Return what an execution did with what the lines hold."""
+    shapes, table = run.listing.window.shape, run.listing.table
+    idle = run.times == 0
+    for each in run.kept:
+        idle[each.first : each.last + 1] = False
+    for definition in run.definitions():
+        idle[definition.first] &= not run.times[definition.lines].any()
+    made = tuple((key, value) for _, key, value in run.lasting.assigned)
+    held, left = Tally().add(table, shapes), Tally().add(table, shapes[idle])
+    return Executed(held, left, run.lasting.locals_set, made, len(run.kept))
+
+
+def _assigns_for(source: Source, dialect: type[Dialect], target: type[Dialect]) -> bool:
+    """Whether assignments of a program are to be written for another control."""
+    if dialect.name == target.name or not dialect.flow or target.arithmetic is None:
+        return False
+    return any(b"#" in text and b"=" in text for text in source.windows())
+
+
+def _executed(
+    text: bytes, file: str, dialect: type[Dialect], reading: Reading, keeps: bool
+) -> Execution:
+    """Execute a program; what does that is loaded for programs that need it."""
+    from gcxform.flow.line_account import check_walk
+    from gcxform.flow.listing import Listing
+    from gcxform.flow.macros import MacroB
+    from gcxform.flow.owords import OWords
+
+    kind: type[Execution] = OWords if dialect.flow == "o-words" else MacroB
+    run = kind(Listing(text, dialect, file), reading, keeps)
+    run.run()
+    check_walk(run)
+    return run
+
+
+def located(error: GcxformError, source: Source) -> GcxformError:
+    """Return an error about executed blocks as one about the lines of the program."""
+    found = []
+    for diagnostic in error.diagnostics:
+        where = diagnostic.where
+        if where is not None and where.line and where.file == source.name:
+            diagnostic = diagnostic.at(source.shown(where))
+        found.append(diagnostic)
+    return type(error)(tuple(found))

@@ -1,0 +1,1 @@
+"""What controls say of their kinematics and tools, read from their files."""

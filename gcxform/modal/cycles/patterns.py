@@ -1,0 +1,270 @@
+"""Canned cycles in a program: where each pattern leaves the tool, and the rows that it becomes.
+
+What follows a pattern begins where it ends, so that end is found at once, from the columns of
+`gcxform/modal/cycles/calls.py`. The moves themselves are made by
+`gcxform/modal/cycles/expansion.py`, in the coordinates of the program, for all patterns of a window
+together: that is what makes many short patterns cheap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.dialect.dialect import INCH
+from gcxform.modal.cycles.calls import CallColumns
+from gcxform.modal.cycles.expansion import Calls, Cycles
+from gcxform.modal.cycles.stretch import Mode, Stretch
+from gcxform.modal.frames.track import Break, Track
+from gcxform.modal.moves.rows import Rows
+from gcxform.modal.state import CYCLE_OFF
+from gcxform.toolpath.frames import Frame, by_frame
+from gcxform.toolpath.path import Event, Form, Plane
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+MANUAL = 88  # the cycle out of which the operator moves the tool
+
+
+@dataclass(frozen=True, slots=True)
+class _Followed:
+    """A stretch: its lines, plane, unit; words (axes,), frame and dwell (s) in force before it.
+
+    `stretch` are its columns; None where they are found later, with those of others.
+    """
+
+    first: int
+    last: int
+    plane: Plane
+    unit: float
+    words: Floats
+    frame: int
+    dwell: float
+    stretch: Stretch | None
+
+
+class Drilling:
+    """Reads the cycles of one window; `state.cycles` goes on from window to window.
+
+    Stretches are followed one by one, because each begins where what is before it ends; their moves
+    are made at once, at the end. `events` are what is done within cycles: the first line of a
+    stretch, how many rows behind its first, and what.
+    """
+
+    def __init__(self, track: Track) -> None:
+        self.track = track
+        self.lines, self.modes = track.lines, track.modes
+        self.cycles: Cycles | None = self.lines.state.cycles
+        self.events: list[tuple[int, int, Event]] = []
+        self.columns = CallColumns(track)
+        self.calls = self.columns.calls
+        self._followed: list[_Followed] = []
+
+    def borders(self) -> Ints:
+        """Return the lines at which a stretch of calls begins or ends."""
+        modes, calls = self.modes, self.calls
+        if not calls.any():
+            return np.empty(0, np.int64)
+        way = np.where(calls, 1 + modes.plane + 256 * modes.inch, 0)
+        return np.flatnonzero(np.diff(way, prepend=0))
+
+    def moved(self) -> None:
+        """Note that a block has moved in a way of its own, perhaps while a cycle is in force."""
+        if self.cycles is not None:
+            self.cycles.zero = None
+
+    # --- stretches, as they come ---
+
+    def follows(self, first: int, last: int) -> bool:
+        """Whether a stretch is one of calls; if it is, take over where the tool is after it.
+
+        What cycles keep is forgotten where other lines end cycle mode, or begin another.
+        """
+        cycles = self.cycles
+        if cycles is None or first == last:
+            return False
+        if self.calls[first]:
+            self._follow(first, last)
+            return True
+        if cycles.mode.code and (self.modes.cycle[first:last] == CYCLE_OFF).any():
+            cycles.leave()
+        return False
+
+    def _follow(self, first: int, last: int) -> None:
+        """Read a stretch of calls."""
+        assert self.cycles is not None
+        track, plane = self.track, Plane(int(self.modes.plane[first]))
+        unit = INCH if self.modes.inch[first] else 1.0
+        words = track.frame.words(track.state.position[None, :])[0]
+        after = words.copy()
+        stretch, dwell = None, self.cycles.mode.dwell
+        self._refuse_other_zero(first, last, plane.axes[2])
+        if not track.frame.polar and self._is_plain(first, last):
+            after[list(plane.axes)] = self._plain_end(first, last, words, plane)
+        else:
+            calls = self.columns.calls_on(slice(first, last), words[list(plane.axes)], plane, unit)
+            calls = self._in_coordinates(calls, slice(first, last))
+            stretch = self.cycles.follow(calls)
+            after[list(plane.axes)] = stretch.after[-1]
+        frame = len(track.frames) - 1
+        self._followed.append(_Followed(first, last, plane, unit, words, frame, dwell, stretch))
+        track.state.position = track.frame.positions(after[None, :])[0].copy()
+        if self._has_manual and (self.modes.cycle[first:last] == MANUAL).any():
+            track.breaks.append(Break(last, 1 << plane.axes[2]))
+
+    @cached_property
+    def _has_manual(self) -> bool:
+        """Whether the window has a cycle out of which the operator moves the tool."""
+        return bool((self.modes.cycle == MANUAL).any())
+
+    def _refuse_other_zero(self, first: int, last: int, normal: int) -> None:
+        """Refuse G98 where coordinates have changed, or G28 has moved, while a cycle is in force.
+
+        Not where words do not outlive their cycle: that control goes back to the same number.
+        """
+        assert self.cycles is not None
+        frame = self.track.frame
+        zero = frame.shift[normal], frame.origin[normal], frame.matrix
+        other = self.cycles.mode.code and zero != self.cycles.zero
+        self.cycles.zero = zero
+        if not (other and self.cycles.rule.keeps_words):
+            return
+        for line in np.flatnonzero(self.columns.common.initial[first:last])[:1].tolist():
+            message = "another work offset or G28 within a cycle: the level of G98 is not certain"
+            hint = "write G80 before, and all words again"
+            self.track.findings.add(first + line, "GX215", message, hint=hint)
+
+    def _in_coordinates(self, calls: Calls, here: slice) -> Calls:
+        """Return calls with coordinates where their words are radius and angle (G16)."""
+        if not self.track.frame.polar:
+            return calls
+        placed = self.track.polar(here).values()
+        first, second = (np.where(given, value, np.nan) for value, given in placed)
+        return replace(calls, first=first, second=second)
+
+    def _is_plain(self, first: int, last: int) -> bool:
+        """Whether a stretch begins without a cycle in force, ends with G80, and has one cycle."""
+        assert self.cycles is not None
+        if self.cycles.mode.code or last == self.lines.live:
+            return False
+        changes = self.columns.changes_until[last] - self.columns.changes_until[first + 1]
+        return bool(self.modes.cycle[last] == CYCLE_OFF and not changes)
+
+    def _plain_end(self, first: int, last: int, words: Floats, plane: Plane) -> list[float]:
+        """Return where the tool is after a plain stretch; take over the dwell that it leaves."""
+        assert self.cycles is not None
+        before = [float(words[axis]) for axis in plane.axes]
+        place = self.columns.last("P", last - 1)
+        if place >= first:
+            self.cycles.mode = Mode(dwell=float(self.columns.word("P", place)))
+        end = [
+            self._arrived("XYZ"[axis], first, last, standing)
+            for axis, standing in zip(plane.axes[:2], before, strict=False)
+        ]
+        called, initial = int(self.columns.last_drilled[last - 1]), before[2]
+        if called < first:
+            return [*end, initial]
+        place = self.columns.last("R", called)
+        clearance = float(self.columns.word("R", place)) if place >= first else np.nan
+        if self.modes.incremental[called]:
+            clearance += initial
+        high = bool(self.columns.common.initial[called])
+        return [*end, float(np.maximum(initial, clearance)) if high else clearance]
+
+    def _arrived(self, axis: str, first: int, last: int, before: float) -> float:
+        """Return where an axis of the plane is after a plain stretch."""
+        place, steps = self.columns.last(axis, last - 1), self.columns.increments_along(axis)
+        placed = place >= first
+        word = float(self.columns.word(axis, place)) if placed else before
+        if steps is None or self.columns.added_until[first] == self.columns.added_until[last]:
+            return word
+        moved = np.cumsum(steps[first:last])
+        return float((word - moved[place - first] if placed else before) + moved[-1])
+
+    # --- all stretches of the window ---
+
+    def rows(self) -> list[Rows]:
+        """Return the moves of the stretches."""
+        self._refuse_other_count()
+        self._refuse_without_place()
+        kinds: dict[tuple[Plane, float, bool], list[_Followed]] = {}
+        for one in self._followed:
+            kinds.setdefault((one.plane, one.unit, one.stretch is None), []).append(one)
+        return [self._rows_of(followed) for followed in kinds.values()]
+
+    def _refuse_other_count(self) -> None:
+        """Refuse L where K counts the holes: it would be left out."""
+        if self.columns.repeats != "K" or not self._followed:
+            return
+        counted = self.calls & ~np.isnan(self.columns.word("L", slice(None)))
+        for line in np.flatnonzero(counted).tolist():
+            message, hint = "L counts nothing here: this control repeats cycles by K", "write K"
+            self.track.findings.add(line, "GX215", message, "L", hint)
+
+    def _refuse_without_place(self) -> None:
+        """Refuse calls that name no place in the plane, where a setting decides if they drill."""
+        rule, control = self.lines.dialect.cycle_rule, self.lines.reading.control
+        if rule is None or not rule.alone or control.get(rule.alone) == "drills":
+            return
+        drills = self.calls & (self.columns.word(self.columns.repeats, slice(None)) != 0)
+        has = {letter: ~np.isnan(self.columns.word(letter, slice(None))) for letter in "XYZR"}
+        for plane in Plane:
+            first, second, normal = ("XYZ"[axis] for axis in plane.axes)
+            here = drills & (self.modes.plane == plane) & (has[normal] | has["R"])
+            for line in np.flatnonzero(here & ~has[first] & ~has[second]).tolist():
+                message = f"a cycle without {first} and {second}: a setting decides if it drills"
+                say = f'{rule.alone} = "drills" in [control] of the machine file'
+                hint = f"give {first} or {second}, or say {say}"
+                self.track.findings.add(line, "GX215", message, hint=hint)
+
+    def _stretches(self, followed: list[_Followed], line: Ints, bounds: Ints) -> list[Stretch]:
+        """Return the columns of stretches, those of plain ones as one."""
+        stretches = [one.stretch for one in followed if one.stretch is not None]
+        if stretches:
+            return stretches
+        assert self.cycles is not None
+        axes = list(followed[0].plane.axes)
+        positions = np.array([one.words[axes] for one in followed])
+        calls = self.columns.calls_on(line, positions[0], followed[0].plane, followed[0].unit)
+        dwells = np.array([one.dwell for one in followed])
+        return [self.cycles.follow_fresh(calls, bounds[:-1], positions, dwells)]
+
+    def _rows_of(self, followed: list[_Followed]) -> Rows:
+        """Return the moves of stretches of one plane and unit."""
+        assert self.cycles is not None
+        line = np.concatenate([np.arange(one.first, one.last) for one in followed])
+        bounds = np.cumsum([0, *(one.last - one.first for one in followed)])
+        steps = self.cycles.steps(self._stretches(followed, line, bounds))
+        for refusal in steps.refusals:
+            place = int(line[refusal.call])
+            self.track.findings.add(place, "GX215", refusal.message, hint=refusal.hint)
+        rows = steps.rows
+        bounds = np.searchsorted(rows.call, bounds)
+        self._place_events(rows.events, bounds, [one.first for one in followed])
+        which = np.repeat(np.arange(len(followed)), np.diff(bounds))
+        words = np.array([one.words for one in followed]).T[:, which].T
+        words[:, list(followed[0].plane.axes)] = rows.end
+        frame = np.array([one.frame for one in followed])[which]
+        return Rows(
+            line[rows.call],
+            rows.kind,
+            by_frame(Frame.positions, self.track.frames, frame, words, 1.0),
+            np.arange(len(rows.call)) - np.searchsorted(rows.call, rows.call),
+            np.where(rows.synchronised, Form.SYNCHRONISED, Form.CYCLE).astype(np.int8),
+            frame,
+        )
+
+    def _place_events(self, events: tuple[Event, ...], bounds: Ints, firsts: list[int]) -> None:
+        """Keep events by stretch, their rows counted from the first of it."""
+        if not events:
+            return
+        lines = [event.line - self.lines.window.first_line for event in events]
+        whose = np.searchsorted(firsts, lines, "right") - 1
+        behind = np.array([event.row for event in events]) - bounds[whose]
+        stretch = np.array(firsts)[whose]
+        self.events += zip(stretch.tolist(), behind.tolist(), events, strict=True)

@@ -1,0 +1,97 @@
+"""Executes what a window computes: its assignments, and the values of words that are expressions.
+
+This is done line by line, in the order of execution, for the lines that compute something and for
+no others; the rest of the interpreter then finds numbers where the program has expressions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.diagnostics import Diagnostic
+from gcxform.dialect.arithmetic import Key, NoValueError, whole
+from gcxform.modal.expressions.value import Evaluator, LocatedError, settable
+from gcxform.modal.findings import Findings
+from gcxform.modal.lines import Assigned, Lines
+from gcxform.syntax.tree import Expression, Statement, Word
+
+UNKNOWN = float("nan")
+
+
+def compute(lines: Lines) -> None:
+    """Give the words of the lines their values, and leave the parameters after the last line.
+
+    Raises InputError for what has no value, or none that is known.
+    """
+    having = np.flatnonzero(lines.flag("computes"))
+    if not len(having) or lines.dialect.arithmetic is None:
+        return
+    value = lines.window.value.copy()
+    for line in having.tolist():
+        _Block(lines, line, value).execute()
+        if len(lines.findings.found) >= Findings.enough:
+            break
+    lines.findings.raise_if_any()
+    lines.window = replace(lines.window, value=value)
+
+
+class _Block:
+    """One block that computes something; `value` are the number columns of its window."""
+
+    def __init__(self, lines: Lines, line: int, value: NDArray[np.float64]) -> None:
+        assert lines.dialect.arithmetic is not None
+        self.lines = lines
+        self.line = line
+        self.value = value
+        self.arithmetic = lines.dialect.arithmetic
+        self.meaning = lines.table.meanings[int(lines.shape[line])]
+
+    def execute(self) -> None:
+        """Compute the words, then the assignments; these take effect together, at the end."""
+        first = int(self.lines.first[self.line])
+        for slot, word in self.meaning.expressions:
+            self.value[first + slot] = self._word(word)
+        changes = [self._assigned(statement) for statement in self.meaning.assignments]
+        made = [change for change in changes if change is not None]
+        self.lines.parameters.update(made)
+        line = self.lines.window.first_line + self.line
+        self.lines.assigned += [Assigned(line, key, value) for key, value in made]
+        if self.meaning.runs_macro and not self.meaning.lost_by <= self.lines.reading.inert_m:
+            self.lines.parameters = dict.fromkeys(self.lines.parameters, UNKNOWN)
+
+    def _word(self, word: Word) -> float:
+        """Return the value of a word, nan after a finding."""
+        assert isinstance(word.value, Expression)
+        evaluator = Evaluator(self.arithmetic, self.lines.parameters, in_word=True)
+        try:
+            value = evaluator.value(word.value.tree)
+            if word.address in self.arithmetic.whole and not self.meaning.is_length(word.address):
+                value = float(whole(value, self.arithmetic.whole_slip))
+        except LocatedError as why:
+            self._refuse(why, why.start, why.end)
+        except NoValueError as why:
+            self._refuse(why, word.start, word.end)
+        else:
+            return value
+        return UNKNOWN
+
+    def _assigned(self, statement: Statement) -> tuple[Key, float] | None:
+        """Return a parameter and its new value: nan after a finding, None if it is not known."""
+        evaluator = Evaluator(self.arithmetic, self.lines.parameters)
+        parameter, expression = statement.tree.children
+        key: Key | None = None
+        try:
+            key = settable(self.arithmetic, evaluator.key(parameter))
+            return key, evaluator.value(expression)
+        except LocatedError as why:
+            self._refuse(why, why.start, why.end)
+        except NoValueError as why:
+            self._refuse(why, statement.start, statement.end)
+        return None if key is None else (key, UNKNOWN)
+
+    def _refuse(self, why: NoValueError, start: int, end: int) -> None:
+        diagnostic = Diagnostic(why.code, why.message, hint=why.hint)
+        self.lines.findings.add_at(self.line, (start, end), diagnostic)

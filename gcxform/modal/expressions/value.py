@@ -1,0 +1,175 @@
+"""The value of an expression, from its tree and the parameters that the program has set.
+
+Precedence is the grammar's; what operators and functions are worth is the dialect's `Arithmetic`.
+A parameter that nothing in the program has set is not zero: it has what another program has left.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from lark import Token, Tree
+
+from gcxform.dialect.arithmetic import RS274, Arithmetic, Key, NoValueError, whole
+from gcxform.syntax.grammar import rule_of, span_of
+from gcxform.syntax.tree import BLANKS, Statement
+
+Parameters = Mapping[Key, float]
+"""Values by parameter; nan for one that is no longer known."""
+
+HOW_TO_GIVE = "set it in the program, or say what it is worth: parameters in [input]"
+
+
+class LocatedError(NoValueError):
+    """An expression without a value, and where in the block that is (columns from 0)."""
+
+    def __init__(self, why: NoValueError, start: int, end: int) -> None:
+        super().__init__(why.message, why.hint, why.code)
+        self.start, self.end = start, end
+
+
+def parameter_key(text: str) -> Key:
+    """Return the key of a parameter as a person writes it: `#100`, `100`, `#<depth>`."""
+    bare = text.translate(BLANKS).removeprefix("#")
+    if bare.startswith("<") and bare.endswith(">") and len(bare) > 2:
+        return bare[1:-1].lower()
+    if not bare.isdecimal():
+        raise ValueError(f"{text!r} is neither a number nor a name such as '<depth>'")
+    return int(bare)
+
+
+def written(key: Key) -> str:
+    """Return a parameter as it is written."""
+    return f"#{key}" if isinstance(key, int) else f"#<{key}>"
+
+
+class Evaluator:
+    """Computes the expressions of one block. `in_word`: it is the value of a word."""
+
+    def __init__(
+        self, arithmetic: Arithmetic, parameters: Parameters, in_word: bool = False
+    ) -> None:
+        self.arithmetic = arithmetic
+        self.parameters = parameters
+        self.in_word = in_word
+
+    def value(self, node: Any) -> float:
+        """Return what a node is worth. Raises LocatedError at the innermost node without a value.
+
+        A number that is no number or infinite is no value.
+        """
+        try:
+            value = self._value(node)
+            if not math.isfinite(value):
+                raise NoValueError("the result is too large")
+        except LocatedError:
+            raise
+        except OverflowError:
+            raise LocatedError(NoValueError("the result is too large"), *span_of(node)) from None
+        except NoValueError as why:
+            raise LocatedError(why, *span_of(node)) from None
+        return value
+
+    def _value(self, node: Any) -> float:
+        if isinstance(node, Token):
+            return float(str(node).translate(BLANKS))
+        rule, children = rule_of(node), node.children
+        if rule == "parameter":
+            return self._read(self.key(node))
+        if rule == "negated":
+            value = self.value(children[1])
+            return -value if children[0] == "-" else value
+        if rule == "bracketed":
+            return self.value(children[0])
+        if rule in ("call", "arctangent"):
+            return self._call(rule, str(children[0]).upper(), children[1:])
+        return self._operation(*children)
+
+    def _operation(self, left: Any, operator: Token, right: Any) -> float:
+        name = str(operator).upper()
+        function = self.arithmetic.operators.get(name)
+        if function is None:
+            raise NoValueError(f"{name} is not computed in this dialect", code="GX206")
+        return function(self.value(left), self.value(right))
+
+    def _call(self, rule: str, name: str, arguments: list[Any]) -> float:
+        if name == "EXISTS":
+            return self._exists(arguments)
+        function = self.arithmetic.functions.get(name + "/" * (rule == "arctangent"))
+        if function is None:
+            raise NoValueError(f"{name} is not computed in this dialect", code="GX206")
+        if self.in_word and name in self.arithmetic.not_in_words:
+            message = f"{name} in a word rounds to what the control can resolve"
+            raise NoValueError(message, "compute it in an assignment", "GX206")
+        if rule == "call" and len(arguments) != 1 + (name == "POW"):
+            raise NoValueError(f"{name} takes another number of arguments")
+        return function(*(self.value(argument) for argument in arguments))
+
+    def key(self, node: Any) -> Key:
+        """Return which parameter a node names."""
+        child = node.children[0]
+        if isinstance(child, Token) and str(child).startswith("<"):
+            if not self.arithmetic.named:
+                raise NoValueError("this dialect has no parameters with names", code="GX206")
+            return str(child)[1:-1].translate(BLANKS).lower()
+        return whole(self.value(child))
+
+    def _read(self, key: Key) -> float:
+        value = self.parameters.get(key)
+        if value is not None and not math.isnan(value):
+            return value
+        name = written(key)
+        if value is not None:
+            message = f"{name} is not known after a block that is refused, or that may run a macro"
+            raise NoValueError(message, HOW_TO_GIVE, "GX220")
+        if not self.arithmetic.owns(key):
+            raise NoValueError(f"{name} has a value that only the control knows", code="GX220")
+        message = f"nothing in the program has set {name} before"
+        raise NoValueError(message, HOW_TO_GIVE, "GX220")
+
+    def _exists(self, arguments: list[Any]) -> float:
+        """Return whether a parameter has a value; only of local names is that known."""
+        node = arguments[0]
+        if len(arguments) != 1 or isinstance(node, Token) or rule_of(node) != "parameter":
+            raise NoValueError("EXISTS takes a parameter")
+        key = self.key(node)
+        if key in self.parameters:
+            return 1.0
+        if isinstance(key, int) or key.startswith("_"):
+            raise NoValueError(
+                f"only the control knows whether {written(key)} exists", code="GX220"
+            )
+        return 0.0
+
+
+def key_set(statement: Statement) -> Key | None:
+    """Return the parameter that an assignment sets; None where it is computed which."""
+    parameter = statement.tree.children[0]
+    return Evaluator(LITERAL, {}).key(parameter) if _is_literal(parameter.children[0]) else None
+
+
+def sets_number(statement: Statement) -> bool:
+    """Return whether an assignment sets a parameter that is named to a number as written."""
+    value = statement.tree.children[1]
+    if isinstance(value, Tree) and rule_of(value) == "negated":
+        value = value.children[1]
+    return key_set(statement) is not None and _is_literal(value)
+
+
+def _is_literal(node: Any) -> bool:
+    return isinstance(node, Token)
+
+
+LITERAL = replace(RS274, operators={}, functions={})
+"""For what is written out already: no dialect's own."""
+
+
+def settable(arithmetic: Arithmetic, key: Key) -> Key:
+    """Return the key of a parameter that a program may set. Raises NoValueError."""
+    if not arithmetic.owns(key):
+        message = f"{written(key)} belongs to the control, which may do something when it is set"
+        raise NoValueError(message, code="GX206")
+    return key

@@ -1,0 +1,1 @@
+"""Which frame is in force, and what codes do to it."""

@@ -1,0 +1,64 @@
+"""What an act on the frame is: a function from the state before it to the state after it.
+
+What a control leaves open, or what is known of it from hearsay only, is refused by name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.dialect.dialect import Dialect
+from gcxform.modal.frames.state import FrameState
+from gcxform.modal.state import Reading
+from gcxform.toolpath.path import Plane
+
+Floats = NDArray[np.float64]
+
+
+class ActError(Exception):
+    """A block asks for what is not understood: code of the catalogue, message, hint."""
+
+    def __init__(self, code: str, message: str, hint: str = "") -> None:
+        super().__init__(message)
+        self.code = code
+        self.message = message
+        self.hint = hint
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A block that acts: its code, and all that its effect depends on.
+
+    words     numbers of the words it takes, lengths in mm, by address
+    written   the same numbers as they stand in the block
+    axes      the axes it names, with their words in mm or degrees, X as a radius
+    position  (axes,) where the axes stand before the block
+    """
+
+    code: str
+    words: Mapping[str, float]
+    written: Mapping[str, float]
+    axes: Mapping[str, float]
+    position: Floats
+    incremental: bool
+    plane: Plane
+    tool_word: float
+    dialect: type[Dialect]
+    reading: Reading
+
+    def column(self, state: FrameState, axis: str) -> int:
+        """Return the index of an axis."""
+        return state.axes.index(axis)
+
+    @property
+    def numbers(self) -> str:
+        """The letters, besides axes, of the words that the code takes: with these it says which."""
+        code = self.dialect.codes.get(self.code)
+        return "".join(a for a in (code.takes if code else "") if a not in self.dialect.axes)
+
+
+Act = Callable[[FrameState, Asked], FrameState]

@@ -1,0 +1,184 @@
+"""Which frame is in force: work offsets, G52, G92, rotation, scaling, tool length.
+
+The state is a value: acts (`gcxform/modal/frames/acts.py`) return a new one. All zeros are told as
+positions (see `gcxform/toolpath/frames.py`), nan where they are not known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import isfinite, nan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.toolpath.frames import Frame, Matrix, Vector
+
+NO_TOOL = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """What G68, G51 and G51.1 do to X, Y, Z: word -> matrix @ (word - centre) + centre."""
+
+    matrix: Matrix
+    centre: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class FrameState:
+    """What decides how words become positions. Vectors have one number per axis, mm or degrees.
+
+    work, first   the work offset in force, and that from whose zero positions count
+    known         whether `work` is what the program has stated, or the control's first for certain
+    zeros         positions of the zeros of work offsets; what is not here is not known
+    machine       position of the machine's zero
+    rotation      deg, about Z, of work offsets (G10 L2 R)
+    preset, held  the shift of G92, and what G92.3 would restore
+    local         the shift of G52 where it is not that of G92
+    tool          mm, from the tip to the reference point; nan where a length is not known
+    tool_name     what the tool vector belongs to: "H3"; "" for none
+    in_spindle    number of the tool, -1 where not known; `changes` counts the tool changes
+    turns         rotation, scaling and mirror of the program, the innermost first
+    polar, diameter   G16 and G7 are in force
+    homes         machine positions of G28 and G30
+    following     whether the control follows the tip of the tool; None where that is not known
+    """
+
+    axes: str
+    work: str = "G54"
+    first: str = "G54"
+    known: bool = False
+    zeros: Mapping[str, Vector] = field(default_factory=dict)
+    machine: Vector = ()
+    rotation: Mapping[str, float] = field(default_factory=dict)
+    preset: Vector = ()
+    held: Vector = ()
+    local: Vector = ()
+    tool: tuple[float, float, float] = NO_TOOL
+    tool_name: str = ""
+    in_spindle: int = -1
+    changes: int = 0
+    turns: tuple[tuple[str, Turn], ...] = ()
+    polar: bool = False
+    diameter: bool = False
+    homes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    following: bool | None = None
+
+    @classmethod
+    def at_start(
+        cls,
+        axes: str,
+        work: str,
+        known: bool,
+        offsets: Mapping[str, Mapping[str, float]],
+        homes: Mapping[str, Mapping[str, float]],
+    ) -> FrameState:
+        """Return the state before a program; `offsets` are machine positions by work offset."""
+        none = (0.0,) * len(axes)
+        state = cls(axes, preset=none, held=none, local=none, homes=homes)
+        return state.starting_in(work, offsets, known)
+
+    def starting_in(
+        self, work: str, offsets: Mapping[str, Mapping[str, float]], known: bool
+    ) -> FrameState:
+        """Return the state with positions counted from the zero of a work offset."""
+        none = (0.0,) * len(self.axes)
+        unknown = (np.nan,) * len(self.axes)
+
+        def placed(code: str) -> Vector:
+            return tuple(float(offsets[code].get(axis, 0.0)) for axis in self.axes)
+
+        zeros = {work: none}
+        machine = unknown
+        if work in offsets:
+            base = np.array(placed(work))
+            zeros = {code: _vector(placed(code) - base) for code in offsets}
+            machine = _vector(-base)
+        return replace(self, work=work, first=work, known=known, zeros=zeros, machine=machine)
+
+    def zero_of(self, work: str) -> Vector:
+        """Return the position of the zero of a work offset, nan where it is not known."""
+        return self.zeros.get(work, (np.nan,) * len(self.axes))
+
+    def with_zero(self, work: str, zero: Vector) -> FrameState:
+        """Return the state with the zero of a work offset elsewhere."""
+        return replace(self, zeros={**self.zeros, work: zero})
+
+    def in_work(self, work: str) -> FrameState:
+        """Return the state in another work offset."""
+        return replace(self, work=work, known=True)
+
+    def with_tool(self, vector: tuple[float, float, float], name: str) -> FrameState:
+        """Return the state with another tool vector; `name` says whose it is.
+
+        What is not known is one and the same nan, so that frames of the same tool are equal.
+        """
+        x, y, z = (length if length == length else nan for length in vector)
+        return replace(self, tool=(x, y, z), tool_name=name)
+
+    def frame(self) -> Frame:
+        """Return the frame in force."""
+        zero = self.zero_of(self.work)
+        away = self.work if self.work != self.first else f"{self.work} as set by G10"
+        origin = [self.first if isfinite(place) else away for place in zero]
+        shift = [place if isfinite(place) else 0.0 for place in zero]
+        assert self.axes[:3] == "XYZ"
+        for k, length in enumerate(self.tool):
+            if isfinite(length):
+                shift[k] += length
+            else:
+                origin[k] += f" + {self.tool_name}"
+        matrix, offset = self._matrix()
+        for k, value in enumerate(offset):
+            shift[k] += value
+        for k in range(0 if matrix is None else 3, len(shift)):
+            shift[k] += self.preset[k] + self.local[k]
+        return Frame(
+            self.work,
+            tuple(shift),
+            tuple(origin),
+            matrix,
+            self.diameter,
+            self.polar,
+            self.tool,
+            self.following,
+            bool(self.tool_name),
+        )
+
+    def _matrix(self) -> tuple[Matrix | None, Sequence[float]]:
+        """Return matrix and shift (3,) of what is done to words before the work offset is added.
+
+        The turns of the program first, then G52 and G92, then the rotation of the work offset.
+        """
+        angle = self.rotation.get(self.work, 0.0)
+        if not self.turns and not angle:
+            return None, ()
+        matrix, shift = np.eye(3), np.zeros(3)
+        for _, turn in self.turns:
+            step, centre = np.array(turn.matrix), np.array(turn.centre)
+            matrix, shift = step @ matrix, step @ (shift - centre) + centre
+        shift = shift + np.array(self.preset[:3]) + np.array(self.local[:3])
+        about = np.array(rotation(angle, 0, 1))
+        matrix, shift = about @ matrix, about @ shift
+        return _matrix(matrix), shift.tolist()
+
+
+def rotation(angle: float, first: int, second: int) -> Matrix:
+    """Return the matrix that turns the first axis towards the second by an angle (deg)."""
+    exact = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
+    radians = np.deg2rad(angle)
+    c, s = exact.get(angle % 360.0, (float(np.cos(radians)), float(np.sin(radians))))
+    matrix = np.eye(3)
+    matrix[first, first] = matrix[second, second] = c
+    matrix[first, second], matrix[second, first] = -s, s
+    return _matrix(matrix)
+
+
+def _matrix(values: NDArray[np.float64]) -> Matrix:
+    return tuple((float(a), float(b), float(c)) for a, b, c in values)
+
+
+def _vector(values: NDArray[np.float64]) -> Vector:
+    return tuple(float(value) for value in values)

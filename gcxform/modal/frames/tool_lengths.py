@@ -1,0 +1,129 @@
+"""Acts on the tool: which one is in the spindle, and the length that is added for it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from gcxform.modal.frames.act import ActError, Asked
+from gcxform.modal.frames.state import NO_TOOL, FrameState
+
+
+def change_tool(state: FrameState, asked: Asked) -> FrameState:
+    """M6: the tool that T has named is in the spindle."""
+    return replace(state, in_spindle=int(asked.tool_word), changes=state.changes + 1)
+
+
+def user_code(state: FrameState, asked: Asked) -> FrameState:
+    """M100 to M199: a program of the machine's maker; where it leaves the axes is not known."""
+    inert = int(asked.code[1:]) in asked.reading.inert_m
+    if not inert and asked.reading.control.get("user-codes") != "keep":
+        raise ActError(
+            "GX214",
+            f"{asked.code} runs a program of this machine, if it has one",
+            'say that it has: [control] user-codes = "keep" in the machine file; positions are '
+            "then lost behind it",
+        )
+    return state
+
+
+def tip_on(state: FrameState, asked: Asked) -> FrameState:
+    """Codes of the machine file: from here on the control follows the tip of the tool."""
+    return replace(state, following=True)
+
+
+def tip_off(state: FrameState, asked: Asked) -> FrameState:
+    """Codes of the machine file: X, Y and Z are again those of the axes."""
+    return replace(state, following=False)
+
+
+def set_tool(state: FrameState, asked: Asked) -> FrameState:
+    """M61 Q: another number for the tool that is in the spindle."""
+    if "Q" not in asked.words:
+        raise ActError("GX213", f"{asked.code} needs a Q word")
+    return replace(state, in_spindle=int(asked.words["Q"]), changes=state.changes + 1)
+
+
+def length(state: FrameState, asked: Asked) -> FrameState:
+    """G43 H: the length of a tool of the table."""
+    return state.with_tool(*_tool_vector(state, asked, 1.0))
+
+
+def length_negative(state: FrameState, asked: Asked) -> FrameState:
+    """G44 H: the length of a tool of the table, taken off."""
+    return state.with_tool(*_tool_vector(state, asked, -1.0))
+
+
+def length_add(state: FrameState, asked: Asked) -> FrameState:
+    """G43.2 H: the length of a tool more."""
+    if "H" not in asked.words:
+        raise ActError("GX213", f"{asked.code} needs an H word")
+    vector, name = _tool_vector(state, asked, 1.0)
+    total = np.array(state.tool) + np.array(vector)
+    return state.with_tool(tuple(total.tolist()), f"{state.tool_name}+{name}")
+
+
+def _tool_vector(
+    state: FrameState, asked: Asked, sign: float
+) -> tuple[tuple[float, float, float], str]:
+    """Return the vector of a tool, nan along Z where its length is not known, and its name."""
+    number = asked.words.get("H", np.nan)
+    if asked.dialect.g43_takes_spindle_tool and not number > 0:
+        if number < 0:
+            raise ActError("GX213", "H is not a number of a tool")
+        if state.in_spindle < 1:
+            return _unknown_tool(state, asked)
+        number = float(state.in_spindle)
+    elif np.isnan(number):
+        raise ActError("GX213", f"{asked.code} needs an H word")
+    if number % 1 or number < 0:
+        raise ActError("GX213", "H is not a number of a tool")
+    if number == 0:
+        return NO_TOOL, ""
+    tool = asked.reading.tools.get(int(number))
+    if tool is None:
+        if asked.reading.tools and asked.dialect.g43_takes_spindle_tool:
+            raise ActError("GX213", f"the tool table has no tool {number:g}")
+        return (0.0, 0.0, np.nan), f"H{number:g}"
+    x, y, z = tool.vector
+    return (sign * x, sign * y, sign * z), f"H{number:g}"
+
+
+def _unknown_tool(state: FrameState, asked: Asked) -> tuple[tuple[float, float, float], str]:
+    """Return the vector and the name of the tool that H0, or no H, stands for.
+
+    Which that is no block has said, or none is there (then `rs274` takes the length of the one
+    before): its length is not known, and after every change it may be another.
+    """
+    aside = any(tool.vector[0] or tool.vector[1] for tool in asked.reading.tools.values())
+    across = np.nan if aside else 0.0
+    name = "the tool in the spindle"
+    if state.changes:
+        name += f" after tool change {state.changes}"
+    return (across, across, np.nan), name
+
+
+def length_vector(state: FrameState, asked: Asked) -> FrameState:
+    """G43.1: the vector given."""
+    vector = np.array(state.tool)
+    for axis, value in asked.axes.items():
+        if axis not in asked.dialect.length_axes:
+            raise ActError("GX213", f"{asked.code} takes no {axis} on this control")
+        vector[asked.column(state, axis)] = value
+    return state.with_tool(tuple(vector.tolist()), "G43.1")
+
+
+def no_length(state: FrameState, asked: Asked) -> FrameState:
+    """G49: no tool length."""
+    return state.with_tool(NO_TOOL, "")
+
+
+def vectors(state: FrameState, asked: Asked) -> FrameState:
+    """G43.5 H: the length of a tool, and the control turns the tool along I, J, K and follows."""
+    return replace(length(state, asked), following=True)
+
+
+def no_vectors(state: FrameState, asked: Asked) -> FrameState:
+    """G49 after it: the axes stay where the control has turned them."""
+    return replace(no_length(state, asked), following=False)

@@ -1,0 +1,338 @@
+"""Where the axes stand, and in which frame, from stretch to stretch of a window.
+
+A stretch is a run of lines in one frame. Within it every axis is one column, filled forward; the
+block that begins a stretch may act on the frame first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite, remainder
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.dialect.dialect import INCH, LINEAR, ROTARY
+from gcxform.modal.columns import fill
+from gcxform.modal.findings import Findings
+from gcxform.modal.frames.act import ActError, Asked
+from gcxform.modal.frames.acts import ACTS, unheard
+from gcxform.modal.frames.state import FrameState
+from gcxform.modal.lines import LENGTHS, Lines
+from gcxform.modal.meaning.meaning import Act
+from gcxform.modal.state import Modes
+from gcxform.system.distinct import distinct
+from gcxform.toolpath.frames import Frame
+from gcxform.toolpath.path import Plane, constant
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+ALONG_Z = "tools whose lengths are not known have them along Z alone: there is no tool table"
+LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar", "no-polar"})
+FRAMELESS = frozenset({"change-tool", "set-tool", "user-code", "store-home"})
+LENGTHENED = frozenset(
+    {
+        *("length", "length-negative", "length-vector", "length-add", "no-length"),
+        *("vectors", "no-vectors"),
+    }
+)
+
+SWITCHED = frozenset({"tip-on", "tip-off"})
+SPATIAL = 0b111  # X, Y and Z as bits
+WHOLE_TURN = 360.0  # degrees
+NOISE = 1e-9  # degrees; what steps of G91 may leave of their sum
+
+LEFT = np.inf
+"""The position of an axis that is where a control has left it that turns the tool along vectors.
+
+No word has this value. A pass that chooses the angles instead of the control knows where it is.
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Break:
+    """From a line on the position of some axes is not known: bit k of `axes` stands for axis k."""
+
+    line: int
+    axes: int
+
+
+class Track:
+    """Follows position and frame; `state.position` and `state.frames` are left up to date."""
+
+    def __init__(self, lines: Lines, modes: Modes, axes: str) -> None:
+        self.lines = lines
+        self.modes = modes
+        self.axes = axes
+        self.state = lines.state
+        self.dialect = lines.dialect
+        self.findings = lines.findings
+        self.entry = lines.state.position.copy()
+        self.frames: list[Frame] = [self.state.frames.frame()]
+        if self.state.row_frame not in (None, self.frame):
+            self.frames.insert(0, self.state.row_frame)
+        self.breaks: list[Break] = []
+        self._columns: dict[str, tuple[Floats, Flags] | None] = {}
+
+    @property
+    def frame(self) -> Frame:
+        """The frame in force."""
+        return self.frames[-1]
+
+    def column(self, axis: str) -> tuple[Floats, Flags] | None:
+        """Return value (mm, deg) and presence of an axis word by line; None if no line has it."""
+        if axis not in self._columns:
+            word = self.lines.word(axis)
+            if word is not None and axis in LENGTHS and self.modes.inch.any():
+                word = np.where(self.modes.inch, word[0] * INCH, word[0]), word[1]
+            self._columns[axis] = word
+        return self._columns[axis]
+
+    def words_on(self, line: int) -> dict[str, float]:
+        """Return the axis words of a line, mm and degrees."""
+        found = {}
+        for axis in self.axes:
+            word = self.column(axis)
+            if word is not None and word[1][line]:
+                found[axis] = float(word[0][line])
+        return found
+
+    # --- acts ---
+
+    def act(self, line: int) -> None:
+        """Do what a line does to the frame."""
+        meaning = self.lines.table.meanings[int(self.lines.shape[line])]
+        for act in meaning.acts:
+            if act.name in ACTS:
+                try:
+                    self._one_act(act, line)
+                except ActError as error:
+                    self.findings.add(line, error.code, error.message, act.code[0], error.hint)
+
+    def _one_act(self, act: Act, line: int) -> None:
+        before, old = self.state.frames, self.frame
+        asked = self._asked(act, line)
+        if word := unheard(act.name, asked):
+            message = f"{asked.code} takes {word}, and what this asks for is not known"
+            raise ActError("GX213", message)
+        self.state.frames = frames = ACTS[act.name](before, asked)
+        if act.name in FRAMELESS:
+            return
+        if act.name == "work" and not before.known:
+            self._lose(line, (1 << len(self.axes)) - 1)
+        if act.name == "no-vectors" and before.following:
+            self.state.position[:] = LEFT  # the angles are the control's own choice
+        if act.name in SWITCHED and before.following is not frames.following:
+            self._lose(line, 0 if self._upright() else SPATIAL)
+        if act.name in LENGTHENED and self.dialect.length_may_move and frames.frame() != old:
+            self._lose(line, 4)
+        if np.isnan(frames.tool[2]) and frames.tool[0] == 0.0 and self.dialect.tools_aside:
+            self.state.assumed[ALONG_Z] = None
+        if act.name == "polar":
+            self.state.polar = np.nan, np.nan
+        if act.name in LOST_BY_TURN:
+            self._lose(line, self._turned_by(line, before, frames))
+        self._enter(line, old)
+
+    def _upright(self) -> bool:
+        """Whether all rotary axes are known to be at 0, where the tip is as far as the axes are."""
+        rotary = self.lines.reading.rotary or ROTARY
+        turned = [v for a, v in zip(self.axes, self.state.position, strict=True) if a in rotary]
+        return all(isfinite(v) and abs(remainder(v, WHOLE_TURN)) < NOISE for v in turned)
+
+    def _turned_by(self, line: int, before: FrameState, after: FrameState) -> int:
+        """Return the axes, as bits, of which controls differ in where a turn leaves them."""
+        if before.polar != after.polar:
+            first, second, _ = Plane(int(self.modes.plane[line])).axes
+            return 1 << first | 1 << second
+        turns = {*before.turns} ^ {*after.turns}
+        matrices = [np.array(turn.matrix) - np.eye(3) for _, turn in turns]
+        return sum({1 << int(k) for matrix in matrices for k in np.flatnonzero(matrix.any(axis=1))})
+
+    def reset_work(self, line: int) -> None:
+        """Enter the work offset that the end of a program leaves, before a line."""
+        old = self.frame
+        self.state.frames = self.state.frames.in_work(self.dialect.resets_at_end["frame"])
+        self._enter(line, old)
+
+    def _enter(self, line: int, old: Frame) -> None:
+        """Note the frame that is now in force, if it is another one."""
+        new = self.state.frames.frame()
+        if new != old:
+            pairs = enumerate(zip(old.origin, new.origin, strict=True))
+            self._lose(line, sum(1 << k for k, (was, now) in pairs if was != now))
+            self.frames.append(new)
+
+    def _asked(self, act: Act, line: int) -> Asked:
+        window, first = self.lines.window, int(self.lines.first[line])
+        written = {a: float(window.value[first + slot]) for a, slot in act.slots}
+        scale = INCH if self.modes.inch[line] else 1.0
+        words = {a: v * scale if a in LINEAR else v for a, v in written.items()}
+        for address, slot in act.slots:
+            self.lines.refuse_pointless(line, address, first + slot)
+        return Asked(
+            act.code,
+            words,
+            written,
+            self._radial({a: v for a, v in words.items() if a in self.axes}),
+            self.state.position,
+            bool(self.modes.incremental[line]),
+            Plane(int(self.modes.plane[line])),
+            float(self.modes.tool[line]),
+            self.dialect,
+            self.lines.reading,
+        )
+
+    def _radial(self, words: dict[str, float]) -> dict[str, float]:
+        """Return axis words with X as a radius."""
+        if self.state.frames.diameter and "X" in words:
+            return {**words, "X": words["X"] / 2}
+        return words
+
+    def _lose(self, line: int, axes: int) -> None:
+        if not axes:
+            return
+        for k in range(len(self.axes)):
+            if axes >> k & 1:
+                self.state.position[k] = np.nan
+        self.breaks.append(Break(line, axes))
+
+    def lose_all(self, line: int) -> None:
+        """Note that from a line on no position is known."""
+        self._lose(line, (1 << len(self.axes)) - 1)
+
+    # --- stretches ---
+
+    def along(self, first: int, last: int, rows: Ints, lost: Flags | None) -> Floats:
+        """Return the positions (n, axes) after lines `rows` of the stretch from first to last.
+
+        `lost` (lines,) are the lines of the window at which all positions are lost.
+        """
+        here = slice(first, last)
+        before = self.frame.words(self.state.position[None, :])[0]
+        lost_here = None if lost is None or not lost[here].any() else lost[here]
+        words = np.empty((len(self.axes), len(rows))).T
+        words[:] = before
+        if lost_here is None and not self._words_until[last] > self._words_until[first]:
+            return self.frame.positions(words)
+        end = np.array(before)
+        polar = self.polar(here) if self.frame.polar else {}
+        for k, axis in enumerate(self.axes):
+            if lost_here is None and axis not in polar and self.column(axis) is None:
+                continue
+            position = self._axis(axis, float(before[k]), here, lost_here, polar.get(axis))
+            words[:, k] = position[rows - first]
+            end[k] = position[-1]
+        self.state.position = np.array(self.frame.positions(end[None, :])[0])
+        if lost_here is not None:
+            axes = (1 << len(self.axes)) - 1
+            self.breaks += [Break(first + int(n), axes) for n in np.flatnonzero(lost_here)]
+        return self.frame.positions(words)
+
+    @cached_property
+    def worded(self) -> Flags:
+        """The lines with axis words."""
+        named = np.zeros(self.lines.live, np.bool_)
+        for axis in self.axes:
+            word = self.column(axis)
+            if word is not None:
+                named |= word[1]
+        return named
+
+    @cached_property
+    def _words_until(self) -> Ints:
+        """How many lines before each line have axis words."""
+        return np.append(0, np.cumsum(self.worded))
+
+    @cached_property
+    def _any_incremental(self) -> bool:
+        return bool(self.modes.incremental.any())
+
+    def _axis(
+        self,
+        axis: str,
+        before: float,
+        here: slice,
+        lost: Flags | None,
+        instead: tuple[Floats, Flags] | None,
+    ) -> Floats:
+        """Return where an axis is after each line of a stretch."""
+        word = instead or self.column(axis)
+        if word is None:
+            assert lost is not None
+            return fill(np.full(len(lost), np.nan), lost, before)
+        value, present = word if instead else (word[0][here], word[1][here])
+        if lost is None and not self._any_incremental:
+            return fill(value, present, before)
+        incremental = self.modes.incremental[here] & present
+        placed = present & ~incremental
+        if lost is not None:
+            value = np.where(lost & ~present, np.nan, value)
+            nowhere = incremental & lost & (not self.dialect.m_first)
+            self._refuse_steps(nowhere, axis, here.start)
+            placed = placed | (lost & ~incremental)
+        if not incremental.any():
+            return fill(value, placed, before)
+        position = _with_increments(value, placed, incremental, before)
+        self._refuse_steps(incremental & ~np.isfinite(position), axis, here.start)
+        return position
+
+    def named(self, own: Flags) -> Ints:
+        """Return the axes (lines,), as bits, that blocks which move in their own way name."""
+        if not own.any():
+            return constant(0, len(own), np.int64)
+        named = np.zeros(len(own), np.int64)
+        for line in np.flatnonzero(own).tolist():
+            words = self.words_on(line) or self.axes  # G28 alone is of all axes
+            named[line] = sum(1 << k for k, axis in enumerate(self.axes) if axis in words)
+        return named
+
+    def _refuse_steps(self, which: Flags, axis: str, first: int) -> None:
+        """Refuse incremental words of lines, counted from the first, that begin nowhere known."""
+        for line in np.flatnonzero(which)[: Findings.enough].tolist():
+            self.findings.add(
+                line + first,
+                "GX207",
+                f"{axis} is incremental, but where {axis} stands is not known",
+                axis,
+                f"write an absolute {axis} before; where the program begins, "
+                f"start = {{ {axis} = ... }} in [input] says it too",
+            )
+
+    def polar(self, here: slice) -> dict[str, tuple[Floats, Flags]]:
+        """Return the words of the plane's axes where radius and angle are programmed."""
+        planes = distinct(self.modes.plane[here])
+        if not np.isnan(self.state.polar).all():
+            planes = np.union1d(planes, self.state.polar_plane)
+        first, second, _ = Plane(int(self.modes.plane[here][0])).axes
+        names = "XYZ"[first], "XYZ"[second]
+        columns = []
+        count = self.modes.plane[here].shape[0]
+        any_word = np.zeros(count, np.bool_)
+        for k, axis in enumerate(names):
+            word = self.lines.word(axis) if k else self.column(axis)  # an angle has no unit
+            value = np.full(count, np.nan) if word is None else word[0][here]
+            present = np.zeros(count, np.bool_) if word is None else word[1][here]
+            columns.append(fill(np.where(present, value, np.nan), present, self.state.polar[k]))
+            any_word |= present
+        if count:
+            self.state.polar = float(columns[0][-1]), float(columns[1][-1])
+            self.state.polar_plane = int(self.modes.plane[here][-1])
+        radius, angle = columns[0], np.deg2rad(columns[1])
+        bad = any_word & (np.isnan(radius + angle) | self.modes.incremental[here])
+        bad |= self.worded[here] & (len(planes) > 1)
+        for line in np.flatnonzero(bad)[: Findings.enough].tolist():
+            message = "in polar words radius and angle must be known, in one plane and in G90"
+            self.findings.add(line + here.start, "GX213", message)
+        place = radius * np.cos(angle), radius * np.sin(angle)
+        return {name: (value, any_word) for name, value in zip(names, place, strict=True)}
+
+
+def _with_increments(value: Floats, placed: Flags, incremental: Flags, before: float) -> Floats:
+    """Return positions where some lines place the axis and others add to where it stands."""
+    steps = np.cumsum(np.where(incremental, value, 0.0))
+    base = fill(np.where(placed, value - steps, 0.0), placed, before)
+    return np.asarray(base + steps)

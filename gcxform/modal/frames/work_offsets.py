@@ -1,0 +1,212 @@
+"""Acts on where zero is: work offsets, G10, G52, G92, stored reference points."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from gcxform.modal.frames.act import ActError, Asked
+from gcxform.modal.frames.state import FrameState, rotation
+from gcxform.toolpath.frames import Vector
+
+
+def moved_to_names(state: FrameState, asked: Asked, values: Vector) -> Vector:
+    """Return a vector with the numbers of the named axes in the place of its own."""
+    changed = list(values)
+    for axis, value in asked.axes.items():
+        changed[asked.column(state, axis)] = value
+    return tuple(changed)
+
+
+def _article(address: str) -> str:
+    return "an" if address in "AEFHILMNORSX" else "a"
+
+
+# --- work offsets ---
+
+
+def work(state: FrameState, asked: Asked) -> FrameState:
+    """G54 and its like: another work offset; a code that takes words names one by each of them."""
+    name = asked.dialect.work_names.get(asked.code, asked.code)
+    for address in asked.numbers:
+        number = asked.words.get(address)
+        if number is None:
+            raise ActError("GX213", f"{name} needs {_article(address)} {address} word")
+        if number < 1 or number % 1:
+            raise ActError("GX213", f"{name} needs a whole number in {address}")
+        name = f"{name} {address}{number:.0f}"
+    unmoved = bool(np.isnan(asked.position).all())
+    if not state.known and unmoved and name not in asked.reading.work_offsets:
+        return state.starting_in(name, asked.reading.work_offsets, True)
+    return state.in_work(name)
+
+
+def set_work(state: FrameState, asked: Asked) -> FrameState:
+    """G10: work offsets (L2, L20) and tools (L1, L10, L11)."""
+    kind = asked.words.get("L", np.nan)
+    if kind in (1, 10, 11):
+        return _set_tool(state, asked, int(kind))
+    if kind not in (2, 20):
+        raise ActError("GX213", "this G10 writes something into the control that is not followed")
+    turns = kind == 2 and asked.dialect.g10_rotates
+    for address in asked.written:
+        if address not in asked.axes and address not in ("LPR" if turns else "LP"):
+            raise ActError("GX213", f"{address} has no meaning in G10 L{kind:g}")
+    name = _named_work(state, asked)
+    if kind == 2:
+        return _set_zero(state, asked, name)
+    return _set_zero_here(state, asked, name)
+
+
+def _named_work(state: FrameState, asked: Asked) -> str:
+    number = asked.words.get("P", np.nan if asked.dialect.g10_needs_p else 0.0)
+    if asked.words.get("L") == 20 and not asked.dialect.g10_sets_position:
+        raise ActError("GX213", "G10 L20 sets other offsets on this control")
+    if number == 0 and asked.dialect.g10_p0_is_active:
+        return state.work
+    names = [*asked.dialect.g10_offsets]
+    if not (number % 1 == 0 and 1 <= number <= len(names)):
+        raise ActError("GX213", "P names no work offset", "P1 is G54")
+    return names[int(number) - 1]
+
+
+def _set_zero(state: FrameState, asked: Asked, name: str) -> FrameState:
+    """G10 L2: the zero of a work offset in machine coordinates."""
+    if asked.incremental and not asked.dialect.g10_ignores_g91:
+        raise ActError("GX213", "under G91, G10 adds on some controls and does not on others")
+    turned = "R" in asked.written or state.rotation.get(name, 0.0)
+    if turned and name == state.work and any(state.preset[:2]):
+        raise ActError("GX213", "G10 L2 turns the work offset in force, under G52 or G92")
+    zero = list(state.zero_of(name))
+    for axis, value in asked.axes.items():
+        k = asked.column(state, axis)
+        zero[k] = state.machine[k] + value
+    state = state.with_zero(name, tuple(zero))
+    if "R" in asked.written:
+        state = replace(state, rotation={**state.rotation, name: asked.written["R"]})
+    return state
+
+
+def _set_zero_here(state: FrameState, asked: Asked, name: str) -> FrameState:
+    """G10 L20: the zero is where the axes come to stand at the numbers given.
+
+    Where the work offset is rotated, X and Y that are not named keep the numbers they have there.
+    """
+    inner = np.array(state.preset) + np.array(state.local)
+    zero = np.array(state.zero_of(name))
+    here = np.array(asked.position)
+    here[:3] -= state.tool
+    about = np.array(rotation(state.rotation.get(name, 0.0), 0, 1))[:2, :2]
+    turned = about[0, 0] != 1.0 and not {"X", "Y"}.isdisjoint(asked.axes)
+    local = here - zero
+    if turned:
+        local[:2] = about.T @ local[:2]
+    for axis, value in asked.axes.items():
+        k = asked.column(state, axis)
+        local[k] = inner[k] + value
+    if turned:
+        local[:2] = about @ local[:2]
+    named = [asked.column(state, axis) for axis in asked.axes] + [0, 1] * bool(turned)
+    zero[named] = (here - local)[named]
+    return state.with_zero(name, tuple(zero.tolist()))
+
+
+def _set_tool(state: FrameState, asked: Asked, kind: int) -> FrameState:
+    """G10 L1: a tool in the table; what is in use changes only with the next G43."""
+    if kind != 1:
+        raise ActError("GX213", f"G10 L{kind} sets a tool length from where the axes stand")
+    raise ActError(
+        "GX213",
+        "G10 L1 writes the tool table of the control",
+        "give the tool its length in the machine file, and leave this block out",
+    )
+
+
+# --- G52 and G92 ---
+
+
+def local(state: FrameState, asked: Asked) -> FrameState:
+    """G52: a shift of all work offsets; on some controls the one that G92 sets."""
+    _refuse_turned(state, asked)
+    if not asked.axes:
+        raise ActError("GX213", f"{asked.code} names no axis")
+    if asked.dialect.g52_is_g92:
+        return _with_preset(state, moved_to_names(state, asked, state.preset))
+    _refuse_unset(asked)
+    return replace(state, local=moved_to_names(state, asked, state.local))
+
+
+def preset(state: FrameState, asked: Asked) -> FrameState:
+    """G92: the numbers given are where the axes stand now."""
+    _refuse_turned(state, asked)
+    if not asked.axes:
+        raise ActError("GX213", f"{asked.code} names no axis")
+    _refuse_unset(asked)
+    if any(state.local[asked.column(state, axis)] for axis in asked.axes):
+        message = f"{asked.code} under a shift of G52: whether that shift stays is not certain"
+        raise ActError("GX213", message, "write G52 with zeros before it")
+    here = state.frame().local(np.asarray(asked.position)[None, :])[0]
+    shift = np.array(state.preset)
+    for axis, value in asked.axes.items():
+        k = asked.column(state, axis)
+        shift[k] += here[k] - value
+        if np.isnan(shift[k]):
+            raise ActError(
+                "GX213",
+                f"{asked.code} counts {axis} from where it stands, and that is not known",
+                f"program {axis} before, or say start = {{ {axis} = ... }} in [input]",
+            )
+    return _with_preset(state, tuple(shift.tolist()))
+
+
+def _with_preset(state: FrameState, shift: Vector) -> FrameState:
+    """Return the state with another shift of G92, which is also what G92.3 restores."""
+    return replace(state, preset=shift, held=shift)
+
+
+def _refuse_turned(state: FrameState, asked: Asked) -> None:
+    if asked.incremental and not asked.dialect.g10_ignores_g91:
+        message = f"under G91, {asked.code} adds on some controls and does not on others"
+        raise ActError("GX213", message, "write it under G90")
+    if state.turns or state.polar:
+        raise ActError("GX213", f"{asked.code} in turned or scaled coordinates")
+
+
+def _refuse_unset(asked: Asked) -> None:
+    """Refuse G52 and G92 where a setting decides what they shift, but for the one that is known."""
+    if asked.dialect.g52_known or asked.reading.control.get("g52") == "fanuc":
+        return
+    raise ActError(
+        "GX214",
+        f"what {asked.code} does depends on a setting of the control",
+        'say that it is as on a Fanuc: [control] g52 = "fanuc" in the machine file; see the '
+        "dialect's page",
+    )
+
+
+def preset_clear(state: FrameState, asked: Asked) -> FrameState:
+    """G92.1: no shift."""
+    none = (0.0,) * len(state.axes)
+    return replace(state, preset=none, held=none)
+
+
+def preset_suspend(state: FrameState, asked: Asked) -> FrameState:
+    """G92.2: no shift, but what it was is kept."""
+    return replace(state, preset=(0.0,) * len(state.axes))
+
+
+def preset_restore(state: FrameState, asked: Asked) -> FrameState:
+    """G92.3: the shift that was kept."""
+    return replace(state, preset=state.held)
+
+
+# --- reference points ---
+
+
+def store_home(state: FrameState, asked: Asked) -> FrameState:
+    """G28.1, G30.1: where the axes stand is the reference point from now on."""
+    name = asked.code.split(".")[0]
+    where = np.asarray(asked.position) - np.array(state.machine)
+    place = {a: float(w) for a, w in zip(state.axes, where, strict=True) if np.isfinite(w)}
+    return replace(state, homes={**state.homes, name: place})

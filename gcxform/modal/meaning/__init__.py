@@ -1,0 +1,1 @@
+"""What the blocks of one shape mean, worked out once."""

@@ -1,0 +1,142 @@
+"""What the blocks of one shape mean in a dialect: modal groups, words, events, and acts on frames.
+
+It is worked out in `gcxform/modal/meaning/sorting.py`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from gcxform.syntax.tree import Statement, Word
+
+DRILL_WORDS = "PQLK"
+"""Words that only a canned cycle in force may want."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """Why blocks of a shape are refused: a code of the catalogue, a column from 0, a sentence."""
+
+    code: str
+    column: int
+    width: int
+    message: str
+    hint: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class EventShape:
+    """An event of every block of a shape: its name, and the slots of the words it takes.
+
+    `order` sorts the events of a block; `after`: it happens after the block's motion.
+    """
+
+    order: int
+    what: str
+    slots: tuple[tuple[str, int], ...] = ()
+    after: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Act:
+    """Something that a block does to the frame, or a move of its own.
+
+    What it does is in `gcxform/modal/frames/acts.py`.
+
+    `slots` are those of the words it takes; `column` and `width` where its code stands.
+    """
+
+    name: str
+    code: str
+    slots: tuple[tuple[str, int], ...]
+    column: int
+    width: int
+
+
+ACT_ORDER = (
+    "change-tool",
+    "set-tool",
+    "user-code",
+    "tip-on",
+    "tip-off",
+    "diameter",
+    "length",
+    "length-negative",
+    "length-vector",
+    "length-add",
+    "no-length",
+    "vectors",
+    "no-vectors",
+    "work",
+    "polar",
+    "no-polar",
+    "rotate",
+    "no-rotate",
+    "scale",
+    "no-scale",
+    "mirror",
+    "no-mirror",
+    "set-work",
+    "local",
+    "preset",
+    "preset-clear",
+    "preset-suspend",
+    "preset-restore",
+    "store-home",
+    "home",
+    "machine",
+    "probe",
+)
+"""The order in which a block's acts are done; those with the name of a move are its motion."""
+OWN_MOVES = frozenset({"home", "machine", "probe"})
+FRAMING = frozenset(
+    {"diameter", *ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")]}
+)
+"""Acts that folding takes into the words of moves, so that their codes are not written."""
+PRESETS = frozenset({"preset", "set-work", "store-home"})
+"""Acts whose effect may depend on where the axes stand."""
+TAKES_MOTION = frozenset({"home", "store-home", "set-work", "local", "preset", "length-vector"})
+"""Acts whose axis words are theirs, so that the block can have no other motion."""
+
+
+@dataclass(slots=True)
+class Meaning:
+    """What a block of a shape does, but for its numbers.
+
+    `lengths` are the words that codes take for themselves and that are in the unit of the program:
+    code, address, slot. `lent` are words that codes take which a move of the block may want as
+    well: the code by address. `choices` are what was chosen among several meanings, in sentences.
+    """
+
+    groups: dict[str, str] = field(default_factory=dict)
+    slots: dict[str, int] = field(default_factory=dict)
+    axes: str = ""
+    centres: str = ""
+    dwell: bool = False
+    deleted: bool = False
+    ends: bool = False
+    loses_position: bool = False
+    lost_by: set[int] = field(default_factory=set)
+    percent: bool = False
+    runs_macro: bool = False
+    assignments: list[Statement] = field(default_factory=list)
+    expressions: list[tuple[int, Word]] = field(default_factory=list)
+    marked: bool = False
+    changes_tool: bool = False
+    bars_comp: tuple[str, str] = ("", "")
+    events: list[EventShape] = field(default_factory=list)
+    acts: list[Act] = field(default_factory=list)
+    lengths: list[tuple[str, str, int]] = field(default_factory=list)
+    drill_words: str = ""
+    lent: dict[str, str] = field(default_factory=dict)
+    refusal: Refusal | None = None
+    choices: tuple[str, ...] = ()
+
+    def is_length(self, address: str) -> bool:
+        """Whether a code takes a word as a length: D of G41.1, where D of G41 is a number."""
+        return any(taken == address for _, taken, _ in self.lengths)
+
+    @property
+    def compensates(self) -> bool:
+        """Whether the block turns cutter compensation on."""
+        return self.groups.get("cutter-comp", "G40") != "G40"

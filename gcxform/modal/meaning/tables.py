@@ -1,0 +1,202 @@
+"""The meanings of all shapes as arrays: the interpreter looks all lines up at once."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.dialect.dialect import Dialect
+from gcxform.machine.machine import SWITCHES
+from gcxform.modal.meaning.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning
+from gcxform.modal.meaning.sorting import meaning_of
+from gcxform.syntax.shapes import ShapeTable
+
+GROUPS = (
+    "motion",
+    "plane",
+    "distance",
+    "arc-distance",
+    "feed-mode",
+    "units",
+    "frame",
+    "cutter-comp",
+)
+MEMORY = ("cycle", "retract", "spindle", "tool-length")
+"""Groups that matter to canned cycles alone, and to tool vectors."""
+COLUMNS = (*GROUPS, *MEMORY)
+THREAD, TAP = 33, 34
+"""The numbers of G33 and G33.1, whose moves are tied to the spindle."""
+PROBES = (38, 39, 40, 41)
+"""The numbers of G38.2 to G38.5."""
+CYCLES = tuple(n for n in range(73, 90) if n not in (75, 77, 78, 79, 80))
+SPLINES = CUBIC, QUADRATIC = (5, 51)
+NUMBER = {
+    **{f"G{n}": n for n in (0, 1, 2, 3, 80, *CYCLES)},
+    "G5": CUBIC,
+    "G5.1": QUADRATIC,
+    "G33": THREAD,
+    "G33.1": TAP,
+    **{f"G38.{2 + k}": n for k, n in enumerate(PROBES)},
+    **{f"G{17 + n}": n for n in range(3)},
+    "G90": 0,
+    "G91": 1,
+    "G91.1": 0,
+    "G90.1": 1,
+    **{f"G{n}": n for n in (93, 94, 95)},
+    "G21": 0,
+    "G20": 1,
+    **{f"G{54 + n}": n for n in range(6)},
+    **{f"G59.{n}": 5 + n for n in (1, 2, 3)},
+    "G54.1": 9,
+    "G99": 0,
+    "G98": 1,
+    "M5": 0,
+    "M19": 0,
+    "M3": 1,
+    "M4": 2,
+    "G40": 0,
+    "G41": 1,
+    "G42": 2,
+    "G41.1": 3,
+    "G42.1": 4,
+    "G49": 0,
+    "G43": 1,
+}
+"""The number that stands for a code within its group."""
+FAMILIES = {
+    "motion": (
+        *("G0", "G1", "G2", "G3", "G80", "G5", "G5.1", "G33", "G33.1"),
+        *(f"G38.{2 + k}" for k in range(len(PROBES))),
+        *(f"G{n}" for n in CYCLES),
+    ),
+    "plane": ("G17", "G18", "G19"),
+    "distance": ("G90", "G91"),
+    "arc-distance": ("G91.1", "G90.1"),
+    "feed-mode": ("G93", "G94", "G95"),
+    "units": ("G21", "G20"),
+    "cutter-comp": ("G40", "G41", "G42", "G41.1", "G42.1"),
+}
+"""The codes of each of the groups, but for work offsets, which have names."""
+
+
+def code_of(group: str, number: int) -> str:
+    """Return the code of a group by its number."""
+    return next(code for code in FAMILIES[group] if NUMBER[code] == number)
+
+
+MANY_WORK = 9
+"""The number of G54.1, whose P names one of many work offsets, and of all codes of that group that
+have no number of their own. Two of them in a row may be two work offsets."""
+
+
+FLAGS = (
+    "moves",
+    "has_centre",
+    "wrong",
+    "deleted",
+    "ends",
+    "loses_position",
+    "has_events",
+    "percent",
+    "marked",
+    "acts",
+    "own_moves",
+    "probes",
+    "in_machine",
+    "work_only",
+    "framing",
+    "switches",
+    "presets",
+    "takes_lengths",
+    "computes",
+    "drills",
+    "drill_words",
+    "changes_tool",
+    "bars_comp_before",
+    "bars_comp_after",
+    "compensates",
+    "lends",
+)
+
+
+def of_splines(motion: NDArray[np.int8]) -> NDArray[np.bool_]:
+    """Return which numbers of motion codes are those of splines."""
+    return np.asarray((motion == CUBIC) | (motion == QUADRATIC))
+
+
+DRILL_WORDS = frozenset("XYZABCUVWRPQLIJK")
+
+
+def _calls(meaning: Meaning) -> bool:
+    """Whether blocks name a cycle."""
+    return any(NUMBER.get(code) in CYCLES for code in meaning.groups.values())
+
+
+class MeaningTable:
+    """Meanings of the shapes of one shape table in one dialect; it grows with the shapes."""
+
+    def __init__(self, shapes: ShapeTable, dialect: type[Dialect]) -> None:
+        self.shapes = shapes
+        self.dialect = dialect
+        self.meanings: list[Meaning] = []
+        self.groups: NDArray[np.int8] = np.empty((0, len(COLUMNS)), np.int8)
+        self.flags: NDArray[np.bool_] = np.empty((0, len(FLAGS)), np.bool_)
+        self.slots: NDArray[np.int16] = np.empty((0, 26), np.int16)
+
+    def update(self) -> None:
+        """Look at the shapes that are new."""
+        fresh = self.shapes.shapes[len(self.meanings) :]
+        if not fresh:
+            return
+        known = len(self.meanings)
+        self.meanings += [meaning_of(shape, self.dialect) for shape in fresh]
+        room = len(self.groups)
+        if room < len(self.meanings):
+            more = max(len(self.meanings) - room, room)
+            self.groups = np.vstack([self.groups, np.full((more, len(COLUMNS)), -1, np.int8)])
+            self.flags = np.vstack([self.flags, np.zeros((more, len(FLAGS)), np.bool_)])
+            self.slots = np.vstack([self.slots, np.full((more, 26), -1, np.int16)])
+        for index in range(known, len(self.meanings)):
+            self._enter(index, self.meanings[index])
+
+    def _enter(self, index: int, meaning: Meaning) -> None:
+        for group, code in meaning.groups.items():
+            other = MANY_WORK if group == "frame" else None
+            number = NUMBER.get(code, other)
+            if group in COLUMNS and number is not None:
+                self.groups[index, COLUMNS.index(group)] = number
+        for address, slot in meaning.slots.items():
+            if address.isalpha():
+                self.slots[index, ord(address) - 65] = slot
+        self.flags[index] = (
+            bool(meaning.axes),
+            bool(meaning.centres) or "R" in meaning.slots,
+            meaning.refusal is not None,
+            meaning.deleted,
+            meaning.ends,
+            meaning.loses_position,
+            bool(meaning.events),
+            meaning.percent,
+            meaning.marked,
+            bool(meaning.acts),
+            any(act.name in OWN_MOVES for act in meaning.acts),
+            any(act.name == "probe" for act in meaning.acts),
+            any(act.name == "machine" for act in meaning.acts),
+            [act.name for act in meaning.acts] == ["work"] and "frame" in meaning.groups,
+            any(act.name in FRAMING for act in meaning.acts),
+            any(act.name in SWITCHES for act in meaning.acts),
+            any(act.name in PRESETS for act in meaning.acts),
+            bool(meaning.lengths),
+            bool(meaning.assignments or meaning.expressions or meaning.runs_macro),
+            bool(set(meaning.slots) & DRILL_WORDS) or _calls(meaning),
+            bool(meaning.drill_words),
+            meaning.changes_tool,
+            bool(meaning.bars_comp[0]),
+            bool(meaning.bars_comp[1]),
+            meaning.compensates,
+            bool(meaning.lent),
+        )
+
+    def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Return a flag of each line, given the lines' shapes."""
+        return np.asarray(self.flags[:, FLAGS.index(name)][shape])

@@ -1,0 +1,157 @@
+"""Blocks that move in a way of their own: G28 and G30 over a point to home, G53 in the machine.
+
+So does G31, which is a probing move for its block alone.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.diagnostics import Diagnostic, Severity
+from gcxform.modal.frames.track import LEFT, Track
+from gcxform.modal.meaning.meaning import OWN_MOVES, Act
+from gcxform.modal.moves.rows import Rows
+from gcxform.modal.moves.spindle_and_probe import probe
+from gcxform.toolpath.path import Form, Kind, Plane
+
+Floats = NDArray[np.float64]
+
+
+def own_moves(track: Track, line: int) -> Rows | None:
+    """Return the moves of a line that has such a code, None if it has none."""
+    meaning = track.lines.table.meanings[int(track.lines.shape[line])]
+    for act in meaning.acts:
+        if act.name in OWN_MOVES and track.frame.polar:
+            _refuse_polar(track, line, act.code)
+        if act.name == "home":
+            return _home(track, line, _reference(track, line, act))
+        if act.name == "probe":
+            return probe(track, line)
+        if act.name == "machine":
+            return _in_machine(track, line)
+    return None
+
+
+def _refuse_polar(track: Track, line: int, code: str) -> None:
+    """Refuse words of the plane's axes, of which controls differ in whether they are polar."""
+    plane = {"XYZ"[k] for k in Plane(int(track.modes.plane[line])).axes[:2]}
+    if plane & set(track.words_on(line)):
+        message = f"{code} in polar words: controls differ in what its words are"
+        track.findings.add(line, "GX213", message, hint="write G15 before")
+
+
+def _reference(track: Track, line: int, act: Act) -> str:
+    """Return the name of a reference point: G28, G30, or "G30 P3" where P is given."""
+    first, slots = int(track.lines.first[line]), dict(act.slots)
+    if "P" not in slots:
+        return act.code
+    number = float(track.lines.window.value[first + slots["P"]])
+    if number not in (2, 3, 4):
+        message = f"{act.code} P{number:g} is no reference point"
+        track.findings.add(line, "GX213", message, hint="P2, P3 and P4 are")
+    return f"{act.code} P{number:g}"
+
+
+def _rows(track: Track, line: int, form: Form, moves: list[tuple[int, Floats]]) -> Rows:
+    if moves:
+        track.state.position = moves[-1][1].copy()
+    return Rows.of_line(line, form, moves, len(track.frames) - 1)
+
+
+def _home(track: Track, line: int, code: str) -> Rows:
+    """G28: rapid over the point given, then with the axes named to the reference point."""
+    words = track.words_on(line)
+    moves: list[tuple[int, Floats]] = []
+    if words:
+        moves.append((Kind.RAPID, _reached(track, line, words)))
+        _warn_of_plunge(track, line, code, float(moves[0][1][2]))
+    elif not track.dialect.g28_without_axes:
+        track.findings.add(
+            line,
+            "GX213",
+            f"{code} names no axis: all axes may move at once, or none",
+            hint="name the axes, one after another",
+        )
+        return _rows(track, line, Form.HOME, moves)
+    home = (moves[-1][1] if moves else track.state.position).copy()
+    _refuse_one_of_turned(track, line, code, words)
+    place = track.state.frames.homes.get(code, {})
+    for k, axis in enumerate(track.axes):
+        if axis in words or not words:
+            home[k] = _in_frame(track, k, place.get(axis, np.nan))
+    return _rows(track, line, Form.HOME, [*moves, (Kind.RAPID, home)])
+
+
+def _warn_of_plunge(track: Track, line: int, code: str, by_way: float) -> None:
+    """Note a way home that leads down first: `G90 G28 Z0` goes to Z0 of the part, then home."""
+    stands = float(track.state.position[2])
+    if track.modes.incremental[line] or not by_way < stands:
+        return
+    message = f"{code} under G90 goes by way of the point it names: down by {stands - by_way:g} mm"
+    where = track.findings.location(line, 1, 1)
+    hint = f"G91 {code} Z0 goes home from where the tool stands"
+    warning = Diagnostic("GX229", message, where, hint, severity=Severity.WARNING)
+    track.state.assumed[message] = warning
+
+
+def _refuse_one_of_turned(track: Track, line: int, code: str, words: dict[str, float]) -> None:
+    """Refuse a return of one of two axes that are turned together.
+
+    LinuxCNC then takes the program's axis home, other controls that of the machine.
+    """
+    if track.frame.matrix is None or not words:
+        return
+    mixed = np.abs(np.array(track.frame.matrix)) > 1e-15
+    for k in range(3):
+        together = {"XYZ"[n] for n in np.flatnonzero(mixed[k])} | {"XYZ"[k]}
+        if together & set(words) and not together <= set(words):
+            message = f"{code} of {' or '.join(sorted(together))} alone, which are turned together"
+            track.findings.add(line, "GX213", message, hint="name both, or none")
+            return
+
+
+def _reached(track: Track, line: int, words: dict[str, float]) -> Floats:
+    """Return the position that the words of a line lead to."""
+    place = track.frame.words(track.state.position[None, :])[0].copy()
+    for axis, value in words.items():
+        k = track.axes.index(axis)
+        steps = bool(track.modes.incremental[line])
+        if steps and value and place[k] == LEFT:
+            message = f"{axis} is incremental, but where {axis} stands is not known"
+            track.findings.add(line, "GX207", message, axis, f"begin with an absolute {axis}")
+        place[k] = place[k] + value if steps else value
+    return np.array(track.frame.positions(place[None, :])[0])
+
+
+def _in_frame(track: Track, k: int, value: float) -> float:
+    """Return a machine position of an axis as the position that the frame in force counts.
+
+    nan where that frame counts from a zero that is not known.
+    """
+    if track.frame.origin[k] != track.state.frames.first:
+        return float("nan")
+    return float(track.state.frames.machine[k]) + value
+
+
+def _in_machine(track: Track, line: int) -> Rows:
+    """G53: to a point in the coordinates of the machine, without any offset."""
+    if track.modes.incremental[line] and track.dialect.g53_in_g91 != "absolute":
+        message = "G53 under G91: controls refuse it, ignore it, or take it as absolute"
+        track.findings.add(line, "GX213", message, hint="write it under G90")
+    kind = int(track.modes.motion[line])
+    if kind not in (Kind.RAPID, Kind.LINE):
+        track.findings.add(line, "GX213", "G53 needs G0 or G1", hint="write G0 in this block")
+        kind = Kind.RAPID
+    if kind == Kind.LINE and track.dialect.g53_is_rapid:
+        message = "G53 under G1: this control moves in rapid whatever is in force"
+        track.findings.add(line, "GX213", message, hint="write G0 in this block")
+    words = track.words_on(line)
+    if not words:
+        return _rows(track, line, Form.MACHINE, [])
+    end = track.state.position.copy()
+    for axis, value in words.items():
+        k = track.axes.index(axis)
+        value = value / 2 if axis == "X" and track.state.frames.diameter else value
+        end[k] = _in_frame(track, k, value)
+    return _rows(track, line, Form.MACHINE, [(kind, end)])

@@ -1,0 +1,424 @@
+"""Moves of a window: which lines move, from where to where, and at what feed.
+
+Lines become rows in stretches of one frame (`gcxform/modal/frames/track.py`). A plain line is one
+row; G28 and G53 move in a way of their own (`gcxform/modal/moves/home.py`), and so do canned cycles
+(`gcxform/modal/cycles/patterns.py`), threads, taps and probes
+(`gcxform/modal/moves/spindle_and_probe.py`).
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.dialect.dialect import INCH, LINEAR
+from gcxform.modal.cycles.patterns import Drilling
+from gcxform.modal.events import events_of
+from gcxform.modal.findings import Findings
+from gcxform.modal.frames.shifted import Shifted
+from gcxform.modal.frames.track import Track
+from gcxform.modal.lines import Lines
+from gcxform.modal.meaning.tables import MANY_WORK, NUMBER, of_splines
+from gcxform.modal.moves.arcs import ArcWords, resolve_arcs
+from gcxform.modal.moves.cutter_comp import compensation, refuse_ends
+from gcxform.modal.moves.home import own_moves
+from gcxform.modal.moves.rows import Rows
+from gcxform.modal.moves.spindle_and_probe import Tied
+from gcxform.modal.moves.splines import read_splines, with_splines
+from gcxform.modal.moves.tool_vectors import Pointing
+from gcxform.modal.state import CYCLE_OFF, Modes
+from gcxform.system.distinct import distinct
+from gcxform.toolpath.path import Blocks, Kind, Toolpath, constant
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Small = NDArray[np.int8]
+Flags = NDArray[np.bool_]
+
+SAME_PLACE = 1e-7  # mm, deg; an axis that moves by less stands still
+
+
+class Moves:
+    """Turns the lines of a window into rows; the state's position is left where the window ends."""
+
+    def __init__(self, lines: Lines, modes: Modes, axes: str) -> None:
+        self.lines = lines
+        self.modes = modes
+        self.axes = axes
+        self.dialect = lines.dialect
+        self.state = lines.state
+        self.findings = lines.findings
+        self.track = Track(lines, modes, axes)
+        self.drilling = Drilling(self.track)
+        self.tied = Tied(self.track)
+        self.shifted: Shifted | None = None
+        self.side, self.radius = compensation(lines, modes)
+        self.pointing = Pointing(lines, modes, axes) if self.dialect.takes_vectors else None
+        self.splines = of_splines(modes.motion)
+        self.bends = bool(self.splines.any())
+        self._new_units: list[int] = []  # lines that change it, where that spoils tool lengths
+        if self.dialect.units_spoil_length:
+            before = np.append(self.state.groups["units"] == 1, modes.inch)
+            self._new_units = np.flatnonzero(np.diff(before)).tolist()
+
+    def path(self) -> Toolpath:
+        """Return the moves as a toolpath."""
+        moving = self._moving()
+        lost = self.lines.loses_position()
+        self._busy_until = np.append(0, np.cumsum(moving | lost | self.track.worded)).tolist()
+        self._leaving = self._leaves(lost)
+        stretches = self._stretches(moving)
+        if len(stretches) > 1 and not lost.any():
+            self.shifted = Shifted(self.track, moving)
+        losing = lost if lost.any() else None
+        found = [self._stretch(first, last, moving, losing) for first, last in stretches]
+        if self.lines.live in self._leaving:
+            self.track.lose_all(self.lines.live)
+        rows = [part for part in found if part is not None and len(part.line)]
+        if self.shifted is not None:
+            rows.append(self._plain(*self.shifted.rows()))
+        rows += self.drilling.rows()
+        return self._path(Rows.joined(rows or [self._nothing()], len(self.axes)))
+
+    def _nothing(self) -> Rows:
+        """Return no rows at all."""
+        line = np.empty(0, np.int64)
+        return self._plain(line, np.empty((0, len(self.axes))), line)
+
+    def _leaves(self, lost: Flags) -> set[int]:
+        """Return the lines before which positions are lost to an M code beside a move.
+
+        Where an M code may act after the move of its block, what it loses is lost behind it as
+        well. A canned cycle beside one is refused.
+        """
+        if self.dialect.m_first or not lost.any():
+            return set()
+        for line in np.flatnonzero(lost & self.drilling.calls).tolist():
+            message = "a canned cycle beside an M code that may move axes"
+            self.findings.add(line, "GX213", message, hint="write the M code in a block of its own")
+        beside = lost & (self.track.worded | self.lines.flag("own_moves"))
+        return set((np.flatnonzero(beside) + 1).tolist())
+
+    # --- which lines move ---
+
+    def _moving(self) -> Flags:
+        """Return the lines that are one plain move, after looking at what they may not be."""
+        own = self.lines.flag("own_moves")
+        moves = self.lines.flag("moves") & ~own
+        drilling = self.modes.cycle != CYCLE_OFF
+        moves &= ~drilling
+        centre = self.lines.flag("has_centre") & ~drilling
+        if self.pointing is not None:
+            self.pointing.check()
+            moves |= self.pointing.named & ~own & ~drilling
+            centre &= ~self.pointing.named
+        stray = self.lines.flag("drill_words") & ~drilling
+        stray &= ~self.splines
+        for line in np.flatnonzero(stray)[: Findings.enough].tolist():
+            words = self.lines.table.meanings[int(self.lines.shape[line])].drill_words
+            message = f"{words[0]} belongs to no code of this block"
+            self.findings.add(line, "GX203", message, words[0])
+        arc = (self.modes.motion == 2) | (self.modes.motion == 3)
+        arc |= self.splines
+        for line in np.flatnonzero(moves & (self.modes.motion == NUMBER["G80"])).tolist():
+            self.findings.add(
+                line,
+                "GX209",
+                "axis words, but no motion code is in force",
+                hint="write G0 or G1 in this block",
+            )
+        behind = self.lines.behind_cycle(self.modes.cycle) & (self.modes.motion != Kind.RAPID)
+        for line in np.flatnonzero(behind & moves).tolist():
+            message = (
+                "after a cycle controls differ in whether G0 or the code before it is in force"
+            )
+            self.findings.add(line, "GX209", message, hint="write G0 or G1 in this block")
+        for line in np.flatnonzero(centre & ~((arc | self.tied.paced) & ~own)).tolist():
+            self.findings.add(line, "GX203", "I, J, K and R belong to arcs, and this is none")
+        moves &= self.modes.motion != NUMBER["G80"]
+        moves |= centre & arc & ~own
+        self._refuse_lent(moves | self.drilling.calls, arc)
+        self.tied.check(moves, own)
+        in_machine = self.lines.flag("in_machine") & (self.modes.motion == Kind.LINE)
+        feeding = (moves & ~self.tied.paced) | in_machine | self._lone_codes(moves, drilling)
+        calls = self.drilling.calls | self.lines.flag("probes")
+        self._check_feed(feeding, calls)
+        return moves
+
+    def _lone_codes(self, moves: Flags, drilling: Flags) -> Flags:
+        """Return the lines that state a code of feed moves and move nothing, where that counts.
+
+        A control that executes them asks for a feed, and an arc for its words.
+        """
+        if not self.dialect.lone_codes_count:
+            return np.zeros(len(moves), np.bool_)
+        lone = self.lines.stated("motion") & ~moves & ~drilling
+        arc = (self.modes.motion == Kind.ARC_CW) | (self.modes.motion == Kind.ARC_CCW)
+        for line in np.flatnonzero(lone & arc)[: Findings.enough].tolist():
+            message = f"{self.dialect.name} refuses an arc without any word"
+            self.findings.add(line, "GX302", message, hint="write the code where the arc is")
+        return np.asarray(lone & (self.modes.motion == Kind.LINE))
+
+    def _refuse_lent(self, moves: Flags, arc: Flags) -> None:
+        """Refuse words of other codes that the move of their block would take as well."""
+        takes = moves | self.lines.flag("compensates")
+        for line in np.flatnonzero(takes & self.lines.flag("lends")).tolist():
+            meaning = self.lines.table.meanings[int(self.lines.shape[line])]
+            wanted = "D" if meaning.compensates else ""
+            if arc[line]:
+                wanted += "IJKR" + ("PQ" if self.splines[line] else self.dialect.turns_address)
+            rule = self.dialect.cycle_rule
+            if rule is not None and self.modes.cycle[line] != CYCLE_OFF:
+                wanted += "R" + rule.repeats + rule.takes.get(int(self.modes.cycle[line]), "")
+            for address in sorted(meaning.lent.keys() & {*wanted})[:1]:
+                message = f"{address} belongs to {meaning.lent[address]}, and the move takes it too"
+                self.findings.add(line, "GX203", message, hint="write two blocks")
+
+    def _check_feed(self, moves: Flags, calls: Flags) -> None:
+        """Refuse feed moves without a feed, and blocks in inverse time without a feed word."""
+        feeding = (moves & (self.modes.motion != Kind.RAPID)) | calls
+        none = ~(self.modes.feed > 0)
+        inverse = self.modes.feed_mode == NUMBER["G93"]
+        if inverse.any():
+            word = self.lines.word("F")
+            none |= inverse if word is None else inverse & ~word[1]
+        missing = np.flatnonzero(feeding & none)
+        for line in missing[: Findings.enough].tolist():
+            self.findings.add(
+                line,
+                "GX204",
+                "a feed move, but no feed is in force",
+                hint="write an F word; in G93 every feed block needs one",
+            )
+
+    # --- stretches ---
+
+    def _acting(self) -> Ints:
+        """Return the lines that act on the frame or move in a way of their own."""
+        acts = self.lines.flag("acts")
+        self._reset = self._after_end()
+        if not acts.any():
+            return np.flatnonzero(self._reset)
+        work = np.append(np.int8(self.state.groups["frame"]), self.modes.work)
+        again = self.lines.flag("work_only") & (work[1:] == work[:-1])
+        again &= (self.modes.work != MANY_WORK) & ~self._reset
+        if not self.state.frames.known and again.any():
+            again[int(np.argmax(again))] = False
+        return np.flatnonzero((acts & ~again) | self._reset)
+
+    def _after_end(self) -> Flags:
+        """Return the lines before which a control that goes on has reset the work offset."""
+        after = np.zeros(self.lines.live, np.bool_)
+        if "frame" in self.dialect.resets_at_end:
+            after[1:] = self.lines.flag("ends")[:-1]
+        return after
+
+    def _alone(self, moving: Flags) -> Flags:
+        """Return the lines that are a tap or a probe."""
+        return np.asarray(moving & self.tied.single) if self.tied.any else moving[:0]
+
+    def _stretches(self, moving: Flags) -> list[tuple[int, int]]:
+        """Return first and last line + 1 of the stretches."""
+        acting = self._acting()
+        own = self.lines.flag("own_moves")[acting]
+        drills = self.drilling.borders()
+        alone = np.flatnonzero(self._alone(moving))
+        self._singles = set(alone.tolist())
+        alone = np.concatenate([acting[own], alone])
+        ends = np.array([0, self.lines.live, *self._leaving], np.int64)
+        borders = distinct(np.concatenate([acting, alone, alone + 1, drills, ends])).tolist()
+        self._acts = set(acting.tolist())
+        self._resets = set(np.flatnonzero(self._reset).tolist())
+        return list(pairwise(borders)) or [(0, 0)]
+
+    def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows | None:
+        """Return the rows of a stretch; None where it has none, or they are made at the end."""
+        self._refuse_other_units(first, first + 1)
+        if first in self._resets:
+            self.track.reset_work(first)
+        if first in self._leaving or (first + 1 in self._leaving and first in self._acts):
+            self.track.lose_all(first)
+        if first in self._acts:
+            self.track.act(first)
+            own = own_moves(self.track, first)
+            if own is not None:
+                self.drilling.moved()
+                return own
+        self._refuse_other_units(first + 1, last)
+        if self.drilling.follows(first, last):
+            return None
+        if first in self._singles:
+            return self.tied.row(first)
+        if self._busy_until[last] == self._busy_until[first]:
+            return None
+        if self.shifted is not None and self.shifted.takes(first, last):
+            self.shifted.follow(first, last)
+            return None
+        rows = np.flatnonzero(moving[first:last]) + first
+        ends = self.track.along(first, last, rows, lost)
+        return self._plain(rows, ends, constant(len(self.track.frames) - 1, len(rows), np.int64))
+
+    def _plain(self, line: Ints, ends: Floats, frame: Ints) -> Rows:
+        """Return rows that are one plain move a line, threads and splines among them."""
+        plain = self.tied.plain(line, ends, frame)
+        return with_splines(plain) if self.bends else plain
+
+    def _refuse_other_units(self, first: int, last: int) -> None:
+        """Refuse a change of units under a tool length that would become another one by it."""
+        if not self._new_units or not any(self.state.frames.tool):
+            return
+        for line in (line for line in self._new_units if first <= line < last):
+            message = "another unit under a tool length, whose number this control then keeps"
+            self.findings.add(line, "GX213", message, hint="write G49 before, and G43 after")
+
+    # --- the path ---
+
+    def _path(self, rows: Rows) -> Toolpath:
+        """Return the rows as a toolpath; arcs get their centres."""
+        line = rows.line
+        path = self._fed(self._unfinished(rows), rows).replace(after_side=self.state.at_side)
+        if len(line):
+            self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
+            self.state.row_frame = self.track.frames[int(path.frame[-1])]
+        refuse_ends(self.lines, self.modes, path.side, path.kind, line)
+        if self.side.any():
+            self._refuse_mirrored(path)
+        if len(line) and (self.state.pull or self.bends):
+            path = read_splines(path, self.lines, self.modes)
+        if not path.has_arcs:
+            return path
+        arcs = np.flatnonzero(path.is_arc)
+        return resolve_arcs(path, self._arc_words(line[arcs]), self.dialect, self.findings)
+
+    def _unfinished(self, rows: Rows) -> Toolpath:
+        """Return the rows as a toolpath with feeds as numbers in force, and without centres."""
+        count, line = len(rows.line), rows.line
+        return Toolpath(
+            self.axes,
+            rows.kind,
+            rows.end,
+            np.broadcast_to(np.nan, (count, 3)),
+            constant(0.0, count),
+            self.modes.plane[line],
+            self.modes.feed[line],
+            self.modes.feed_mode[line],
+            rows.frame,
+            line + self.lines.window.first_line,
+            rows.nth,
+            rows.form,
+            _at(self.side, line),
+            _at(self.radius, line),
+            self._lost_before(line, rows.nth),
+            np.broadcast_to(np.nan, (count, 2, 3)),
+            self._tools(line),
+            self.track.entry,
+            tuple(self.track.frames),
+            Blocks(
+                self.lines.window.first_line,
+                self.modes.inch,
+                self.modes.incremental,
+                self.modes.absolute_centre,
+                self.modes.feed_mode,
+                self.lines.flag("ends") | self.lines.flag("loses_position"),
+                self.lines.flag("marked"),
+                self.track.named(self.lines.flag("own_moves")),
+            ),
+            events_of(self.lines, line, self.drilling.events),
+            first=self.state.frames.first,
+            after_rapid=self.state.rapid,
+        )
+
+    def _tools(self, line: Ints) -> Floats:
+        """Return the tool axis at the ends of rows, nan where the program does not say it."""
+        if self.pointing is None:
+            return np.broadcast_to(np.nan, (len(line), 3))
+        return self.pointing.vectors()[line]
+
+    def _refuse_mirrored(self, path: Toolpath) -> None:
+        """Refuse cutter compensation in a mirror: controls differ in the side it is then on."""
+        wrong = (path.side != 0) & path.mirrored
+        for row in np.flatnonzero(wrong)[: Findings.enough].tolist():
+            message = "cutter compensation in a mirror: which side is meant is not certain"
+            self.findings.add(int(path.block[row]), "GX230", message)
+
+    def _lost_before(self, line: Ints, nth: Ints) -> Ints:
+        """Return of which axes the position was lost between each row and the row before."""
+        if not self.track.breaks and not self.state.lost:
+            return constant(0, len(line), np.int64)
+        lost = np.zeros(len(line) + 1, np.int64)
+        lost[0] = self.state.lost
+        at = np.searchsorted(line, [found.line for found in self.track.breaks])
+        for place, found in zip(at.tolist(), self.track.breaks, strict=True):
+            lost[place] |= found.axes
+        self.state.lost = int(lost[-1])
+        return lost[:-1]
+
+    def _fed(self, path: Toolpath, rows: Rows) -> Toolpath:
+        """Return the path with feeds in mm/min, 1/min, mm/turn, or deg/min for rotary axes alone.
+
+        The path has the numbers that are in force.
+        """
+        unit = self.modes.feed_unit[rows.line]
+        feed, mode = path.feed, path.feed_mode
+        if not (unit == 1.0).all():
+            plain = mode == NUMBER["G93"]
+            plain |= turns_only(path) & (path.kind < Kind.ARC_CW)
+            feed = np.where(plain, feed, feed * unit)
+        feed, mode = self.tied.paced_rows(rows, feed, mode)
+        return path.replace(feed=feed, feed_mode=mode)
+
+    def _arc_words(self, lines: Ints) -> ArcWords:
+        """Return centre, radius and turns words of arcs, nan where there is none, in mm."""
+        scale = np.where(self.modes.inch[lines], INCH, 1.0)
+
+        arcs = np.zeros(self.lines.live, np.bool_)
+        arcs[lines] = True
+
+        def column(address: str) -> Floats:
+            word = self.lines.word(address, arcs) if address else None
+            if word is None:
+                return np.full(len(lines), np.nan)
+            return np.where(word[1][lines], word[0][lines], np.nan)
+
+        return ArcWords(
+            lines,
+            np.stack([column(a) * scale for a in "IJK"], axis=1),
+            column("R") * scale,
+            column(self.dialect.turns_address),
+            np.stack([~np.isnan(column(a)) for a in "XYZ"], axis=1),
+            self.modes.absolute_centre[lines],
+            self.modes.inch[lines],
+        )
+
+
+def turns_only(path: Toolpath) -> Flags:
+    """Return the moves (n,) in which no linear axis moves and a rotary one does."""
+    rotary = [k for k, axis in enumerate(path.axes) if axis not in LINEAR]
+    if not rotary or not len(path):
+        return np.zeros(len(path), np.bool_)
+    return np.asarray(~moves_linear(path) & ~_still(path)[:, rotary].all(axis=1))
+
+
+def moves_linear(path: Toolpath) -> Flags:
+    """Return the moves (n,) in which a linear axis moves."""
+    linear = [k for k, axis in enumerate(path.axes) if axis in LINEAR]
+    return np.asarray(~_still(path)[:, linear].all(axis=1))
+
+
+def _still(path: Toolpath) -> Flags:
+    """Return which axes (n, axes) stay where they are."""
+    start, ends = path.start, path.end
+    still = (start == ends) | (np.isnan(start) & np.isnan(ends))
+    with np.errstate(invalid="ignore"):  # an axis that was left where it is (inf) stays there
+        still |= np.abs(start - ends) < SAME_PLACE
+    return np.asarray(still)
+
+
+def _at(column: NDArray[Any], rows: Ints) -> NDArray[Any]:
+    """Return a column of the lines at rows; one that holds one value keeps taking no memory."""
+    if column.strides != (0,) or not len(column):
+        return column[rows]
+    return np.broadcast_to(column[0], (len(rows),))

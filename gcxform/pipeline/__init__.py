@@ -1,0 +1,1 @@
+"""A chain of passes, checked before any program, and its runs."""

@@ -1,0 +1,73 @@
+"""Whether a chain of passes fits together, decided by facts before any program is read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from gcxform.contract.passes import Pass
+from gcxform.diagnostics import UsageError
+from gcxform.plugin.registry import default_registry
+from gcxform.toolpath.facts import AT_READING, Fact
+
+
+def facts_at_reading(passes: Sequence[Pass]) -> frozenset[Fact]:
+    """Return what a program is taken for: what the first pass requires that asks for it."""
+    return frozenset(_first_asked(passes, choice) for choice in AT_READING)
+
+
+def _first_asked(passes: Sequence[Pass], choice: Sequence[Fact]) -> Fact:
+    asked = (fact for step in passes for fact in choice if fact in step.requires)
+    return next(asked, choice[0])
+
+
+def facts_after(passes: Sequence[Pass], first: int | None = None) -> frozenset[Fact]:
+    """Return the facts that hold after the `first` steps of a chain, or after all."""
+    facts = set(facts_at_reading(passes))
+    for step in passes[:first]:
+        facts = (facts - step.clears) | step.ensures
+    return frozenset(facts)
+
+
+def check_chain(passes: Sequence[Pass]) -> None:
+    """Raise UsageError where a pass requires a fact that the chain does not have there."""
+    facts = set(facts_at_reading(passes))
+    cleared: dict[Fact, str] = {}
+    _check_resolved(passes)
+    for number, step in enumerate(passes, 1):
+        for fact in sorted(step.requires - facts, key=lambda f: f.name):
+            culprit = cleared.get(fact)
+            why = f"which {culprit} has taken away" if culprit else "which no step before ensures"
+            raise UsageError.one(
+                "GX725",
+                f"step {number}, {step.name}, requires {fact.name} ({fact.meaning}), {why}",
+                hint=_mend(fact, culprit, step.name),
+            )
+        for fact in step.clears:
+            cleared[fact] = f"step {number}, {step.name},"
+        facts = (facts - step.clears) | step.ensures
+
+
+def _check_resolved(passes: Sequence[Pass]) -> None:
+    """Raise UsageError for a step that changes the path before one that resolves it."""
+    for number, step in enumerate(passes):
+        if not step.resolves:
+            continue
+        for other in passes[:number]:
+            exact = other.promise == 0 and other.promise_angle == 0
+            exact &= other.feed_mode is None and other.keeps_rows
+            if not exact or type(other).undo is not Pass.undo or other.resolves:
+                message = f"{other.name} changes the path that {step.name} is proved against"
+                raise UsageError.one("GX741", message, hint=f"put {step.name} before it")
+
+
+def _mend(fact: Fact, culprit: str | None, name: str) -> str:
+    if culprit:
+        return f"put {name} before it, or leave one of the two out"
+    makers = [
+        p.name
+        for p in default_registry().passes.values()
+        if issubclass(p, Pass) and fact in p.ensures
+    ]
+    if makers:
+        return f"put {' or '.join(sorted(makers))} before {name}"
+    return f"no pass that is installed ensures {fact.name}"

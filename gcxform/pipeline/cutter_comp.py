@@ -1,0 +1,100 @@
+"""Programs under cutter compensation: where they may be cut, and what passes may do to them.
+
+While G41 or G42 is in force the blocks are a contour, and the control makes a path of it by looking
+at the blocks that follow.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.contract.passes import Pass
+from gcxform.toolpath.path import Toolpath
+
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+CODE = re.compile(rb"[Gg][ \t]*0*4[ \t]*([012])")
+COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
+AXIS = re.compile(rb"[XYZxyz]")
+WHICH = ("kind", "plane", "source", "nth", "form", "side")
+WHERE = ("start", "end", "centre", "sweep", "radius")
+NOISE = 1e-9  # mm, rad; what computing a position in another way makes of it
+MENDED = "put the pass cutter-comp before it: cutter-comp | {}"
+
+
+def whole_stretches(texts: Iterator[bytes]) -> Iterator[bytes]:
+    """Yield texts of whole lines that end where no compensation is in force and the tool has left.
+
+    What is looked for are the letters; a text that is cut elsewhere is refused by the pass.
+    """
+    waiting: list[bytes] = []
+    on, left = False, True
+    for text in texts:
+        waiting.append(text)
+        codes = CODE.search(text) is not None
+        plain = COMMENT.sub(b"", text) if codes or not left else b""
+        found = list(CODE.finditer(plain))
+        if found:
+            on = found[-1][1] != b"0"
+        if found or not left:
+            left = not on and AXIS.search(plain, found[-1].end() if found else 0) is not None
+        if left:
+            yield b"".join(waiting)
+            waiting = []
+    if waiting:
+        yield b"".join(waiting)
+
+
+def check_compensated(step: Pass, before: Toolpath, after: Toolpath) -> None:
+    """Refuse what a pass must not do under compensation. Raises InputError.
+
+    The contour, with the moves that begin and end it, has to stay as it is, row by row: the control
+    offsets what it reads, and a point that is moved by a little, or a corner more, leads the centre
+    of the tool elsewhere by more than that.
+    """
+    held = _contour(before)
+    if not held.any() and not after.side.any():
+        return
+    rows, new = np.flatnonzero(held), np.flatnonzero(_contour(after))
+    if type(step).undo is not Pass.undo and before.side.any():
+        wrong, what = np.flatnonzero(before.side)[:1], "moves a contour"
+    elif len(rows) != len(new):
+        wrong, what = _of_other_count(before, after, rows, new), "cuts or joins moves of a contour"
+    else:
+        wrong, what = rows[_changed(before, rows, after, new)], "moves a contour"
+    if len(wrong):
+        message = f"{step.name} {what} that the control offsets by the tool's radius"
+        raise before.refuse("GX233", wrong, message, MENDED.format(step.name))
+
+
+def _contour(path: Toolpath) -> Flags:
+    """Return the rows (n,) under compensation, and those that end it."""
+    on = path.side != 0
+    return np.asarray(on | np.append(path.after_side != 0, on[:-1])[: len(on)])
+
+
+def _of_other_count(before: Toolpath, after: Toolpath, rows: Ints, new: Ints) -> Ints:
+    """Return the rows whose lines have not as many moves of a contour as they had."""
+    lines = before.source[rows]
+    had = np.searchsorted(lines, lines, "right") - np.searchsorted(lines, lines, "left")
+    others = after.source[new]
+    has = np.searchsorted(others, lines, "right") - np.searchsorted(others, lines, "left")
+    found = rows[had != has]
+    return found if len(found) else rows[:1]
+
+
+def _changed(before: Toolpath, rows: Ints, after: Toolpath, new: Ints) -> Flags:
+    """Return which rows (n,) of a contour are not what they were."""
+    wrong: Flags = np.zeros(len(rows), np.bool_)
+    for name in WHICH:
+        wrong |= getattr(before, name)[rows] != getattr(after, name)[new]
+    for name in WHERE:
+        one, other = getattr(before, name)[rows], getattr(after, name)[new]
+        same = (np.abs(one - other) <= NOISE) | (np.isnan(one) & np.isnan(other))
+        wrong |= ~same.reshape(len(rows), -1).all(axis=1)
+    return wrong

@@ -1,0 +1,427 @@
+"""Pipelines as a user writes them: a TOML file, or a chain such as `absolute | segment`.
+
+    format = 1
+    [input]
+    dialect = "fanuc"
+    [[pass]]
+    use = "segment"
+    chord-error = "2 um"
+
+Whatever is not understood is an error with its place. Relative paths are relative to the file.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar
+
+from gcxform.config.toml_text import Codes, TomlText, read_toml
+from gcxform.contract.options import (
+    Argument,
+    Coordinates,
+    FeedIncrement,
+    Increment,
+    Length,
+    Option,
+    OptionDoc,
+    ParameterValues,
+    build,
+    describe,
+)
+from gcxform.contract.passes import Pass, TextPass
+from gcxform.contract.tolerance_warnings import doubts_of
+from gcxform.diagnostics import Diagnostic, Location, UsageError
+from gcxform.errormodel import model_file as modelfile
+from gcxform.machine import file as machinefile
+from gcxform.plugin.registry import Registry, default_registry
+from gcxform.system.limits import Limits, in_force
+
+CHAIN: Final = "-x"
+CODES = Codes("GX709", "GX710", "GX701", "GX705", "GX702")
+FORMAT: Final = 1
+
+Step = Pass | TextPass
+Section = TypeVar("Section")
+
+
+@dataclass(frozen=True)
+class InputSpec:
+    """The section `[input]`: what has to be known of the program."""
+
+    dialect: Annotated[str | None, Option("the controller the program is for")] = None
+    start: Annotated[Coordinates, Option("where the axes are at the start")] = field(
+        default_factory=dict
+    )
+    increment: Annotated[
+        Increment | None, Option("what 1 means in a distance without a point", above=0.0)
+    ] = None
+    feed: Annotated[
+        float | None, Option("feed before the first F word, in units per minute", above=0.0)
+    ] = None
+    feed_increment: Annotated[
+        FeedIncrement | None,
+        Option("what 1 means in an F without a point, per minute", above=0.0),
+    ] = None
+    block_delete: Annotated[
+        Literal["execute", "skip", ""], Option("what the control does with / blocks")
+    ] = ""
+    units: Annotated[Literal["mm", "in"], Option("units before the first G20 or G21")] = "mm"
+    parameters: Annotated[
+        ParameterValues, Option("values of parameters that the program reads and does not set")
+    ] = field(default_factory=dict)
+    again: Annotated[bool, Option("take stamped programs too, as if they were not stamped")] = False
+
+
+@dataclass(frozen=True)
+class OutputSpec:
+    """The section `[output]`: how the program is written."""
+
+    dialect: Annotated[str | None, Option("the controller to write for")] = None
+    decimals: Annotated[
+        int | dict[str, int] | None, Option("decimals of numbers", at_least=0, at_most=6)
+    ] = None
+    words: Annotated[
+        Literal["changed", "programmed", "all"], Option("which axes a changed block names")
+    ] = "changed"
+    trailing_zeros: Annotated[bool | None, Option("write 1.500 instead of 1.5")] = None
+    stamp: Annotated[bool, Option("say in comments what was done to positions")] = True
+
+
+@dataclass(frozen=True)
+class PipelineSpec:
+    """A pipeline as written: input, machine file, budget (mm), growth, passes, output, limits.
+
+    `warnings` is what is odd in it, and no error.
+    """
+
+    input: InputSpec = field(default_factory=InputSpec)
+    machine: Path | None = None
+    budget: float | None = None
+    growth: float | None = None
+    passes: tuple[Step, ...] = ()
+    output: OutputSpec = field(default_factory=OutputSpec)
+    file: Path | None = None
+    warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)
+    limits: Limits | None = None
+
+
+@dataclass(frozen=True)
+class _MachineSection:
+    """The section `[machine]`."""
+
+    file: Annotated[Path, Option("the machine file")]
+
+
+@dataclass(frozen=True)
+class _BudgetSection:
+    """The section `[budget]`."""
+
+    deviation: Annotated[
+        Length | None, Option("what all steps together may deviate", above=0.0)
+    ] = None
+    growth: Annotated[
+        float | None, Option("blocks that may be written for each one read", above=0.0)
+    ] = None
+
+
+SECTIONS: Final[Mapping[str, type]] = {
+    "input": InputSpec,
+    "machine": _MachineSection,
+    "budget": _BudgetSection,
+    "output": OutputSpec,
+    "limits": Limits,
+}
+KEYS: Final = ("format", *SECTIONS, "pass")
+
+
+def load(path: Path, registry: Registry) -> PipelineSpec:
+    """Return the pipeline of a TOML file, its passes built.
+
+    Raises UsageError, with places in the file, for all that is wrong with it.
+    """
+    document = read_toml(path, CODES)
+    _check_version(document)
+    reader = _Reader(document, path.parent, registry, _unknown_keys(document))
+    limits = reader.section("limits", Limits)
+    with in_force(limits):
+        return replace(_spec(reader, path), limits=limits)
+
+
+def _spec(reader: _Reader, path: Path) -> PipelineSpec:
+    """Return what the file says besides its limits. Raises UsageError for all that is wrong."""
+    document = reader.document
+    machine_section = reader.section("machine", _MachineSection)
+    budget = reader.section("budget", _BudgetSection)
+    spec = PipelineSpec(
+        input=reader.section("input", InputSpec) or InputSpec(),
+        machine=machine_section.file if machine_section else None,
+        budget=budget.deviation if budget else None,
+        growth=budget.growth if budget else None,
+        passes=reader.steps(),
+        output=reader.section("output", OutputSpec) or OutputSpec(),
+        file=path,
+        warnings=tuple(reader.doubts()),
+    )
+    reader.check_dialects(spec)
+    if budget and budget.deviation is None and budget.growth is None:
+        message = "[budget] needs 'deviation' or 'growth'"
+        reader.found.append(Diagnostic(CODES.missing_key, message, document.where("budget")))
+    if reader.found:
+        raise UsageError(tuple(reader.found))
+    return spec
+
+
+def _check_version(document: TomlText) -> None:
+    version = document.values.get("format")
+    if version is None:
+        message = "the key 'format' is missing"
+        hint = f"begin the file with: format = {FORMAT}"
+        raise UsageError.one(CODES.missing_key, message, document.where(), hint)
+    if version != FORMAT or isinstance(version, bool):
+        message = f"format {version!r} of pipelines is not known, only format = {FORMAT} is"
+        raise UsageError.one("GX711", message, document.where("format"))
+
+
+def _unknown_keys(document: TomlText) -> list[Diagnostic]:
+    wrong = (key for key in document.values if key not in KEYS)
+    return [d for key in wrong for d in document.unknown_key((key,), KEYS).diagnostics]
+
+
+class _Reader:
+    """Reads the parts of a pipeline file and gathers what is wrong in `found`."""
+
+    def __init__(
+        self, document: TomlText, base: Path, registry: Registry, found: list[Diagnostic]
+    ) -> None:
+        self.document, self.base, self.registry, self.found = document, base, registry, found
+
+    def section(self, name: str, target: type[Section]) -> Section | None:
+        """Return a section, None if it is not there or wrong."""
+        raw = self.document.values.get(name)
+        if raw is None:
+            return None
+        where = partial(self.document.where, name)
+        if not isinstance(raw, dict):
+            message = f"{name}: expected a table, [{name}]"
+            self.found.append(Diagnostic("GX702", message, where()))
+            return None
+        try:
+            return build(target, raw, self.base, (), where, f"[{name}]")
+        except UsageError as error:
+            self.found += error.diagnostics
+            return None
+
+    def steps(self) -> tuple[Step, ...]:
+        """Return the passes that are right."""
+        raw = self.document.values.get("pass", [])
+        if not isinstance(raw, list) or not all(isinstance(step, dict) for step in raw):
+            where = self.document.where("pass")
+            hint = "write [[pass]], with two brackets, for each step"
+            self.found.append(Diagnostic("GX702", "pass: expected a list of tables", where, hint))
+            return ()
+        steps = []
+        for k, step in enumerate(raw):
+            try:
+                steps.append(self._step(k, step))
+            except UsageError as error:
+                self.found += error.diagnostics
+        return tuple(steps)
+
+    def _step(self, k: int, raw: Mapping[str, Any]) -> Step:
+        where = partial(self.document.where, "pass", k)
+        name = raw.get("use")
+        if name is None:
+            hint = 'add the name of a pass: use = "..."'
+            raise UsageError.one("GX705", f"step {k + 1} lacks the key 'use'", where(), hint)
+        if not isinstance(name, str):
+            raise UsageError.one("GX702", "use: expected the name of a pass", where("use"))
+        chosen = self.registry.pass_(name, where("use"))
+        options = {key: value for key, value in raw.items() if key != "use"}
+        return _built(chosen, options, self.base, self.registry, where)
+
+    def doubts(self) -> Iterator[Diagnostic]:
+        """Yield warnings about tolerances of the file."""
+        document = self.document
+        steps = document.values.get("pass", [])
+        for k, step in enumerate(steps if isinstance(steps, list) else []):
+            if isinstance(step, dict):
+                yield from doubts_of(step, partial(document.where, "pass", k))
+        budget = document.values.get("budget")
+        if isinstance(budget, dict):
+            yield from doubts_of(budget, partial(document.where, "budget"))
+
+    def check_dialects(self, spec: PipelineSpec) -> None:
+        """Look the dialects up."""
+        for name, dialect in (("input", spec.input.dialect), ("output", spec.output.dialect)):
+            if dialect is not None:
+                try:
+                    self.registry.dialect(dialect, self.document.where(name, "dialect"))
+                except UsageError as error:
+                    self.found += error.diagnostics
+
+
+def _built(
+    chosen: type[Step], options: Mapping[str, object], base: Path, registry: Registry, where: Any
+) -> Step:
+    formats, kinds = registry.formats.values(), registry.kinematics
+    return build(chosen, options, base, formats, where, kinematics=kinds)
+
+
+def _at(text: str, token: re.Match[str]) -> Callable[[str], Location]:
+    """Return what gives the place of a word of a chain, whatever key is asked for."""
+    return lambda key: _place(text, token)
+
+
+def chain_doubts(text: str) -> tuple[Diagnostic, ...]:
+    """Return warnings about tolerances in a chain that `parse_chain` takes."""
+    found: list[Diagnostic] = []
+    text = re.sub(r"\s", " ", text)
+    for words in _split(text):
+        for token in words.options:
+            key, _, value = token[0].partition("=")
+            found += doubts_of({key: Argument(value)}, _at(text, token))
+    return tuple(found)
+
+
+# --- chains on the command line ---
+
+_TOKEN = re.compile(r"""(?P<bar>\|)|(?P<word>(?:[^\s|"']|"[^"]*"|'[^']*')+)|(?P<quote>["'])""")
+_QUOTED = re.compile(r""""([^"]*)"|'([^']*)'""")
+
+
+class _Words(NamedTuple):
+    """One step of a chain: the name of its pass and its options, all with their columns."""
+
+    name: re.Match[str]
+    options: list[re.Match[str]]
+
+
+def parse_chain(text: str, base: Path, registry: Registry) -> list[Step]:
+    """Return the passes of a chain, `absolute | segment chord-error=5um`, built.
+
+    Values with blanks stand in quotes. Relative paths are relative to `base`. Raises UsageError
+    with columns of the text.
+    """
+    text = re.sub(r"\s", " ", text)
+    steps: list[Step] = []
+    found: list[Diagnostic] = []
+    for words in _split(text):
+        try:
+            steps.append(_chain_step(words, text, base, registry))
+        except UsageError as error:
+            found += error.diagnostics
+    if found:
+        raise UsageError(tuple(found))
+    return steps
+
+
+def _place(text: str, token: re.Match[str]) -> Location:
+    return Location(CHAIN, 1, token.start() + 1, text, len(token[0]))
+
+
+def _split(text: str) -> list[_Words]:
+    """Return the steps of a chain; a chain of blanks has none."""
+    steps: list[_Words] = []
+    bar: re.Match[str] | None = None
+    fresh = True  # whether the next word begins a step
+    for token in _TOKEN.finditer(text):
+        if token["quote"]:
+            raise UsageError.one("GX712", "the quote is not closed", _place(text, token))
+        if token["word"] and fresh:
+            steps.append(_Words(token, []))
+        elif token["word"]:
+            steps[-1].options.append(token)
+        elif fresh:
+            message = "there is no pass before this |"
+            raise UsageError.one("GX712", message, _place(text, token))
+        bar, fresh = token, bool(token["bar"])
+    if bar is not None and fresh:
+        raise UsageError.one("GX712", "there is no pass after this |", _place(text, bar))
+    return steps
+
+
+def _chain_step(words: _Words, text: str, base: Path, registry: Registry) -> Step:
+    places = {"use": _place(text, words.name)}
+    options: dict[str, Argument] = {}
+    for token in words.options:
+        key, equals, value = token[0].partition("=")
+        if not equals or not key:
+            message = f"{token[0]!r} is not an option, which is key=value"
+            hint = f"separate passes by |: {words.name[0]} | {token[0]}"
+            raise UsageError.one("GX712", message, _place(text, token), hint)
+        if key in options:
+            raise UsageError.one("GX712", f"{key!r} is given twice", _place(text, token))
+        options[key] = Argument(_QUOTED.sub(lambda quoted: quoted[1] or quoted[2] or "", value))
+        places[key] = _place(text, token)
+    chosen = registry.pass_(words.name[0], places["use"])
+    return _built(chosen, options, base, registry, lambda key: places.get(key, places["use"]))
+
+
+# --- JSON Schema -------------------------------------------------------------------------------
+
+_JSON_TYPES: Final[Mapping[str, str | list[str]]] = {
+    "length": ["number", "string"],
+    "increment system or length": ["number", "string"],
+    "increment system or number": ["number", "string"],
+    "angle": ["number", "string"],
+    "three lengths": ["array", "string", "object"],
+    "coordinates by axis letter": "object",
+    "list of lines": "array",
+    "numbers by parameter": "object",
+    "true or false": "boolean",
+    "whole number": "integer",
+    "number": "number",
+    "whole number or table by letter": ["integer", "object"],
+}
+
+
+def schema(
+    kind: Literal["pipeline", "machine", "model"], registry: Registry | None = None
+) -> dict[str, Any]:
+    """Return the JSON Schema of a kind of files; that of pipelines has the passes' options."""
+    if kind == "machine":
+        _ = registry or default_registry()  # dialects have settings of their own
+        return machinefile.schema()
+    if kind == "model":
+        return modelfile.schema()
+    return _pipeline_schema((registry or default_registry()).passes)
+
+
+def _pipeline_schema(passes: Mapping[str, type]) -> dict[str, Any]:
+    steps = [_table(describe(each), use=name) for name, each in passes.items()]
+    properties: dict[str, Any] = {"format": {"const": FORMAT}}
+    properties |= {name: _table(describe(section)) for name, section in SECTIONS.items()}
+    properties["pass"] = {"type": "array", "items": {"anyOf": steps}}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "gcxform pipeline",
+        "type": "object",
+        "properties": properties,
+        "required": ["format"],
+        "additionalProperties": False,
+    }
+
+
+def _table(options: list[OptionDoc], use: str = "") -> dict[str, Any]:
+    """Return the schema of a table of options, with the name of its pass."""
+    named: dict[str, Any] = {"use": {"const": use}} if use else {}
+    return {
+        "type": "object",
+        "properties": named | {option.name: _property(option) for option in options},
+        "required": [*named, *(option.name for option in options if option.mandatory)],
+        "additionalProperties": False,
+    }
+
+
+def _property(option: OptionDoc) -> dict[str, Any]:
+    found: dict[str, Any] = {"type": _JSON_TYPES.get(option.type, "string")}
+    if option.choices:
+        found = {"enum": list(option.choices)}
+    parts = (option.help, option.range, f"default {option.default}" if option.default else "")
+    if text := "; ".join(part for part in parts if part):
+        found["description"] = text
+    return found

@@ -1,0 +1,401 @@
+"""One run of a pipeline on a program: read, transform, write and verify, window by window."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.contract.passes import Pass, resolved
+from gcxform.contract.tip_codes import switches_of
+from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
+from gcxform.dialect.dialect import LINEAR
+from gcxform.emit.centres import in_words_of
+from gcxform.emit.emitter import Emitted, Emitter
+from gcxform.flow.straightened import located, written_out
+from gcxform.modal.interpreter import Interpreted, Interpreter
+from gcxform.modal.inventory import Account
+from gcxform.modal.meaning.tables import MeaningTable
+from gcxform.modal.program_end import Ending, Frame, frame_for, with_ends
+from gcxform.modal.reader import Apart, WindowReader
+from gcxform.modal.state import Reading
+from gcxform.pipeline.cutter_comp import check_compensated, whole_stretches
+from gcxform.pipeline.mixed_feeds import check_mixed
+from gcxform.pipeline.output import Output
+from gcxform.pipeline.text_passes import TextRun
+from gcxform.pipeline.whole_cuts import whole_cuts, whole_sections
+from gcxform.proof.inventory import Books, Others
+from gcxform.proof.verify import Findings, Verifier
+from gcxform.stamps.chain import check_stamps
+from gcxform.stamps.comment import StampReader
+from gcxform.stamps.writing import Heads, Seal, comment_line
+from gcxform.syntax.scan import Window
+from gcxform.syntax.source import Source, lines_in
+from gcxform.system.heap import Heap
+from gcxform.system.worker import Worker, ahead, worker
+from gcxform.toolpath.path import Toolpath
+
+if TYPE_CHECKING:
+    from gcxform.pipeline.pipeline import Pipeline
+
+Floats = NDArray[np.float64]
+Progress = Callable[[int], object]
+
+
+@dataclass(frozen=True, slots=True)
+class Transformed:
+    """A window as it was read, the path that is meant, and the one to be written."""
+
+    window: Window
+    table: MeaningTable
+    read: Interpreted
+    meant: Toolpath
+    path: Toolpath
+
+
+class Run:
+    """One run: its readers, writer and verifier."""
+
+    def __init__(self, pipeline: Pipeline, source: Source, verify: str) -> None:
+        self.pipeline = pipeline
+        self.marks = pipeline.marks(source)
+        self.heads = self._heads()
+        self.source = source
+        self.verify = verify
+        self.steps = pipeline.path_passes
+        self.text = TextRun(pipeline.text_passes, pipeline.target, source.name)
+        if not pipeline.copies:
+            given = pipeline.read_as, pipeline.machine_reading, pipeline.target
+            self.source = written_out(source, *given)
+        self.executes = self.source is not source
+        self.assumed = self.source.assumed
+        self.executed = getattr(self.source, "executed", None)
+        self.source, self.dialect = pipeline.without_tip_codes(self.source)
+        self.ending = Ending(self.dialect, source.name)
+        self.books = Books(pipeline.context, frozenset())
+        self.others = Others(self.dialect, self.source.name)
+        self.account = Account()
+        self.frame = Frame()
+        self.given = source
+        self.reader = WindowReader(self.dialect)
+        self.measured: dict[str, float] = {}
+        self.added: dict[str, int] = {}
+        self.held: dict[int, Floats] = {}
+        self.verifier: Verifier | None = None
+        self.findings = Findings()
+        self.interpreter: Interpreter | None = None
+        if not pipeline.copies:
+            self._prepare()
+
+    def _heads(self) -> Heads | None:
+        """Return what writes stamps; None where there are none, or every byte is copied."""
+        if not (self.marks.changes or self.marks.read) or (
+            self.pipeline.copies and not self.pipeline.text_passes
+        ):
+            return None
+        target = self.pipeline.target
+        lines = [comment_line(target, stamp.content) for stamp in self.marks.written]
+        return Heads(target, lines, bool(self.marks.read))
+
+    def _prepare(self) -> None:
+        pipeline = self.pipeline
+        axes = self.source.axes(pipeline.source.axes)
+        written = set(axes).union(*(step.letters for step in self.steps))
+        axes = "".join(axis for axis in pipeline.source.axes if axis in written)
+        reading = _with_assumed_start(pipeline, axes)
+        self.axes = axes
+        self.interpreter = Interpreter(self.dialect, reading, axes, self.source.name)
+        self.frame = self._frame()
+        start = self.interpreter.state.position
+        called = self.source.is_called
+        self.emitter = Emitter(pipeline.manner, start, self.source.name, called)
+        self.emitter.believed.inch = int(_first_units(pipeline) == "in")
+        self.books = Books(pipeline.context, self._switches())
+        if self.verify != "off":
+            self.verifier = Verifier(
+                self.steps[resolved(self.steps) :],
+                pipeline.context,
+                self._reading_of_output(reading),
+                axes,
+                pipeline.limit_of_written,
+                pipeline.angle_limits(written=True),
+                self.source.name,
+                any(step.folds for step in self.steps),
+                self._switches(),
+                pipeline.bounded,
+            )
+
+    def _frame(self) -> Frame:
+        """Return the percent signs that the program lacks for the target."""
+        try:
+            executes = self.pipeline.reading.block_delete == "execute"
+            return frame_for(self.source, self.dialect, self.pipeline.target, executes)
+        except GcxformError as error:
+            raise located(error, self.source) from None
+
+    def _reading_of_output(self, reading: Reading) -> Reading:
+        """Return what is known of the text written, which may be for another machine."""
+        for file in filter(None, (step.written_for for step in self.steps)):
+            offsets, homes = file.machine.work_offsets, file.machine.homes
+            reading = replace(reading, work_offsets=offsets, homes=homes)
+        return replace(reading, units=_first_units(self.pipeline))
+
+    def _switches(self) -> frozenset[str]:
+        """Return the M codes that a pass takes over from the control."""
+        if self.pipeline.read_as is self.pipeline.source:
+            return frozenset()
+        return frozenset(switches_of(self.pipeline.source, self.pipeline.machine_reading.control))
+
+    def over(self, out: Output, progress: Progress, size: int = 0) -> None:
+        """Run over the program, `size` bytes at a time. Raises GcxformError."""
+        if self.heads is not None:
+            out.seal = Seal(self.pipeline.target, out.written, self.marks.seal)
+            out.proof = StampReader() if self.verify != "off" else None
+        try:
+            self._over(size, out, progress)
+        except GcxformError as error:
+            raise located(error, self.source) from None
+        if self.heads is not None:
+            out.close(self.heads)
+            if out.proof is not None and (self.findings.moves or not self.heads.waits):
+                check_stamps(out.proof.found, self.marks)
+
+    def _over(self, size: int, out: Output, progress: Progress) -> None:
+        """Run over the windows of a program.
+
+        While one is transformed and written the next is read, and the one before proved, by
+        processes of their own if the program is long.
+        """
+        texts = self.source.windows(size)
+        if self.pipeline.copies:
+            for text in texts:
+                out.read.update(text)
+                self._copy(text, out)
+                progress(len(text))
+            return
+        if any(step.resolves for step in self.steps):
+            texts = whole_stretches(texts)
+        if any(step.reads_vectors for step in self.steps):
+            texts = whole_sections(texts)
+        elif any(step.whole_cuts for step in self.steps):
+            texts = whole_cuts(texts)
+        read = WindowReader(self.dialect).read_apart
+        long = self.source.is_long(size)
+        proved = long and self.verifier is not None
+        with worker(read, long) as reader, worker(self._check, proved) as proof:
+            windows = ahead(reader, self._counted(texts, out))
+            self._write_all(windows, proof, out, progress)
+
+    def _check(self, *given: Any) -> Findings:
+        """Check a window that is to be proved: see `Verifier.check`."""
+        assert self.verifier is not None
+        return self.verifier.check(*given)
+
+    def _counted(self, texts: Iterator[bytes], out: Output) -> Iterator[bytes]:
+        """Yield texts; their hash is that of the program if that is what is executed."""
+        empty = self.frame.behind  # percent signs need a window
+        for text in texts:
+            if self.source is self.given:
+                out.read.update(text)
+            empty = False
+            yield text
+        if empty:
+            yield b""
+
+    def _write_all(
+        self,
+        windows: Iterator[Apart],
+        proof: Worker[Findings],
+        out: Output,
+        progress: Progress,
+    ) -> None:
+        """Transform and write the windows; of several errors the first in the program is raised."""
+        heap = Heap()
+        try:
+            for apart, first, last in with_ends(windows, self.frame.behind):
+                one = self._transform(apart)
+                if self.marks.changes:
+                    self.others.refuse_moving(one.window, one.table, one.read.live)
+                emitted = self._emitted(one, first, last)
+                if self.dialect.needs_end:
+                    self.ending.look(one.window, one.table)
+                self.books.add(one.window, one.table, one.read, len(one.path.given))
+                if proof.busy:
+                    self.findings = proof.end()
+                if self.verifier is not None:
+                    given = one.window.lines, emitted.text, emitted.source, emitted.nth
+                    proof.begin(replace(one.read, path=one.meant), *given)
+                self._hand_on(one.window, emitted, out)
+                progress(len(one.window.text))
+                del apart, one, emitted  # or they would last until the next one is there
+                heap.give_back()
+            if any(step.feed_mode is not None for step in self.steps):
+                self._check_end()
+        finally:
+            if proof.busy and not isinstance(sys.exception(), KeyboardInterrupt):
+                self.findings = proof.end()
+        if self.verifier is not None:
+            self._check_whole()
+
+    def _check_whole(self) -> None:
+        """Check that nothing is lost, and that the target takes the file if the source's did."""
+        self.account, wrong = self.books.close(
+            self.findings.file, self.executed, self.findings.path_modes
+        )
+        if wrong:
+            where = Location(self.source.name, max(self.reader.lines, 1))
+            raise VerificationError.one("GX601", wrong, where)
+        faulty = self.dialect.name == self.pipeline.target.name and self.ending.wrong
+        if self.findings.file.no_end and not faulty:
+            where = Location(self.source.name, max(self.reader.lines, 1))
+            raise VerificationError.one("GX601", self.findings.file.no_end, where)
+
+    def _emitted(self, one: Transformed, first: bool, last: bool) -> Emitted:
+        """Return the text of a window, with the stamps if they are due."""
+        emitted = self.emitter.emit(one.window, one.table, one.read, one.path)
+        emitted = emitted.framed(self.frame, first, last)
+        if self.heads is None:
+            return emitted
+        text, kept = self.heads.edit(emitted.text)
+        if kept is None:
+            return emitted
+        return Emitted(text, emitted.source[kept], emitted.nth[kept])
+
+    def _check_end(self) -> None:
+        """Refuse to leave the control in another feed mode than the source program does."""
+        assert self.interpreter is not None
+        if self.emitter.believed.feed_mode != self.interpreter.state.groups["feed-mode"]:
+            where = Location(self.source.name, max(self.reader.lines, 1))
+            message = "the program ends without M2 or M30: its feed mode cannot be restored"
+            raise InputError.one("GX321", message, where, "write M30 at its end")
+
+    def _hand_on(self, window: Window, emitted: Emitted, out: Output) -> None:
+        out.lines_in += len(window)
+        if out.source_map is None and not self.text.passes:
+            out.put(emitted.text, emitted.source)
+        else:
+            self._put(emitted.text, emitted.source.tolist(), out)
+
+    def _copy(self, text: bytes, out: Output) -> None:
+        """Hand a window on as it is, but for passes that change text."""
+        if out.source_map is None and not self.text.passes:
+            first, count = out.lines_in, lines_in(text)
+            out.lines_in += count
+            out.put(text, range(first, first + count))
+            return
+        lines = list(self.reader.read(text).lines)
+        out.lines_in += len(lines)
+        if self.heads is not None:
+            text, kept = self.heads.edit(text)
+            lines = lines if kept is None else [lines[k] for k in kept]
+        self._put(text, lines, out)
+
+    def _put(self, text: bytes, lines: list[int], out: Output) -> None:
+        text, lines = self.text.edit(text, lines)
+        if out.source_map is not None and self.source is not self.given:
+            lines = [self.source.line_of(k + 1) - 1 for k in lines]
+        out.put(text, lines)
+
+    def _transform(self, apart: Apart) -> Transformed:
+        """Interpret one window and run the passes."""
+        assert self.interpreter is not None
+        window = self.reader.take_over(apart)
+        table = self.reader.table
+        read = self.interpreter.interpret(window, table)
+        path = meant = read.path
+        for number, step in enumerate(self.steps):
+            path = self._apply(step, self._held(number, path), window)
+            if len(path):
+                self.held[number] = path.end[-1].copy()
+            if step.resolves:
+                self._prove(step, meant, path, window)
+                meant = path
+        with self._placing(window):
+            check_mixed(read.path, path, self.pipeline.context)
+        path = in_words_of(self.pipeline.target, path)
+        return Transformed(window, table, read, meant, path)
+
+    @contextmanager
+    def _placing(self, window: Window) -> Iterator[None]:
+        """Give the text of their lines to errors about lines of a window."""
+        try:
+            yield
+        except GcxformError as error:
+            raise _located(error, window, self.source.name) from None
+
+    def _held(self, number: int, path: Toolpath) -> Toolpath:
+        """Return a path that knows where what a step has written before has left the axes."""
+        return path.replace(held=self.held.get(number, path.entry))
+
+    def _prove(self, step: Pass, before: Toolpath, after: Toolpath, window: Window) -> None:
+        """Let a pass that resolves prove its path, against the one that the program means."""
+        if self.verify == "off":
+            return
+        with self._placing(window):
+            step.prove(before, after, self.pipeline.context)
+
+    def _apply(self, step: Pass, path: Toolpath, window: Window) -> Toolpath:
+        with self._placing(window):
+            after = step.apply(path, self.pipeline.context)
+            if not step.resolves:
+                check_compensated(step, path, after)
+        for what, size in step.measure(path, after, self.pipeline.context).items():
+            self.measured[what] = max(size, self.measured.get(what, size))
+        for what, number in step.added(path, after, self.pipeline.context).items():
+            self.added[what] = self.added.get(what, 0) + number
+        if self.verify == "full":
+            for fact in step.ensures:
+                if not fact.check(after):
+                    raise VerificationError.one(
+                        "GX602", f"{step.name} ensures {fact.name}, and the path does not have it"
+                    )
+        return after
+
+    def check_growth(self, out: Output) -> None:
+        """Refuse an output that has more blocks than the budget allows. Raises InputError."""
+        limit = self.pipeline.growth
+        if limit is None or out.blocks_out <= limit * out.blocks_in:
+            return
+        message = (
+            f"{out.blocks_in} blocks became {out.blocks_out}, {out.growth:.4g} times as many; "
+            f"the budget allows {limit:g} times"
+        )
+        enough = math.ceil(out.growth or 0)
+        hint = f"give a step that cuts moves a larger tolerance, or growth = {enough} in [budget]"
+        raise InputError.one("GX507", message, Location(self.source.name, out.lines_in), hint)
+
+
+def _with_assumed_start(pipeline: Pipeline, axes: str) -> Reading:
+    """Return what is known at the start; where only programmed words are written, the rest is 0."""
+    reading = pipeline.machine_reading
+    if pipeline.words != "programmed":
+        return reading
+    zeros = {axis: 0.0 for axis in axes if axis in LINEAR}
+    return replace(reading, start={**zeros, **reading.start})
+
+
+def _first_units(pipeline: Pipeline) -> str:
+    """Return the units the output starts in: those of its control before the program."""
+    if pipeline.source is pipeline.target and pipeline.reading.units:
+        return pipeline.reading.units
+    return "in" if pipeline.target.initial["units"] == "G20" else "mm"
+
+
+def _located(error: GcxformError, window: Window, file: str) -> GcxformError:
+    """Return an error with the text of the lines it is about."""
+    found = []
+    for diagnostic in error.diagnostics:
+        where = diagnostic.where
+        if where is not None and not where.file and where.line:
+            text = window.line(where.line - 1 - window.first_line).decode("latin-1")
+            start = len(text) - len(text.lstrip()) + 1
+            where = Location(file, where.line, start, text, max(1, len(text.strip())))
+            diagnostic = diagnostic.at(where)
+        found.append(diagnostic)
+    return type(error)(tuple(found))

@@ -1,0 +1,101 @@
+"""Passes that change text and no meaning, and the check that they do not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from gcxform.contract.passes import TextPass
+from gcxform.diagnostics import InputError, Location, VerificationError
+from gcxform.dialect.dialect import Dialect
+from gcxform.modal.control_limits import without_blanks
+from gcxform.stamps.comment import is_stamp
+from gcxform.syntax.scan import scan
+from gcxform.syntax.shapes import ShapeTable, instantiate
+from gcxform.syntax.tree import BLANKS, Block, Number, Statement, Word
+
+
+class TextRun:
+    """Edits the texts of one run in order."""
+
+    def __init__(self, passes: Sequence[TextPass], dialect: type[Dialect], file: str) -> None:
+        self.passes = passes
+        self.dialect = dialect
+        self.file = file
+        self.counts = [0] * len(passes)
+
+    def edit(self, text: bytes, lines: list[int]) -> tuple[bytes, list[int]]:
+        """Return the edited text of whole lines, and the source lines of those that stay."""
+        for index, step in enumerate(self.passes):
+            text, lines = self._one(index, step, text, lines)
+        return text, lines
+
+    def _one(
+        self, index: int, step: TextPass, text: bytes, lines: list[int]
+    ) -> tuple[bytes, list[int]]:
+        if not text:
+            return text, lines
+        parts, kept = [], []
+        table = ShapeTable(self.dialect.load_grammar())
+        window = scan(text, 0, table)
+        for line in range(len(window)):
+            old = window.line(line).decode("latin-1")
+            shape = table.shapes[int(window.shape[line])]
+            first, start = int(window.first_number[line]), int(window.start[line])
+            spans = [
+                (int(window.number_start[n]) - start, int(window.number_end[n]) - start)
+                for n in range(first, first + len(shape.slots))
+            ]
+            block = instantiate(shape, old, spans)
+            new = self._edited(step, block, self.counts[index], lines[line])
+            if new is None:
+                continue
+            end = text[int(window.end[line]) : int(window.next[line])]
+            parts.append(new.encode("latin-1") + end)
+            kept.append(lines[line])
+            self.counts[index] += step.counts(block)
+        return b"".join(parts), kept
+
+    def _edited(self, step: TextPass, block: Block, number: int, line: int) -> str | None:
+        """Return a block's new text after checking that its words are the same."""
+        where = Location(self.file, line + 1, 1, block.text, max(1, len(block.text)))
+        why = step.refuse(block)
+        if why:
+            raise InputError.one("GX212", f"{step.name}: {why}", where)
+        if block.error is not None or is_stamp(block.text):
+            return block.text
+        new = step.edit(block, number)
+        if new == block.text:
+            return new
+        after = [] if new is None else _meaning(self.dialect.load_grammar().parse(new))
+        if after != _meaning(block):
+            raise VerificationError.one("GX603", f"{step.name} changed the words of a block", where)
+        if new is not None:
+            self._check_limits(step, block.text, new, where)
+        return new
+
+    def _check_limits(self, step: TextPass, old: str, new: str, where: Location) -> None:
+        """Refuse blocks and sequence numbers that have become larger than the control takes."""
+        size = without_blanks if self.dialect.length_without_blanks else len
+        long, limit = size(new.encode("latin-1")), self.dialect.line_length
+        if limit and long > max(limit, size(old.encode("latin-1"))):
+            message = f"{step.name}: the block would have {long} characters"
+            message += f"; {self.dialect.name} takes {limit}"
+            raise InputError.one("GX502", message, where)
+        most = self.dialect.largest_number
+        for word in self.dialect.load_grammar().parse(new).words if most else ():
+            number = word.value
+            if word.address == "N" and isinstance(number, Number) and number.value > most:
+                message = f"{step.name}: the sequence number is larger than {most}"
+                raise InputError.one("GX219", message, where)
+
+    def finish(self) -> None:
+        """End the run."""
+
+
+def _meaning(block: Block) -> list[str]:
+    """Return the words and statements of a block, but N words, without blanks."""
+    return [
+        block.text[item.start : item.end].translate(BLANKS).upper()
+        for item in block.items
+        if (isinstance(item, Word) and item.address != "N") or isinstance(item, Statement)
+    ]

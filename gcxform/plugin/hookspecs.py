@@ -1,0 +1,58 @@
+"""The hooks of plugins: what a distribution can add to gcxform.
+
+A plugin is a module named by an entry point of the group `gcxform.plugins`. Every hook takes no
+argument and returns an iterable of what it adds; names have to be unique over all plugins.
+
+    @gx.hookimpl
+    def gcxform_passes() -> list[type[gx.Pass]]:
+        return [Shift]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final
+
+import pluggy
+
+from gcxform.contract.passes import Pass, TextPass
+from gcxform.dialect.dialect import Dialect
+from gcxform.errormodel.formats import ErrorFormat
+from gcxform.machine.kinds import Kinematics
+from gcxform.toolpath.facts import Fact
+
+PROJECT: Final = "gcxform"
+GROUP: Final = "gcxform.plugins"
+
+hookspec = pluggy.HookspecMarker(PROJECT)
+hookimpl = pluggy.HookimplMarker(PROJECT)
+
+
+@hookspec
+def gcxform_dialects() -> Iterable[type[Dialect]]:
+    """Return dialects: subclasses of `Dialect` with a name and a docstring."""
+    raise NotImplementedError
+
+
+@hookspec
+def gcxform_passes() -> Iterable[type[Pass | TextPass]]:
+    """Return passes: frozen dataclasses on top of `Pass` or `TextPass`, with a name."""
+    raise NotImplementedError
+
+
+@hookspec
+def gcxform_kinematics() -> Iterable[type[Kinematics]]:
+    """Return kinds of machines: subclasses of `Kinematics` with a name."""
+    raise NotImplementedError
+
+
+@hookspec
+def gcxform_facts() -> Iterable[Fact]:
+    """Return facts that passes can require and ensure: instances of `Fact`."""
+    raise NotImplementedError
+
+
+@hookspec
+def gcxform_error_formats() -> Iterable[type[ErrorFormat]]:
+    """Return file formats of error models: subclasses of `ErrorFormat` with a name."""
+    raise NotImplementedError

@@ -1,0 +1,243 @@
+"""The registry: what the installed plugins offer, by name.
+
+A plugin that cannot be imported, or that offers what it should not, costs itself and nothing else:
+`Registry.diagnostics` says which and why. Two things of one name are an error, because the order
+of plugins must not matter.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import re
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import redirect_stdout
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.metadata import EntryPoint
+from types import MappingProxyType
+from typing import Any, TypeVar
+
+import pluggy
+
+from gcxform.config.toml_text import did_you_mean
+from gcxform.contract.options import describe
+from gcxform.contract.passes import Pass, TextPass
+from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
+from gcxform.dialect.dialect import Dialect
+from gcxform.errormodel.formats import ErrorFormat
+from gcxform.machine.kinds import Kinematics
+from gcxform.plugin import hookspecs
+from gcxform.toolpath.facts import FACTS, Fact
+
+CORE = "gcxform"
+KINDS: Mapping[str, str] = MappingProxyType(
+    {
+        "dialect": "gcxform_dialects",
+        "pass": "gcxform_passes",
+        "kinematics": "gcxform_kinematics",
+        "fact": "gcxform_facts",
+        "format": "gcxform_error_formats",
+    }
+)
+"""The kinds of things a plugin offers, each with its hook."""
+
+Offer = TypeVar("Offer")
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+
+
+@dataclass
+class Registry:
+    """Everything that plugins offer, each kind by name, and what was wrong with the plugins."""
+
+    dialects: dict[str, type[Dialect]] = field(default_factory=dict)
+    passes: dict[str, type[Pass] | type[TextPass]] = field(default_factory=dict)
+    kinematics: dict[str, type[Kinematics]] = field(default_factory=dict)
+    facts: dict[str, Fact] = field(default_factory=lambda: {fact.name: fact for fact in FACTS})
+    formats: dict[str, type[ErrorFormat]] = field(default_factory=dict)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    _origins: dict[tuple[str, str], EntryPoint] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def load(cls) -> Registry:
+        """Return the registry of the plugins which are installed.
+
+        Raises UsageError if two of them offer the same name.
+        """
+        registry = cls()
+        manager = pluggy.PluginManager(hookspecs.PROJECT)
+        manager.add_hookspecs(hookspecs)
+        points = {}
+        for point in importlib.metadata.entry_points(group=hookspecs.GROUP):
+            name = f"{point.name} of {_origin(point)}"
+            if registry._register(manager, name, point):
+                points[name] = point
+        for kind, hook in KINDS.items():
+            for implementation in getattr(manager.hook, hook).get_hookimpls():
+                point = points[implementation.plugin_name]
+                registry._take(kind, implementation, point)
+        return registry
+
+    def origin(self, kind: str, name: str) -> str:
+        """Return the distribution, with its version, that a thing came with."""
+        point = self._origins.get((kind, name))
+        return _origin(point) if point else f"{CORE} {importlib.metadata.version(CORE)}"
+
+    def dialect(self, name: str, where: Location | None = None) -> type[Dialect]:
+        """Return a dialect; raises UsageError, at the place, if there is none of that name."""
+        return self._find(self.dialects, name, ("GX703", "dialect"), where)
+
+    def pass_(self, name: str, where: Location | None = None) -> type[Pass] | type[TextPass]:
+        """Return a pass; raises UsageError, at the place, if there is none of that name."""
+        return self._find(self.passes, name, ("GX704", "pass"), where)
+
+    def _find(
+        self,
+        known: Mapping[str, Offer],
+        name: str,
+        code_and_kind: tuple[str, str],
+        where: Location | None,
+    ) -> Offer:
+        if name in known:
+            return known[name]
+        code, kind = code_and_kind
+        near = did_you_mean(name, known)
+        hints = [near if near.endswith("?") else "", f"known: {', '.join(sorted(known))}"]
+        hints += [d.message for d in self.diagnostics]
+        message = f"there is no {kind} {name!r}"
+        raise UsageError.one(code, message, where, "; ".join(h for h in hints if h))
+
+    def _register(self, manager: pluggy.PluginManager, name: str, point: EntryPoint) -> bool:
+        """Import a plugin and register its hooks; return whether that went well."""
+        try:
+            with redirect_stdout(sys.stderr):  # stdout is for programs
+                plugin = point.load()
+            manager.register(plugin, name)
+        except (Exception, SystemExit) as error:
+            self._warn(point, f"cannot be loaded: {_reason(error)}")
+            if manager.has_plugin(name):
+                manager.unregister(name=name)
+            return False
+        for caller in manager.get_hookcallers(plugin) or []:
+            if not caller.has_spec():
+                hint = did_you_mean(caller.name, KINDS.values())
+                self._warn(point, f"has the hook {caller.name!r}, which does not exist", hint)
+        return True
+
+    def _take(self, kind: str, implementation: pluggy.HookImpl, point: EntryPoint) -> None:
+        """Take what one hook of one plugin returns."""
+        try:
+            with redirect_stdout(sys.stderr):
+                offers = _listed(implementation.function())
+        except (Exception, SystemExit) as error:
+            self._warn(point, f"fails in {KINDS[kind]}: {_reason(error)}")
+            return
+        for offer in offers:
+            try:
+                name = _CHECKS[kind](offer)
+            except (Exception, SystemExit) as error:
+                message = f"returns in {KINDS[kind]} what is not a {kind}: {_reason(error)}"
+                self._warn(point, message)
+            else:
+                self._add(kind, name, offer, point)
+
+    def _add(self, kind: str, name: str, offer: Any, point: EntryPoint) -> None:
+        table = self._tables[kind]
+        if name in table:
+            both = f"{self.origin(kind, name)} and {_origin(point)}"
+            message = f"two plugins offer the {kind} {name!r}: {both}"
+            hint = "uninstall one of them, or rename it there"
+            raise UsageError.one("GX801", message, hint=hint)
+        table[name] = offer
+        self._origins[kind, name] = point
+
+    @property
+    def _tables(self) -> dict[str, dict[str, Any]]:
+        return {
+            "dialect": self.dialects,
+            "pass": self.passes,
+            "kinematics": self.kinematics,
+            "fact": self.facts,
+            "format": self.formats,
+        }
+
+    def _warn(self, point: EntryPoint, message: str, hint: str = "") -> None:
+        text = f"the plugin {point.name!r} of {_origin(point)} {message}"
+        finding = Diagnostic("GX802", text, hint=hint, severity=Severity.WARNING)
+        self.diagnostics.append(finding)
+
+
+@cache
+def default_registry() -> Registry:
+    """Return the registry of the installed plugins, loaded at the first call."""
+    return Registry.load()
+
+
+def dialect_of(given: object) -> type[Dialect]:
+    """Return a dialect that is given as itself, or by its name. Raises UsageError."""
+    if isinstance(given, str):
+        return default_registry().dialect(given)
+    if not (isinstance(given, type) and issubclass(given, Dialect)):
+        message = f"dialect: expected a dialect or its name, got {given!r:.80}"
+        raise UsageError.one("GX702", message, hint="`gcxform list dialects`")
+    return given
+
+
+def _origin(point: EntryPoint) -> str:
+    """Return the distribution of a plugin, with its version."""
+    return f"{point.dist.name} {point.dist.version}" if point.dist else point.value
+
+
+def _reason(error: BaseException) -> str:
+    """Return an exception as one line."""
+    first = str(error).partition("\n")[0]
+    return f"{type(error).__name__}: {first}" if first else type(error).__name__
+
+
+def _listed(returned: Any) -> list[Any]:
+    if not isinstance(returned, Iterable):
+        raise TypeError(f"{returned!r} is not an iterable of classes")
+    return list(returned)
+
+
+def _named(offer: Any, bases: tuple[type, ...]) -> str:
+    """Return the name of a class on top of one of the bases; TypeError if it is not one."""
+    if not isinstance(offer, type) or not issubclass(offer, bases) or offer in bases:
+        raise TypeError(f"{offer!r} is not a subclass of {bases[0].__name__}")
+    name = getattr(offer, "name", "")
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise TypeError(f"{offer.__name__} has the name {name!r}")
+    return name
+
+
+def _pass_name(offer: Any) -> str:
+    name = _named(offer, (Pass, TextPass))
+    parameters = offer.__dict__.get("__dataclass_params__")
+    if parameters is None or not parameters.frozen:
+        raise TypeError(f"{offer.__name__} is not a frozen dataclass")
+    describe(offer)
+    return name
+
+
+def _fact_name(offer: Any) -> str:
+    if not isinstance(offer, Fact):
+        raise TypeError(f"{offer!r} is not a Fact")
+    return offer.name
+
+
+def _format_name(offer: Any) -> str:
+    name = _named(offer, (ErrorFormat,))
+    if hasattr(offer, "__dataclass_fields__"):
+        describe(offer)
+    return name
+
+
+_CHECKS: Mapping[str, Callable[[Any], str]] = MappingProxyType(
+    {
+        "dialect": lambda offer: _named(offer, (Dialect,)),
+        "pass": _pass_name,
+        "kinematics": lambda offer: _named(offer, (Kinematics,)),
+        "fact": _fact_name,
+        "format": _format_name,
+    }
+)

@@ -1,0 +1,213 @@
+"""Proves that what a program holds besides its moves is held by what was written for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from hashlib import sha256
+
+from gcxform.contract.passes import PassContext
+from gcxform.diagnostics import Diagnostic, GcxformError, InputError, Location, VerificationError
+from gcxform.dialect.arithmetic import Key
+from gcxform.dialect.dialect import Dialect
+from gcxform.flow.straightened import Executed
+from gcxform.modal.expressions.value import written
+from gcxform.modal.interpreter import Interpreted
+from gcxform.modal.inventory import KINDS, Account, Ints, Tally, nothing_held
+from gcxform.modal.lines import Assigned
+from gcxform.modal.meaning.tables import MeaningTable
+from gcxform.modal.program_end import Ending
+from gcxform.proof.trace import Trace
+from gcxform.stamps.comment import without_lines
+from gcxform.syntax.scan import Window
+
+Wrong = tuple[str, int, int]
+"""What is wrong, the line of the source and the line of the output, both from 0."""
+
+
+def assignments_differ(
+    old: tuple[Assigned, ...], new: tuple[Assigned, ...], trace: Trace, context: PassContext
+) -> Wrong | None:
+    """Return what is wrong with the parameters that a window sets; None if nothing is.
+
+    They get the same values, in order, in the blocks of the same lines: to as many digits as the
+    control takes.
+    """
+    old = tuple(each for each in old if _lasts(each.key, context))
+    known = context.target.arithmetic
+    near = 10.0 ** (1 - known.digits) if known is not None else 0.0
+    for before, after in zip(old, new, strict=False):
+        line = trace.line_of(after.line)
+        close = abs(before.value - after.value) <= abs(before.value) * near
+        if (before.line, before.key) != (line, after.key) or not close:
+            message = f"{_said(before)} of the source became {_said(after)}, or moved"
+            return message, before.line, after.line
+    if len(old) == len(new):
+        return None
+    rest = (old[len(new) :] or new[len(old) :])[0]
+    line = rest.line if len(old) > len(new) else trace.line_of(rest.line)
+    return f"the assignment {_said(rest)} is missing or too many", line, 0
+
+
+def _lasts(key: Key, context: PassContext) -> bool:
+    """Whether an assignment of the source has to stand in the output."""
+    known = context.target.arithmetic
+    return context.source is context.target or (known is not None and known.can_say(key))
+
+
+def _said(one: Assigned) -> str:
+    return f"{written(one.key)}={one.value:.10g}"
+
+
+def not_taken(
+    error: GcxformError, context: PassContext, file: str, text: Window, source: Ints
+) -> GcxformError:
+    """Return why the target would refuse the output, at the lines of the source.
+
+    Of another control that is a refusal of the program: a code may not stand there beside what it
+    may stand beside here. The control of the source took it, so there the writer is wrong.
+    """
+    found = []
+    for each in error.diagnostics:
+        line = max(each.where.line - 1 - text.first_line, 0) if each.where else 0
+        written = text.line(line).decode("latin-1").strip() if line < len(text) else ""
+        message = f"{context.target.name} would refuse what is written, {written!r}: {each.message}"
+        where = Location(file, int(source[line]) + 1 if line < len(source) else 0)
+        hint = "" if "[input]" in each.hint else each.hint  # that is said of another program
+        found.append(Diagnostic(each.code, message, where, hint))
+    if isinstance(error, InputError) and context.source is not context.target:
+        return InputError(tuple(found))
+    return VerificationError(tuple(found))
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What an output is as a file, so far.
+
+    held     what it holds, (kinds,)
+    behind   the hash of what stands behind its end
+    no_end   why the target would refuse it if it were over here; nothing if it would not
+    """
+
+    held: Ints = field(default_factory=nothing_held)
+    behind: str = field(default_factory=lambda: sha256().hexdigest())
+    no_end: str = ""
+
+
+class Whole:
+    """Is shown the windows of an output."""
+
+    def __init__(self, target: type[Dialect]) -> None:
+        self.ending = Ending(target)
+        self.tally = Tally()
+        self.behind = sha256()
+
+    def add(self, window: Window, table: MeaningTable, live: int) -> Written:
+        """Return what the output is with one more window, of which `live` lines are executed."""
+        self.ending.look(window, table)
+        self.tally.add(table, window.shape)
+        self.behind.update(behind_end(window, live))
+        wrong = "".join(each.message for each in self.ending.wrong)
+        return Written(self.tally.total, self.behind.hexdigest(), wrong)
+
+
+def behind_end(window: Window, live: int) -> bytes:
+    """Return the text of a window behind the end of the program, where `live` lines are before.
+
+    Stamps are left out: they are taken out and written anew, and have a proof of their own.
+    """
+    return without_lines(window.text[int(window.start[live]) :]) if live < len(window) else b""
+
+
+class Others:
+    """Looks for other programs behind the end of the one that is transformed.
+
+    Its number is enough for a control to run one, while what LinuxCNC has behind an end is of that
+    file alone.
+    """
+
+    def __init__(self, dialect: type[Dialect], file: str) -> None:
+        self.looks = dialect.flow == "macro-b"
+        self.file = file
+        self.tally = Tally()
+        self.begins = -1
+
+    def refuse_moving(self, window: Window, table: MeaningTable, live: int) -> None:
+        """Raise InputError for one that moves: of a window, whose `live` lines are executed."""
+        shape = window.shape[live:]
+        if not self.looks or not len(shape):
+            return
+        moves = self.tally.lines(table, shape, "motions")
+        if self.begins < 0:
+            begins = self.tally.lines(table, shape, "definitions")
+            if not len(begins):
+                return
+            self.begins = int(begins[0]) + live + window.first_line
+            moves = moves[moves > begins[0]]
+        if len(moves):
+            message = "a program begins here that this one does not call: it would stay as it is"
+            hint = "what steps do to positions is said of a whole file: give it a file of its own"
+            raise InputError.one("GX226", message, Location(self.file, self.begins + 1), hint)
+
+
+class Books:
+    """Keeps account of what the windows of a source hold, and closes it with the output's."""
+
+    def __init__(self, context: PassContext, switches: frozenset[str]) -> None:
+        self.context = context
+        self.switches = switches
+        self.crossing = context.source is not context.target
+        self.held, self.behind, self.live = Tally(), Tally(), Tally()
+        self.set_aside = self.done = self.inner = self.given = 0
+        self.assigned: list[tuple[Key, float]] = []
+        self.text_behind = sha256()
+
+    def add(self, window: Window, table: MeaningTable, read: Interpreted, given: int) -> None:
+        """Take a window of the source into account; `given` are blocks that the user adds."""
+        self.held.add(table, window.shape)
+        self.live.add(table, window.shape[: read.live])
+        self.behind.add(table, window.shape[read.live :])
+        self.set_aside += sum(not _lasts(each.key, self.context) for each in read.assigned)
+        self.text_behind.update(behind_end(window, read.live))
+        events = read.path.events
+        self.done += sum(event.what in self.switches for event in events)
+        self.given += given
+        self.inner += given + sum(event.within for event in events)
+        self.assigned += [(each.key, each.value) for each in read.assigned]
+
+    def close(
+        self, output: Written, executed: Executed | None, path_modes: int
+    ) -> tuple[Account, str]:
+        """Return the account, and what is wrong with it: nothing if it balances.
+
+        `path_modes` of the output stand around cycles, as the proof of the moves has found.
+        """
+        source, target = self.held.total, self.context.target.name
+        account = Account(source, output.held)
+        if executed is not None:
+            account.source = executed.held
+            executed.explain(account, source)
+        if self.crossing:
+            account.rule("behind the end of the program", -self.behind.total)
+            account.rule_of(f"no parameter of {target}", "assignments", -self.set_aside)
+            if not self.context.target.has_program_number:
+                named = -self.live.total
+                account.rule(f"no name of programs in {target}", named, ("definitions",))
+        account.rule_of("done by a step instead of the control", "m_codes", -self.done)
+        account.rule("moves cut, joined or written out by steps", account.rest, ("motions",))
+        account.rule_of("G61 and G64 around cycles written out", "path_modes", path_modes)
+        if self.inner:
+            kinds = ("stops", "m_codes", *(("path_modes",) if self.given else ()))
+            account.rule("cycles written out, and blocks that are given", account.rest, kinds)
+        if not self.crossing and output.behind != self.text_behind.hexdigest():
+            return account, "what stands behind the end of the program has changed"
+        return account, self._wrong(account, executed)
+
+    def _wrong(self, account: Account, executed: Executed | None) -> str:
+        """Return why an account does not balance; nothing if it does."""
+        for kind, count in zip(KINDS, account.rest.tolist(), strict=True):
+            if count:
+                how = "more" if count > 0 else "fewer"
+                return f"the output has {abs(count)} {how} {kind} than the source accounts for"
+        if executed is not None and not executed.agrees(self.assigned):
+            return "the parameters that last are not those that the calls and loops have set"
+        return ""

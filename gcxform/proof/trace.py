@@ -1,0 +1,85 @@
+"""Which move of the output belongs to which move of the input, by the source map."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcxform.deviations.runs import Runs, runs_of
+from gcxform.toolpath.path import Toolpath
+from gcxform.toolpath.travel import ways
+
+Ints = NDArray[np.int64]
+
+
+class Trace:
+    """Which move of the output belongs to which move of the input.
+
+    `lines` are those of the window, from 0; `written` are the moves as read from the output,
+    `after` what the machine does with them.
+    """
+
+    def __init__(
+        self,
+        before: Toolpath,
+        lines: range,
+        written: Toolpath,
+        after: Toolpath,
+        source: Ints,
+        nth: Ints,
+        first: int,
+    ) -> None:
+        self.before = before
+        self.written = written
+        self.after = after
+        self.source = source
+        self.first = first
+        self._nth = nth
+        line = before.source - lines.start
+        self._count = np.bincount(line, minlength=len(lines))
+        self._row_of_line = np.where(self._count > 0, np.cumsum(self._count) - self._count, -1)
+        self._first_line = lines.start
+        self.owner = self.owners(after)
+        self.written_owner = self.owner if after is written else self.owners(written)
+        self.through = self.written_owner
+
+    def find_runs(self) -> Runs:
+        """Find which moves of the input each move stands for."""
+        runs = runs_of(self.before, self.owner)
+        same = self.written_owner is self.owner
+        self.through = (runs if same else runs_of(self.before, self.written_owner)).through
+        return runs
+
+    def owners(self, path: Toolpath) -> Ints:
+        """Return the row of the input that each move belongs to, -1 if there is none."""
+        written = path.source - self.first
+        lines = self.source[written] - self._first_line
+        first = self._row_of_line[lines]
+        nth = path.nth + self._nth[written]
+        return np.where((first >= 0) & (nth < self._count[lines]), first + nth, -1)
+
+    def line_of(self, output_line: int) -> int:
+        """Return the input line of an output line, both from 0."""
+        index = output_line - self.first
+        return int(self.source[index]) if 0 <= index < len(self.source) else 0
+
+    def stands_before(self, written_row: int, row: int, short: float) -> bool:
+        """Whether what stands before a written move stands before that row of the input.
+
+        Rows no longer than `short` (mm) together may have been left out on either side of it.
+        """
+        owner = self.written_owner
+        earlier = written_row == 0 or self._ends_before(written_row - 1, row, short)
+        later = written_row >= len(owner) or int(owner[written_row]) >= row
+        return earlier and later
+
+    def _ends_before(self, written_row: int, row: int, short: float) -> bool:
+        """Whether a written move stands for nothing from a row on, or for too little to matter."""
+        through = int(self.through[written_row])
+        if through < row:
+            return True
+        rest = slice(row, through + 1)
+        if int(self.written_owner[written_row]) >= row or self.before.is_arc[rest].any():
+            return False
+        rows = np.arange(row, through + 1)
+        return float(ways(self.before, rows).sum()) <= short

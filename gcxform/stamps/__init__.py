@@ -1,0 +1,1 @@
+"""Stamps: what has been done to a program, so that it is not done twice."""

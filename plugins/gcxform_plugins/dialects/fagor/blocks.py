@@ -1,0 +1,284 @@
+"""Blocks of a Fagor 8065 as blocks of words; the table of facts is in `dialect.py`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+import gcxform as gx
+from gcxform_plugins.dialects.fagor import tables as tables
+from gcxform_plugins.dialects.fagor.places import Places, code_of
+
+PLANES = frozenset({"G17", "G18", "G19"})
+END = frozenset({"M2", "M30"})
+ALONE = "write it in a block of its own"
+NO_EDGE = "which D is in force after a tool change that names none is the control's choice"
+EDGE_EARLY = "whether a D acts before the tool that it is for is changed is not certain"
+ACROSS = "in G18 and G19 the length of the tool may be across the plane, and not along Z"
+ALONG = 'write G17 before; or say [control] tool-length-axis = "Z", if it stays there'
+NO_OFFSET = "G53 has cancelled the work offset, and where the zero is then only the control knows"
+WHOLE = re.compile(r"[0-9]+\Z")
+
+
+class Blocks(gx.Translator):
+    """Turns blocks of a Fagor into blocks of words.
+
+    `bars` are the reasons for which nothing may move at present, and what lifts them.
+    """
+
+    grammar = ("gcxform_grammars", "fagor")
+    number = re.compile(r"(?<![GMgm0-9.])[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
+    signs = re.compile(rb"(?im)^[^(;\n]*#(?:RTCP|TLC|CS|ACS|MCS|KIN|HSC)\b")
+
+    def __init__(self, *given: object) -> None:
+        super().__init__(*given)  # type: ignore[arg-type]
+        self.places = Places(self)
+        self.bars: dict[str, tuple[str, str]] = {}
+        self.incremental = self.following = self.taken_away = False
+        self.corners = self.kinematics = ""
+        self.tool = self.edge = self.in_spindle = ""
+        self.changing = self.across = self.long = False
+
+    def plain(self, items: Sequence[gx.Item]) -> bool:
+        """Whether a block has plain codes and words only, its number before them."""
+        names = [code_of(item) or item.name for item in items]
+        rest = names[1:] if names[0] == "N" else names
+        kinds = {item.kind for item in items}
+        return kinds <= {"code", "word"} and {*rest} <= (tables.PLAIN - PLANES) | tables.PLAIN_WORDS
+
+    def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
+        """Return the blocks of a line. Raises InputError for what is not read."""
+        number, items = self._without_marks(items)
+        if any(item.kind == "statement" for item in items):
+            blocks = [*self._statement(items)]
+        else:
+            blocks = [*self._block(items)]
+        self.plainly = not self.bars
+        return [f"{number}{blocks[0]}", *blocks[1:]] if blocks else []
+
+    def _without_marks(self, items: Sequence[gx.Item]) -> tuple[str, list[gx.Item]]:
+        """Return the sequence number, and what stands behind it and the labels."""
+        rest, number = list(items), ""
+        if rest and rest[0].kind == "header":
+            return "", self._without_header(rest)
+        if rest and rest[0].name == "N" and rest[0].kind == "word":
+            number = f"N{rest.pop(0).numbers[0]} "
+            rest = rest[1:] if rest and rest[0].kind == "colon" else rest
+        while rest and rest[0].kind == "label":
+            rest.pop(0)
+        return number, rest
+
+    def _without_header(self, items: list[gx.Item]) -> list[gx.Item]:
+        """Leave the name of the program out. Raises InputError where it is none."""
+        name = items.pop(0)
+        before = (item for line in range(self.line) for item in self.items(line))
+        if re.match(r"%[ \t]*L", name.name) or any(item.kind != "comment" for item in before):
+            self.refuse("here another program begins, or a subroutine", name)
+        return items
+
+    # --- blocks of words ---
+
+    def _block(self, items: Sequence[gx.Item]) -> Iterator[str]:
+        """Yield the blocks of a line of words."""
+        for item in items:
+            self._check(item)
+        codes = {code_of(item): item for item in items if item.kind == "code"}
+        if "G4" in codes:
+            yield self._dwell(items)
+            return
+        self._note(codes, items)
+        moved = [item for item in items if item.name in tables.AXES | {*"IJKR"}]
+        change = [item for item in items if item.name in ("T", "D") or code_of(item) == "M6"]
+        length = self._changed(change, moved) if change else ""
+        self._turned(codes, length)
+        if moved:
+            self._move(moved[0])
+        words = [word for item in items for word in self._said(item)]
+        words, after = self._relative(items, words)
+        if "G6" in codes:
+            if sum(item.name in {*"IJK"} for item in items) != 2:
+                self.refuse("G6 is read with both words of a centre", codes["G6"])
+            words, after = ["G90.1", *words], ["G91.1", *after]
+        if "G60" in codes:
+            after += self._corner_again(codes["G60"])
+        yield from [" ".join(words)] if words else []
+        yield from [length] if length else []
+        yield from after
+        if END & {*codes}:
+            self.at = len(self.lines)
+
+    def _check(self, item: gx.Item) -> None:
+        """Refuse an item that is not read in a block of words."""
+        code = code_of(item)
+        if item.kind in tables.KINDS:
+            hint = tables.HINTS.get(item.kind, "let the CAM write plain blocks")
+            shown = item.name if item.kind != "ambiguous" else f"{item.name}{item.numbers[0]}I"
+            self.refuse(f"{shown.strip()} is not resolved: {tables.KINDS[item.kind]}", item, hint)
+        if item.kind in ("header", "label", "colon") or item.name == "N":
+            raise self.refusal("GX101", "this stands only at the head of a block", item)
+        if code in tables.REFUSED:
+            self.refuse(f"{code} is not resolved: {tables.REFUSED[code]}", item)
+        if code and code not in tables.CODES | tables.M_CODES:
+            raise self.refusal("GX201", f"what {code} does on a fagor is not known here", item)
+        words = tables.AXES if item.kind == "incremental" else tables.WORDS
+        if item.kind in ("word", "incremental") and item.name not in words:
+            what = tables.LACKING.get(item.name, "it is not read")
+            self.refuse(f"{item.name} is not resolved: {what}", item)
+        if item.kind == "numbered" and (code != "G159" or not self._work(item)):
+            self.refuse(f"{code}={item.numbers[0]} is not resolved: only G159=1 to 6 are", item)
+
+    def _work(self, item: gx.Item) -> str:
+        """Return the work offset that G159 names, nothing if it is none."""
+        return {f"{k + 1}": f"G{54 + k}" for k in range(6)}.get(item.numbers[0], "")
+
+    def _note(self, codes: dict[str, gx.Item], items: Sequence[gx.Item]) -> None:
+        """Take notice of modes."""
+        if "G90" in codes or "G91" in codes:
+            self.incremental = "G91" in codes
+        self.corners = next((tables.CORNERS[c] for c in codes if c in tables.CORNERS), self.corners)
+        if tables.WORK & {*codes} or any(item.kind == "numbered" for item in items):
+            self.bars.pop("offset", None)
+        if "G53" in codes:
+            self.bars["offset"] = NO_OFFSET, "write G54 to G59 before the move"
+
+    def _move(self, item: gx.Item) -> None:
+        """Refuse a move while there is a reason for that."""
+        for message, hint in self.bars.values():
+            self.refuse(message, item, hint)
+
+    def _said(self, item: gx.Item) -> list[str]:
+        """Return the words that an item becomes."""
+        code = code_of(item)
+        if item.kind == "numbered":
+            return [self._work(item)]
+        if not code:
+            return [item.name + item.numbers[0]] if item.name != "D" else []
+        if code in tables.UNSAID or code == "G6":
+            return []
+        return [tables.OTHER.get(code, code)]
+
+    def _relative(self, items: Sequence[gx.Item], words: list[str]) -> tuple[list[str], list[str]]:
+        """Return the words of a block with what is incremental, and what stands behind it."""
+        marked = [item for item in items if item.kind == "incremental"]
+        if not marked or self.incremental:
+            return words, []
+        known = self.places.of(marked)
+        if known:
+            return [known.get(word[0], word) for word in words], []
+        absolute = [item for item in items if item.kind == "word" and item.name in tables.AXES]
+        if absolute:
+            what = f"{marked[0].name} counts from a place that the blocks before do not give"
+            hint = "write an I behind all coordinates of the block, or behind none"
+            self.refuse(what, marked[0], hint)
+        return ["G91", *(word for word in words if word != "G90")], ["G90"]
+
+    def _corner_again(self, item: gx.Item) -> list[str]:
+        """Return how corners are taken behind a block with G60."""
+        if not self.corners:
+            what = "G60 is for one block, and how corners are taken behind it is not known"
+            self.refuse(what, item, "write G5, G7 or G50 before")
+        return [self.corners] if self.corners != "G61" else []
+
+    def _dwell(self, items: Sequence[gx.Item]) -> str:
+        """Return the block of a dwell in seconds."""
+        names = sorted(code_of(item) or item.name for item in items)
+        if names != ["G4", "K"] or items[-1].name != "K":
+            self.refuse("G4 is read with its time in seconds, K, and nothing else", items[0])
+        return f"G4 P{items[-1].numbers[0]}"
+
+    # --- tools ---
+
+    def _changed(self, items: Sequence[gx.Item], moved: Sequence[gx.Item]) -> str:
+        """Take notice of T, D and M6, and return the block of the length that is in force then."""
+        words = {code_of(item) or item.name: item for item in items}
+        if len(words) < len(items):
+            raise self.refusal("GX203", "T, D or M6 stands here twice", items[-1])
+        for name in {"D", "M6"} & words.keys() if moved else ():
+            what = f"{name} beside a move: which is first is not certain"
+            self.refuse(what, words[name], ALONE)
+        if "T" in words:
+            self.tool, self.edge, self.changing = self._whole(words["T"]), "", True
+        if "D" in words:
+            self.edge = self._whole(words["D"])
+            if int(self.edge) > 1:
+                what = "a tool of the machine file has one length, that of D1"
+                self.refuse(f"D{self.edge} is not resolved: {what}", words["D"])
+        if "M6" in words:
+            self.in_spindle, self.tool, self.changing = self.tool, "", False
+            edge, self.edge = self.edge, ""
+            if not edge:
+                self.bars["length"] = NO_EDGE, "write D1 behind the tool change"
+            return self._length(edge, words["M6"]) if edge else ""
+        if "D" in words and self.changing:
+            self.bars["length"] = EDGE_EARLY, "write D beside M6 or behind it"
+        elif "D" in words:
+            return self._length(self.edge, words["D"])
+        return ""
+
+    def _turned(self, codes: Mapping[str, gx.Item], length: str) -> None:
+        """Take notice of planes in which the length of the tool may not be along Z."""
+        self.across = bool({"G18", "G19"} & {*codes}) if PLANES & {*codes} else self.across
+        self.long = length.startswith("G43") if length else self.long
+        if self.across and self.long and self.reading.control.get("tool-length-axis") != "Z":
+            self.bars["plane"] = ACROSS, ALONG
+        else:
+            self.bars.pop("plane", None)
+
+    def _whole(self, item: gx.Item) -> str:
+        """Return a number that is whole. Raises InputError."""
+        if not WHOLE.match(item.numbers[0]):
+            self.refuse(f"{item.name} has a number that is not whole", item)
+        return str(int(item.numbers[0]))
+
+    def _length(self, edge: str, item: gx.Item) -> str:
+        """Return the block that takes the length of the tool in the spindle, or none."""
+        self.bars.pop("length", None)
+        if edge == "0":
+            return "G49"
+        if self.in_spindle in ("", "0"):
+            what = "D is about the tool in the spindle, and which that is is not known"
+            self.refuse(what, item, "write the tool change before")
+        return f"G43 H{self.in_spindle}"
+
+    # --- statements ---
+
+    def _statement(self, items: Sequence[gx.Item]) -> list[str]:
+        """Return the blocks of a statement. Raises InputError."""
+        item = next(item for item in items if item.kind == "statement")
+        head, *rest = item.name.split()
+        name = " ".join([head, *rest])
+        inside = item.names[1:]
+        if len(items) > 1:
+            self.refuse(f"{name} is not resolved: it is read in a block of its own", item, ALONE)
+        if head == "#RTCP" and rest in (["ON"], ["OFF"]) and not inside:
+            return [self._tips(item, rest == ["ON"])]
+        if head == "#KIN" and rest == ["ID"]:
+            self._kinematics(item, inside)
+            return []
+        if head in tables.INERT or (head in tables.OFF and rest[:1] == ["OFF"]):
+            return []
+        what = tables.STATEMENTS.get(head, "it is not known here")
+        what = "this form of it is not known here" if head in ("#RTCP", "#KIN") else what
+        self.refuse(f"{name} is not resolved: {what}", item)
+
+    def _tips(self, item: gx.Item, on: bool) -> str:
+        """Return the code that follows the tip, or leaves it."""
+        if on:
+            self._move(item)
+            if self.taken_away:
+                self.refuse("#RTCP ON without kinematics: #KIN ID[0] has taken them away", item)
+        self.following = on
+        return "M128" if on else "M129"
+
+    def _kinematics(self, item: gx.Item, inside: Sequence[str]) -> None:
+        """Take notice of the kinematics that are chosen: those of the machine file are one."""
+        chosen = "".join(inside).strip("[] \t")
+        if len(inside) != 1 or not WHOLE.match(chosen):
+            self.refuse("#KIN ID is read with the number of the kinematics", item, "#KIN ID[1]")
+        if self.following:
+            self.refuse("#KIN ID while the control follows the tip", item, "write #RTCP OFF before")
+        if int(chosen) and self.kinematics not in ("", chosen):
+            what = f"#KIN ID[{chosen}] behind #KIN ID[{self.kinematics}]"
+            self.refuse(f"{what}: a machine file has one kinematics", item)
+        self.taken_away = not int(chosen)
+        self.kinematics = self.kinematics if self.taken_away else chosen

@@ -1,0 +1,102 @@
+"""Fagor CNC 8065 and 8070, mill: read, not written (`blocks.py` makes blocks of it).
+
+Sources: [post] the open post-processor of Autodesk for DMS routers with a Fagor; [8070] the control
+service of the 4DIAC runtime for the 8070; [stone] the open CAM of a bridge saw with a Fagor; [isg]
+infosys.beckhoff.com, TF5200, of a control whose words are near; [doc] public tables of the manuals
+of 8055 and 8065. What no source says is refused.
+
+| what | Fagor 8065 |
+|---|---|
+| motion at start | a parameter decides: an axis word before any motion code is refused |
+| `X10I` | incremental whatever G90 says [doc]; `X10 I5` and `X10I5` have a centre |
+| `X10I 5` | may be either: refused |
+| `X10I Y5` | X counts from the last coordinates in the program, which must be there; else refused |
+| `X=10` | the same as X10; names of more than a letter (`X1=10`) are refused |
+| `XP1`, `X[...]`, `V.A...`, P1=3, `$IF` | the control computes and decides: refused |
+| arc centre | from the start; with G6 from the work zero: both words, for one block [doc] |
+| arc centre, a word less | is 0 [doc] |
+| full circle | end repeated, or left out; with R refused |
+| helix | Z beside I and J; K beside them is a pitch: refused |
+| start and end radius | may differ by 0.01 mm, the usual value of a parameter |
+| R | an arc of less than half a circle, of more where it is negative |
+| polar words Q, R | refused |
+| G8, G9 | tangent arc, arc through three points: refused |
+| `G4 K2` | 2 seconds, alone in its block [post]; on an 8055 hundredths; other forms are refused |
+| G5, G7, G50, G61 | how corners are taken: G64, G61, G64, G64 of the blocks; G60 for one block |
+| G17, G18, G19 | planes; G20 gives the plane other axes: refused |
+| D1 in G18, G19 | length across the plane: refused without `[control] tool-length-axis = "Z"` |
+| G40 | reads; G41 and G42 take a radius, and a rule for corners, of the control: refused |
+| G53 | cancels the work offset up to the next G54 to G59 [post]: a move there is refused |
+| `#MCS` | moves to places of the machine: refused |
+| G54 to G59, `G159=1` to 6 | the same offsets: G159=1 is ORGT[1] [8070], and so is G54 [stone] |
+| G71 | millimetres |
+| G70 | inches: refused, as no source was found for the unit of feeds |
+| G80, G98, G99 | say nothing, as all cycles are refused |
+| G92, G93, G96 | refused: another zero, a time in place of the feed, a speed that follows an axis |
+| G10 to G14, G72, G73 | mirror, scale and turn: refused |
+| G43, G44, G49 | are of the 8055: refused |
+| tool change | `T5 M6`; it runs a program of the machine: where the axes stand is not known |
+| tool length | `D1` is that of the tool in the spindle, whatever its number [post]; D0 is none |
+| D1 with T0, or with no tool change before | refused |
+| D2 and more | another edge of the tool: refused |
+| no D behind M6 | which is in force is not certain: moves are refused up to a D |
+| D between T and M6 | holds from M6 on; moves before M6 are refused |
+| T, M6, D beside a move | M6 and D: refused |
+| `#RTCP ON`, `#RTCP OFF` | the control follows the tip, or not; other forms are refused |
+| `#KIN ID[1]` | chooses what is in the machine file; while following, or a second one: refused |
+| `#TLC ON [2]` | a tool that is 2 longer than the program was made for [isg]: refused |
+| `#CS`, `#ACS`, `#CSROT`, `#TOOL ORI`, `#SELECT ORI` | inclined planes: refused, but for OFF |
+| `#TRAFO ON` | of ISG and Beckhoff; there D names a tool, and G8 and G9 are no arcs: refused |
+| `#HSC`, `#ROUNDPAR`, `#SLOPE`, `#FLUSH`, `#MSG` | move nothing, and are left out |
+| `#TIME`, and all else behind `#` | refused |
+| `;`, `( )`, `(` to the end of the line | comments |
+| `(IF`, `(CALL`, `(P1=3` | statements of an 8055: refused |
+| `%name` | the name of the program, at its head; `%L` and another program are refused |
+| `[NAME]`, `N10:` | labels: kept out, as nothing jumps |
+| `/` | a switch of the control decides; `/1` is refused |
+| rotary axes | are taken to count on, and to go where they are told: no shortest way |
+| after M2, M30 | nothing is executed |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import gcxform as gx
+from gcxform import vocabulary as v
+from gcxform_plugins.dialects.fagor.blocks import Blocks
+
+
+class Fagor(gx.Dialect):
+    """Fagor 8065 and 8070, mill: programs are read, and written for others."""
+
+    name = "fagor"
+    axes = "XYZABCUVW"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **v.ISO,
+        "G95": gx.Code("feed-mode"),
+        "G97": v.inert("spindle-mode", "S"),
+        **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
+        **{code: v.inert("path", "PQ", "PQ") for code in ("G61", "G64")},
+        "G43": v.frame("tool-length", "length", "H"),
+    }
+    m_codes: ClassVar[Mapping[int, gx.MCode]] = {
+        **v.ISO_M,
+        6: gx.MCode("tool", act="change-tool", loses_position=True),
+        128: gx.MCode("tip", barrier=v.FOLLOWING),
+        129: gx.MCode("tip"),
+    }
+    translator = Blocks
+    m_order_chosen = True
+    chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        "ABC", "rotary axes go where they are told, whichever way is shorter"
+    )
+    tip_switches: ClassVar[Mapping[str, str]] = {"tip-on": "M128", "tip-off": "M129"}
+    spelled: ClassVar[Mapping[str, str]] = {"M128": "#RTCP ON", "M129": "#RTCP OFF"}
+    has_percent = False
+    has_program_number = False
+    change_clears_feed = True
+    arc_rule = gx.ArcRule(absolute=0.01)
+    numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
+    words = "DFHIJKNPQRST"

@@ -1,0 +1,1 @@
+"""HEIDENHAIN Klartext: its dialect, and its language as blocks of words."""

@@ -1,0 +1,208 @@
+"""Cycles of a TNC that are certain: datum shift, dwell, tolerance, and holes in plain strokes."""
+
+from __future__ import annotations
+
+import re
+from decimal import Decimal
+from typing import Any
+
+import gcxform as gx
+from gcxform_plugins.dialects.heidenhain.labels import Labels
+from gcxform_plugins.dialects.heidenhain.words import LINEAR, exact, plain, written
+
+VALUE = r"[+-]?(?:\d{1,9}(?:[.,]\d{0,9})?|[.,]\d{1,9})"
+DEFINED = re.compile(r"CYCLE?\s+DEF\s*(\d{1,4})(?:\.(\d{1,2}))?(?![\d.])\s*(.*?)\s*~?\s*")
+SHIFT_LINE = re.compile(r"[\s\d/]*CYCLE?\s+DEF\s*7\.[1-9]", re.IGNORECASE)
+SHIFTED = re.compile(rf"([XYZABCUVW])\s*({VALUE})")
+LAST_VALUE = re.compile(rf"(?:[A-Z][A-Z. -]*?)?\s*({VALUE})")
+PARAMETER = re.compile(rf"Q(\d{{1,4}})\s*=\s*({VALUE})(?![\w.,])")
+PARAMETER_LINE = re.compile(r"[\s\d]*Q[2-4]\d\d\s*=")
+REST_OF_HOLES = {395: "a depth of the tip or of the full diameter", 210: "a dwell above"}
+HOLE = (200, 201, 206, 202, 203, 204, 211)
+PECKS = ("DIST", "DEPTH", "PECKING DEPTH", "DWELL", "F")
+CANCELS = {
+    **{"8.0": ("MIRROR IMAGE", "SPIEGELN"), "8.1": ("",)},
+    **{"10.0": ("ROTATION", "DREHUNG"), "10.1": ("ROT+0", "ROT +0", "ROT+0.000")},
+    **{"11.0": ("SCALING", "MASSFAKTOR"), "11.1": ("SCL 1", "SCL1", "SCL 1.000000")},
+}
+"""Lines of cycles that turn, mirror and scale, where they say that nothing is."""
+LEAVE = "if all of the program counts from it, leave this block out: G54 stands for it then"
+ALONE = "let the CAM write the hole as plain moves"
+
+
+class Cycles(Labels):
+    """Reads cycles, and writes those that are called as moves."""
+
+    def __init__(self, *program: Any) -> None:
+        super().__init__(*program)
+        self.shift = dict.fromkeys(LINEAR, "0")
+        self.new_shift: dict[str, str] = {}
+        self.hole: dict[int, Decimal] = {}
+        self.pecks: dict[int, Decimal] = {}
+        self.cycle = 0
+
+    def define(self, item: gx.Item) -> list[str]:
+        """CYCL DEF: what a cycle is told. Raises InputError for those that are not resolved."""
+        match = DEFINED.fullmatch(item.name)
+        if match is None:
+            return self._call(item)
+        number, part, text = int(match[1]), int(match[2] or 0), match[3]
+        if number == 7:
+            return self._shift(item, part, text)
+        if number == 9:
+            return self._dwell(item, part, text)
+        if number == 32 or text in CANCELS.get(f"{number}.{part}", ()):
+            return []
+        if number == 247:
+            return self._preset(item, self._parameters(text))
+        if number == 200:
+            self.hole, self.cycle = self._parameters(text), 200
+            return []
+        if number == 1:
+            return self._peck(item, part, text)
+        self.refuse(f"CYCL DEF {number} {text}".rstrip() + " is a cycle of the control", item)
+
+    def _call(self, item: gx.Item) -> list[str]:
+        if re.fullmatch(r"CYCL\s+CALL\s*", item.name):
+            return self.called(item)
+        self.refuse(f"{item.name.strip()[:40]} is not resolved", item)
+
+    def _value(self, item: gx.Item, text: str) -> str:
+        match = LAST_VALUE.fullmatch(text)
+        if match is None:
+            self.refuse(f"{item.name.strip()} does not say a number", item)
+        return plain(match[1])
+
+    def _dwell(self, item: gx.Item, part: int, text: str) -> list[str]:
+        """Cycle 9: seconds."""
+        return [f"G4 P{self._value(item, text)}"] if part == 1 else []
+
+    # --- where the zero is ---
+
+    def _shift(self, item: gx.Item, part: int, text: str) -> list[str]:
+        """Cycle 7: the zero is elsewhere, behind the last line of the cycle."""
+        if part == 0:
+            self.new_shift = {}
+            return []
+        match = SHIFTED.fullmatch(text)
+        if match is None:
+            self.refuse(f"a datum shift by {text}: a table, a parameter or steps", item)
+        self.new_shift[match[1]] = plain(match[2])
+        ahead = next((text for text in self.lines[self.at :] if text.strip()), "")
+        if SHIFT_LINE.match(ahead):
+            return []
+        return self._shifted(item, self.new_shift)
+
+    def _shifted(self, item: gx.Item, given: dict[str, str]) -> list[str]:
+        """Return the block of a shift, if it is another one than that in force."""
+        if any(float(n) for axis, n in given.items() if axis not in LINEAR):
+            self.refuse("a datum shift of other axes than X, Y and Z", item)
+        old = self.shift
+        new = {axis: given.get(axis, old[axis]) for axis in LINEAR}
+        by = {axis: Decimal(new[axis]) - Decimal(old[axis]) for axis in LINEAR}
+        if not any(by.values()):
+            return []
+        if any(float(old[axis]) and axis not in given for axis in LINEAR):
+            self.refuse("a datum shift that does not name an axis that is shifted", item)
+        self.refuse_beside("a datum shift", item)
+        if self.following:
+            self.refuse("a datum shift while the control follows the tip", item)
+        for axis in self.place.keys() & by.keys():
+            self.place[axis] = exact(Decimal(self.place[axis]) - by[axis])
+        self.shift, self.pole, self.polar = new, {}, None
+        return ["G52 " + " ".join(f"{axis}{number}" for axis, number in new.items())]
+
+    def _preset(self, item: gx.Item, told: dict[int, Decimal]) -> list[str]:
+        """Cycle 247: the preset; the one set by hand, if all of the program counts from it."""
+        if told.get(339) != 0 or len(told) > 1:
+            self.refuse("a preset of the table: only 0, which is set by hand, is read", item, LEAVE)
+        if self.moved or any(float(n) for n in self.shift.values()):
+            self.refuse("another preset in the middle of a program", item)
+        self.lose()
+        return []
+
+    def _parameters(self, text: str) -> dict[int, Decimal]:
+        """Return the parameters of a cycle, from this line or from those behind it."""
+        parts = [text]
+        while self.lines[self.at - 1].rstrip().endswith("~") and self.at < len(self.lines):
+            if not PARAMETER_LINE.match(self.lines[self.at].upper()):
+                break
+            parts.append(self.lines[self.at].upper().partition(";")[0])
+            self.at += 1
+        found = " ".join(parts)
+        return {int(m[1]): Decimal(plain(m[2])) for m in PARAMETER.finditer(found)}
+
+    # --- holes ---
+
+    def called(self, item: gx.Item) -> list[str]:
+        """M99 and CYCL CALL: the hole where the tool stands."""
+        self.refuse_beside("a cycle", item)
+        if self.following:
+            self.refuse("a cycle while the control follows the tip", item)
+        if self.cycle == 200:
+            return self._hole(item)
+        if self.cycle == 1:
+            return self._pecked(item)
+        raise self.refusal("GX215", "no cycle that is known here has been defined", item)
+
+    def _hole(self, item: gx.Item) -> list[str]:
+        """Cycle 200 in one stroke: down at Q206, dwell Q211, up in rapid."""
+        told = {**dict.fromkeys(HOLE, None), **self.hole}
+        if None in told.values():
+            raise self.refusal("GX215", "cycle 200 lacks a parameter", item)
+        for number, why in REST_OF_HOLES.items():
+            if told.pop(number, 0):
+                raise self.refusal("GX215", f"cycle 200 with Q{number}, {why}", item, ALONE)
+        if len(told) > len(HOLE):
+            raise self.refusal("GX215", "cycle 200 with parameters that are not known", item)
+        clear, depth, feed, peck, surface, high, dwell = (self.hole[n] for n in HOLE)
+        if depth >= 0 or peck < -depth or self.inch:
+            message = "cycle 200 in several strokes, upwards, or in inches"
+            raise self.refusal("GX215", message, item, ALONE)
+        if clear < 0 or 0 < high < clear:
+            raise self.refusal("GX215", "cycle 200 with Q204 below Q200", item, ALONE)
+        up = exact(surface + clear)
+        blocks = [f"G0 Z{up}", *self._stroke(surface + depth, feed, dwell)]
+        return self._out(blocks, exact(surface + high) if high else up)
+
+    def _stroke(self, bottom: Decimal, feed: Decimal, dwell: Decimal) -> list[str]:
+        down = f"G1 Z{exact(bottom)}{self.feed_word(exact(feed))}"
+        return [down, f"G4 P{exact(dwell)}"] if dwell else [down]
+
+    def _out(self, blocks: list[str], height: str) -> list[str]:
+        """Return blocks with the way out; which feed is in force behind a cycle is not certain."""
+        self.place["Z"], self.polar = height, None
+        self.motion, self.feed_lost = "G0", True
+        self.moved.add("Z")
+        return [*blocks, f"G0 Z{height}"]
+
+    def _peck(self, item: gx.Item, part: int, text: str) -> list[str]:
+        """Cycle 1: what it is told, one number in a line."""
+        if part == 0:
+            self.pecks, self.cycle = {}, 1
+        elif part <= len(PECKS):
+            self.pecks[part] = Decimal(self._value(item, text))
+        else:
+            self.refuse(f"CYCL DEF 1.{part}", item)
+        return []
+
+    def _pecked(self, item: gx.Item) -> list[str]:
+        """Cycle 1: strokes from where the tool stands, out in rapid behind each of them."""
+        if len(self.pecks) < len(PECKS):
+            raise self.refusal("GX215", "cycle 1 lacks a line", item)
+        clear, depth, peck, dwell, feed = (self.pecks[n] for n in range(1, 6))
+        if depth >= 0 or not peck or self.inch:
+            raise self.refusal("GX215", "cycle 1 upwards, without strokes, or in inches", item)
+        top = self.stands_at("Z", item, "cycle 1")
+        surface, total, peck = top - abs(clear), -depth, abs(peck)
+        before = min(Decimal("0.6") if total <= 30 else total / 50, Decimal(7))
+        reached, blocks = Decimal(0), []
+        while reached < total:
+            if reached:
+                near = surface - reached + before
+                if near > top:
+                    raise self.refusal("GX215", "cycle 1 stops above where it starts", item)
+                blocks += [f"G0 Z{exact(top)}", f"Z{written(near)}"]
+            reached = min(reached + peck, total)
+            blocks += self._stroke(surface - reached, feed, dwell if reached == total else top * 0)
+        return self._out(blocks, exact(top))

@@ -1,0 +1,82 @@
+"""HEIDENHAIN TNC 640 and iTNC 530 in Klartext.
+
+Programs are turned into blocks of words: `gcxform_plugins/languages`. Where a page of a manual is
+named, that is where it is said; [K] is known from practice only.
+
+| what | TNC | said |
+|---|---|---|
+| F | stays in force; FMAX is for its block only, and F before it holds again | [K] |
+| F in inches | tenths of an inch per minute; degrees where only rotary axes move | 640, p. 343 |
+| FAUTO | the feed of the last TOOL CALL | [K] |
+| `IX+5` | from where X stands; others in the block may be absolute | TNC 407, p. 5-44 |
+| CC | `IX` from the last place of the tool, nothing: that place | TNC 360, p. 5-16 |
+| C | about CC; the end may be 0.016 mm off; end as start: a full circle | TNC 320, p. 155 |
+| CR | R below 0: more than half a turn | iTNC 530, p. 207 |
+| DR+ | counter-clockwise, from X to Y | iTNC 530, p. 207 |
+| CP | IPA is the whole angle, of many turns in a helix; its sign is that of DR | TNC 430, p. 153 |
+| polar angles | from +X towards +Y | TNC 310 Pilot, p. 8 |
+| arcs outside XY, helices by C | refused: helices are polar only | TNC 430, p. 153 |
+| RL, RR | the contour, as G41 and G42: `cutter-comp` must be told corners and entry | 640, p. 201 |
+| RL, RR, R0 | only in lines with X or Y; much is refused while on | 620 ISO, p. 154 |
+| RND, CHF, APPR, DEP, CT, LN, FK, PLANE | refused | |
+| M3 M4 M8 M13 M14 | at the start of their block | TNC 155, p. 15 |
+| M0 M2 M5 M6 M9 M30 | at the end of their block; M0 stops the spindle | TNC 155, p. 15 |
+| M91 | coordinates of the machine, without the tool length | TNC 426 B, p. 122 |
+| M92, M94, M116, M140, M144 and their like | refused | |
+| M126 | shorter way on axes that show less than 360: from 180 refused, or unknown | 620, p. 566 |
+| M128 | from the start of its block; its F limits other moves | TNC 410, p. 169 |
+| M129 | from the end of its block | TNC 410, p. 169 |
+| M91, TOOL CALL | are refused under M128, as the manual asks | 620, p. 340 |
+| F TCP, AXIS POS | feed of the tip, angles of axes: as M128; F CONT, SPAT refused | 640, p. 400 |
+| PATHCTRL AXIS | tip on a line, axes in proportion; VECTOR is refused | iTNC 530, p. 516 |
+| TOOL CALL | tool, length, S, F; without number S and F only; DL, DR but 0 refused | [K] |
+| TOOL DEF | no move; must not contradict the machine file | iTNC 530, p. 183 |
+| tool 0 | has no length | 640, p. 170 |
+| CALL LBL n REP k | k more runs; `REP 10/10` is how old programs count | [K] |
+| CALL LBL n | to LBL 0; 8 deep | TNC 370, p. 6-9 |
+| END PGM | ends the program, as M2 and M30 do | [K] |
+| cycle 7 | the zero is elsewhere; steps, tables, one of several axes: refused | [K] |
+| cycle 9 | a dwell in seconds | 640, p. 631 |
+| cycle 32 | tolerance: changes no position that is programmed | |
+| PLANE RESET STAY, ROT+0, SCL 1 | cancel what is refused here | [K] |
+| cycle 247 | preset 0, before the first move; others are refused | [K] |
+| cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |
+| cycle 200 | in one stroke; the feed behind a cycle must be programmed | [K] |
+| other cycles, Q parameters, FN, CALL PGM | refused | |
+| a number of more than 20 characters | refused | |
+| a file without END PGM, M2 or M30 | refused: it breaks off | |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import gcxform as gx
+from gcxform import vocabulary as v
+from gcxform_plugins.dialects.heidenhain.klartext import Klartext
+
+
+class Heidenhain(gx.Dialect):
+    """HEIDENHAIN TNC 640 and iTNC 530, Klartext, mill: read only."""
+
+    name = "heidenhain"
+    axes = "XYZABCUVW"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **v.ISO,
+        **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
+        "G43": v.frame("tool-length", "length", "H"),
+        "G52": v.frame("non-modal", "local", v.AXES),
+        "G53": v.frame("non-modal", "machine"),
+    }
+    m_codes: ClassVar[Mapping[int, gx.MCode]] = {
+        **v.ISO_M,
+        6: gx.MCode("tool", loses_position=True),
+        128: gx.MCode("tip", barrier=v.FOLLOWING),
+        129: gx.MCode("tip"),
+    }
+    translator = Klartext
+    follows_at_start = False  # a new program resets M128: TNC 410/426/430, ISO, p. 169
+    tip_switches: ClassVar[Mapping[str, str]] = {"tip-on": "M128", "tip-off": "M129"}
+    turns_address = "P"
+    arc_rule = gx.ArcRule(absolute=0.016)

@@ -1,0 +1,217 @@
+"""Programs of a TNC: their frame, tools, functions and labels, statement by statement."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from decimal import Decimal
+from typing import Any
+
+import gcxform as gx
+from gcxform_plugins.dialects.heidenhain.cycles import VALUE, Cycles
+from gcxform_plugins.dialects.heidenhain.words import exact, plain
+
+BEGIN = re.compile(r"BEGIN\s+PGM\b.*?\b(MM|INCH)\s*")
+END = re.compile(r"END\s+PGM\b(?:.*?\b(MM|INCH))?.*")
+TOOL = re.compile(rf"TOOL\s+DEF\s*(\d{{1,9}})(?:\s+L\s*({VALUE}))?(?:\s+R\s*({VALUE}))?\s*")
+TCPM = "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"
+RESET = "FUNCTION RESET TCPM"
+OTHERWISE = {
+    "F CONT": "F is then that of the axes, and not that of the tip",
+    "AXIS SPAT": "angles are then those of space, and not those of the axes",
+    "PATHCTRL VECTOR": "the tool axis then stays in a plane; write PATHCTRL AXIS",
+    "REFPNT": "the control then follows another point of the tool",
+}
+LONGEST_TOOL = 9  # digits
+MM = 25.4  # of an inch
+
+
+class Klartext(Cycles):
+    """Turns the statements of a TNC into blocks of words."""
+
+    def __init__(self, *program: Any) -> None:
+        super().__init__(*program)
+        self.begun = False
+        self.axis = ""
+        self.tool = ""
+        self.statements: dict[str, Callable[[Sequence[gx.Item]], list[str]]] = {
+            "L": self.straight,
+            "LP": self.polar_line,
+            "C": self.circle,
+            "CP": self.polar_circle,
+            "CR": self.by_radius,
+            "centre": self.centre,
+            "tool_call": self.tool_call,
+            "stop": self.stop,
+            "m": self.functions,
+            "text": self.text,
+        }
+
+    def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
+        """Return the blocks of a statement. Block numbers count nothing."""
+        first = items[0]
+        if first.kind == "seq":
+            items = items[1:]
+            if not items:
+                return ()
+            first = items[0]
+        kind = first.kind
+        if kind == "structure":
+            words = self.lines[self.line][slice(*first.place)].lstrip("* -")
+            return [f"({words.strip().translate(BRACKETS)})"]
+        if not self.begun and not (kind == "text" and first.name.startswith("BEGIN")):
+            raise self.refusal("GX101", "a program begins with BEGIN PGM", first)
+        blocks = self.statements[first.name if kind == "path" else kind](items)
+        if self.over:
+            self.at = len(self.lines)
+        return blocks
+
+    def closing(self) -> Iterable[str]:
+        """Return nothing. Raises InputError for a program that breaks off."""
+        if self.begun and not self.over:
+            raise self.refusal("GX222", "the program breaks off: END PGM is missing")
+        return ()
+
+    # --- statements ---
+
+    def text(self, items: Sequence[gx.Item]) -> list[str]:
+        """Return the blocks of what is no path function."""
+        item = items[0]
+        name = item.name
+        word = re.match(r"TOOL|[A-Z]+", name)
+        assert word is not None
+        read = {
+            "BEGIN": self._begin,
+            "END": self._end,
+            "BLK": _nothing,
+            "TOOL": self._tool_def,
+            "CYCL": self.define,
+            "CYCLE": self.define,
+            "LBL": self.label,
+            "CALL": self.call_label,
+            "FUNCTION": self._function_of,
+        }.get(word[0])
+        if read is not None:
+            return read(item)
+        if name.split() == ["PLANE", "RESET", "STAY"]:  # no plane is read that it could end
+            return []
+        if word[0] in ("FN", "Q", "QL", "QR", "QS"):
+            self.refuse("Q parameters: nothing is computed here", item)
+        self.refuse(f"{name.strip()[:40]} is not resolved", item)
+
+    def _begin(self, item: gx.Item) -> list[str]:
+        match = BEGIN.fullmatch(item.name)
+        if match is None or self.begun:
+            raise self.refusal("GX101", "BEGIN PGM stands once, and ends with MM or INCH", item)
+        self.begun, self.inch = True, match[1] == "INCH"
+        for axis, value in self.reading.start.items():
+            scale = MM if self.inch and axis not in "ABC" else 1.0
+            self.place[axis] = exact(Decimal(repr(value / scale)))
+        return [f"{'G20' if self.inch else 'G21'} G17 G90 G94"]
+
+    def _end(self, item: gx.Item) -> list[str]:
+        match = END.fullmatch(item.name)
+        if match is None or (match[1] and (match[1] == "INCH") != self.inch):
+            raise self.refusal("GX101", "this is not the END PGM of this program", item)
+        if self.calls:
+            raise self.refusal("GX223", "a subprogram does not end with LBL 0", item)
+        self.over = True
+        return ["M2"]
+
+    def stop(self, items: Sequence[gx.Item]) -> list[str]:
+        """STOP: the program waits."""
+        return self._all(self.said(items[1:]), "M0")
+
+    def functions(self, items: Sequence[gx.Item]) -> list[str]:
+        """M functions in a block of their own."""
+        said = self.said(items)
+        wrong = said.machine or next(iter(said.axes), None)
+        if wrong or said.radius or said.sense:
+            raise self.refusal("GX101", "coordinates without a path function", wrong)
+        self.keep_side(said)
+        return self._all(said, said.feed.strip())
+
+    # --- tools ---
+
+    def tool_call(self, items: Sequence[gx.Item]) -> list[str]:
+        """TOOL CALL: the tool with its length, then speed and feed."""
+        if self.following:
+            self.refuse(
+                "TOOL CALL while the control follows the tip", items[0], "write M129 before"
+            )
+        self.tool, self.tool_feed = "", ""
+        words = "".join(self._tool_word(item) for item in items[1:])
+        if self.axis not in ("Z", "") or (self.tool and not self.axis):
+            self.refuse("a tool along another axis than Z", items[0])
+        blocks = self._changed(items[0]) if self.tool else []
+        return [*blocks, words.strip()] if words else blocks
+
+    def _tool_word(self, item: gx.Item) -> str:
+        """Take a word of TOOL CALL, and return what it is in the block behind the tool change."""
+        kind = item.kind
+        if item.name.startswith('"'):
+            self.refuse("a tool by its name", item)
+        if kind == "number" and self.tool:
+            raise self.refusal("GX203", "a tool stands here twice", item)
+        if kind == "number":
+            self.tool = self._tool_number(item)
+        elif kind == "tool_axis":
+            self.axis = item.name
+        elif kind == "speed":
+            return f" S{self.number_of(item)}"
+        elif kind == "feed":
+            word = self.feed_word(self.number_of(item))
+            self.tool_feed = self.feed
+            return word
+        elif kind == "delta":
+            if float(self.number_of(item)):
+                self.refuse(f"{item.name} changes the tool by what no table has", item)
+        else:
+            raise self.refusal("GX101", f"{item.name[:20]!r} does not fit here", item)
+        return ""
+
+    def _tool_number(self, item: gx.Item) -> str:
+        text = self.number_of(item)
+        if not text.isdigit() or len(text) > LONGEST_TOOL:
+            self.refuse(f"a tool with the number {text}", item)
+        return str(int(text))
+
+    def _changed(self, item: gx.Item) -> list[str]:
+        """Return the blocks of a tool change; tool 0 has no length."""
+        self.refuse_beside("TOOL CALL", item)
+        tool = self.in_spindle = self.tool
+        self.lose()
+        return [f"T{tool} M6", "G49" if tool == "0" else f"G43 H{tool}"]
+
+    def _tool_def(self, item: gx.Item) -> list[str]:
+        """TOOL DEF: prepares a tool; what it says of it must be what the machine file says."""
+        match = TOOL.fullmatch(item.name)
+        if match is None:
+            self.refuse(f"{item.name.strip()} is not resolved", item)
+        known = self.reading.tools.get(int(match[1]))
+        if known is not None:
+            unit = MM if self.inch else 1.0
+            for text, value, what in ((match[2], known.length, "L"), (match[3], known.radius, "R")):
+                if text and abs(float(plain(text)) * unit - value) > 1e-9:
+                    message = f"{what} of tool {match[1]} is another one in the machine file"
+                    self.refuse(message, item, "give the tool its measures in one place")
+        return []
+
+    # --- following the tip ---
+
+    def _function_of(self, item: gx.Item) -> list[str]:
+        """Follow the tip by FUNCTION TCPM where that is what M128 does."""
+        said = " ".join(item.name.split())
+        if said in (RESET, TCPM):
+            self.refuse_beside(said, item)
+            return [*self.switch(said == TCPM)]
+        why = next((why for words, why in OTHERWISE.items() if words in said), "")
+        self.refuse(f"{said} is not resolved" + (f": {why}" if why else ""), item)
+
+
+BRACKETS = str.maketrans("()", "[]")
+
+
+def _nothing(item: gx.Item) -> list[str]:
+    """BLK FORM: the blank, which is only drawn."""
+    return []

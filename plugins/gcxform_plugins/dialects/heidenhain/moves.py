@@ -1,0 +1,302 @@
+"""Path functions of a TNC: lines, circles and polar coordinates as G0 to G3."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from decimal import Decimal
+from math import atan2, ceil, cos, degrees, hypot, radians, sin
+
+import gcxform as gx
+from gcxform_plugins.dialects.heidenhain.positioning import Said, Saying
+from gcxform_plugins.dialects.heidenhain.words import ROTARY, exact, written
+
+TURN = 360.0
+SIDES = {"RL": "G41", "RR": "G42"}
+LEAST_ANGLE = 1e-4  # degrees, the last decimal of the control: less is neither an arc nor a turn
+
+
+def around(angle: float) -> tuple[float, float]:
+    """Return cosine and sine of an angle (degrees), exact for quarters of a turn."""
+    quarters = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
+    known = quarters.get(angle % TURN)
+    return known or (cos(radians(angle)), sin(radians(angle)))
+
+
+class Moves(Saying):
+    """Turns positioning blocks into moves."""
+
+    def straight(self, items: Sequence[gx.Item]) -> list[str]:
+        """L: a line to coordinates, or to a place of the machine."""
+        said = self.said(items[1:])
+        if said.machine:
+            return self._all(said, self._in_machine(said, said.machine))
+        words, ends = "", {}
+        for item in said.axes:
+            axis, number = self.reached(item)
+            if axis in ends or axis[0] == "P":
+                raise self.refusal("GX203", f"{item.name} does not fit into an L block", item)
+            ends[axis] = number
+            words += f" {axis}{number}"
+        return self._all(said, self._straight(said, ends, words))
+
+    def _straight(self, said: Said, ends: dict[str, str], words: str) -> str:
+        """Return the block of a line to the ends of axes."""
+        if not ends:
+            self.keep_side(said)
+            return said.feed.strip()
+        if not ends.keys().isdisjoint(ROTARY):
+            self._check_turning(said, ends)
+        if said.radius or said.sense:
+            raise self.refusal("GX203", "R and DR belong to circles")
+        code = "G0" if said.rapid else "G1"
+        if code == "G1":
+            self._check_feed()
+        beside = self._beside(said, ends)
+        block = f"{self.moving(code)}{words}{said.feed}".lstrip()
+        self.place.update(ends)
+        self.moved.update(ends)
+        if not {"X", "Y"}.isdisjoint(ends):
+            self.polar = None
+        return f"{beside} {block}" if beside else block
+
+    def _beside(self, said: Said, ends: dict[str, str]) -> str:
+        """Return the code with which radius compensation begins or ends in a line."""
+        if said.side is None:
+            return ""
+        side = SIDES.get(said.side.name, "")
+        if side == self.side:
+            return ""
+        if {"X", "Y"}.isdisjoint(ends) or said.machine or (side and self.side):
+            name = said.side.name
+            self.refuse(f"{name} here: the side changes in lines in X and Y, by R0", said.side)
+        if self.following or self.in_spindle in ("", "0"):
+            self.refuse("radius compensation without a tool, or under M128", said.side)
+        self.side = side
+        return f"{side} D{self.in_spindle}" if side else "G40"
+
+    def keep_side(self, said: Said) -> None:
+        """Refuse a change of sides in a block that is no line in X and Y. Raises InputError."""
+        if said.side is not None and SIDES.get(said.side.name, "") != self.side:
+            name = said.side.name
+            self.refuse(f"{name} here: the side changes in lines in X and Y, by R0", said.side)
+
+    def _check_feed(self) -> None:
+        if self.feed_lost:
+            message = "behind a cycle it is not certain which feed is in force"
+            raise self.refusal("GX204", message, None, "give F in this block")
+
+    def _check_turning(self, said: Said, ends: dict[str, str]) -> None:
+        """Refuse turns of which it is not certain how far they go, or how fast."""
+        if self.shortest:
+            for axis in ROTARY:
+                before, after = self.place.get(axis), ends.get(axis)
+                if after and before is None and not said.rapid:
+                    message = f"M126: the shorter way of {axis} from where it is not known to stand"
+                    self.refuse(message, None, f"turn {axis} in a rapid before")
+                if after and before and abs(Decimal(after) - Decimal(before)) >= 180:
+                    message = f"M126: {axis} goes the shorter way where it shows less than 360"
+                    self.refuse(message, None, "let the CAM write turns below 180 degrees")
+        alone = all(axis in ROTARY for axis in ends)
+        if self.inch and alone and not said.rapid:
+            self.refuse("a feed in degrees in a program in inches", None)
+
+    def _in_machine(self, said: Said, code: gx.Item) -> str:
+        """M91: the coordinates of the machine, which leave the tool out."""
+        if self.following:
+            self.refuse("M91 while the control follows the tip", code, "write M129 before")
+        self.keep_side(said)
+        if said.radius or said.sense:
+            raise self.refusal("GX203", "R and DR belong to circles")
+        words = ""
+        for item in said.axes:
+            if item.name[0] in "IP":
+                self.refuse(f"{item.name} counts from the last block with M91", item)
+            words += f" {item.name}{self.number_of(item)}"
+            self.lose(item.name)
+            self.moved |= {item.name} & set(ROTARY)
+        if not said.rapid:
+            self._check_feed()
+        if not words:
+            return said.feed.strip()
+        self.motion = "G0" if said.rapid else "G1"
+        return f"G53 {self.motion}{words}{said.feed}"
+
+    def _all(self, said: Said, block: str) -> list[str]:
+        """Return a block with those of M functions before and behind it."""
+        if said.leaves:
+            self.switch(False)
+        blocks = [*said.before, *([block] if block else ()), *said.after]
+        if said.changes:
+            self.lose()
+        if said.calls:
+            blocks += self.called(said.calls)
+        if said.end:
+            self.over = True
+            blocks.append(said.end)
+        return blocks
+
+    def called(self, item: gx.Item) -> list[str]:
+        """Return the blocks of the cycle that is called."""
+        raise NotImplementedError
+
+    # --- circles ---
+
+    def centre(self, items: Sequence[gx.Item]) -> list[str]:
+        """CC: the centre of circles, and the pole of polar coordinates."""
+        pole = {}
+        for item in items[1:]:
+            axis, number = self.reached(item)
+            if axis not in "XY" or axis in pole:
+                self.refuse(f"CC with {item.name}: only circles in X and Y are read", item)
+            pole[axis] = number
+        if not pole:
+            pole = {axis: exact(self.stands_at(axis, items[0])) for axis in "XY"}
+        if len(pole) < 2:
+            self.refuse("CC with one coordinate", items[0], "write both")
+        self.pole, self.polar = pole, None
+        return []
+
+    def circle(self, items: Sequence[gx.Item]) -> list[str]:
+        """C: a circle about CC; it ends where it starts if no end is given."""
+        said = self.said(items[1:])
+        ends = self._ends(said, "XY")
+        return self._all(said, self._arc(said, items[0], ends))
+
+    def by_radius(self, items: Sequence[gx.Item]) -> list[str]:
+        """CR: a circle by its radius; below 0 it is the longer way."""
+        said = self.said(items[1:])
+        if not said.radius:
+            raise self.refusal("GX303", "CR without a radius", items[0])
+        ends = self._ends(said, "XY")
+        if not ends:
+            raise self.refusal("GX302", "CR cannot end where it starts", items[0])
+        words = f" R{said.radius}"
+        said.radius = ""
+        return self._all(said, self._arc(said, items[0], ends, words))
+
+    def _ends(self, said: Said, allowed: str) -> dict[str, str]:
+        ends: dict[str, str] = {}
+        for item in said.axes:
+            axis, number = self.reached(item)
+            if axis in ends or axis not in allowed:
+                message = f"{item.name} in a circle: only those in X and Y are read"
+                self.refuse(message, item)
+            ends[axis] = number
+        return ends
+
+    def _arc(self, said: Said, path: gx.Item, ends: dict[str, str], words: str = "") -> str:
+        """Return the block of an arc; `words` say what it is like, or it is about the pole."""
+        if not said.sense:
+            raise self.refusal("GX213", f"{path.name} without DR+ or DR-", path)
+        self.keep_side(said)
+        if said.rapid or said.machine or said.radius:
+            raise self.refusal("GX213", f"{path.name} with FMAX, M91 or R", path)
+        self._check_feed()
+        start = {axis: self.stands_at(axis, path) for axis in "XY"}
+        if not words:
+            pole = self._pole(path)
+            words = "".join(
+                f" {letter}{exact(Decimal(pole[axis]) - start[axis])}"
+                for axis, letter in (("X", "I"), ("Y", "J"))
+            )
+        self.place.update(ends)
+        self.moved.update("XY", ends)
+        self.polar = None
+        to = "".join(f" {axis}{self.place[axis]}" for axis in ("X", "Y", *ends.keys() - {"X", "Y"}))
+        return f"{self.moving(said.sense)}{to}{words}{said.feed}".lstrip()
+
+    def _pole(self, path: gx.Item) -> dict[str, str]:
+        if not self.pole:
+            raise self.refusal("GX213", f"{path.name} needs a CC before it", path)
+        return self.pole
+
+    # --- polar coordinates ---
+
+    def polar_line(self, items: Sequence[gx.Item]) -> list[str]:
+        """LP: a line to polar coordinates about CC."""
+        said, path = self.said(items[1:]), items[0]
+        pole = self._pole(path)
+        given, ends = self._polar_words(said)
+        if said.machine:
+            self.refuse("LP with M91", said.machine)
+        radius = given.get("PR")
+        if radius is None:
+            radius = self._last_polar(path)[0] + given.get("IPR", 0.0)
+        angle = given["PA"] if "PA" in given else self._angle(path) + given.get("IPA", 0.0)
+        ends |= self._at(pole, radius, angle)
+        words = "".join(f" {axis}{number}" for axis, number in ends.items())
+        block = self._straight(said, ends, words)
+        self.polar = radius, angle
+        return self._all(said, block)
+
+    def polar_circle(self, items: Sequence[gx.Item]) -> list[str]:
+        """CP: a circle about CC by its angle, with IZ a helix; IPA may be many turns."""
+        said, path = self.said(items[1:]), items[0]
+        pole = self._pole(path)
+        given, ends = self._polar_words(said)
+        if len(given) != 1 or not given.keys() <= {"PA", "IPA"}:
+            raise self.refusal("GX213", "CP takes PA or IPA, and nothing else of the polar", path)
+        x, y = (float(self.stands_at(a, path)) - float(pole[a]) for a in "XY")
+        radius, begin = hypot(x, y), self._angle(path)
+        sense = 1.0 if said.sense == "G3" else -1.0
+        turn = given["IPA"] if "IPA" in given else sense * ((given["PA"] - begin) * sense % TURN)
+        self._check_turn(turn, sense, path, "IPA" in given)
+        turns = ceil(abs(turn) / TURN)
+        words = "".join(
+            f" {letter}{exact(Decimal(pole[axis]) - Decimal(self.place[axis]))}"
+            for axis, letter in (("X", "I"), ("Y", "J"))
+        )
+        if turn % TURN:
+            ends |= self._at(pole, radius, begin + turn)
+        words += f" P{turns}" if turns > 1 else ""
+        block = self._arc(said, path, ends, words)
+        self.polar = radius, begin + turn
+        return self._all(said, block)
+
+    def _check_turn(self, turn: float, sense: float, path: gx.Item, by_turn: bool) -> None:
+        """Refuse turns against DR, and those of which it is not certain how many they are."""
+        if turn * sense < 0:
+            self.refuse("CP turns against its DR", path)
+        rest = abs(turn) % TURN
+        near = min(rest, TURN - rest)
+        if near < LEAST_ANGLE and (near or not turn or not by_turn):
+            self.refuse(f"CP turns by {turn:g} degrees", path)
+
+    def _polar_words(self, said: Said) -> tuple[dict[str, float], dict[str, str]]:
+        """Return PR and PA and their like, and the end along Z."""
+        given: dict[str, float] = {}
+        ends: dict[str, str] = {}
+        for item in said.axes:
+            if "P" in item.name:
+                given[item.name] = float(self.number_of(item))
+                continue
+            axis, number = self.reached(item)
+            if axis != "Z":
+                self.refuse(f"{item.name} beside polar coordinates", item)
+            ends[axis] = number
+        if {"PR", "IPR"} <= given.keys() or {"PA", "IPA"} <= given.keys():
+            raise self.refusal("GX203", "a polar coordinate stands here twice", said.axes[0])
+        return given, ends
+
+    def _last_polar(self, path: gx.Item) -> tuple[float, float]:
+        if self.polar is None:
+            raise self.refusal("GX213", f"{path.name} without PR behind other moves", path)
+        return self.polar
+
+    def _angle(self, path: gx.Item) -> float:
+        """Return the polar angle of where the axes stand."""
+        if self.polar is not None:
+            return self.polar[1]
+        pole = self._pole(path)
+        x, y = (float(self.stands_at(a, path) - Decimal(pole[a])) for a in "XY")
+        if not (x or y):
+            raise self.refusal("GX213", "the axes stand at the pole, which has no angle", path)
+        return degrees(atan2(y, x))
+
+    def _at(self, pole: dict[str, str], radius: float, angle: float) -> dict[str, str]:
+        """Return X and Y of polar coordinates."""
+        away = around(angle)
+        return {
+            axis: written(float(pole[axis]) + radius * part)
+            for axis, part in zip("XY", away, strict=True)
+        }

@@ -1,0 +1,179 @@
+"""The words of one positioning block of a TNC, sorted: coordinates, feed, M functions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import gcxform as gx
+from gcxform_plugins.dialects.heidenhain.words import ROTARY, Words
+
+AT_START = {13: ("M3", "M8"), 14: ("M4", "M8")}
+"""What M functions become that act at the start of their block, where that is not themselves."""
+AT_END = {0: ("M5", "M0"), 1: ("M1",), 5: ("M5",), 6: ("M6",), 9: ("M9",), 129: ("M129",)}
+ENDS = (2, 30)
+CALLS = 99
+LONGEST_M = 4  # digits
+MACHINE = 91
+NEVER_BESIDE = (6, 91, 128, 129)
+SILENT = frozenset({90, 102, 107, 108, 111, 113, 115, 117, 137, 145})
+"""Rounding of corners, messages, and M functions that cancel what is refused here."""
+FIRST_OF_CONTROL = 89  # M functions below are those of the machine's builder
+WHY = {
+    89: "it calls a cycle behind each block",
+    92: "it counts from a point of the machine that its builder has set",
+    94: "it reduces what rotary axes show, so that they count from elsewhere",
+    97: "it cuts contours in a way of its own",
+    98: "it cuts contours in a way of its own",
+    101: "it changes the tool by itself",
+    103: "it changes the feed of moves downwards",
+    109: "it changes the feed along arcs",
+    110: "it changes the feed along arcs",
+    114: "it moves the axes by what the builder's kinematics say",
+    116: "feeds of rotary axes then depend on how far the tool is from them",
+    118: "the handwheel then moves the axes as well",
+    120: "it changes the contour by the radius of the tool",
+    124: "it leaves points out",
+    130: "it leaves the tilted plane out",
+    136: "it is a feed per turn of the spindle, in a unit that is not certain",
+    138: "it chooses which rotary axes are followed",
+    140: "it retracts along the tool by what only the control knows",
+    144: "it moves the axes by what the builder's kinematics say",
+}
+
+
+@dataclass(slots=True)
+class Said:
+    """What a block says. `feed` is its F word, `before` and `after` are blocks of M functions."""
+
+    axes: list[gx.Item] = field(default_factory=list)
+    feed: str = ""
+    rapid: gx.Item | None = None
+    sense: str = ""
+    side: gx.Item | None = None
+    radius: str = ""
+    machine: gx.Item | None = None
+    leaves: bool = False
+    calls: gx.Item | None = None
+    changes: bool = False
+    before: list[str] = field(default_factory=list)
+    after: list[str] = field(default_factory=list)
+    end: str = ""
+
+
+class Saying(Words):
+    """Sorts the words of positioning blocks."""
+
+    def said(self, items: Sequence[gx.Item]) -> Said:
+        """Return what the words behind a path function say. Raises InputError."""
+        said, last = Said(), 0
+        for item in items:
+            kind = item.kind
+            if kind == "axis":
+                said.axes.append(item)
+            elif kind == "m":
+                last = self._function(item, said)
+                continue
+            elif kind == "feed":
+                if last == 128:  # it limits the moves that keep the tip in its place
+                    self.number_of(item)
+                elif said.feed:
+                    raise self.refusal("GX203", "F stands here twice", item)
+                else:
+                    said.feed = self.feed_word(self.number_of(item))
+            else:
+                self._other(item, said)
+            last = 0
+        if said.rapid and said.feed:
+            raise self.refusal("GX202", "F and FMAX in one block", said.rapid)
+        return said
+
+    def _other(self, item: gx.Item, said: Said) -> None:
+        """Take what is neither a coordinate nor a feed nor an M function."""
+        if item.kind == "fast":
+            said.rapid = item
+        elif item.kind == "auto":
+            if not self.tool_feed:
+                raise self.refusal("GX204", "no TOOL CALL gives the feed of FAUTO", item)
+            said.feed, self.feed, self.feed_lost = f" F{self.tool_feed}", self.tool_feed, False
+        elif item.kind == "dr":
+            if said.sense:
+                raise self.refusal("GX203", "DR stands here twice", item)
+            said.sense = "G3" if item.name[-1] == "+" else "G2"
+        elif item.kind == "radius":
+            self._radius(item, said)
+        elif item.kind == "per":
+            self.refuse(f"{item.name} is a feed per turn or per tooth", item)
+        elif item.kind == "comp":
+            self._side(item, said)
+        else:
+            text = item.name.strip()
+            raise self.refusal("GX101", f"{text[:20]!r} does not fit here", item)
+
+    def _radius(self, item: gx.Item, said: Said) -> None:
+        """Take the radius of CR, or R0."""
+        number = self.number_of(item)
+        if not float(number):
+            self._side(item, said)
+            return
+        if said.radius:
+            raise self.refusal("GX203", "R stands here twice", item)
+        said.radius = number
+
+    def _side(self, item: gx.Item, said: Said) -> None:
+        if said.side is not None:
+            raise self.refusal("GX203", "the side of the contour stands here twice", item)
+        said.side = item
+
+    # --- M functions ---
+
+    def _function(self, item: gx.Item, said: Said) -> int:
+        """Take an M function, and return its number."""
+        text = self.number_of(item)
+        if not text.isdigit() or len(text) > LONGEST_M:
+            raise self.refusal("GX101", f"M{text} is no M function", item)
+        code = int(text)
+        if code in NEVER_BESIDE:
+            self.refuse_beside(f"M{code}", item)
+        if code == MACHINE:
+            said.machine = item
+        elif code == CALLS:
+            said.calls = item
+        elif code in ENDS:
+            said.end = f"M{code}"
+        elif code in AT_END:
+            said.after += AT_END[code]
+            said.leaves |= code == 129
+            said.changes |= code == 6
+        elif code in (126, 127):
+            self.shortest = code == 126
+        elif code not in SILENT:
+            said.before += self._at_start(code, item)
+        return code
+
+    def _at_start(self, code: int, item: gx.Item) -> tuple[str, ...]:
+        """Return the blocks of an M function that acts at the start of its block."""
+        if code == 128:
+            return self.switch(True)
+        if code >= FIRST_OF_CONTROL:
+            self.refuse(
+                f"M{code} is not resolved: {WHY.get(code, 'what it does is not known')}", item
+            )
+        return AT_START.get(code, (f"M{code}",))
+
+    def switch(self, on: bool) -> tuple[str, ...]:
+        """Follow the tip, or leave it, and return the block of it.
+
+        Where axes are turned X, Y and Z then count otherwise.
+        """
+        if on and self.following:
+            return ()
+        turned = any(float(self.place.get(axis, "nan")) % 360 for axis in self.turned())
+        if on != self.following and turned:
+            self.lose("XYZ")
+        self.following = on
+        return ("M128",) if on else ("M129",)
+
+    def turned(self) -> list[str]:
+        """Return the rotary axes of the program."""
+        return [axis for axis in ROTARY if axis in self.moved or axis in self.place]

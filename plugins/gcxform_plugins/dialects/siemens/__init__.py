@@ -1,0 +1,1 @@
+"""SINUMERIK: its dialect, and its language as blocks of words."""

@@ -1,0 +1,188 @@
+"""Programs for a SINUMERIK 840D, line by line, as blocks of words.
+
+A line is put in order (`siemens_reading.py`), then its blocks are made: what the control does
+before the move, here, the move itself (`siemens_moves.py`), and what a modal cycle does behind it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+
+import gcxform as gx
+from gcxform_plugins.dialects.siemens.cycles import Drilling
+from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, STEP, Line
+from gcxform_plugins.dialects.siemens.moves import Moves, rest_of
+from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, PlaceError
+
+
+class Blocks(Moves):
+    """Turns the lines of a SINUMERIK into blocks of words."""
+
+    grammar = ("gcxform_grammars", "siemens")
+    number = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
+    signs = re.compile(
+        rb"\b(?:TRAORI|TRAFOOF|CYCLE8[0-9]|MCALL|SUPA|CR=|G710|G700|G64[1-5]|CIP|G500|GOTO[FB]\b"
+        rb"|DEF (?:REAL|INT)\b)|%_N_|\bMSG *\(\"|=(?:DC|AC|IC|ACP|ACN)\(",
+        re.IGNORECASE,
+    )
+
+    def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
+        """Return the blocks of a line, the first with its number. Raises InputError."""
+        line = Line()
+        self._arrive()
+        for item in items:
+            self.read.get(item.kind, self.unread)(line, item)
+        try:
+            made = [block for block in self._made(line) if block]
+        except PlaceError as error:
+            raise self.refusal(error.code, error.message, self.any_of(line), error.hint) from None
+        self.plainly = self._takes_plain_lines()
+        if made and line.number:
+            made[0] = line.number + made[0]
+        return made
+
+    def _arrive(self) -> None:
+        """Note the plain lines before this one."""
+        if self.line > self.last + 1:
+            self.place.passed.append(range(self.last + 1, self.line))
+        self.last = self.place.line = self.line
+
+    def _takes_plain_lines(self) -> bool:
+        """Whether axis words alone are a block as they stand, from here on."""
+        if self.motion not in ("0", "1") or self.motion != self.said or self.drilling is not None:
+            return False
+        if self.steps or self.said_steps or self.place.unwound or not self.place.moved:
+            return False
+        if self.length_is_elsewhere:
+            return False
+        if (self.changed and self.edge is None) or (self.waiting is not None and not self.changed):
+            return False
+        cuts_tips = self.following and self.motion == "1"
+        return not cuts_tips or self.angles_change_in_proportion
+
+    def _made(self, line: Line) -> Iterator[str]:
+        if line.alone is not None and line.alone.name in FRAMES and line.axes:
+            name = line.alone.name
+            why = f"{name} with words sets a frame of the program, which is not read"
+            self.refuse(why, line.alone, "let the CAM write positions without it")
+        if line.alone is not None and (line.axes or line.centres or line.codes or line.motion):
+            self.refuse("this stands in a block of its own", line.alone, "give it its own line")
+        if line.dwell is not None or line.act is not None or line.cycle is not None:
+            yield from self._alone(line)
+            return
+        if line.tool or line.changes is not None or line.edge is not None:
+            yield from self._tooled(line)
+        if line.work is not None:
+            self._shift(line.work[0])
+        if line.modal is not None and (line.axes or line.centres):
+            self.refuse("MCALL beside a move", line.modal, "give it its own line")
+        if line.machine is not None:
+            yield self._in_machine(line)
+            return
+        yield self.block_of(line)
+        if self.drilling is not None and (line.axes or line.centres):
+            yield from self._holes(self.drilling)
+
+    # --- lines of one thing ---
+
+    def _alone(self, line: Line) -> Iterator[str]:
+        """Yield the blocks of G4, of what follows the tip, and of a cycle at this place."""
+        item = line.dwell or line.cycle or (line.act[1] if line.act else None)
+        rest = (line.axes, line.centres, line.named, line.middles, line.others, line.motion)
+        many = sum(x is not None for x in (line.dwell, line.cycle, line.act)) > 1
+        if many or any(rest) or line.codes or line.tool or line.edge or line.machine:
+            self.refuse("this stands in a block of its own", item, "give it its own line")
+        if line.dwell is not None:
+            if not line.feed:
+                self.refuse("G4 without F: only seconds are read", item, "write G4 F and seconds")
+            yield f"G4 P{line.feed}"
+        elif line.act is not None:
+            self.following = line.act[0] == "M128"
+            if self.following and (self.drilling is not None or self.comp):
+                self.refuse("TRAORI under MCALL or compensation", item, "end them before")
+            if not self.place.unturned():
+                self.place.lose(LINEAR, shifted=False)
+            yield from (f"F{line.feed}" if line.feed else "", line.act[0])
+        elif self.once is not None:
+            yield f"F{line.feed}" if line.feed else ""
+            yield from self._holes(self.once)
+            self.once = None
+
+    def _holes(self, hole: Drilling) -> Iterator[str]:
+        """Yield the moves of a cycle where the axes stand. Raises PlaceError."""
+        if self.changed and self.edge is None:
+            self.refuse("a cycle, and which edge is in force behind M6 is not known")
+        self.check_plane(None)
+        first, *others = hole.blocks()
+        yield " ".join([*self.distance_code(Line(), False), first])
+        yield from others
+        self.said = "0"
+        self.place.absolute(hole.axis, hole.back)
+
+    # --- tools ---
+
+    def _tooled(self, line: Line) -> Iterator[str]:
+        """Yield the blocks of T, M6 and D, in this order."""
+        if line.tool:
+            self.waiting = line.tool
+        if line.changes is not None:
+            if line.axes or self.following:
+                message = "M6 beside a move, or while TRAORI is in force"
+                self.refuse(message, line.changes, "give M6 its own line, with TRAFOOF before")
+            yield f"T{line.tool} M6" if line.tool else "M6"
+            self.tool, self.changed, self.edge = self.waiting, True, None
+            self.place.lose(LINEAR + ROTARY)
+            setting = self.reading.control.get("edge-after-tool-change")
+            if line.edge is None and setting in (0, 1):
+                yield from self._with_edge(str(int(setting)), line.changes)
+        elif line.tool:
+            yield f"T{line.tool}"
+        if line.edge is not None:
+            if line.edge_number not in ("0", "1"):
+                message = f"D{line.edge_number} is another cutting edge, of unknown length"
+                self.refuse(message, line.edge, "use D1, or give the edge its own tool number")
+            yield from self._with_edge(line.edge_number, line.edge)
+
+    def _with_edge(self, number: str, item: gx.Item | None) -> Iterator[str]:
+        if number == self.edge:
+            return
+        if number == "1" and self.tool in (None, "0"):
+            message = "D1 of the tool in the spindle, and which that is is not known"
+            self.refuse(message, item, "write T and M6 before")
+        self.edge = number
+        self.place.lose(LINEAR)
+        yield f"G43 H{self.tool}" if number == "1" else "G49"
+
+    # --- frames ---
+
+    def _shift(self, name: str) -> None:
+        """Take another work offset."""
+        if name != self.work and (self.work or self.place.moved):
+            self.place.lose(LINEAR + ROTARY)
+        self.work = name
+
+    def _in_machine(self, line: Line) -> str:
+        """Return the block of SUPA: in the coordinates of the machine, without a tool length."""
+        self.motion = motion = line.motion or self.motion
+        hint = "write G0 SUPA with absolute words and D0, and TRAFOOF before"
+        if self.edge != "0" or self.following:
+            message = "SUPA with a tool length or TRAORI in force, or where that is not known"
+            self.refuse(message, line.machine, hint)
+        if motion not in ("0", "1") or line.centres or line.named or self.comp or self.drilling:
+            message = "SUPA needs G0 or G1, and neither compensation nor a cycle"
+            self.refuse(message, line.machine, hint)
+        words = []
+        for axis, (way, number, item) in line.axes.items():
+            if way == STEP or (not way and self.steps):
+                self.refuse("SUPA in incremental words", item, hint)
+            if way not in ("", ABSOLUTE) and (motion != "0" or axis not in ROTARY):
+                self.refuse(f"SUPA beside {way} goes a way that is not known", item, hint)
+            if way in ("", ABSOLUTE):
+                self.place.absolute(axis, number)
+            self.place.unwound.discard(axis)
+            words.append(axis + number)
+        self.place.lose("".join(line.axes))
+        self.place.moved = True
+        codes = [*self.motion_code(line, motion), *self.distance_code(line, False)]
+        return " ".join([*line.codes, *codes, *(["G53"] if words else []), *words, *rest_of(line)])

@@ -1,0 +1,107 @@
+"""SINUMERIK 840D sl and SINUMERIK ONE, milling, in its own language (G290): read only.
+
+| what | SINUMERIK | known from |
+|---|---|---|
+| `X10`, `X=10` | the same; names of more than one letter and numbers need the `=` | PM 52 |
+| `X1=`, `S1=`, `M2=` | another axis or spindle: refused | |
+| `X=AC()`, `X=IC()` | absolute, incremental, for this word, whatever G90 and G91 say | 808D 53 |
+| both kinds in a block | steps become absolute; refused where the axis may stand anywhere | |
+| `I J K` | from the start, also in G90; `I=AC()` is the centre itself | 808D 53 |
+| `A10`, `C370` | to the number; MD30455 may take modulo axes the shorter way | R2 225 |
+| `C=DC()` | the shorter way to an angle of 0 to 360; half a turn is refused | [K] |
+| `C=ACP()`, `C=ACN()` | up, down; to where the axis stands already: refused | [K] |
+| that, from an unknown angle | a rapid goes to the number as written; a cut is refused | |
+| plain words behind that | refused while whole turns lie between both numbers | |
+| steps behind G54, D, M6, SUPA | SD42440 or SD42442 adds the difference, or not: refused | [K] |
+| motion at start | MD20150: axis words before any motion code are refused | PM 1262 |
+| `CR=` | positive for the arc up to half a turn, negative for the longer | OM 579 |
+| `AR=` | the opening angle, beside the end or the centre | PM 204 |
+| `TURN=n` | n full turns before the arc; of a full circle: refused | PM 205 |
+| `CIP` | an arc over a point; refused in G91, and outside of the plane in force | T 91 |
+| `CT` | refused | |
+| start and end radius | may differ by 0.01 mm (MD21000) | [K] |
+| `G4 F` | seconds, in a block of its own; `G4 S`: refused | [K] |
+| G54 to G57, G505, G506 | work offsets; G505 and G506 are G58 and G59 in the machine file | [K] |
+| G500, G53 | leave basic frames in force, which only the control knows: refused | K2 741 |
+| SUPA, G153 | in machine coordinates; only with D0: a tool length may stay | ISO 3-42 |
+| G58, G59, TRANS, ROT, SCALE, MIRROR | programmable frames: refused; bare, they end them | [K] |
+| G710, G700 | mm, inches, also of feeds | 828D 341 |
+| G71 | `units` in `[input]`, mm unless said, is the unit of feeds; G70: refused | 828D 341 |
+| another feed mode | F has to be programmed again | |
+| `T5`, M6, `D1` | the tool is chosen, changed, its length in force: `T5 M6`, `G43 H5` | W1 13 |
+| `D0` | no length: `G49`; D2 and more: refused | W1 13 |
+| D1 in G18, G19 | along Y, X: refused without `[control] tool-length-axis = "Z"` (SD42940) | [K] |
+| between M6 and D | MD20270: refused, but for `[control] edge-after-tool-change` = 0 or 1 | W1 13 |
+| T without M6 | MD22550 decides whether it changes the tool: refused | W1 33 |
+| `T="NAME"` | refused | |
+| G41, G42 | the radius of the tool of D1; settings decide how contours are met | W1 13 |
+| `TRAORI`, `TRAORI(1)`, `TRAFOOF` | X Y Z are those of the tip; the work offset stays | TR 172 |
+| other transformations, other arguments | refused | |
+| cuts that turn axes then | angles in proportion, or the tool axis on a great circle | PM 674 |
+| ORIAXES | in proportion, but with ORIWKS behind which MD21104 decides | PM 674, 1262 |
+| ORIVECT, ORIPLANE, ORIMKS, ORIWKS, none | cuts that turn axes: refused | PM 674 |
+| `[control] orientation-path = "angles"` | in proportion unless ORIVECT or ORIPLANE is in force | |
+| `A3= B3= C3=`, `A2=`, LEAD, TILT | refused | |
+| G60, G9 | exact stops | [K] |
+| G64, G641 to G645, G601 to G603, ADIS | how corners are rounded: left out | [K] |
+| SOFT, BRISK, FFWON, COMPCAD ... | how fast, and how smooth: left out | [K] |
+| CYCLE832 | left out, with names as `_FINISH`: digits may switch TRAORI | [K] |
+| CYCLE800 | only empty, or without angles, with two rotary axes at 0 | SW 481 |
+| CYCLE81, CYCLE82 | rapid to RFP + SDIS, feed to DP, dwell, rapid to RTP | C81 |
+| MCALL | that behind each line with axis words | C81 |
+| DP, DPR | absolute, or below RFP; both: refused; other cycles: refused | C81 |
+| R parameters, expressions, jumps, loops, subprograms, DEF, synchronous actions | refused | |
+| M128, M129 | M codes of the machine: refused, as blocks say TRAORI with them | |
+| `/`, `/0` to `/9` | a switch decides: `block-delete` in `[input]` | [K] |
+| `MSG("...")` | a comment | PM |
+| G291 | ISO dialects: refused | PM |
+
+Manuals of Siemens: PM NC programming 12/2019 (6FC5398-2EP40-0BA0), 808D Programming 01/2014
+(6FC5398-4DP10-0BA1), OM Operating 05/2017, T Turning 01/2017, K2 Frames and 828D Basic functions
+09/2011, ISO Milling 04/2007, W1 Tool offset 11/2006, TR Transformations 06/2019 (A5E47435470B),
+R2 Axes and spindles 06/2019 (A5E47437747B), SW Swivelling 03/2013; C81 helmancnc.com on CYCLE81.
+[K]: not looked up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import gcxform as gx
+from gcxform import vocabulary as v
+from gcxform_plugins.dialects.siemens.blocks import Blocks
+
+
+class Siemens(gx.Dialect):
+    """SINUMERIK 840D sl and ONE, milling, in its own language: read only."""
+
+    name = "siemens"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **v.ISO,
+        "G95": gx.Code("feed-mode"),
+        **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
+        **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
+        "G43": v.frame("tool-length", "length", "H"),
+        "G53": v.frame("non-modal", "machine"),
+        **{code: v.inert("path") for code in ("G9", "G60", "G64")},
+    }
+    m_codes: ClassVar[Mapping[int, gx.MCode]] = {
+        **v.ISO_M,
+        6: gx.MCode("tool", loses_position=True, act="change-tool"),
+        128: gx.MCode("tip", barrier=v.FOLLOWING),
+        129: gx.MCode("tip"),
+    }
+    translator = Blocks
+    m_order_chosen = True
+    chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        "ABC", "rotary axes go where they are told, whichever way is shorter (MD30455)"
+    )
+    settings = (
+        gx.Setting("edge-after-tool-change", "siemens: D behind M6 (MD20270)", (0, 1)),
+        gx.Setting("orientation-path", "siemens: how angles change in TRAORI", ("angles",)),
+    )
+    tip_switches: ClassVar[Mapping[str, str]] = {"tip-on": "M128", "tip-off": "M129"}
+    spelled: ClassVar[Mapping[str, str]] = {"M128": "TRAORI", "M129": "TRAFOOF"}
+    turns_address = "P"
+    change_clears_feed = True

@@ -1,0 +1,357 @@
+"""Items of a line for a SINUMERIK, put in order; what is not understood is refused by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+import gcxform as gx
+from gcxform_plugins.dialects.siemens import cycles as cycles
+from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, STEP, Line
+from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, Place
+
+MODAL = {
+    **dict.fromkeys(("17", "18", "19"), "plane"),
+    **dict.fromkeys(("93", "94", "95"), "feed"),
+    **dict.fromkeys(("40", "41", "42"), "comp"),
+}
+INERT = frozenset(
+    ("64", "641", "642", "643", "644", "645", "601", "602", "603", "290", "450", "451")
+)
+WORK = {"54": "G54", "55": "G55", "56": "G56", "57": "G57", "505": "G58", "506": "G59"}
+PLANES = {"17": "XY", "18": "ZX", "19": "YZ"}
+REASONS = {
+    "53": "G53 leaves basic frames in force, which only the control knows; SUPA does not",
+    "58": "G58 is a programmable shift, and no work offset",
+    "59": "G59 is a programmable shift, and no work offset",
+    "70": "G70 has lengths in inches, and feeds in the basic unit of the control",
+    "74": "G74 moves axes to their reference points",
+    "75": "G75 moves axes to fixed points",
+    "291": "G291 switches to another language",
+    "500": "G500 leaves basic frames in force, which only the control knows",
+}
+# fmt: off
+QUIET = frozenset((
+    "SOFT", "BRISK", "DRIVE", "FFWON", "FFWOF", "COMPON", "COMPOF", "COMPCURV", "COMPCAD",
+    "COMPSURF", "UPATH", "SPATH", "FNORM", "WALIMON", "STOPRE", "DIAMOF", "NORM", "KONT", "CUT2D",
+    "ORISON", "ORISOF", "RTLION", "RTLIOF",
+))
+# fmt: on
+"""Commands that move nothing and change no word behind them."""
+TOLERANCES = frozenset(("ADIS", "ADISPOS", "CTOL", "OTOL", "ATOL"))
+ORIENTATION = {"ORIAXES": 0, "ORIVECT": 0, "ORIPLANE": 0, "ORIMKS": 1, "ORIWKS": 1}
+WHY = {
+    "CT": "CT is an arc whose centre follows from the move before",
+    "TRANSMIT": "TRANSMIT turns X and Y into a rotary axis",
+    "TRACYL": "TRACYL winds the path about a cylinder",
+    "INVCW": "INVCW is an involute",
+    "INVCCW": "INVCCW is an involute",
+    "CYCLE800": "CYCLE800 swivels the plane, or may turn axes",
+    "CYCLE832": "CYCLE832 may switch TRAORI",
+    "TRAORI": "TRAORI selects another transformation, or changes one",
+}
+AXES = LINEAR + ROTARY
+OWN = frozenset((128, 129))
+"""The M codes with which blocks say TRAORI and TRAFOOF: on a SINUMERIK they are the machine's."""
+PLAIN = "write plain numbers, or let the CAM write them"
+Reader = Callable[[Line, gx.Item], None]
+
+
+class Statements(gx.Translator):
+    """Puts items into a `Line`, and keeps what the control keeps.
+
+    motion        of the program: "0" to "3", "CIP", or nothing where none has been stated
+    said, said_steps, said_centres   what the blocks have said of motion, G91 and G90.1
+    following     TRAORI is in force;  orientation: what ORIAXES and ORIMKS and their like have said
+    tool, waiting the tools in the spindle and of the last T;  edge: "0", "1", None where not known
+    changed       M6 has been;  comp: G41 or G42 is in force
+    drilling      the cycle of MCALL;  once: that of a line
+    """
+
+    def __init__(
+        self, lines: Sequence[str], file: str, dialect: type[gx.Dialect], reading: Any
+    ) -> None:
+        super().__init__(lines, file, dialect, reading)
+        self.place = Place(self.reading.start, self._words_of)
+        self.last = -1
+        self.plainly = False
+        self.motion, self.said, self.plane, self.work, self.unit = "", "", "XY", "", ""
+        self.steps = self.said_steps = self.said_centres = False
+        self.following = self.comp = self.changed = False
+        self.orientation = ["", ""]
+        self.tool: str | None = None
+        self.waiting: str | None = None
+        self.edge: str | None = None
+        self.drilling: cycles.Drilling | None = None
+        self.once: cycles.Drilling | None = None
+        self.read: Mapping[str, Reader] = {
+            "word": self._word,
+            "value": self._word,
+            "function": self._function,
+            "indexed": self._indexed,
+            "named": self._named,
+            "command": self._command,
+            "call": self._call,
+            "label": self._nothing,
+            "header": self._header,
+            "main_number": self._number,
+        }
+
+    def _words_of(self, line: int) -> Iterator[tuple[str, str]]:
+        """Yield axis words of a line that was passed; others that were passed are skipped ones."""
+        items = [item for item in self.items(line) if item.kind != "comment"]
+        if all(item.kind == "word" for item in items):
+            yield from ((i.name, i.numbers[0]) for i in items if i.name in AXES)
+
+    def plain(self, items: Sequence[gx.Item]) -> bool:
+        """Whether a line has axis words alone, each once, and perhaps a number and a feed."""
+        names = [item.name for item in items]
+        words = all(item.kind == "word" for item in items) and len(set(names)) == len(names)
+        return words and {*names} <= {*AXES, "N", "F"} and not {*names} <= {"N", "F"}
+
+    def _nothing(self, line: Line, item: gx.Item) -> None:
+        """Take labels: jumps are refused."""
+
+    def _header(self, line: Line, item: gx.Item) -> None:
+        """Take the name of the program. Raises InputError where another one begins."""
+        before = (other for at in range(self.line) for other in self.items(at))
+        if any(other.kind != "comment" for other in before):
+            self.refuse("here another program begins", item, "keep each program in its own file")
+
+    def _number(self, line: Line, item: gx.Item) -> None:
+        if item.numbers[0].isdigit():
+            line.number = f"N{item.numbers[0]} "
+
+    def unread(self, line: Line, item: gx.Item) -> None:
+        """Refuse what is only taken to be refused. Raises InputError."""
+        what = {
+            "flow": f"{item.name.split()[0].split('(')[0]} decides what is executed, or defines it",
+            "tool_name": "a tool by its name: which number it has is not known",
+            "array": "a variable is not computed",
+            "system": "a variable of the control is not known",
+            "expression": "an expression is not computed",
+        }
+        self.refuse(what[item.kind], item, "write T and a number" if "name" in item.kind else PLAIN)
+
+    # --- words ---
+
+    def _word(self, line: Line, item: gx.Item) -> None:
+        letter, number = item.names[0], item.numbers[0]
+        if letter in "XYZABC":
+            self._put(line.axes, letter, "", number, item)
+        elif letter in "IJK":
+            self._put(line.centres, letter, "", number, item)
+        elif letter == "F":
+            self._once(line, item, "F")
+            line.feed = number
+        elif letter == "N":
+            self._number(line, item)
+        elif letter == "G":
+            self._code(line, item, number)
+        else:
+            self._other(line, item, letter, number)
+
+    def _put(
+        self,
+        where: dict[str, tuple[str, str, gx.Item]],
+        letter: str,
+        way: str,
+        number: str,
+        item: gx.Item,
+    ) -> None:
+        if letter in where:
+            raise self.refusal("GX213", f"{letter} stands twice in its block", item)
+        where[letter] = (way, number, item)
+
+    def _other(self, line: Line, item: gx.Item, letter: str, number: str) -> None:
+        """Take S, M, T and D. Raises InputError for other letters."""
+        if letter == "S":
+            line.others.append(f"S{number}")
+        elif letter == "M" and number.isdigit() and int(number) == 6:
+            line.changes = item
+        elif letter == "M" and number.isdigit() and int(number) not in OWN:
+            line.others.append(f"M{number}")
+        elif letter == "T" and number.isdigit():
+            self._once(line, item, "T")
+            line.tool = str(int(number))
+        elif letter == "D" and number.isdigit():
+            self._once(line, item, "D")
+            line.edge, line.edge_number = item, str(int(number))
+        elif letter in "LP":
+            self.refuse(f"{letter}{number} calls a subprogram", item)
+        else:
+            self.refuse(f"{letter}{number} is not read", item)
+
+    def _code(self, line: Line, item: gx.Item, number: str) -> None:
+        code = str(int(number)) if number.isdigit() else number
+        if code in MODAL:
+            self._modal(line, item, code)
+        elif code in ("0", "1", "2", "3"):
+            self._motion_code(line, item, code)
+        elif code in ("90", "91"):
+            self._once(line, item, "distance")
+            self.steps = self.said_steps = code == "91"
+            line.codes.append(f"G{code}")
+        elif code in WORK:
+            self._once(line, item, "work")
+            line.codes.append(WORK[code])
+            line.work = WORK[code], item
+        elif code not in INERT:
+            self._rare_code(line, item, code)
+
+    def _once(self, line: Line, item: gx.Item, group: str) -> None:
+        if group in line.groups:
+            if item.kind == "named" or not item.name.startswith(("G", "CIP")):
+                raise self.refusal("GX203", f"{item.name} stands twice in its block", item)
+            raise self.refusal("GX202", "two codes of one group in a block", item)
+        line.groups.add(group)
+
+    def _modal(self, line: Line, item: gx.Item, code: str) -> None:
+        group = MODAL[code]
+        self._once(line, item, group)
+        if group == "plane":
+            if self.drilling is not None and self.plane != PLANES[code]:
+                self.refuse("another plane under MCALL", item, "write MCALL before")
+            self.plane = PLANES[code]
+        if group == "comp" and code != "40":
+            self._compensates(line, item, code)
+            return
+        if group == "comp":
+            self.comp = False
+        line.codes.append(f"G{code}")
+
+    def _compensates(self, line: Line, item: gx.Item, code: str) -> None:
+        """Take G41 and G42, with the radius of the tool whose edge is in force."""
+        edge = line.edge_number if line.edge is not None else self.edge
+        if edge != "1" or self.tool is None or line.tool or self.following or self.drilling:
+            message = "compensation needs D1 of a known tool, and neither TRAORI nor MCALL"
+            self.refuse(message, item, "write T, M6 and D1 before")
+        self.comp = True
+        line.codes.append(f"G{code} D{self.tool}")
+
+    def _motion_code(self, line: Line, item: gx.Item, code: str) -> None:
+        self._once(line, item, "motion")
+        line.motion = code
+
+    def _rare_code(self, line: Line, item: gx.Item, code: str) -> None:
+        if code == "4":
+            line.dwell = item
+        elif code in ("60", "9"):
+            line.codes.append(f"G{code}")
+        elif code in ("71", "700", "710"):
+            self._units(line, item, code)
+        elif code == "153":
+            line.machine = item
+        else:
+            self.refuse(REASONS.get(code, f"G{code} is not read"), item)
+
+    def _units(self, line: Line, item: gx.Item, code: str) -> None:
+        if code == "71" and self.reading.units != "mm":
+            message = "G71: feeds are in the basic unit of the control, and which that is is open"
+            self.refuse(message, item, 'say units = "mm" in [input], or write G710')
+        self._once(line, item, "units")
+        unit = "G20" if code == "700" else "G21"
+        if self.unit not in ("", unit) or unit == "G20":
+            self.place.lose(LINEAR, shifted=False)
+        self.unit = unit
+        line.codes.append(unit)
+
+    # --- values ---
+
+    def _function(self, line: Line, item: gx.Item) -> None:
+        letter, way = item.names[:2]
+        where = line.axes if letter in LINEAR + ROTARY else line.centres
+        if letter not in "XYZABCIJK" or (where is line.centres and way not in (ABSOLUTE, STEP)):
+            self.refuse(f"{letter}={way}(...) is not read", item)
+        if where is line.centres and way == STEP:
+            way = ""
+        self._put(where, letter, way, item.numbers[0], item)
+
+    def _indexed(self, line: Line, item: gx.Item) -> None:
+        letter, index = item.name, item.numbers[0]
+        if letter in "IJK" and index == "1":
+            way = item.names[1] if len(item.names) > 1 else ""
+            self._put(line.middles, letter, way, item.numbers[1], item)
+            return
+        what = {"R": "parameters are not computed", "S": "another spindle", "M": "another spindle"}
+        vector = "the tool axis, or a normal, is programmed: only angles of rotary axes are read"
+        message = vector if letter in ROTARY else what.get(letter, "another axis")
+        self.refuse(f"{letter}{index}=: {message}", item)
+
+    def _named(self, line: Line, item: gx.Item) -> None:
+        name = item.name
+        if name in ("CR", "AR", "TURN"):
+            self._once(line, item, name)
+            line.named[name] = (item.numbers[0], item)
+        elif name not in TOLERANCES:
+            self.refuse(f"{name}= is not read", item)
+
+    # --- commands ---
+
+    def _command(self, line: Line, item: gx.Item) -> None:
+        name = item.name
+        if name in QUIET:
+            return
+        if name in ORIENTATION:
+            self.orientation[ORIENTATION[name]] = name
+        elif name in FRAMES:
+            line.alone = item
+        elif name == "SUPA":
+            line.machine = item
+        elif name == "CIP":
+            self._motion_code(line, item, name)
+        elif name in ("TRAORI", "TRAFOOF"):
+            self._switched(line, item, name)
+        elif name == "MCALL":
+            line.modal = item
+            self.drilling = None
+        else:
+            self.refuse(WHY.get(name, f"{name} is not read"), item)
+
+    def _switched(self, line: Line, item: gx.Item, name: str) -> None:
+        line.act = ("M128" if name == "TRAORI" else "M129"), item
+
+    def _call(self, line: Line, item: gx.Item) -> None:
+        name, given = cycles.arguments(item)
+        if name == "TRAORI" and given in ([""], ["1"]):
+            self._switched(line, item, name)
+        elif name in ("CYCLE81", "CYCLE82"):
+            line.cycle = item
+            self._drilled(line, item, name, given)
+        elif self._quiet(name, given):
+            line.alone = item
+        else:
+            why = WHY.get(name, f"{name}(...) is not read")
+            self.refuse(f"{why}, with these arguments" if name in WHY else why, item)
+
+    def _quiet(self, name: str, given: Sequence[str]) -> bool:
+        """Whether a call moves nothing and changes no word behind it."""
+        if name == "CYCLE800":
+            return given == [""] or self._stands_still(given)
+        return name == "WORKPIECE" or (name == "CYCLE832" and cycles.keeps_path(given))
+
+    def _stands_still(self, given: Sequence[str]) -> bool:
+        """Whether a swivel to nowhere turns no axis: two of them at least are known to be at 0."""
+        return (
+            self.place.unturned() and self.place.rotary_axes > 1 and cycles.swivels_nowhere(given)
+        )
+
+    def _drilled(self, line: Line, item: gx.Item, name: str, given: Sequence[str]) -> None:
+        """Take a cycle, for this place or, behind MCALL, for those of the lines that follow."""
+        if self.following or self.comp:
+            self.refuse(f"{name} under TRAORI or compensation", item)
+        axis = next(a for a in LINEAR if a not in self.plane)
+        try:
+            hole = cycles.drilling(name, given, axis)
+        except cycles.CycleError as error:
+            self.refuse(f"{name}: {error}", item)
+        if line.modal is None:
+            self.once = hole
+        else:
+            self.drilling, line.cycle = hole, None
+
+    def first_of(self, line: Line) -> gx.Item | None:
+        """Return the first word of an arc."""
+        named = [item for _, item in line.named.values()]
+        words = [*line.centres.values(), *line.middles.values()]
+        return next(iter([*named, *(item for _, _, item in words)]), None)

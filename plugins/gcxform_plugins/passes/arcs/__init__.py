@@ -1,0 +1,1 @@
+"""`arcs`: runs of short lines become arcs."""

@@ -1,0 +1,1 @@
+"""`cutter-comp`: the contour becomes the path of the centre."""

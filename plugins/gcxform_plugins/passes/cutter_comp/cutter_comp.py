@@ -1,0 +1,328 @@
+"""`cutter-comp`: the contour of G41 and G42 becomes the path of the tool's centre."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import gcxform as gx
+from gcxform_plugins.passes.cutter_comp.offsetting import (
+    CannotOffsetError,
+    Corners,
+    Edge,
+    Entry,
+    Manner,
+    offset,
+    swept,
+)
+from gcxform_plugins.passes.cutter_comp.proof import prove_beside
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+CODES = ("G41", "G42", "G41.1", "G42.1")
+STILL = 1e-9  # mm; a row that moves by less in the plane stands still there
+STRAIGHT = 1e-4  # rad; smaller turns are none, on controls of which nothing else is known
+
+
+@dataclass(frozen=True)
+class CutterComp(gx.Pass):
+    """Compute the path of the tool's centre, and leave cutter compensation to no control.
+
+    Inside corners end where the offset moves meet, outside corners are joined by an arc about the
+    corner. What the tool cannot reach without cutting into the contour is refused. For LinuxCNC the
+    path is the one that its interpreter executes. Other controls leave `corners` and `entry` to
+    parameters of the machine: say what they are set to.
+    """
+
+    name = "cutter-comp"
+    ensures = frozenset({gx.NO_CUTTER_COMP})
+    resolves = True
+    corners: Annotated[
+        Corners | None, gx.Option("what joins two moves outside: an arc, or lines that meet")
+    ] = None
+    entry: Annotated[
+        Entry | None,
+        gx.Option("the move that begins compensation ends beside its own end, or the next move"),
+    ] = None
+
+    def begin(self, context: gx.PassContext) -> None:
+        """Refuse options that the control leaves no choice of, and their absence where it does."""
+        rule = context.source.cutter_comp
+        for name in ("corners", "entry"):
+            known, asked = getattr(rule, name), getattr(self, name)
+            if known and asked is not None and asked != known:
+                raise gx.UsageError.one(
+                    "GX740",
+                    f'{context.source.name} has {name} = "{known}", and nothing else',
+                    hint=f"leave {name} out",
+                )
+            if not known and asked is None and "G41" in context.source.codes:
+                raise gx.UsageError.one(
+                    "GX740",
+                    f"{name} of cutter compensation depends on a parameter of the machine",
+                    hint=f'say what it is set to: {name} = "{CHOICES[name]}"',
+                )
+
+    def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
+        """Return the centre path, in G40."""
+        blocks = replace(path.blocks, uncompensated=True)
+        path = path.replace(events=tuple(e for e in path.events if e.what not in CODES))
+        if not path.side.any():
+            return path.replace(blocks=blocks)
+        _refuse(path, context)
+        centre = _CentrePath(path, self._manner(context))
+        for first, last in _sections(path):
+            centre.resolve(first, last)
+        return centre.path().replace(blocks=blocks)
+
+    def prove(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> None:
+        """Check that the centre is beside the contour all along, and everything else as it was."""
+        manner = self._manner(context)
+        straight = manner.straight * (1 + 1e-9)
+        linear, beside_next = manner.corners is Corners.LINEAR, manner.entry is Entry.NEXT
+        prove_beside(before, after, straight, linear, beside_next)
+
+    @classmethod
+    def ways(cls, dialect: type[gx.Dialect]) -> tuple[CutterComp, ...]:
+        """Return one of it for each setting that a control may have."""
+        rule = dialect.cutter_comp
+        return tuple(
+            cls(corners=corners, entry=entry)
+            for corners in ([Corners(rule.corners)] if rule.corners else Corners)
+            for entry in ([Entry(rule.entry)] if rule.entry else Entry)
+        )
+
+    def stops(self, path: gx.Toolpath, context: gx.PassContext) -> gx.InputError | None:
+        """Return where LinuxCNC stops; of other controls it is not known."""
+        rule = context.source.cutter_comp
+        if not (rule.corners and rule.entry):
+            return None
+        try:
+            self.apply(path, context)
+        except ContourError as error:
+            return error if error.alarm else None
+        except gx.InputError:
+            pass
+        return None
+
+    def _manner(self, context: gx.PassContext) -> Manner:
+        rule = context.source.cutter_comp
+        corners = Corners(rule.corners) if rule.corners else self.corners or Corners.ARC
+        entry = Entry(rule.entry) if rule.entry else self.entry or Entry.OWN
+        return Manner(corners, entry, rule.straight or STRAIGHT)
+
+
+@dataclass
+class ContourError(gx.InputError):
+    """A contour that the tool cannot follow; `alarm`: LinuxCNC stops at it as well."""
+
+    alarm: bool = False
+
+
+CHOICES = {"corners": 'arc" or "linear', "entry": 'own" or "next'}
+
+
+def _sections(path: gx.Toolpath) -> Iterator[tuple[int, int]]:
+    """Yield first row and row after the last of each stretch under compensation."""
+    on = np.concatenate([[False], path.side != 0, [False]])
+    edges = np.flatnonzero(on[1:] != on[:-1])
+    yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+
+
+def _refuse(path: gx.Toolpath, context: gx.PassContext) -> None:
+    """Refuse rows under compensation that cannot be resolved."""
+    on = path.side != 0
+    both = on[1:] & on[:-1]
+    changes = np.append(False, both & (np.diff(path.side) != 0))
+    changes |= np.append(False, both & (path.radius[1:] != path.radius[:-1]))
+    changes |= np.append(False, both & (path.plane[1:] != path.plane[:-1]))
+    changes |= np.append(False, both & (path.frame[1:] != path.frame[:-1]))
+    leaves = np.append(False, on[:-1]) & ~on
+    for wrong, code, message, hint in (
+        (
+            on & np.isnan(path.radius),
+            "GX231",
+            "the radius of the tool under cutter compensation is not known",
+            "give a machine file with the tool: [tool.1] radius = 5.0, or -m MACHINE.toml",
+        ),
+        (
+            changes,
+            "GX232",
+            "side, tool, plane or work offset change under cutter compensation",
+            "cancel it with G40 before",
+        ),
+        (
+            (on | leaves)
+            & (path.lost | ~path.starts_known | np.isnan(path.end[:, :3]).any(axis=1)),
+            "GX232",
+            "a position under cutter compensation is not known",
+            "program X, Y and Z before G41 or G42",
+        ),
+        (
+            (on | leaves) & (path.form != gx.Form.PLAIN),
+            "GX232",
+            "a move of its own kind under cutter compensation",
+            "cancel it with G40 before",
+        ),
+    ):
+        if wrong.any():
+            raise path.refuse(code, np.flatnonzero(wrong), message, hint)
+    _refuse_open_end(path, context)
+
+
+def _refuse_open_end(path: gx.Toolpath, context: gx.PassContext) -> None:
+    """Refuse compensation that nothing cancels, unless the control is known to end it so."""
+    if not path.side[-1]:
+        return
+    ends = {f"M{number}" for number, code in context.source.m_codes.items() if code.ends}
+    ended = any(event.what in ends and event.row == len(path) for event in path.events)
+    if ended and context.source.cutter_comp.entry:
+        return
+    last = np.array([len(path) - 1])
+    raise path.refuse("GX232", last, "nothing cancels cutter compensation", "end it with G40")
+
+
+class _CentrePath:
+    """The columns of a path whose rows under compensation become those of the centre."""
+
+    def __init__(self, path: gx.Toolpath, manner: Manner) -> None:
+        self.before = path
+        self.manner = manner
+        self.start = path.start
+        self.end = np.array(path.end)
+        self.sweep = np.array(path.sweep)
+        self.inserted: dict[int, Edge] = {}
+
+    def resolve(self, first: int, last: int) -> None:
+        """Resolve the rows of one stretch under compensation."""
+        path = self.before
+        side, radius = int(path.side[first]), float(path.radius[first])
+        if radius == 0.0:
+            return
+        axes = list(gx.Plane(int(path.plane[first])).axes[:2])
+        rows, edges = self._edges(first, last, axes)
+        try:
+            offset(edges, side, radius, self.manner)
+        except CannotOffsetError as error:
+            where = np.array([rows[error.index]])
+            begins = error.index == 0
+            hint = "use a smaller tool, or " + (
+                "begin farther away" if begins else "change the contour"
+            )
+            refusal = path.refuse("GX350", where, error.message, hint)
+            raise ContourError(refusal.diagnostics, error.alarm) from None
+        self._place(rows, edges, axes)
+        self._still(first, last, rows, axes)
+
+    def _edges(self, first: int, last: int, axes: list[int]) -> tuple[list[int], list[Edge]]:
+        """Return the rows that move in the plane, and what they are there."""
+        path, part = self.before, slice(first, last)
+        start, end = self.start[part][:, axes].tolist(), path.end[part][:, axes].tolist()
+        centre, sweep = path.centre[part][:, axes].tolist(), path.sweep[part].tolist()
+        sense = path.sense[part].astype(np.int64).tolist()
+        rows, edges = [], []
+        for index, (a, b) in enumerate(zip(start, end, strict=True)):
+            if sense[index]:
+                c = centre[index]
+                edges.append(
+                    Edge((a[0], a[1]), (b[0], b[1]), (c[0], c[1]), sense[index], sweep[index])
+                )
+            elif abs(a[0] - b[0]) + abs(a[1] - b[1]) > STILL:
+                edges.append(Edge((a[0], a[1]), (b[0], b[1])))
+            else:
+                continue
+            rows.append(first + index)
+        if not rows or rows[0] != first:
+            message = "the move that begins compensation does not move in the plane"
+            raise path.refuse("GX350", np.array([first]), message, "program X or Y in that block")
+        return rows, edges
+
+    def _place(self, rows: list[int], edges: list[Edge], axes: list[int]) -> None:
+        self.end[np.array(rows)[:, None], axes] = [edge.finish for edge in edges]
+        for row, edge in zip(rows, edges, strict=True):
+            if edge.centre is not None:
+                self.sweep[row] = swept(edge)
+            if edge.corner:
+                self.inserted[row] = edge
+
+    def _still(self, first: int, last: int, rows: list[int], axes: list[int]) -> None:
+        """Let rows that stand still in the plane stand where the centre is."""
+        if len(rows) == last - first:
+            return
+        inside = np.arange(first, last)
+        mover = np.array(rows)[np.searchsorted(rows, inside, "right") - 1]
+        for axis in axes:
+            self.end[inside, axis] = self.end[mover, axis]
+
+    def path(self) -> gx.Toolpath:
+        """Return the centre path."""
+        before = self.before
+        counts = np.ones(len(before), np.int64)
+        counts[list(self.inserted)] = 2
+        row = np.repeat(np.arange(len(before)), counts)
+        nth = np.arange(len(row)) - (np.cumsum(counts) - counts)[row]
+        columns: dict[str, Any] = {
+            "end": np.asfortranarray(self.end[row]),
+            "kind": before.kind[row],
+            "centre": before.centre[row],
+            "sweep": self.sweep[row],
+            "nth": before.nth[row] + nth,
+            "side": np.zeros(len(row), np.int8),
+            "radius": np.full(len(row), np.nan),
+        }
+        corner = np.flatnonzero((counts[row] == 2) & (nth == 0))
+        for place in corner.tolist():
+            self._corner(place, int(row[place]), columns)
+        path = before.with_rows(counts, **columns)
+        return path.replace(feed=_feeds(before, path, row))
+
+    def _corner(self, place: int, row: int, columns: dict[str, Any]) -> None:
+        """Write the row that leads around an outside corner before a row."""
+        edge, path = self.inserted[row], self.before
+        axes = list(gx.Plane(int(path.plane[row])).axes[:2])
+        rapid = path.kind[row] == gx.Kind.RAPID
+        columns["end"][place] = self.end[row - 1]
+        columns["end"][place, axes] = edge.begin
+        columns["kind"][place] = gx.Kind.RAPID if rapid else gx.Kind.LINE
+        columns["centre"][place], columns["sweep"][place] = np.nan, 0.0
+        if edge.corner == "arc" and not rapid:
+            columns["kind"][place] = gx.Kind.ARC_CW if path.side[row] > 0 else gx.Kind.ARC_CCW
+            columns["centre"][place] = self.end[row - 1, :3]
+            columns["centre"][place, axes] = edge.start
+            columns["sweep"][place] = _turn(self.end[row - 1, axes], edge)
+
+
+def _turn(begin: Floats, edge: Edge) -> float:
+    """Return the angle (rad) about a corner from where the move before ends to where one begins."""
+    u, v = begin - np.array(edge.start), np.array(edge.begin) - np.array(edge.start)
+    angle = abs(np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v))
+    return float(angle)
+
+
+def _feeds(before: gx.Toolpath, after: gx.Toolpath, row: Ints) -> Floats:
+    """Return the feeds: in inverse time the speed is that of the contour as programmed."""
+    feed = before.feed[row]
+    timed = (before.feed_mode == gx.FeedMode.INVERSE_TIME) & (before.side != 0)
+    timed &= before.kind != gx.Kind.RAPID
+    if not timed.any():
+        return feed
+    programmed, mine = _lengths(before)[row], _lengths(after)
+    change = timed[row] & (mine > STILL) & (programmed > STILL)
+    return np.where(change, feed * programmed / np.where(change, mine, 1.0), feed)
+
+
+def _lengths(path: gx.Toolpath) -> Floats:
+    """Return the lengths (mm) of moves of the linear axes X, Y and Z."""
+    way = np.nan_to_num(path.end[:, :3] - path.start[:, :3])
+    length = np.sqrt((way**2).sum(axis=1))
+    arcs = np.flatnonzero(path.is_arc)
+    if len(arcs):
+        radius, _, _ = gx.radius_and_angle(path, arcs)
+        normal = np.array([gx.Plane(p).axes[2] for p in path.plane[arcs].tolist()])
+        length[arcs] = np.hypot(radius * path.sweep[arcs], way[arcs, normal])
+    return np.asarray(length)

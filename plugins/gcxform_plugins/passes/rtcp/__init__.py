@@ -1,0 +1,1 @@
+"""`rtcp`: from tips to axes, and back."""

@@ -1,0 +1,1 @@
+"""What `rtcp` writes."""

@@ -1,0 +1,1 @@
+"""What proves it: forward models alone, no search."""

@@ -1,0 +1,1 @@
+"""`volumetric`: commands for a machine with known errors."""

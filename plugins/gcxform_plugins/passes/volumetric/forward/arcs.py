@@ -1,0 +1,255 @@
+"""How `volumetric` keeps arcs: one through compensated points, cut until it is near enough."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+import gcxform as gx
+
+if TYPE_CHECKING:
+    from gcxform_plugins.passes.volumetric.forward.compensation import Compensation
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+FEWEST, MOST = 8, 256  # points at which a piece is looked at
+AT_ONCE = 200_000  # points looked at together
+HALVINGS = 24
+REFINEMENTS = 6  # a piece is a sixty-fourth shorter than it could be, at most
+EVEN_TRIES = 8  # numbers of equal pieces that are tried, where others would be too short
+FLAT = 0.1  # mm; with less between arc and chord, three points say little about the centre
+NO_CHORD = 1e-6  # mm
+UNEVEN = 1e-4  # mm; by so much the radii of an arc may differ more than they did
+MARGIN = 0.9  # of the tolerance: what looking at points, and not along the curve, may miss
+LONGEST = 1.9 * np.pi  # rad; rounded, the ends of a longer piece may change places
+
+
+class ArcFitter:
+    """Finds the pieces into which the arcs of a path are cut, and their centres."""
+
+    def __init__(self, work: Compensation) -> None:
+        self.work = work
+        self.path = work.path
+        self.step = work.step
+        self.limit = min(MARGIN * self.step.limit, work.room)
+        self.reach = work.undone
+        rotary = np.nan_to_num(self.path.end - self.path.start)[:, 3:]
+        self._turning = (rotary != 0).any(axis=1)
+
+    def cuts(self) -> tuple[Ints, Floats]:
+        """Return row and part of the cuts of the arcs.
+
+        Each piece reaches as far as the tolerance lets it, and where pieces of one size hold it as
+        well, as many of these are taken.
+        """
+        row = np.flatnonzero(self.path.is_arc)
+        row = row[self._too_far(row, np.zeros(len(row)), np.ones(len(row)))]
+        cut_row, cut_part = self._farthest_reaching(row)
+        if not len(row):
+            return cut_row, cut_part
+        pieces = np.bincount(np.searchsorted(row, cut_row), minlength=len(row)) + 1
+        which = np.repeat(np.arange(len(row)), pieces)
+        nth = np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+        low, high = nth / pieces[which], (nth + 1) / pieces[which]
+        even = np.ones(len(row), np.bool_)
+        even[which[self._too_far(row[which], low, high)]] = False
+        own = ~even[np.searchsorted(row, cut_row)]
+        same = even[which] & (nth > 0)
+        cut_row = np.append(cut_row[own], row[which[same]])
+        cut_part = np.append(cut_part[own], low[same])
+        return self._long_pieces(cut_row, cut_part) if self.step.min_length else (cut_row, cut_part)
+
+    def _long_pieces(self, cut_row: Ints, cut_part: Floats) -> tuple[Ints, Floats]:
+        """Return the cuts, others where they make too short pieces. Raises InputError."""
+        order = np.lexsort((cut_part, cut_row))
+        cut_row, cut_part = cut_row[order], cut_part[order]
+        for row in np.unique(cut_row).tolist():
+            mine = cut_row == row
+            length = self._length(row)
+            shortest = length * float(np.diff(cut_part[mine], prepend=0.0, append=1.0).min())
+            if shortest < self.step.min_length:
+                even = self._even(row, int(mine.sum()) + 1, int(length / self.step.min_length))
+                if even is None:
+                    raise self.work.refuse_short(row, shortest)
+                cut_row = np.append(cut_row[~mine], np.full(len(even), row))
+                cut_part = np.append(cut_part[~mine], even)
+        return cut_row, cut_part
+
+    def _length(self, row: int) -> float:
+        """Return the length (mm) of an arc in its plane."""
+        first, last, _ = gx.radius_and_angle(self.path, np.array([row]))
+        return float((first + last)[0] / 2 * self.path.sweep[row])
+
+    def _even(self, row: int, fewest: int, most: int) -> Floats | None:
+        """Return where an arc is cut into equal pieces that hold the tolerance, None if none do."""
+        for count in np.unique(np.linspace(fewest, most, EVEN_TRIES).astype(int)).tolist():
+            part = np.arange(count + 1) / max(count, 1)
+            rows = np.full(count, row)
+            if fewest <= count <= most and not self._too_far(rows, part[:-1], part[1:]).any():
+                return np.asarray(part[1:-1])
+        return None
+
+    def _farthest_reaching(self, row: Ints) -> tuple[Ints, Floats]:
+        """Return row and part of the cuts of arcs when each piece is as long as it can be."""
+        at, reach = np.zeros(len(row)), np.full(len(row), 0.5)
+        cut_rows, cut_parts = [np.empty(0, np.int64)], [np.empty(0)]
+        while len(row):
+            reach = self._reach(row, at, np.minimum(2 * reach, 1 - at))
+            at = at + reach
+            on = at < 1.0
+            row, at, reach = row[on], at[on], reach[on]
+            cut_rows.append(row)
+            cut_parts.append(at)
+        return np.concatenate(cut_rows), np.concatenate(cut_parts)
+
+    def _reach(self, row: Ints, at: Floats, most: Floats) -> Floats:
+        """Return how far (part of the arc) pieces that begin at `at` reach, at most `most`."""
+        reach = most.copy()
+        far = np.arange(len(row))
+        for _ in range(HALVINGS):
+            far = far[self._too_far(row[far], at[far], self._stop(at[far], reach[far]))]
+            if not len(far):
+                break
+            reach[far] /= 2
+        step = np.where(reach < most, reach / 2, 0.0)
+        for _ in range(REFINEMENTS):
+            more = np.flatnonzero(step > 0.0)
+            longer = reach[more] + step[more]
+            holds = ~self._too_far(row[more], at[more], self._stop(at[more], longer))
+            reach[more[holds]] = longer[holds]
+            step /= 2
+        return np.where(self._stop(at, reach) == 1.0, 1.0 - at, reach)
+
+    def _stop(self, at: Floats, reach: Floats) -> Floats:
+        """Return where pieces end: at the end of the arc if that is where rounding puts them."""
+        stop = at + reach
+        return np.where(stop > 1.0 - 1e-12, 1.0, stop)
+
+    def _too_far(self, row: Ints, low: Floats, high: Floats) -> Flags:
+        """Return the pieces that an arc cannot stand for."""
+        if not len(row):
+            return np.empty(0, np.bool_)
+        far = self._residual(row, low, high) > self.limit
+        return np.asarray(far | self._goes_round(row, low, high))
+
+    def _goes_round(self, row: Ints, low: Floats, high: Floats) -> Flags:
+        """Return the pieces of about a turn whose ends are not one point: they would be lost."""
+        long = np.flatnonzero((high - low) * self.path.sweep[row] > LONGEST)
+        gap = self._command(row[long], high[long]) - self._command(row[long], low[long])
+        round_ones = np.zeros(len(row), np.bool_)
+        round_ones[long] = np.abs(gap).max(axis=1, initial=0.0) > 0.0
+        return round_ones
+
+    def centres(self, row: Ints, low: Floats, high: Floats) -> Floats:
+        """Return the centres (n, 3), in the program's coordinates, of pieces of arcs."""
+        centre = np.full((len(row), 3), np.nan)
+        if not len(row):
+            return centre
+        share = np.where((high - low) * self.path.sweep[row] > LONGEST, 1 / 3, 1 / 2)
+        first = self._command(row, low)
+        second = self._command(row, low + (high - low) * share)
+        third = self._command(row, np.where(share < 0.5, low + (high - low) * 2 / 3, high))
+        shift = (self.work.correction(row, low) + self.work.correction(row, high)) / 2
+        size, last, _ = gx.radius_and_angle(self.path, row)
+        sag = size * (1 - np.cos((high - low) * self.path.sweep[row] / 2))
+        uneven = np.where(high - low < 1.0, -np.inf, np.abs(last - size) + UNEVEN)
+        for plane in gx.Plane:
+            here = np.flatnonzero(self.path.plane[row] == plane)
+            axes, normal = np.array(plane.axes[:2]), plane.axes[2]
+            points = [point[np.ix_(here, axes)] for point in (first, second, third)]
+            fitted = gx.circle_through(*points)
+            moved = (self.path.centre[row] + shift)[np.ix_(here, axes)]
+            ends = (np.hypot(*(point - moved).T) for point in points[::2])
+            far = (np.abs(np.subtract(*ends)) > uneven[here]) & (share[here] == 0.5)
+            moved = np.where(far[:, None], _as_far(moved, *points[::2]), moved)
+            flat = ~np.isfinite(fitted).all(axis=1) | (sag[here] < FLAT)
+            centre[np.ix_(here, axes)] = np.where(flat[:, None], moved, fitted)
+            centre[here, normal] = first[here, normal]
+        return centre
+
+    def _command(self, row: Ints, part: Floats) -> Floats:
+        """Return commands (n, 3), in the program's coordinates, for points of arcs."""
+        offset = self.work.offset_of(row)
+        target = gx.points_on_arcs(self.path, row, part) + offset
+        return self.work.command(target, row) - offset
+
+    def _residual(self, row: Ints, low: Floats, high: Floats) -> Floats:
+        """Return how far (mm) the machine is from the arcs when it is sent along fitted ones.
+
+        Between two points that are looked at, a bend of the error adds at most the Lipschitz
+        constant times half their distance.
+        """
+        size, _, _ = gx.radius_and_angle(self.path, row)
+        length = size * self.path.sweep[row] * (high - low)
+        count = np.clip(self.reach * length / (0.2 * self.limit), FEWEST, MOST).astype(np.int64)
+        count = 2 ** np.ceil(np.log2(count)).astype(np.int64)
+        centre = self.centres(row, low, high)
+        worst = np.zeros(len(row))
+        for number in np.unique(count).tolist():
+            members = np.flatnonzero(count == number)
+            for piece in np.array_split(members, len(members) * number // AT_ONCE + 1):
+                worst[piece] = self._largest(
+                    row[piece], low[piece], high[piece], centre[piece], number
+                )
+        return worst + self.reach * length / count / 2
+
+    def _largest(self, row: Ints, low: Floats, high: Floats, centre: Floats, number: int) -> Floats:
+        """Return the largest distance of the machine from the arcs, at a number of points each."""
+        pieces = self._fitted(row, low, high, centre)
+        every = np.repeat(np.arange(len(row)), number)
+        part = np.tile((np.arange(number) + 0.5) / number, len(row))
+        command = gx.points_on_arcs(pieces, 2 * every + 1, part)
+        place = self.work.place
+        offset = place.offset_of(row[every])
+        actual = self.step.meant(command + offset, place.tool_of(row[every])) - offset
+        along = low[every] + part * (high - low)[every]
+        wanted = gx.points_on_arcs(self.path, row[every], along)
+        off = self._beside(row[every], along, wanted, actual)
+        return np.asarray(off.reshape(len(row), number).max(axis=1))
+
+    def _beside(self, row: Ints, part: Floats, wanted: Floats, actual: Floats) -> Floats:
+        """Return the distance of points from arcs and helices.
+
+        A helix is compared where it has the angle of the point; what is off along its axis there
+        is nearer to the helix by the cosine of its slope. Where a rotary axis turns with the arc,
+        what is off along the arc counts as well.
+        """
+        off = np.zeros(len(row))
+        for plane in gx.Plane:
+            here = np.flatnonzero(self.path.plane[row] == plane)
+            a, b, normal = plane.axes
+            centre = self.path.centre[row[here]][:, [a, b]]
+            u, v = actual[here][:, [a, b]] - centre, wanted[here][:, [a, b]] - centre
+            size = np.hypot(*v.T)
+            ahead = (v[:, 0] * u[:, 1] - v[:, 1] * u[:, 0]) / np.maximum(size, 1e-9) ** 2
+            sweep = self.path.sense[row[here]] * self.path.sweep[row[here]]
+            way = np.nan_to_num(self.path.end - self.path.start)[row[here], normal]
+            along = actual[here, normal] - wanted[here, normal] - way * ahead / sweep
+            length = np.abs(size * sweep)
+            along *= length / np.maximum(np.hypot(length, way), 1e-12)
+            off[here] = np.hypot(np.hypot(*u.T) - size, along)
+        turning = self._turning[row]
+        off[turning] = np.sqrt(((actual - wanted)[turning] ** 2).sum(axis=1))
+        return off
+
+    def _fitted(self, row: Ints, low: Floats, high: Floats, centre: Floats) -> gx.Toolpath:
+        """Return the fitted pieces as arcs: row 2k + 1, after a row that leads to its start."""
+        path = self.path.take(np.repeat(row, 2))
+        end = np.array(path.end)
+        end[0::2, :3], end[1::2, :3] = self._command(row, low), self._command(row, high)
+        sweep = np.array(path.sweep)
+        sweep[1::2] *= high - low
+        path = path.replace(end=end, sweep=sweep, centre=np.repeat(centre, 2, axis=0))
+        return path.replace(sweep=gx.swept_anew(path))
+
+
+def _as_far(centre: Floats, start: Floats, end: Floats) -> Floats:
+    """Return the points next to centres (n, 2) that are as far from starts as from ends."""
+    chord = end - start
+    square = np.maximum((chord**2).sum(axis=1), NO_CHORD**2)
+    beside = ((start + end) / 2 - centre) * chord
+    return np.asarray(centre + (beside.sum(axis=1) / square)[:, None] * chord)

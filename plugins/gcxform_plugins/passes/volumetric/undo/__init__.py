@@ -1,0 +1,1 @@
+"""Where the machine goes with them: no search shared."""

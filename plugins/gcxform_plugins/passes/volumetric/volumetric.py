@@ -1,0 +1,269 @@
+"""`volumetric`: commands that make a machine with known errors go where the program says.
+
+The error E is a function of the machine position. A command c takes the tool to c + E(c), so for a
+target p the command solves c + E(c) = p. Between two commands the control goes straight; the error
+bends at the nodes of its table, so a line is cut where its command crosses a node, and nowhere else
+unless asked: then the machine is on the line, exactly. With a tolerance, only those cuts stay that
+the tolerance needs. An arc stays an arc where one fitted to the compensated points holds the
+tolerance, and is cut where it does not.
+
+With `inverse` the program holds commands, and what is written is where the machine goes with them:
+c + E(c), cut where the error bends. The undo is then the search for the command.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+import gcxform as gx
+from gcxform_plugins.passes.volumetric.forward.compensation import Compensation, left_to_machine
+from gcxform_plugins.passes.volumetric.levers import UNKNOWN, lever_of
+from gcxform_plugins.passes.volumetric.place import Place
+from gcxform_plugins.passes.volumetric.ranges import beyond
+from gcxform_plugins.passes.volumetric.undo.commands import Commands
+from gcxform_plugins.passes.volumetric.undo.machine import Machine
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+ARC_TOLERANCE = 0.001  # mm, where no tolerance is given: an arc cannot be exact
+
+
+@dataclass(frozen=True)
+class Volumetric(gx.Pass):
+    """Compensate the volumetric errors of a machine.
+
+    Positions in the table are program + part-origin - table-origin; with a machine file the work
+    offset in force takes the place of part-origin.
+    """
+
+    name = "volumetric"
+    requires = frozenset({gx.NOMINAL, gx.AXIS_POSITIONS})
+    ensures = frozenset({gx.COMPENSATED})
+    clears = frozenset({gx.NOMINAL})
+
+    model: Annotated[gx.ModelFile, gx.Option("error model: TOML, or a format of a plugin")]
+    outside: Annotated[gx.Outside, gx.Option("what the error is beyond the table")] = (
+        gx.Outside.ERROR
+    )
+    tolerance: Annotated[
+        gx.Length | None,
+        gx.Option(
+            "residual allowed between cuts; absent: lines are exact, arcs within 1 um", above=0.0
+        ),
+    ] = None
+    max_correction: Annotated[
+        gx.Length, gx.Option("a larger correction is an error", above=0.0)
+    ] = 0.2
+    split: Annotated[Literal["adaptive", "nodes", "none"], gx.Option("where moves are cut")] = (
+        "adaptive"
+    )
+    rapids: Annotated[
+        Literal["ends", "skip"], gx.Option("rapids: compensate their ends, or leave them")
+    ] = "ends"
+    iterations: Annotated[
+        int, gx.Option("steps of the inverse; 0: until it has converged", at_least=0, at_most=20)
+    ] = 0
+    arc_centres: Annotated[
+        Literal["refit", "nominal"], gx.Option("nominal: I, J stay as they were")
+    ] = "refit"
+    table_origin: Annotated[gx.Vector, gx.Option("origin of the measurement")] = (0.0, 0.0, 0.0)
+    part_origin: Annotated[gx.Vector | None, gx.Option("origin of the program")] = None
+    max_extrapolation: Annotated[
+        float, gx.Option("cells by which the table may be extrapolated", above=0.0)
+    ] = 1.0
+    min_length: Annotated[
+        gx.Length,
+        gx.Option(
+            "shorter pieces are not cut; refused where the tolerance (1 um if absent) needs them",
+            at_least=0.0,
+        ),
+    ] = 0.0
+    time: Annotated[
+        str | None, gx.Option("time (ISO 8601) whose temperatures hold; absent: as the model says")
+    ] = None
+    backlash: Annotated[
+        Literal["refuse", "mean"],
+        gx.Option("of a model with backlash: refuse it, or take the mean of both directions"),
+    ] = "refuse"
+    inverse: Annotated[
+        bool, gx.Option("the program holds commands: write where the machine goes with them")
+    ] = False
+
+    def __post_init__(self) -> None:
+        """Take the model at its time and between its directions; turn facts round for the inverse.
+
+        Raises ValueError for what the inverse cannot do.
+        """
+        if self.time is not None:
+            object.__setattr__(self, "model", self.model.at_time(self.time))
+        if self.backlash == "mean" and self.model.model.backlash.any():
+            mean = gx.Mean(self.model.model)
+            object.__setattr__(self, "model", replace(self.model, model=mean))
+        if self.inverse and self.outside is gx.Outside.ZERO:
+            raise ValueError("inverse does not go with outside = zero, where the error jumps")
+        if self.inverse and self.iterations:
+            raise ValueError("inverse writes where the machine goes, which takes no iterations")
+        if self.inverse:
+            asked = self.ensures | {gx.AXIS_POSITIONS}
+            nominal = frozenset({gx.NOMINAL})
+            turned = {"requires": asked, "ensures": nominal, "clears": self.ensures}
+            for name, facts in turned.items():
+                object.__setattr__(self, name, facts)
+
+    @property
+    def promise(self) -> float:
+        """The tolerance; nothing where moves are not cut, or rapids not compensated."""
+        if self.split == "none" or self.rapids == "skip" or self.arc_centres == "nominal":
+            return float("inf")
+        return self.limit
+
+    @property
+    def limit(self) -> float:
+        """The residual (mm) that arcs are held to."""
+        return ARC_TOLERANCE if self.tolerance is None else self.tolerance
+
+    @property
+    def cells(self) -> float:
+        """By how many cells beyond the tables bounds of the error have to hold.
+
+        One is for commands, which may be a little beyond where their targets are not.
+        """
+        return 1.0 + self.max_extrapolation * (self.outside is gx.Outside.EXTRAPOLATE)
+
+    def begin(self, context: gx.PassContext) -> None:
+        """Refuse a model that cannot be inverted, and a run without origin."""
+        gx.check_contraction(self.model.model)
+        self._check_extrapolation()
+        if self.model.model.backlash.any():
+            axes = " ".join(a for a, b in zip("XYZ", self.model.model.backlash, strict=True) if b)
+            message = f"volumetric does not compensate backlash, and the model has some on {axes}"
+            hint = 'backlash = "mean" compensates what both directions have in common'
+            raise gx.UsageError.one("GX484", message, hint=hint)
+        offsets = context.machine.work_offsets if context.machine else {}
+        if self.part_origin is None and not offsets:
+            raise gx.UsageError.one(
+                "GX721",
+                "volumetric needs to know where the program's origin is in the machine",
+                hint="give part-origin = [x, y, z], or a machine file with work offsets",
+            )
+
+    def _check_extrapolation(self) -> None:
+        """Refuse to go farther beyond a table than its bounds of the error hold."""
+        extrapolated = self.outside is gx.Outside.EXTRAPOLATE and self.max_extrapolation > 1.0
+        if extrapolated and self.model.model.curvature(1.0).any():
+            raise gx.UsageError.one(
+                "GX713",
+                f"max-extrapolation = {self.max_extrapolation:g}, and the error is curved: how "
+                "steep it is farther than 1 cell beyond the table has no bound",
+                hint='leave max-extrapolation out, or outside = "clamp"',
+            )
+
+    # --- forward and back ---
+
+    def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
+        """Return the commands for a path; for the inverse, where the machine goes with it."""
+        return Compensation(self, path, self._place(path, context)).run() if len(path) else path
+
+    def undo(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
+        """Return where the machine goes: command plus error, cut where the error bends.
+
+        For the inverse it is the commands with which the machine goes where the path says.
+        """
+        undoing = Commands if self.inverse else Machine
+        return undoing(self, path, self._place(path, context)).run() if len(path) else path
+
+    def spares(self, path: gx.Toolpath) -> NDArray[np.bool_]:
+        """Return the rapids to points of the machine, to unknown places, or all if so asked."""
+        return left_to_machine(path, self.rapids == "skip")
+
+    def measure(
+        self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
+    ) -> dict[str, float]:
+        """Return how far the path goes beyond the tables, where that is allowed."""
+        if self.outside is gx.Outside.ERROR or not len(before):
+            return {}
+        rows = np.flatnonzero(~left_to_machine(before))
+        return beyond(self, before, self._place(before, context).offset, rows)
+
+    def _place(self, path: gx.Toolpath, context: gx.PassContext) -> Place:
+        """Return where the rows of a path are in the machine."""
+        origin = np.array(self.table_origin)
+        tools = np.nan_to_num(np.array([frame.tool for frame in path.frames]))
+        if self.part_origin is not None:
+            self._check_head(path, context)
+            self._check_frames(path, "a second work offset, but only one part-origin", False)
+            offset = np.array(self.part_origin) - origin - tools
+            return Place(offset if len(offset) == 1 else offset[path.frame])
+        assert context.machine is not None
+        table = context.machine.work_offsets
+        self._check_frames(path, "the machine file has not all offsets of this block", True)
+        if path.first not in table:
+            message = f"the machine file has no work offset {path.first}"
+            raise path.refuse("GX314", np.array([0]), message, "add it there")
+        zero = [table[path.first].get(axis, 0.0) for axis in "XYZ"]
+        offset = np.array([zero]) - origin
+        if not self.model.model.needs_tool:
+            return Place(offset)
+        tip = -tools
+        lever = None
+        if context.machine.head:
+            lever = lever_of(path, context, tip[path.frame])
+        if lever is not None:
+            return Place(offset, lever.ends, lever)
+        return Place(offset, tip[0] if len(tip) == 1 else tip[path.frame])
+
+    def _check_head(self, path: gx.Toolpath, context: gx.PassContext) -> None:
+        """Refuse angular errors where the head is turned, and only the origin of the tip known."""
+        machine = context.machine
+        if machine is None or not self.model.model.needs_tool:
+            return
+        columns = [path.axes.index(letter) for letter in machine.head if letter in path.axes]
+        turned = (np.nan_to_num(path.end[:, columns]) != 0.0).any(axis=1)
+        if turned.any():
+            message = f"{UNKNOWN}part-origin says nothing of the axes"
+            hint = "give a machine file with [work-offset.*] and [tool.*] instead of part-origin"
+            raise path.refuse("GX314", np.flatnonzero(turned)[:1], message, hint)
+
+    def _check_frames(self, path: gx.Toolpath, message: str, tools: bool) -> None:
+        """Refuse rows whose X, Y, Z count from elsewhere; `tools`: tool lengths matter."""
+        for number in np.flatnonzero(np.bincount(path.frame)).tolist():
+            origins = path.frames[number].origin[:3]
+            named = [name if tools else name.split(" + ")[0] for name in origins]
+            if any(name != path.first for name in named):
+                rows = np.flatnonzero(path.frame == number)[:1]
+                known = " and ".join(dict.fromkeys(n for n in named if n != path.first))
+                hint = (
+                    f"not known: {known}; give a machine file with [work-offset.*] and [tool.*]"
+                    + ("" if tools else " instead of part-origin")
+                )
+                raise path.refuse("GX314", rows, message, hint)
+
+    def nodes(self) -> tuple[Floats, Floats, Floats]:
+        """Return the planes on which the error bends, under the policy for outside."""
+        bends = self.outside in (gx.Outside.CLAMP, gx.Outside.ZERO)
+        x, y, z = (n if bends else n[1:-1] for n in self.model.model.nodes)
+        return x, y, z
+
+    def error(self, position: Floats, tool: Floats | None = None) -> Floats:
+        """Return the error (n, 3) at positions in the table (n, 3), mm, for tools."""
+        return self.model.model.error(position, self.outside, tool)
+
+    def command(self, target: Floats, tool: Floats | None = None) -> Floats:
+        """Return what is written (n, 3) for targets in the table (n, 3), mm, for tools."""
+        return self._actual(target, tool) if self.inverse else self._solved(target, tool)
+
+    def meant(self, written: Floats, tool: Floats | None = None) -> Floats:
+        """Return the targets (n, 3) for which something else (n, 3) is written, mm, for tools."""
+        return self._solved(written, tool) if self.inverse else self._actual(written, tool)
+
+    def _actual(self, command: Floats, tool: Floats | None) -> Floats:
+        return command + self.error(command, tool)
+
+    def _solved(self, target: Floats, tool: Floats | None) -> Floats:
+        model = self.model.model
+        return gx.compensate(model, target, self.outside, self.iterations, tool).position

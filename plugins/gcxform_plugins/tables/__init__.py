@@ -1,1 +1,0 @@
-"""What several formats of error tables share: points, positioning tests, parameters, steps."""
