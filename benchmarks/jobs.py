@@ -92,6 +92,7 @@ def gcxform_job(
 ) -> Job:
     """Return the whole job: absolute, volumetric, emission and, unless it is off, proof."""
     chain = str(HERE / pipeline)
+    options = ("--allow-outside", *options)  # the models are those of the examples
     command = [str(GCXFORM), "run", "-p", chain, "-o", str(out), *options, str(source)]
     return Job(name, command, out, lines, b"M30")
 
