@@ -144,7 +144,7 @@ def test_names_with_numbers_are_themselves(kind):
 
 
 @both
-@pytest.mark.parametrize("sign", ["#", SLOT, "\0", "?"])
+@pytest.mark.parametrize("sign", ["#", SLOT, "\0", "?"], ids=["hash", "slot", "null", "question"])
 def test_no_sign_of_a_program_is_taken_for_a_number(kind, sign):
     """A shape has something in the place of numbers; a program cannot write it."""
     found = refused(f"X1\nX{sign}\n".encode(), kind)
