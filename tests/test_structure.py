@@ -1,7 +1,9 @@
-"""The shape of the packages: who may import whom, and no circles."""
+"""The shape of the packages: who may import whom, no circles, and no half-made objects."""
 
 from __future__ import annotations
 
+import ast
+from collections.abc import Iterator
 from configparser import ConfigParser
 from functools import cache
 from pathlib import Path
@@ -140,3 +142,166 @@ def test_no_module_hides_a_public_name() -> None:
     """`import gcxform.deviation` would set `gx.deviation`, and what it is would depend on order."""
     modules = {name.split(".")[1] for name in graph(False).modules if name.startswith("gcxform.")}
     assert not modules & set(gx.__all__)
+
+
+# --- objects are whole when they are made ---
+
+MAKING = ("__init__", "__post_init__", "__new__")
+FIELDS = ("dataclass", "NamedTuple", "Protocol")
+"""Decorators and bases under which a bare annotation is a field that the maker must give."""
+PLANTED = """
+class Base:
+    def __init__(self):
+        self.known = self.counted = 0
+
+@dataclass
+class Planted(Base):
+    given: int
+    late: int = field(init=False)
+
+    def good(self):
+        self.known, self.given, self.counted = 1, 2, 3
+        other.elsewhere = 4
+
+    def bad(self):
+        self.plain = self.chained = 1
+        self.left, (self.right, *self.rest) = pair
+        self.annotated: int = 1
+        self.summed += 1
+        self.late = 1
+        for self.looped in (): pass
+        with place as self.opened: pass
+        [0 for self.drawn in ()]
+        object.__setattr__(self, "forced", 1)
+        setattr(self, "set", 1)
+        self.__dict__["smuggled"] = 1
+        def inner():
+            self.nested = 1
+
+class Bare:
+    promised: int
+    def begin(self):
+        self.promised = 1
+"""
+
+
+def last_name(node: ast.expr) -> str:
+    """Return the last name of an expression such as `gx.Pass[T]` or `dataclass(frozen=True)`."""
+    while isinstance(node, ast.Subscript | ast.Call):
+        node = node.value if isinstance(node, ast.Subscript) else node.func
+    return node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "")
+
+
+def assigned(method: ast.FunctionDef) -> Iterator[str]:
+    """Yield the attributes that a method gives its first argument."""
+    own = [each.arg for each in (*method.args.posonlyargs, *method.args.args)][:1]
+    for node in ast.walk(method):
+        on = node.value if isinstance(node, ast.Attribute | ast.Subscript) else None
+        if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+            yield from (node.attr for _ in own if getattr(on, "id", "") == own[0])
+        elif isinstance(node, ast.Subscript) and getattr(on, "attr", "") == "__dict__":
+            yield ast.unparse(node.slice).strip("'")
+        elif isinstance(node, ast.Call) and last_name(node) in ("__setattr__", "setattr"):
+            taken = ast.unparse(node.args[0]) if node.args else ""
+            yield from (ast.unparse(node.args[1]).strip("'") for name in own if name == taken)
+
+
+def methods(node: ast.ClassDef, making: bool) -> Iterator[str]:
+    """Yield what the methods that make an object assign, or what the others do."""
+    for each in node.body:
+        if isinstance(each, ast.FunctionDef) and (each.name in MAKING) == making:
+            yield from assigned(each)
+
+
+def is_given(node: ast.ClassDef, field: ast.AnnAssign) -> bool:
+    """Return whether an annotation of a class body gives the attribute to every object."""
+    if isinstance(field.value, ast.Call) and last_name(field.value) == "field":
+        options = {each.arg: ast.unparse(each.value) for each in field.value.keywords}
+        return options.get("init") != "False" or bool({"default", "default_factory"} & set(options))
+    makers = [last_name(each) for each in (*node.decorator_list, *node.bases)]
+    return field.value is not None or any(each in FIELDS for each in makers)
+
+
+def declared(node: ast.ClassDef) -> Iterator[str]:
+    """Yield the attributes that every object of a class has, those of its bases apart."""
+    yield from methods(node, making=True)
+    for each in node.body:
+        if isinstance(each, ast.FunctionDef):
+            yield each.name
+        elif isinstance(each, ast.AnnAssign) and is_given(node, each):
+            yield last_name(each.target)
+        elif isinstance(each, ast.Assign):
+            yield from (name.id for name in ast.walk(each) if isinstance(name, ast.Name))
+
+
+def born_late(texts: dict[str, str]) -> dict[str, set[str]]:
+    """Return, per class, the attributes that are assigned only after it was made.
+
+    `texts`: the source of modules. A base is the class of its name that its module defines or
+    imports, and any class of its name where it is reached in another way (`gx.Pass`).
+    """
+    trees = {module: ast.parse(text) for module, text in texts.items()}
+    classes = {
+        (module, node.name): node
+        for module, tree in trees.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ClassDef)
+    }
+    origin = {
+        (module, name.asname or name.name): (node.module or "", name.name)
+        for module, tree in trees.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for name in node.names
+    }
+
+    def whole(at: tuple[str, str]) -> set[str]:
+        found = set(declared(classes[at]))
+        for base in map(last_name, classes[at].bases):
+            exact = [(at[0], base), origin.get((at[0], base), ("", ""))]
+            known = [each for each in exact if each in classes and each != at]
+            for each in known[:1] or [key for key in classes if key[1] == base and key != at]:
+                found |= whole(each)
+        return found
+
+    late = {f"{at[0]}.{at[1]}": set(methods(classes[at], False)) - whole(at) for at in classes}
+    return {name: attributes for name, attributes in late.items() if attributes}
+
+
+def test_late_births_are_found() -> None:
+    bad = "plain chained left right rest annotated summed late looped opened drawn forced set"
+    expected = {*bad.split(), "smuggled", "nested"}
+    assert born_late({"m": PLANTED}) == {"m.Planted": expected, "m.Bare": {"promised"}}
+
+
+STILL_LATE: dict[str, int] = {
+    "gcxform.deviations.chains._Side": 6,
+    "gcxform.emit.pieces.Pieces": 30,
+    "gcxform.emit.positions.Positions": 1,
+    "gcxform.emit.templates.TemplateWriter": 7,
+    "gcxform.modal.moves.moves.Moves": 6,
+    "gcxform.modal.reader.WindowReader": 2,
+    "gcxform.pipeline.run.Run": 2,
+    "gcxform.resume.restart.Restart": 1,
+    "gcxform.testing.generate.Builder": 1,
+    "gcxform.testing.kit._PathCheck": 1,
+    "gcxform_plugins.dialects.heidenhain.moves.Moves": 1,
+    "gcxform_plugins.passes.arcs.fit._Runs": 5,
+    "gcxform_plugins.passes.cutter_comp.proof._Proof": 20,
+    "gcxform_plugins.passes.rtcp.forward.cutting.Cutting": 1,
+    "gcxform_plugins.passes.rtcp.forward.moving.Moving": 3,
+    "gcxform_plugins.passes.volumetric.forward.compensation.Compensation": 1,
+}
+"""Classes, and how many attributes they are still given late."""
+
+
+def test_objects_are_whole_when_they_are_made() -> None:
+    """What comes later belongs into what a function returns."""
+    texts = {
+        ".".join(file.relative_to(ROOT / root).with_suffix("").parts): file.read_text("utf-8")
+        for root in (".", "plugins")
+        for file in (ROOT / root).glob("gcxform*/**/*.py")
+    }
+    assert len(texts) > 350
+    late = born_late(texts)
+    assert {name: len(attributes) for name, attributes in late.items()} == STILL_LATE, late
