@@ -58,7 +58,8 @@ def workplace(folder: Path) -> Path:
 
 def pipeline(chain: str, folder: Path, dialect: str = "linuxcnc", **changes: Any) -> gx.Pipeline:
     """Return the pipeline of a chain; `machine` names a file of the folder."""
-    from gcxform.pipeline.file import OutputSpec, PipelineSpec, parse_chain
+    from gcxform.pipeline.chain_text import parse_chain
+    from gcxform.pipeline.file import OutputSpec, PipelineSpec
     from gcxform.plugin.registry import default_registry
 
     registry = default_registry()

@@ -15,7 +15,9 @@ from gcxform.contract.options import Length, ModelFile, Option, Vector
 from gcxform.contract.passes import Pass, TextPass
 from gcxform.diagnostics import UsageError
 from gcxform.dialect.dialect import Dialect
-from gcxform.pipeline.file import InputSpec, OutputSpec, PipelineSpec, load, parse_chain, schema
+from gcxform.pipeline.chain_text import parse_chain
+from gcxform.pipeline.file import InputSpec, OutputSpec, PipelineSpec, load
+from gcxform.pipeline.schema import schema
 from gcxform.plugin.registry import Registry, default_registry
 
 MODEL = """format = 1

@@ -21,7 +21,7 @@ from test_rtcp_retract import BACK, FEED, LIMITS, OPTIONS, TOLERANCE, round_abou
 
 import gcxform as gx
 from gcxform.emit.emitter import Emitted, Emitter
-from gcxform.pipeline.file import parse_chain
+from gcxform.pipeline.chain_text import parse_chain
 from gcxform.plugin.registry import default_registry
 
 TOP = 700.0

@@ -166,7 +166,7 @@ def test_a_stamp_that_is_not_written_is_noticed(place, monkeypatch):
 def test_a_stamp_that_is_not_read_is_noticed(place, monkeypatch):
     pipe = kit.pipeline(kit.VOLUMETRIC, place)
     once = pipe.run(kit.PLATE).text
-    monkeypatch.setattr("gcxform.pipeline.pipeline.stamps_in", lambda source: Stamps())
+    monkeypatch.setattr("gcxform.pipeline.plan.stamps_in", lambda source: Stamps())
     for stamp in (True, False):
         with pytest.raises(gx.VerificationError, match="GX609"):
             dataclasses.replace(pipe, stamp=stamp).run(once)

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 import gcxform as gx
-from gcxform.pipeline.file import parse_chain
+from gcxform.pipeline.chain_text import parse_chain
 from gcxform.plugin.registry import default_registry
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "lddm"

@@ -16,7 +16,7 @@ from gcxform.cli.common.request import Asked, needed_dialect
 from gcxform.config.quantities import LENGTH
 from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
 from gcxform.dialect.dialect import Dialect
-from gcxform.pipeline.pipeline import check_written
+from gcxform.pipeline.plan import check_written
 from gcxform.plugin.registry import default_registry
 from gcxform.resume.preamble import Preamble
 from gcxform.resume.restart import Restart

@@ -8,7 +8,7 @@ from typing import Literal
 import click
 
 from gcxform.cli import VERBS
-from gcxform.pipeline.file import schema
+from gcxform.pipeline.schema import schema
 
 
 @click.command("schema", help=VERBS["schema"], short_help=VERBS["schema"])

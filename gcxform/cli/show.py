@@ -20,7 +20,7 @@ from gcxform.contract.options import Length, ModelFile, Option, Vector
 from gcxform.diagnostics import Location, UsageError
 from gcxform.dialect.dialect import Dialect
 from gcxform.errormodel.model import Outside
-from gcxform.pipeline.file import parse_chain
+from gcxform.pipeline.chain_text import parse_chain
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
 from gcxform.simulate.heat import before_and_after

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,20 +14,18 @@ from gcxform.flow.straightened import located
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.meaning.tables import GROUPS
 from gcxform.pipeline.certificate import Certificate
+from gcxform.pipeline.output import Output
+from gcxform.pipeline.plan import Plan
+from gcxform.pipeline.run import Run
+from gcxform.proof.verify import Findings
 from gcxform.stamps.chain import described
 from gcxform.syntax.source import Source, lines_in
 from gcxform.version import VERSION
 
-if TYPE_CHECKING:
-    from gcxform.pipeline.output import Output
-    from gcxform.pipeline.pipeline import Pipeline
-    from gcxform.pipeline.run import Run
-    from gcxform.proof.verify import Findings
-
 
 def certificate(run: Run, out: Output) -> Certificate:
     """Return what was proved of a run, once its output is complete."""
-    pipeline = run.pipeline
+    plan = run.plan
     run.text.finish()
     executed, lines = run.source is not run.given, 0
     for text in run.given.windows() if executed else ():
@@ -35,15 +33,14 @@ def certificate(run: Run, out: Output) -> Certificate:
         lines += lines_in(text)
     made = Certificate(
         VERSION,
-        {"name": run.source.name, "dialect": pipeline.source.name, "lines": lines or out.lines_in}
+        {"name": run.source.name, "dialect": plan.source.name, "lines": lines or out.lines_in}
         | {"sha256": out.read.hexdigest()},
-        {"dialect": pipeline.target.name, "lines": out.lines_out}
-        | {"sha256": out.written.hexdigest()},
-        [described(step) for step in pipeline.passes],
-        _budget(pipeline, run.findings),
+        {"dialect": plan.target.name, "lines": out.lines_out} | {"sha256": out.written.hexdigest()},
+        [described(step) for step in plan.passes],
+        _budget(plan, run.findings),
         {"blocks_in": out.blocks_in, "blocks_out": out.blocks_out}
-        | {"ratio": out.growth, "limit": pipeline.growth},
-        run.verifier is not None or (pipeline.copies and run.verify != "off"),
+        | {"ratio": out.growth, "limit": plan.growth},
+        run.verifier is not None or (plan.copies and run.verify != "off"),
     )
     made.measured = run.measured
     made.added = run.added
@@ -52,7 +49,7 @@ def certificate(run: Run, out: Output) -> Certificate:
         made.inventory["percent_signs"] = {
             "source": 0,
             "output": run.frame.before + run.frame.behind,
-            "rules": {f"{pipeline.target.name} wants an end": run.frame.before + run.frame.behind},
+            "rules": {f"{plan.target.name} wants an end": run.frame.before + run.frame.behind},
         }
     _stamps(run, made)
     _fill(run, made)
@@ -71,13 +68,13 @@ def _stamps(run: Run, certificate: Certificate) -> None:
     }
     if marks.against:
         certificate.assumed.append(f"the program may be run once more, though {marks.against}")
-    if run.pipeline.stamp and marks.changes and not marks.written:
+    if run.plan.stamp and marks.changes and not marks.written:
         certificate.not_checked.append("whether it is run twice: no stamp could be written")
 
 
 def _fill(run: Run, certificate: Certificate) -> None:
     if run.verifier is None:
-        if run.pipeline.copies and not run.text.passes:
+        if run.plan.copies and not run.text.passes:
             certificate.not_checked.append("meaning: every byte was copied")
         elif run.verify == "off":
             certificate.not_checked.append("anything: verification was switched off")
@@ -145,7 +142,7 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
         what = "whether the tool is clear in moves that the source does not have"
         certificate.not_checked.append(f"{what}: {', '.join(added)}")
     chosen = (*run.assumed, *run.emitter.assumed)
-    certificate.assumed += assumptions(run.interpreter, run.pipeline.source, chosen)
+    certificate.assumed += assumptions(run.interpreter, run.plan.source, chosen)
     certificate.warnings += warnings_of(run.interpreter, run.source)
 
 
@@ -194,12 +191,12 @@ def _of_the_file(run: Run) -> Iterator[str]:
         yield f"whether this is a whole program: {why}, and the source has none"
 
 
-def _budget(pipeline: Pipeline, found: Findings) -> dict[str, object]:
-    promised, inch = pipeline.promised(), found.inch
+def _budget(plan: Plan, found: Findings) -> dict[str, object]:
+    promised, inch = plan.promised(), found.inch
     return {
-        "deviation": pipeline.limit(inch, found.contours > 0, found.arcs),
-        "explicit": pipeline.budget is not None,
+        "deviation": plan.limit(inch, found.contours > 0, found.arcs),
+        "explicit": plan.budget is not None,
         "steps": promised if np.isfinite(promised) else None,
-        "angle": max(pipeline.angle_limits().values()),
-        "rounding": pipeline.rounding(inch),
+        "angle": max(plan.angle_limits().values()),
+        "rounding": plan.rounding(inch),
     }

@@ -1,4 +1,4 @@
-"""Pipelines as a user writes them: a TOML file, or a chain such as `absolute | segment`.
+"""Pipelines as a user writes them: a TOML file.
 
     format = 1
     [input]
@@ -12,35 +12,28 @@ Whatever is not understood is an error with its place. Relative paths are relati
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar
+from typing import Annotated, Any, Final, Literal, TypeVar
 
 from gcxform.config.toml_text import Codes, TomlText, read_toml
 from gcxform.contract.options import (
-    Argument,
     Coordinates,
     FeedIncrement,
     Increment,
     Length,
     Option,
-    OptionDoc,
     ParameterValues,
     build,
-    describe,
 )
 from gcxform.contract.passes import Pass, TextPass
 from gcxform.contract.tolerance_warnings import doubts_of
-from gcxform.diagnostics import Diagnostic, Location, UsageError
-from gcxform.errormodel import model_file as modelfile
-from gcxform.machine import file as machinefile
-from gcxform.plugin.registry import Registry, default_registry
+from gcxform.diagnostics import Diagnostic, UsageError
+from gcxform.plugin.registry import Registry
 from gcxform.system.limits import Limits, in_force
 
-CHAIN: Final = "-x"
 CODES = Codes("GX709", "GX710", "GX701", "GX705", "GX702")
 FORMAT: Final = 1
 
@@ -241,7 +234,7 @@ class _Reader:
             raise UsageError.one("GX702", "use: expected the name of a pass", where("use"))
         chosen = self.registry.pass_(name, where("use"))
         options = {key: value for key, value in raw.items() if key != "use"}
-        return _built(chosen, options, self.base, self.registry, where)
+        return built(chosen, options, self.base, self.registry, where)
 
     def doubts(self) -> Iterator[Diagnostic]:
         """Yield warnings about tolerances of the file."""
@@ -264,164 +257,9 @@ class _Reader:
                     self.found += error.diagnostics
 
 
-def _built(
+def built(
     chosen: type[Step], options: Mapping[str, object], base: Path, registry: Registry, where: Any
 ) -> Step:
+    """Return a pass with its options; `where` gives the place of a key. Raises UsageError."""
     formats, kinds = registry.formats.values(), registry.kinematics
     return build(chosen, options, base, formats, where, kinematics=kinds)
-
-
-def _at(text: str, token: re.Match[str]) -> Callable[[str], Location]:
-    """Return what gives the place of a word of a chain, whatever key is asked for."""
-    return lambda key: _place(text, token)
-
-
-def chain_doubts(text: str) -> tuple[Diagnostic, ...]:
-    """Return warnings about tolerances in a chain that `parse_chain` takes."""
-    found: list[Diagnostic] = []
-    text = re.sub(r"\s", " ", text)
-    for words in _split(text):
-        for token in words.options:
-            key, _, value = token[0].partition("=")
-            found += doubts_of({key: Argument(value)}, _at(text, token))
-    return tuple(found)
-
-
-# --- chains on the command line ---
-
-_TOKEN = re.compile(r"""(?P<bar>\|)|(?P<word>(?:[^\s|"']|"[^"]*"|'[^']*')+)|(?P<quote>["'])""")
-_QUOTED = re.compile(r""""([^"]*)"|'([^']*)'""")
-
-
-class _Words(NamedTuple):
-    """One step of a chain: the name of its pass and its options, all with their columns."""
-
-    name: re.Match[str]
-    options: list[re.Match[str]]
-
-
-def parse_chain(text: str, base: Path, registry: Registry) -> list[Step]:
-    """Return the passes of a chain, `absolute | segment chord-error=5um`, built.
-
-    Values with blanks stand in quotes. Relative paths are relative to `base`. Raises UsageError
-    with columns of the text.
-    """
-    text = re.sub(r"\s", " ", text)
-    steps: list[Step] = []
-    found: list[Diagnostic] = []
-    for words in _split(text):
-        try:
-            steps.append(_chain_step(words, text, base, registry))
-        except UsageError as error:
-            found += error.diagnostics
-    if found:
-        raise UsageError(tuple(found))
-    return steps
-
-
-def _place(text: str, token: re.Match[str]) -> Location:
-    return Location(CHAIN, 1, token.start() + 1, text, len(token[0]))
-
-
-def _split(text: str) -> list[_Words]:
-    """Return the steps of a chain; a chain of blanks has none."""
-    steps: list[_Words] = []
-    bar: re.Match[str] | None = None
-    fresh = True  # whether the next word begins a step
-    for token in _TOKEN.finditer(text):
-        if token["quote"]:
-            raise UsageError.one("GX712", "the quote is not closed", _place(text, token))
-        if token["word"] and fresh:
-            steps.append(_Words(token, []))
-        elif token["word"]:
-            steps[-1].options.append(token)
-        elif fresh:
-            message = "there is no pass before this |"
-            raise UsageError.one("GX712", message, _place(text, token))
-        bar, fresh = token, bool(token["bar"])
-    if bar is not None and fresh:
-        raise UsageError.one("GX712", "there is no pass after this |", _place(text, bar))
-    return steps
-
-
-def _chain_step(words: _Words, text: str, base: Path, registry: Registry) -> Step:
-    places = {"use": _place(text, words.name)}
-    options: dict[str, Argument] = {}
-    for token in words.options:
-        key, equals, value = token[0].partition("=")
-        if not equals or not key:
-            message = f"{token[0]!r} is not an option, which is key=value"
-            hint = f"separate passes by |: {words.name[0]} | {token[0]}"
-            raise UsageError.one("GX712", message, _place(text, token), hint)
-        if key in options:
-            raise UsageError.one("GX712", f"{key!r} is given twice", _place(text, token))
-        options[key] = Argument(_QUOTED.sub(lambda quoted: quoted[1] or quoted[2] or "", value))
-        places[key] = _place(text, token)
-    chosen = registry.pass_(words.name[0], places["use"])
-    return _built(chosen, options, base, registry, lambda key: places.get(key, places["use"]))
-
-
-# --- JSON Schema -------------------------------------------------------------------------------
-
-_JSON_TYPES: Final[Mapping[str, str | list[str]]] = {
-    "length": ["number", "string"],
-    "increment system or length": ["number", "string"],
-    "increment system or number": ["number", "string"],
-    "angle": ["number", "string"],
-    "three lengths": ["array", "string", "object"],
-    "coordinates by axis letter": "object",
-    "list of lines": "array",
-    "numbers by parameter": "object",
-    "true or false": "boolean",
-    "whole number": "integer",
-    "number": "number",
-    "whole number or table by letter": ["integer", "object"],
-}
-
-
-def schema(
-    kind: Literal["pipeline", "machine", "model"], registry: Registry | None = None
-) -> dict[str, Any]:
-    """Return the JSON Schema of a kind of files; that of pipelines has the passes' options."""
-    if kind == "machine":
-        _ = registry or default_registry()  # dialects have settings of their own
-        return machinefile.schema()
-    if kind == "model":
-        return modelfile.schema()
-    return _pipeline_schema((registry or default_registry()).passes)
-
-
-def _pipeline_schema(passes: Mapping[str, type]) -> dict[str, Any]:
-    steps = [_table(describe(each), use=name) for name, each in passes.items()]
-    properties: dict[str, Any] = {"format": {"const": FORMAT}}
-    properties |= {name: _table(describe(section)) for name, section in SECTIONS.items()}
-    properties["pass"] = {"type": "array", "items": {"anyOf": steps}}
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "gcxform pipeline",
-        "type": "object",
-        "properties": properties,
-        "required": ["format"],
-        "additionalProperties": False,
-    }
-
-
-def _table(options: list[OptionDoc], use: str = "") -> dict[str, Any]:
-    """Return the schema of a table of options, with the name of its pass."""
-    named: dict[str, Any] = {"use": {"const": use}} if use else {}
-    return {
-        "type": "object",
-        "properties": named | {option.name: _property(option) for option in options},
-        "required": [*named, *(option.name for option in options if option.mandatory)],
-        "additionalProperties": False,
-    }
-
-
-def _property(option: OptionDoc) -> dict[str, Any]:
-    found: dict[str, Any] = {"type": _JSON_TYPES.get(option.type, "string")}
-    if option.choices:
-        found = {"enum": list(option.choices)}
-    parts = (option.help, option.range, f"default {option.default}" if option.default else "")
-    if text := "; ".join(part for part in parts if part):
-        found["description"] = text
-    return found

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from gcxform.contract.passes import Pass, resolved
 from gcxform.contract.tip_codes import switches_of
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
-from gcxform.dialect.dialect import LINEAR
 from gcxform.emit.centres import in_words_of
 from gcxform.emit.emitter import Emitted, Emitter
 from gcxform.flow.straightened import located, written_out
@@ -28,6 +27,7 @@ from gcxform.modal.state import Reading
 from gcxform.pipeline.cutter_comp import check_compensated, whole_stretches
 from gcxform.pipeline.mixed_feeds import check_mixed
 from gcxform.pipeline.output import Output
+from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.text_passes import TextRun
 from gcxform.pipeline.whole_cuts import whole_cuts, whole_sections
 from gcxform.proof.inventory import Books, Others
@@ -40,9 +40,6 @@ from gcxform.syntax.source import Source, lines_in
 from gcxform.system.heap import Heap
 from gcxform.system.worker import Worker, ahead, worker
 from gcxform.toolpath.path import Toolpath
-
-if TYPE_CHECKING:
-    from gcxform.pipeline.pipeline import Pipeline
 
 Floats = NDArray[np.float64]
 Progress = Callable[[int], object]
@@ -62,23 +59,23 @@ class Transformed:
 class Run:
     """One run: its readers, writer and verifier."""
 
-    def __init__(self, pipeline: Pipeline, source: Source, verify: str) -> None:
-        self.pipeline = pipeline
-        self.marks = pipeline.marks(source)
+    def __init__(self, plan: Plan, source: Source, verify: str) -> None:
+        self.plan = plan
+        self.marks = plan.marks(source)
         self.heads = self._heads()
         self.source = source
         self.verify = verify
-        self.steps = pipeline.path_passes
-        self.text = TextRun(pipeline.text_passes, pipeline.target, source.name)
-        if not pipeline.copies:
-            given = pipeline.read_as, pipeline.machine_reading, pipeline.target
+        self.steps = plan.path_passes
+        self.text = TextRun(plan.text_passes, plan.target, source.name)
+        if not plan.copies:
+            given = plan.read_as, plan.machine_reading, plan.target
             self.source = written_out(source, *given)
         self.executes = self.source is not source
         self.assumed = self.source.assumed
         self.executed = getattr(self.source, "executed", None)
-        self.source, self.dialect = pipeline.without_tip_codes(self.source)
+        self.source, self.dialect = plan.without_tip_codes(self.source)
         self.ending = Ending(self.dialect, source.name)
-        self.books = Books(pipeline.context, frozenset())
+        self.books = Books(plan.context, frozenset())
         self.others = Others(self.dialect, self.source.name)
         self.account = Account()
         self.frame = Frame()
@@ -90,52 +87,52 @@ class Run:
         self.verifier: Verifier | None = None
         self.findings = Findings()
         self.interpreter: Interpreter | None = None
-        if not pipeline.copies:
+        if not plan.copies:
             self._prepare()
 
     def _heads(self) -> Heads | None:
         """Return what writes stamps; None where there are none, or every byte is copied."""
         if not (self.marks.changes or self.marks.read) or (
-            self.pipeline.copies and not self.pipeline.text_passes
+            self.plan.copies and not self.plan.text_passes
         ):
             return None
-        target = self.pipeline.target
+        target = self.plan.target
         lines = [comment_line(target, stamp.content) for stamp in self.marks.written]
         return Heads(target, lines, bool(self.marks.read))
 
     def _prepare(self) -> None:
-        pipeline = self.pipeline
-        axes = self.source.axes(pipeline.source.axes)
+        plan = self.plan
+        axes = self.source.axes(plan.source.axes)
         written = set(axes).union(*(step.letters for step in self.steps))
-        axes = "".join(axis for axis in pipeline.source.axes if axis in written)
-        reading = _with_assumed_start(pipeline, axes)
+        axes = "".join(axis for axis in plan.source.axes if axis in written)
+        reading = plan.reading_at_start(axes)
         self.axes = axes
         self.interpreter = Interpreter(self.dialect, reading, axes, self.source.name)
         self.frame = self._frame()
         start = self.interpreter.state.position
         called = self.source.is_called
-        self.emitter = Emitter(pipeline.manner, start, self.source.name, called)
-        self.emitter.believed.inch = int(_first_units(pipeline) == "in")
-        self.books = Books(pipeline.context, self._switches())
+        self.emitter = Emitter(plan.manner, start, self.source.name, called)
+        self.emitter.believed.inch = int(plan.first_units == "in")
+        self.books = Books(plan.context, self._switches())
         if self.verify != "off":
             self.verifier = Verifier(
                 self.steps[resolved(self.steps) :],
-                pipeline.context,
+                plan.context,
                 self._reading_of_output(reading),
                 axes,
-                pipeline.limit_of_written,
-                pipeline.angle_limits(written=True),
+                plan.limit_of_written,
+                plan.angle_limits(written=True),
                 self.source.name,
                 any(step.folds for step in self.steps),
                 self._switches(),
-                pipeline.bounded,
+                plan.bounded,
             )
 
     def _frame(self) -> Frame:
         """Return the percent signs that the program lacks for the target."""
         try:
-            executes = self.pipeline.reading.block_delete == "execute"
-            return frame_for(self.source, self.dialect, self.pipeline.target, executes)
+            executes = self.plan.reading.block_delete == "execute"
+            return frame_for(self.source, self.dialect, self.plan.target, executes)
         except GcxformError as error:
             raise located(error, self.source) from None
 
@@ -144,18 +141,18 @@ class Run:
         for file in filter(None, (step.written_for for step in self.steps)):
             offsets, homes = file.machine.work_offsets, file.machine.homes
             reading = replace(reading, work_offsets=offsets, homes=homes)
-        return replace(reading, units=_first_units(self.pipeline))
+        return replace(reading, units=self.plan.first_units)
 
     def _switches(self) -> frozenset[str]:
         """Return the M codes that a pass takes over from the control."""
-        if self.pipeline.read_as is self.pipeline.source:
+        if self.plan.read_as is self.plan.source:
             return frozenset()
-        return frozenset(switches_of(self.pipeline.source, self.pipeline.machine_reading.control))
+        return frozenset(switches_of(self.plan.source, self.plan.machine_reading.control))
 
     def over(self, out: Output, progress: Progress, size: int = 0) -> None:
         """Run over the program, `size` bytes at a time. Raises GcxformError."""
         if self.heads is not None:
-            out.seal = Seal(self.pipeline.target, out.written, self.marks.seal)
+            out.seal = Seal(self.plan.target, out.written, self.marks.seal)
             out.proof = StampReader() if self.verify != "off" else None
         try:
             self._over(size, out, progress)
@@ -173,7 +170,7 @@ class Run:
         processes of their own if the program is long.
         """
         texts = self.source.windows(size)
-        if self.pipeline.copies:
+        if self.plan.copies:
             for text in texts:
                 out.read.update(text)
                 self._copy(text, out)
@@ -251,7 +248,7 @@ class Run:
         if wrong:
             where = Location(self.source.name, max(self.reader.lines, 1))
             raise VerificationError.one("GX601", wrong, where)
-        faulty = self.dialect.name == self.pipeline.target.name and self.ending.wrong
+        faulty = self.dialect.name == self.plan.target.name and self.ending.wrong
         if self.findings.file.no_end and not faulty:
             where = Location(self.source.name, max(self.reader.lines, 1))
             raise VerificationError.one("GX601", self.findings.file.no_end, where)
@@ -317,8 +314,8 @@ class Run:
                 self._prove(step, meant, path, window)
                 meant = path
         with self._placing(window):
-            check_mixed(read.path, path, self.pipeline.context)
-        path = in_words_of(self.pipeline.target, path)
+            check_mixed(read.path, path, self.plan.context)
+        path = in_words_of(self.plan.target, path)
         return Transformed(window, table, read, meant, path)
 
     @contextmanager
@@ -338,16 +335,16 @@ class Run:
         if self.verify == "off":
             return
         with self._placing(window):
-            step.prove(before, after, self.pipeline.context)
+            step.prove(before, after, self.plan.context)
 
     def _apply(self, step: Pass, path: Toolpath, window: Window) -> Toolpath:
         with self._placing(window):
-            after = step.apply(path, self.pipeline.context)
+            after = step.apply(path, self.plan.context)
             if not step.resolves:
                 check_compensated(step, path, after)
-        for what, size in step.measure(path, after, self.pipeline.context).items():
+        for what, size in step.measure(path, after, self.plan.context).items():
             self.measured[what] = max(size, self.measured.get(what, size))
-        for what, number in step.added(path, after, self.pipeline.context).items():
+        for what, number in step.added(path, after, self.plan.context).items():
             self.added[what] = self.added.get(what, 0) + number
         if self.verify == "full":
             for fact in step.ensures:
@@ -359,7 +356,7 @@ class Run:
 
     def check_growth(self, out: Output) -> None:
         """Refuse an output that has more blocks than the budget allows. Raises InputError."""
-        limit = self.pipeline.growth
+        limit = self.plan.growth
         if limit is None or out.blocks_out <= limit * out.blocks_in:
             return
         message = (
@@ -369,22 +366,6 @@ class Run:
         enough = math.ceil(out.growth or 0)
         hint = f"give a step that cuts moves a larger tolerance, or growth = {enough} in [budget]"
         raise InputError.one("GX507", message, Location(self.source.name, out.lines_in), hint)
-
-
-def _with_assumed_start(pipeline: Pipeline, axes: str) -> Reading:
-    """Return what is known at the start; where only programmed words are written, the rest is 0."""
-    reading = pipeline.machine_reading
-    if pipeline.words != "programmed":
-        return reading
-    zeros = {axis: 0.0 for axis in axes if axis in LINEAR}
-    return replace(reading, start={**zeros, **reading.start})
-
-
-def _first_units(pipeline: Pipeline) -> str:
-    """Return the units the output starts in: those of its control before the program."""
-    if pipeline.source is pipeline.target and pipeline.reading.units:
-        return pipeline.reading.units
-    return "in" if pipeline.target.initial["units"] == "G20" else "mm"
 
 
 def _located(error: GcxformError, window: Window, file: str) -> GcxformError:

@@ -89,14 +89,14 @@ MUTATIONS = (
     ),
     Mutation(
         "promises: what is written may be off by all of the budget",
-        "gcxform/pipeline/pipeline.py",
+        "gcxform/pipeline/plan.py",
         " - sum(step.promise for step in proved)",
         "",
         "tests/test_promises.py",
     ),
     Mutation(
         "promises: arcs that are not there have room",
-        "gcxform/pipeline/pipeline.py",
+        "gcxform/pipeline/plan.py",
         "if arcs and LINEAR_ONLY",
         "if LINEAR_ONLY",
         "tests/test_promises.py",

@@ -20,7 +20,7 @@ import gcxform as gx
 from gcxform.machine.machine import Machine, Tool
 from gcxform.modal.state import Reading
 from gcxform.pipeline.certify import certificate
-from gcxform.pipeline.file import parse_chain
+from gcxform.pipeline.chain_text import parse_chain
 from gcxform.pipeline.run import Output, Run
 from gcxform.plugin.registry import default_registry
 from gcxform.syntax.source import Source

@@ -23,7 +23,7 @@ from reference.interpreter import Move, Program, interpret
 
 import gcxform as gx
 from gcxform.contract.options import ModelFile
-from gcxform.pipeline.file import parse_chain
+from gcxform.pipeline.chain_text import parse_chain
 from gcxform.plugin.registry import default_registry
 from gcxform.testing.strategies import programs
 

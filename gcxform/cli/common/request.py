@@ -15,15 +15,8 @@ from gcxform.diagnostics import Location, UsageError
 from gcxform.machine.file import load_machine
 from gcxform.machine.machine import Machine
 from gcxform.modal.state import Reading
-from gcxform.pipeline.file import (
-    SECTIONS,
-    InputSpec,
-    OutputSpec,
-    PipelineSpec,
-    chain_doubts,
-    load,
-    parse_chain,
-)
+from gcxform.pipeline.chain_text import chain_doubts, parse_chain
+from gcxform.pipeline.file import SECTIONS, InputSpec, OutputSpec, PipelineSpec, load
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import Registry, default_registry
 
