@@ -10,12 +10,10 @@ than that of a real program, and there are never fewer of them in one.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 import gcxform as gx
-
-Floats = NDArray[np.float64]
+from gcxform.system.arrays import Floats
 
 POINTS = 257  # along a move
 SLOPE = 0.005  # more of the tolerance: a command off by q moves the machine by up to (1 + slope) q

@@ -19,6 +19,7 @@ from gcxform.dialect.codes import Effect
 from gcxform.dialect.dialect import LINEAR, Dialect
 from gcxform.machine.machine import Machine
 from gcxform.modal.meaning.meaning import FRAMING
+from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.path import (
     WHOLE,
@@ -151,7 +152,7 @@ class _Left:
 
     path: Toolpath
     actual: Toolpath
-    rows: NDArray[np.bool_]
+    rows: Flags
 
     @classmethod
     def of(cls, told: Toolpath, actual: Toolpath, through: Pass) -> _Left:
@@ -172,7 +173,7 @@ class _Left:
         off = np.nan_to_num((self.actual.end - self.path.end)[self.rows, :3])
         return float(np.sqrt((off**2).sum(axis=1)).max(initial=0.0))
 
-    def begins(self, other: Toolpath, matching: Matching) -> NDArray[np.float64]:
+    def begins(self, other: Toolpath, matching: Matching) -> Floats:
         """Return how far (mm) feed moves begin from where those of another path do (pieces,).
 
         Only what begins behind these rapids, or with the program, is looked at.
@@ -252,14 +253,14 @@ class _Manner:
     `tied` is the form of what is tied to the spindle or to a probe, and that of plain moves else.
     """
 
-    feed: NDArray[np.float64]
-    mode: NDArray[np.int8]
+    feed: Floats
+    mode: Small
     origin: NDArray[np.str_]
-    rapid: NDArray[np.bool_]
-    side: NDArray[np.int8]
-    radius: NDArray[np.float64]
-    tied: NDArray[np.int8]
-    line: NDArray[np.int64]
+    rapid: Flags
+    side: Small
+    radius: Floats
+    tied: Small
+    line: Ints
 
     @classmethod
     def of(cls, path: Toolpath, pieces: Pieces) -> _Manner:
@@ -273,7 +274,7 @@ class _Manner:
         tied = np.where(np.isin(form, WHOLE), form, np.int8(Form.PLAIN))
         return cls(feed, mode, origin, rapid, side, radius, tied, path.source[row] + 1)
 
-    def alike(self, other: _Manner, at: NDArray[np.int64]) -> NDArray[np.bool_]:
+    def alike(self, other: _Manner, at: Ints) -> Flags:
         """Return whether pieces `at` are travelled as the pieces of the other path."""
         feed, mode = self.feed[at], self.mode[at]
         with np.errstate(invalid="ignore"):
@@ -382,7 +383,7 @@ def _place(pieces: Pieces, row: int) -> int:
     return int(np.searchsorted(pieces.row, row))
 
 
-def _lengths(path: Toolpath, pieces: Pieces) -> NDArray[np.float64]:
+def _lengths(path: Toolpath, pieces: Pieces) -> Floats:
     """Return how far the pieces go: mm, or degrees where only rotary axes turn."""
     linear = [k for k, axis in enumerate(path.axes) if axis in LINEAR]
     way = np.nan_to_num(path.end - path.start)

@@ -1,4 +1,4 @@
-"""The vocabulary for plugin authors who write a dialect's code tables."""
+"""The vocabulary for plugin authors: of a dialect's code tables, and the types of columns."""
 
 from gcxform.dialect.arithmetic import MACRO_B, RS274
 from gcxform.dialect.codes import (
@@ -38,6 +38,7 @@ from gcxform.dialect.cycle_rule import (
     rapid,
     tap,
 )
+from gcxform.system.arrays import Bytes, Flags, Floats, Ints, Small
 
 __all__ = [
     "AXES",
@@ -65,8 +66,13 @@ __all__ = [
     "STOP",
     "SYNCHRONISED",
     "TRANSFORM",
+    "Bytes",
     "CycleRule",
+    "Flags",
+    "Floats",
+    "Ints",
     "Level",
+    "Small",
     "Step",
     "at_end",
     "barrier",

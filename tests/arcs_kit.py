@@ -7,11 +7,11 @@ from collections.abc import Iterable
 
 import numpy as np
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from properties.test_laws import at, point_of
 from reference.interpreter import Move
 
-Points = NDArray[np.float64]
+from gcxform.system.arrays import Floats
+
 SPACING = 0.02  # mm between the points that are compared
 PLANES = {"G17": "XYZ", "G18": "ZXY", "G19": "YZX"}
 CENTRES = {"X": "I", "Y": "J", "Z": "K"}
@@ -20,9 +20,9 @@ CENTRES = {"X": "I", "Y": "J", "Z": "K"}
 # --- the oracle ---
 
 
-def points(moves: Iterable[Move]) -> Points:
+def points(moves: Iterable[Move]) -> Floats:
     """Return points along moves, no farther apart than SPACING."""
-    found: list[Points] = []
+    found: list[Floats] = []
     for move in moves:
         if not set("XYZ") <= set(move.start):
             continue
@@ -35,7 +35,7 @@ def points(moves: Iterable[Move]) -> Points:
     return np.vstack(found)
 
 
-def follows(one: Points, other: Points, limit: float) -> bool:
+def follows(one: Floats, other: Floats, limit: float) -> bool:
     """Whether one row of points can be followed along the other within a distance."""
     column = np.arange(len(other))
     reached = column < 0

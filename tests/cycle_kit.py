@@ -15,7 +15,8 @@ from gcxform.dialect.cycle_rule import TAPPING, CycleRule
 from gcxform.modal.cycles.expansion import Calls, Cycles, Steps
 from gcxform.modal.cycles.steps import Rows
 from gcxform.plugin.registry import default_registry
-from gcxform.toolpath.path import Flags, Kind, Plane
+from gcxform.system.arrays import Flags
+from gcxform.toolpath.path import Kind, Plane
 
 CODES = (73, 74, 81, 82, 83, 84, 85, 86, 87, 88, 89)
 PLANES = {17: Plane.XY, 18: Plane.ZX, 19: Plane.YZ}

@@ -10,9 +10,9 @@ import numpy as np
 from gcxform.calibrate.diagonal.readings import Diagonals, LinearTest, step_diagonals
 from gcxform.calibrate.diagonal.step_diagonal import Assumed
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
-from gcxform.errormodel.model import FloatArray
 from gcxform.errormodel.model_file import load_model
 from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal
+from gcxform.system.arrays import Floats
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "lddm"
 LOW = (0.0, 0.0, 0.0)
@@ -45,7 +45,7 @@ def linear(*axes: int) -> list[LinearTest]:
     ]
 
 
-def values(model: AxisFunctions) -> FloatArray:
+def values(model: AxisFunctions) -> Floats:
     """Return the nine functions (axis, direction, node) in mm; all axes have as many nodes."""
     functions = [f for f in model.axes if f is not None]
     return np.array([f.values.T for f in functions])

@@ -23,20 +23,20 @@ from gcxform.calibrate.diagonal.plain_diagonal import squareness
 from gcxform.calibrate.diagonal.readings import Diagonals, LinearTest, step_diagonals
 from gcxform.calibrate.diagonal.step_diagonal import Assumed, Identified, solved
 from gcxform.errormodel.functions import AxisFunction
-from gcxform.errormodel.model import FloatArray
 from gcxform.errormodel.rigid import RigidBody
 from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal
+from gcxform.system.arrays import Floats
 
 ANGLE = 16e-6  # rad
 SEEDS = 40
 BEAMS = 2e-4  # rad
 
 
-def growing(part: FloatArray, rng: np.random.Generator) -> FloatArray:
+def growing(part: Floats, rng: np.random.Generator) -> Floats:
     return part * rng.choice([-1.0, 1.0], size=3)
 
 
-def waves(part: FloatArray, rng: np.random.Generator) -> FloatArray:
+def waves(part: Floats, rng: np.random.Generator) -> Floats:
     found = np.zeros((len(part), 3))
     for order in (1, 2, 3):
         phase, size = rng.uniform(0.0, 2.0, 3), rng.normal(size=3) / order
@@ -44,7 +44,7 @@ def waves(part: FloatArray, rng: np.random.Generator) -> FloatArray:
     return found
 
 
-def walk(part: FloatArray, rng: np.random.Generator) -> FloatArray:
+def walk(part: Floats, rng: np.random.Generator) -> Floats:
     found = np.cumsum(rng.normal(size=(len(part), 3)), axis=0)
     return found - found.mean(axis=0)
 

@@ -14,9 +14,9 @@ from gcxform.calibrate.bundle.report import check
 from gcxform.calibrate.rotary.ball_file import poses_csv, read_poses
 from gcxform.diagnostics import InputError
 from gcxform.errormodel.linear import Linear
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Chain, Rotary, chain_of
 from gcxform.machine.file import load_machine
+from gcxform.system.arrays import Floats
 
 NOISE = 0.005
 BELIEVED = Chain(
@@ -42,7 +42,7 @@ TRUE = Chain(
 )
 
 
-def skewed(points: FloatArray, square: FloatArray = SQUARE) -> FloatArray:
+def skewed(points: Floats, square: Floats = SQUARE) -> Floats:
     """Return what axes with these errors read where they stand at points: E(q) + q = p."""
     y, z, c0y, b0z, a0z = square.tolist()
     matrix = np.array([[0.0, -c0y, b0z], [0.0, y, -a0z], [0.0, 0.0, z]])
@@ -53,13 +53,13 @@ def skewed(points: FloatArray, square: FloatArray = SQUARE) -> FloatArray:
     return readings
 
 
-def angles(count: int, seed: int = 0) -> FloatArray:
+def angles(count: int, seed: int = 0) -> Floats:
     generator = np.random.default_rng(seed)
     a = generator.uniform(-90.0, 90.0, 2 * count)
     return np.column_stack([a, generator.uniform(0.0, 360.0, 2 * count)])
 
 
-def poses(degrees: FloatArray, noise: float = 0.0, seed: int = 1, balls: int = 2) -> Poses:
+def poses(degrees: Floats, noise: float = 0.0, seed: int = 1, balls: int = 2) -> Poses:
     """Return two balls, or one, at these angles on the true machine."""
     index = np.arange(len(degrees)) % balls
     points = skewed(TRUE.linear(BALLS[index], degrees))

@@ -12,8 +12,8 @@ from gcxform.calibrate.rotary.axis import Centres, fitted, locate, without_each
 from gcxform.calibrate.rotary.check import warnings
 from gcxform.calibrate.rotary.circle import fit_circles
 from gcxform.diagnostics import InputError
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Rotary
+from gcxform.system.arrays import Floats
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -164,7 +164,7 @@ def test_residuals_above_the_noise_are_refused():
 # --- axes of the head ---
 
 
-def head_data(axis: Rotary, tip: FloatArray, degrees: FloatArray) -> FloatArray:
+def head_data(axis: Rotary, tip: Floats, degrees: Floats) -> Floats:
     """Return X, Y, Z that keep the tip on a ball: the tip less where the axis carries it."""
     return np.array((300.0, 200.0, -100.0)) - axis.turn(np.tile(tip, (len(degrees), 1)), degrees)
 

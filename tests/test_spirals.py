@@ -10,7 +10,6 @@ import random
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform.deviations.spirals import NEAR
@@ -18,6 +17,7 @@ from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.plugin.registry import default_registry
+from gcxform.system.arrays import Floats
 from gcxform.toolpath.circles import points_on_arcs
 from gcxform.toolpath.path import Toolpath
 
@@ -49,12 +49,12 @@ def arc(start: Point, end: Point, centre: Point) -> Toolpath:
     return Interpreter(dialect, Reading(), "XYZ", "-").interpret(window, reader.table).path
 
 
-def sampled(path: Toolpath) -> NDArray[np.float64]:
+def sampled(path: Toolpath) -> Floats:
     part = np.linspace(0.0, 1.0, SAMPLES)
     return points_on_arcs(path, np.ones(SAMPLES, np.int64), part)[:, :2]
 
 
-def farthest(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+def farthest(one: Floats, other: Floats) -> float:
     """Return how far a point of one curve is from the other at most: never more than the truth."""
     apart = np.hypot(*(one[:, None] - other[None]).transpose(2, 0, 1))
     step = np.hypot(*np.diff(other, axis=0).T).max()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from configparser import ConfigParser
 from functools import cache
@@ -141,6 +142,16 @@ def test_no_module_hides_a_public_name() -> None:
     """`import gcxform.deviation` would set `gx.deviation`, and what it is would depend on order."""
     modules = {name.split(".")[1] for name in graph(False).modules if name.startswith("gcxform.")}
     assert not modules & set(gx.__all__)
+
+
+# --- array types ---
+
+
+def test_array_types_have_one_home() -> None:
+    alias = re.compile(r"NDArray\[np\.(float64|int64|int8|uint8|bool_)\]")
+    parts = [ROOT / "gcxform", ROOT / "plugins", ROOT / "tests"]
+    files = [file for part in parts for file in part.rglob("*.py")]
+    assert [file.name for file in files if alias.search(file.read_text())] == ["arrays.py"]
 
 
 # --- objects are whole when they are made ---

@@ -24,8 +24,8 @@ import numpy as np
 
 from gcxform.config.toml_text import did_you_mean
 from gcxform.diagnostics import Diagnostic, FileError, InputError, Location
-from gcxform.errormodel.model import FloatArray
 from gcxform.system import inputs
+from gcxform.system.arrays import Floats
 
 LENGTHS: Final[Mapping[str, float]] = {
     "mm": 1.0,
@@ -91,7 +91,7 @@ class CsvTable:
         place = self.headings[name].place
         return [row.cells[place].text for row in self.rows]
 
-    def numbers(self, name: str) -> FloatArray:
+    def numbers(self, name: str) -> Floats:
         """Return a column (n,) in the unit of its heading. Raises InputError (GX471)."""
         found: list[Diagnostic] = []
         values = np.zeros(len(self))
@@ -105,7 +105,7 @@ class CsvTable:
             raise InputError(tuple(found))
         return values
 
-    def angles(self, name: str) -> FloatArray:
+    def angles(self, name: str) -> Floats:
         """Return a column (n,) in degrees. Raises InputError for its unit (GX470), its numbers."""
         unit = self._unit(name, "an angle", ANGLES)
         return self.numbers(name) * ANGLES[unit]
@@ -120,7 +120,7 @@ class CsvTable:
             raise InputError.one("GX470", message, self.heading_place(name), hint)
         return unit
 
-    def lengths(self, name: str) -> FloatArray:
+    def lengths(self, name: str) -> Floats:
         """Return a column (n,) in mm. Raises InputError for its unit (GX470) and its numbers."""
         unit = self._unit(name, "length", LENGTHS)
         values = self.numbers(name)

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gcxform.errormodel.model import FloatArray
+from gcxform.system.arrays import Flags, Floats
 
 FEW: Final = 8  # one in so many may be an outlier
 RANK: Final = 1e-9  # of the largest singular value: below it a direction is not determined
@@ -26,10 +25,10 @@ class Solution:
     `residual` (m,) is divided by the standard deviation of each observation.
     """
 
-    value: FloatArray
-    covariance: FloatArray
-    free: FloatArray
-    residual: FloatArray
+    value: Floats
+    covariance: Floats
+    free: Floats
+    residual: Floats
 
     @property
     def rank(self) -> int:
@@ -115,7 +114,7 @@ class Scatter:
         }
 
 
-def solve(matrix: FloatArray, observed: FloatArray, deviation: FloatArray) -> Solution:
+def solve(matrix: Floats, observed: Floats, deviation: Floats) -> Solution:
     """Return the solution x of matrix (m, n) @ x = observed (m,), standard deviations (m,)."""
     scaled = matrix / deviation[:, None]
     target = observed / deviation
@@ -129,7 +128,7 @@ def solve(matrix: FloatArray, observed: FloatArray, deviation: FloatArray) -> So
     return Solution(value, back @ back.T, right[~known].T, target - scaled @ value)
 
 
-def belonging(standardised: FloatArray, outlying: float) -> NDArray[np.bool_]:
+def belonging(standardised: Floats, outlying: float) -> Flags:
     """Return which readings (n,) belong to the rest, by their residuals over their deviations.
 
     `standardised` (n, k) are for the stated noise, `outlying` is from where on one is an outlier.
@@ -153,7 +152,7 @@ def plausible(degrees: int) -> float:
     return degrees * (1.0 - part + 3.0902 * math.sqrt(part)) ** 3
 
 
-def reduced_rows(rows: FloatArray) -> FloatArray:
+def reduced_rows(rows: Floats) -> Floats:
     """Return a basis (r, n) of the space of rows (m, n) in reduced echelon form.
 
     It is the form in which a person reads a space: a one in each row where the others have zero.

@@ -19,7 +19,7 @@ from gcxform.cli.common.derived_options import built, options_of
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
 from gcxform.contract.options import Length, ModelFile, Option, Vector
 from gcxform.diagnostics import Location, UsageError
-from gcxform.errormodel.model import AXES, FloatArray, Outside
+from gcxform.errormodel.model import AXES, Outside
 from gcxform.plugin.registry import default_registry
 from gcxform.simulate import report
 from gcxform.simulate.positions import Chain
@@ -35,6 +35,7 @@ from gcxform.simulate.virtual import (
     possible,
     ranges,
 )
+from gcxform.system.arrays import Floats
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 SHARE = 0.4  # of the shortest travel: the radius if none is given
@@ -66,7 +67,7 @@ class Common(ABC):
         """What the test is, in a few words."""
 
     @property
-    def box(self) -> FloatArray:
+    def box(self) -> Floats:
         """The volume (3, 2) of the model, mm."""
         return ranges(self.model.model)
 
@@ -190,7 +191,7 @@ def no_room(option: str, message: str) -> UsageError:
     return UsageError.one("GX738", message, Location(f"--{option}"), hint)
 
 
-def middle(box: FloatArray) -> tuple[float, float, float]:
+def middle(box: Floats) -> tuple[float, float, float]:
     """Return the centre of a volume, in whole micrometres."""
     x, y, z = np.round(box.mean(axis=1), 3).tolist()
     return x, y, z

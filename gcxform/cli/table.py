@@ -19,11 +19,12 @@ from gcxform.diagnostics import Location, UsageError, VerificationError
 from gcxform.errormodel import converting
 from gcxform.errormodel.formats import ErrorFormat, chosen_format
 from gcxform.errormodel.mean import Mean
-from gcxform.errormodel.model import AXES, ErrorModel, FloatArray, check_contraction
+from gcxform.errormodel.model import AXES, ErrorModel, check_contraction
 from gcxform.errormodel.model_file import SUFFIX, load_model
 from gcxform.errormodel.model_text import to_toml
 from gcxform.errormodel.pitch import PitchTables
 from gcxform.plugin.registry import default_registry
+from gcxform.system.arrays import Floats
 
 NATIVE = "toml"
 TOOL = 100.0  # mm: by so much another tool differs, where angular errors are compared
@@ -211,7 +212,7 @@ def _prove(model: ErrorModel, files: Mapping[str, str], form: ErrorFormat | None
         raise VerificationError.one("GX605", message, hint=hint)
 
 
-def _ways(model: ErrorModel) -> Iterator[tuple[float, FloatArray | None]]:
+def _ways(model: ErrorModel) -> Iterator[tuple[float, Floats | None]]:
     """Yield the directions of travel and the tools with which two models are compared."""
     for sense in (-1.0, 0.0, 1.0):
         yield sense, None

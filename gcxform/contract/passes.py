@@ -21,12 +21,12 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.contract.tip_codes import switches_of
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import Dialect, NumberFormat
 from gcxform.syntax.tree import Block
+from gcxform.system.arrays import Flags
 from gcxform.toolpath.facts import Fact
 from gcxform.toolpath.path import FeedMode, Toolpath
 
@@ -131,7 +131,7 @@ class Pass:
         """Return what the machine does with a path that came from this pass."""
         return path
 
-    def spares(self, path: Toolpath) -> NDArray[np.bool_]:
+    def spares(self, path: Toolpath) -> Flags:
         """Return which rapids (n,) of a path are left to go where the machine takes them.
 
         Of these the proof asks that the control is told what the program says, and the certificate

@@ -13,16 +13,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.deviations.deviation import deviation
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.circles import points_on_arcs, radius_and_angle
 from gcxform.toolpath.path import Kind, Plane, Toolpath, constant
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 ROOM = 20_000  # rows compared at once
 STEPS = 60  # how far, in rows, a joint is looked for from where lengths say it is

@@ -12,17 +12,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.deviations.spirals import Spirals, spirals_apart
 from gcxform.deviations.splines import beside_splines
 from gcxform.dialect.dialect import LINEAR
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import TURN, swept
 from gcxform.toolpath.path import Kind, Plane, Toolpath
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 ROUND = 1e-9  # mm; by so much the radius of a circle may change
 SWEEP_SLIP = 0.05  # rad; rows whose sweeps differ by more do not follow their owner

@@ -9,14 +9,11 @@ two curves is at most what it is at the ends, and (|P''| + |Q''|) h^2 / 8 more.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import LINEAR
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.circles import points_on_arcs, radius_and_angle
 from gcxform.toolpath.path import Kind, Toolpath
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 PARTS = 64
 
@@ -43,7 +40,7 @@ def evenly_apart(one: Toolpath, other: Toolpath, rows: Ints) -> Floats:
     return bound
 
 
-def _nowhere(path: Toolpath, rows: Ints) -> NDArray[np.bool_]:
+def _nowhere(path: Toolpath, rows: Ints) -> Flags:
     """Return whether neither start nor end of each axis is known (rows, axes)."""
     return np.asarray(np.isnan(path.start[rows]) & np.isnan(path.end[rows]))
 

@@ -18,14 +18,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gcxform.system.arrays import Floats, Ints
 from gcxform.toolpath.circles import points_on_arcs
 from gcxform.toolpath.path import Kind, Plane, Toolpath
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 Point = Sequence[float]
 Apart = Callable[[Point, Point], float]
 

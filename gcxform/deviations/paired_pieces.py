@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.deviations.deviation import deviation
 from gcxform.deviations.even_travel import evenly_apart
 from gcxform.deviations.matching import Matching, cut
+from gcxform.system.arrays import Flags, Floats, Small
 from gcxform.toolpath.path import Kind, Toolpath
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -25,7 +22,7 @@ class Distance:
     ends_only: Flags
 
 
-def known_alone(a: Toolpath, b: Toolpath, matching: Matching) -> NDArray[np.int8]:
+def known_alone(a: Toolpath, b: Toolpath, matching: Matching) -> Small:
     """Return where an axis has a place at the end of a piece in one path only (pieces, axes).
 
     It is 1 where a has it, 2 where b has it, 0 where both or none do.

@@ -12,18 +12,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.deviations.chains import ROOM, Chain, along_chains
 from gcxform.deviations.deviation import Deviation, deviation
 from gcxform.dialect.dialect import LINEAR
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import FeedMode, Form, Kind, Toolpath
 from gcxform.toolpath.splines import spline_chords, splines_as_lines
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 SAME_FEED = 2e-4  # relative; what the rounding of a feed may change
 STILL = 1e-9  # mm, deg

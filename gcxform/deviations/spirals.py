@@ -14,11 +14,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from gcxform.system.arrays import Flags, Floats, Ints
 
 FEW, PARTS = 16, 128  # at which spirals are compared
 NEAR = 2e-5  # mm; what may be between a few parts

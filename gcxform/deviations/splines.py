@@ -12,13 +12,9 @@ tried as well. The smallest bound counts. Nothing here knows how splines are cut
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gcxform.system.arrays import Floats, Ints
 from gcxform.toolpath.path import Toolpath
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 SAMPLES = 64  # of a spline, for the first guess of where a line ends
 STEPS = 12  # of the search for the nearest point

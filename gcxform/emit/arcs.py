@@ -10,14 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import ArcRule
 from gcxform.modal.moves.arcs import accepts
+from gcxform.system.arrays import Flags, Floats
 from gcxform.toolpath.angles import TURN, swept
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 SWEEP_SLIP = np.radians(1.0)  # a sweep that changes by more in formatting is another arc
 STRICT = 0.002  # mm; tighter than any control asks, so that the arc passes elsewhere too

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError
 from gcxform.dialect.dialect import Dialect
@@ -13,12 +12,9 @@ from gcxform.emit.arcs import ArcEnds, centre_words
 from gcxform.emit.copying import EXACT, Copying
 from gcxform.emit.manner import Task
 from gcxform.emit.positions import Positions
+from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.toolpath.angles import TURN
-from gcxform.toolpath.path import FeedMode, Kind, Plane, Small, Toolpath
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 
 class Centres:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import LINEAR
 from gcxform.emit.manner import Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions
-
-Flags = NDArray[np.bool_]
+from gcxform.system.arrays import Flags
 
 
 def convertible(task: Task, pieces: Pieces, positions: Positions) -> Flags:

@@ -16,14 +16,11 @@ from gcxform.emit.positions import Positions, as_written
 from gcxform.modal.columns import fill
 from gcxform.modal.meaning.meaning import FRAMING
 from gcxform.modal.meaning.tables import GROUPS
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Form
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 EXACT = 1e-9  # mm; closer values are the same number
 WHAT = {

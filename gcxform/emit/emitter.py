@@ -13,7 +13,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
 from gcxform.emit.centres import Centres
@@ -34,11 +33,8 @@ from gcxform.modal.meaning.tables import NUMBER, MeaningTable
 from gcxform.modal.program_end import Frame
 from gcxform.syntax.scan import Window
 from gcxform.syntax.tree import Comment, Item, Word
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.path import FeedMode, Form, Kind, Toolpath
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 LOST = 1e-3  # relative; of the time of a block that pieces without words would take along
 

@@ -7,17 +7,14 @@ from dataclasses import dataclass, field
 from typing import NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import INCH, LINEAR, Dialect, NumberFormat
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.meaning.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.path import Toolpath
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 WORDS = ("changed", "programmed", "all")
 
@@ -116,7 +113,7 @@ class Task:
     file: str
 
     @property
-    def shape(self) -> NDArray[np.int64]:
+    def shape(self) -> Ints:
         """Shapes of the lines that the control executes."""
         return self.read.shape
 
@@ -126,7 +123,7 @@ class Task:
         number = self.window.first_line + line + 1
         return Location(self.file, number, column + 1, text, width or max(1, len(text)))
 
-    def refuse(self, rows: NDArray[np.int64], code: str, message: str, hint: str) -> NoReturn:
+    def refuse(self, rows: Ints, code: str, message: str, hint: str) -> NoReturn:
         """Raise InputError at the lines of some rows of the path, the first twenty of them."""
         lines = self.path.block[rows[:20]].tolist()
         raise InputError(

@@ -12,9 +12,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Bytes = NDArray[np.uint8]
-Flags = NDArray[np.bool_]
+from gcxform.system.arrays import Bytes, Flags, Floats
 
 TIE = 1e-6  # of the last decimal: what is so close to a half is a half
 MOST_DECIMALS = 6

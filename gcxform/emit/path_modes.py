@@ -13,14 +13,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.emit.manner import Task
+from gcxform.system.arrays import Flags, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import Event
-
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 EXACT, BLENDING, GROUP = "G61", "G64", "path"
 ENDS_EXACTLY = (

@@ -19,12 +19,8 @@ from gcxform.modal.columns import fill
 from gcxform.modal.meaning.tables import GROUPS, NUMBER, TAP, THREAD
 from gcxform.modal.moves.moves import turns_only
 from gcxform.modal.state import CYCLE_OFF
+from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.toolpath.path import Event, FeedMode, Form, Given, Kind
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Small = NDArray[np.int8]
-Flags = NDArray[np.bool_]
 
 NOTHING = np.int8(-1)
 Around = Callable[[Flags], tuple[list[Event], list[Event]]]
@@ -283,7 +279,7 @@ class Pieces:
         self.repaired |= (self.feed == Feed.WRITE) | (word & (self.feed == Feed.NONE))
         self.feed_value = need
 
-    def _reads_alike(self, slot: NDArray[np.int64]) -> Flags:
+    def _reads_alike(self, slot: Ints) -> Flags:
         """Return, per piece, whether its feed word is the same number to the target.
 
         It is not where a point decides on the unit, to the target or in the word as it stands: in

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import LINEAR
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.numbers import quantise
 from gcxform.modal.columns import fill
 from gcxform.modal.moves.moves import SAME_PLACE, turns_only
-from gcxform.toolpath.path import Form, Kind, Small, Toolpath, column_major
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from gcxform.system.arrays import Flags, Floats, Ints, Small
+from gcxform.toolpath.path import Form, Kind, Toolpath, column_major
 
 
 class Positions:
@@ -147,7 +144,7 @@ class Positions:
         block = self.task.path.block
         return np.append(block[1:] != block[:-1], True)[: len(block)]
 
-    def said(self, column: int, rows: NDArray[np.int64]) -> Floats:
+    def said(self, column: int, rows: Ints) -> Floats:
         """Return where an axis would be (mm, deg) in rows if its word were written."""
         step = self.step[column]
         if isinstance(step, np.ndarray):
@@ -156,7 +153,7 @@ class Positions:
         before = np.where(incremental, self.before[rows, column], 0.0)
         return np.asarray(before + self.words_of(column, rows) * step)
 
-    def words_of(self, column: int, rows: NDArray[np.int64]) -> Floats:
+    def words_of(self, column: int, rows: Ints) -> Floats:
         """Return the numbers to be written, as whole numbers of the last decimal."""
         step = self.step[column]
         if isinstance(step, np.ndarray):

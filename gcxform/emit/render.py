@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
 from gcxform.emit.manner import Task
 from gcxform.emit.numbers import LARGEST, number_field
-
-Bytes = NDArray[np.uint8]
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from gcxform.system.arrays import Bytes, Flags, Floats, Ints
 
 PEELED_AT_MOST = 16
 EIGHT = 8  # rows are padded to words of so many bytes

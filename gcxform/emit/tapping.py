@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
 from gcxform.emit.manner import Believed, Task
@@ -24,12 +23,9 @@ from gcxform.emit.numbers import quantise
 from gcxform.emit.positions import Positions
 from gcxform.modal.meaning.tables import TAP
 from gcxform.modal.state import CYCLE_OFF
+from gcxform.system.arrays import Flags, Floats
 from gcxform.toolpath.facts import IN_AIR
 from gcxform.toolpath.path import Form, Kind, Plane
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 EXACT = 1e-9  # mm; closer values are the same number
 ROOM = 0.99  # of what the passes promise: undoing them may stretch what is off

@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import INCH
@@ -39,13 +38,9 @@ from gcxform.emit.templates import TemplateWriter
 from gcxform.modal.control_limits import without_blanks
 from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.syntax.scan import Window
+from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.path import Given, Kind
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Small = NDArray[np.int8]
-Flags = NDArray[np.bool_]
 
 FEED_SLIP = 1.5e-4  # relative; a feed that would be written farther off is refused
 

@@ -17,12 +17,13 @@ import numpy as np
 from gcxform.diagnostics import UsageError
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 from gcxform.errormodel.lattice import Lattice
-from gcxform.errormodel.model import AXES, BoolArray, ErrorModel, FloatArray
+from gcxform.errormodel.model import AXES, ErrorModel
 from gcxform.errormodel.pitch import PitchTable, PitchTables
 from gcxform.errormodel.rigid import RigidBody
+from gcxform.system.arrays import Flags, Floats
 
 LEVER = 1000.0  # mm: the tool by which turns are asked for
-Grid = tuple[FloatArray, FloatArray, FloatArray]
+Grid = tuple[Floats, Floats, Floats]
 
 
 class Fit(NamedTuple):
@@ -56,7 +57,7 @@ def to_lattice(model: ErrorModel, order: str = AXES) -> Lattice:
     return Lattice(grid, values.reshape(shape), turns, measured)
 
 
-def _turns(model: ErrorModel, points: FloatArray, values: FloatArray) -> FloatArray:
+def _turns(model: ErrorModel, points: Floats, values: Floats) -> Floats:
     """Return the angular errors (n, 3): E(q, t) - E(q, t0) = R x (t - t0)."""
     tool = np.zeros(3) if model.tool is None else model.tool
     by_x, by_y = (model.error(points, tool=tool + LEVER * np.eye(3)[k]) - values for k in (0, 1))
@@ -118,8 +119,8 @@ KINDS: dict[str, Callable[[ErrorModel, str], Fit]] = {
 
 
 def difference(
-    one: ErrorModel, other: ErrorModel, sense: float = 0.0, away: FloatArray | None = None
-) -> FloatArray:
+    one: ErrorModel, other: ErrorModel, sense: float = 0.0, away: Floats | None = None
+) -> Floats:
     """Return by how much (n,) in mm two models differ at all nodes of both.
 
     They are compared with the tool of their measurement, or that and the way `away` (3,) in mm.
@@ -140,7 +141,7 @@ def difference(
     return np.asarray(np.linalg.norm(found[1] - found[0], axis=1))
 
 
-def _and_middles(grid: list[FloatArray], *models: ErrorModel) -> list[FloatArray]:
+def _and_middles(grid: list[Floats], *models: ErrorModel) -> list[Floats]:
     """Return the nodes, and the middles between them on axes along which a model is curved."""
     curved = np.any([model.curvature().diagonal() for model in models], axis=0)
     return [
@@ -149,12 +150,12 @@ def _and_middles(grid: list[FloatArray], *models: ErrorModel) -> list[FloatArray
     ]
 
 
-def _nodes(*models: ErrorModel) -> list[FloatArray]:
+def _nodes(*models: ErrorModel) -> list[Floats]:
     """Return the nodes of models on each axis, each within the range of its own model."""
     return [reduce(np.union1d, (_inner(model, axis) for model in models)) for axis in range(3)]
 
 
-def _inner(model: ErrorModel, axis: int) -> FloatArray:
+def _inner(model: ErrorModel, axis: int) -> Floats:
     """Return the nodes (n,) of a model within its range, which in a sum is that of all parts."""
     nodes, (low, high) = model.nodes[axis], model.range_of(axis)
     return nodes[(nodes >= low) & (nodes <= high)]
@@ -180,9 +181,9 @@ def _slopes(model: ErrorModel, axis: int) -> bool:
     return bool(np.ptp(model.error(two), axis=0).any())
 
 
-def points_of(grid: Grid) -> FloatArray:
+def points_of(grid: Grid) -> Floats:
     """Return the points (n, 3) of a grid, Z fastest."""
-    found: FloatArray = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, 3)
+    found: Floats = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, 3)
     return found
 
 
@@ -191,7 +192,7 @@ def _fit(made: ErrorModel, model: ErrorModel) -> Fit:
     return Fit(made, float(np.sqrt(np.mean(apart**2))), float(apart.max()))
 
 
-def _separated(values: FloatArray) -> list[FloatArray]:
+def _separated(values: Floats) -> list[Floats]:
     """Return a, b, c of the best a(x) + b(y) + c(z) to values (nx, ny, nz, k): means of planes.
 
     The mean of all is in the first axis with more than one position.
@@ -203,24 +204,24 @@ def _separated(values: FloatArray) -> list[FloatArray]:
     return parts
 
 
-def _spread(values: FloatArray, axis: int) -> FloatArray:
+def _spread(values: Floats, axis: int) -> Floats:
     """Return the values (n, 3) of an axis as an array over the whole grid, to be broadcast."""
     shape = [1, 1, 1, 3]
     shape[axis] = len(values)
     return values.reshape(shape)
 
 
-def _levers(grid: Grid, order: str) -> list[FloatArray]:
+def _levers(grid: Grid, order: str) -> list[Floats]:
     """Return the levers of the axes: where those nearer to the tool stand, over the whole grid."""
     points = points_of(grid).reshape(*(len(nodes) for nodes in grid), 3)
     after = [[c in order[order.index(axis) + 1 :] for c in AXES] for axis in AXES]
     return [points * mask for mask in after]
 
 
-def _function(nodes: FloatArray, values: FloatArray) -> AxisFunction | None:
+def _function(nodes: Floats, values: Floats) -> AxisFunction | None:
     """Return the function of an axis, None for one on which nothing depends."""
     return AxisFunction(nodes, values) if len(nodes) > 1 else None
 
 
-def _letters(axes: BoolArray) -> str:
+def _letters(axes: Flags) -> str:
     return " and ".join(letter for letter, chosen in zip(AXES, axes, strict=True) if chosen)

@@ -17,8 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 from gcxform.diagnostics import Diagnostic, UsageError
-from gcxform.errormodel.model import AXES, FloatArray
+from gcxform.errormodel.model import AXES
 from gcxform.errormodel.tabled import Positions, Tabled
+from gcxform.system.arrays import Floats
 
 COMBINATIONS_AT_MOST = 250_000  # cells (50 ms) for which the Lipschitz constant is computed exactly
 COLUMNS = ("X", "Y", "Z", "A", "B", "C")
@@ -75,12 +76,12 @@ class AxisFunction:
     and continued beyond them by the first and the last cell.
     """
 
-    position: FloatArray
-    values: FloatArray
-    slope: FloatArray = field(init=False, repr=False)  # (n - 1, columns), per mm
-    _start: FloatArray = field(init=False, repr=False)  # (columns, n - 1): value at the cell's left
-    _rise: FloatArray = field(init=False, repr=False)  # (columns, n - 1): value right minus left
-    _per_mm: FloatArray = field(init=False, repr=False)  # (n - 1,): cells per mm
+    position: Floats
+    values: Floats
+    slope: Floats = field(init=False, repr=False)  # (n - 1, columns), per mm
+    _start: Floats = field(init=False, repr=False)  # (columns, n - 1): value at the cell's left
+    _rise: Floats = field(init=False, repr=False)  # (columns, n - 1): value right minus left
+    _per_mm: Floats = field(init=False, repr=False)  # (n - 1,): cells per mm
     _uniform: bool = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -111,7 +112,7 @@ class AxisFunction:
         """Whether the function is zero everywhere."""
         return not self.values.any()
 
-    def add_columns(self, total: FloatArray, coordinate: FloatArray, which: Iterable[int]) -> None:
+    def add_columns(self, total: Floats, coordinate: Floats, which: Iterable[int]) -> None:
         """Add some columns at the coordinates (n,) in mm to as many rows of `total`, in place."""
         cell, part = self._uniform_cell(coordinate) if self._uniform else self._cell(coordinate)
         term = np.empty_like(part)
@@ -123,7 +124,7 @@ class AxisFunction:
             np.take(self._start[k], cell, out=term, mode="clip")
             row += term
 
-    def _uniform_cell(self, coordinate: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
+    def _uniform_cell(self, coordinate: Floats) -> tuple[npt.NDArray[np.intp], Floats]:
         """Return the cell (n,) and the part of it (n,) left of the coordinate, by arithmetic.
 
         Rounding may choose the neighbour of the right cell at a node. The field is continuous
@@ -137,7 +138,7 @@ class AxisFunction:
         part -= cell
         return cell.astype(np.intp), part
 
-    def _cell(self, coordinate: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
+    def _cell(self, coordinate: Floats) -> tuple[npt.NDArray[np.intp], Floats]:
         """Return the same by search: the border cells take what is beyond them, and nan."""
         cell = np.searchsorted(self.position[1:-1], coordinate, side="right")
         part = coordinate - self.position[cell]
@@ -145,7 +146,7 @@ class AxisFunction:
         return cell, part
 
 
-def _is_uniform(position: FloatArray) -> bool:
+def _is_uniform(position: Floats) -> bool:
     """Whether the nodes are equally spaced up to the rounding of decimals such as 0.1."""
     with np.errstate(over="ignore", invalid="ignore"):
         even = np.linspace(position[0], position[-1], len(position))
@@ -173,10 +174,10 @@ class AxisFunctions(Tabled):
 
     def add(
         self,
-        total: FloatArray,
-        place: FloatArray,
-        tool: FloatArray | None,
-        sense: FloatArray | None,
+        total: Floats,
+        place: Floats,
+        tool: Floats | None,
+        sense: Floats | None,
     ) -> None:
         """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
         for k, function in enumerate(self.axes):
@@ -218,7 +219,7 @@ class AxisFunctions(Tabled):
         return float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))))
 
 
-def _largest_norm(slopes: list[FloatArray]) -> float:
+def _largest_norm(slopes: list[Floats]) -> float:
     """Return the largest spectral norm of [a b c] over all rows a, b, c of three (n, 3) arrays.
 
     The square of the norm is the largest eigenvalue of the Gram matrix, by the trigonometric
@@ -240,7 +241,7 @@ def _largest_norm(slopes: list[FloatArray]) -> float:
     return scale * math.sqrt(float((mean + 2.0 * spread * np.cos(np.arccos(cosine) / 3.0)).max()))
 
 
-def _norm_bound(slopes: list[FloatArray]) -> float:
+def _norm_bound(slopes: list[Floats]) -> float:
     """Return a bound of the same norm from pairs of cells only.
 
     The largest eigenvalue of a matrix grows with the moduli of its entries (Perron, Frobenius), so

@@ -17,8 +17,9 @@ import numpy as np
 from gcxform.config.toml_text import TomlText, convert
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.errormodel.functions import COLUMNS, AxisFunction, AxisFunctions, faults
-from gcxform.errormodel.model import AXES, FloatArray
+from gcxform.errormodel.model import AXES
 from gcxform.errormodel.rigid import NOWHERE, RigidBody
+from gcxform.system.arrays import Floats
 
 FRAME = "F"
 Triple = tuple[float, float, float]
@@ -126,7 +127,7 @@ def _functions(table: _Table) -> dict[str, list[float]]:
     return {name: v for name, v in columns.items() if name[0] == "E" and v is not None}
 
 
-def _function(file: AxisFunctionsFile, axis: int, slopes: FloatArray) -> AxisFunction | None:
+def _function(file: AxisFunctionsFile, axis: int, slopes: Floats) -> AxisFunction | None:
     """Return the function of one axis, the squareness (3,) in mm per mm folded in."""
     table = _table(file, axis)
     if table is None:
@@ -151,7 +152,7 @@ def _workpiece_side(file: AxisFunctionsFile) -> str:
     return file.order.partition(FRAME)[0]
 
 
-def shear(square: Squareness | None) -> FloatArray:
+def shear(square: Squareness | None) -> Floats:
     """Return the slopes (axis, direction) in mm per mm of squareness errors.
 
     An axis turned by a small e moves by q (e x u) off its nominal line q u (rigid body, first

@@ -14,8 +14,9 @@ from gcxform.errormodel.functions import ascending
 from gcxform.errormodel.functions_file import Squareness, Triple, not_finite, shear
 from gcxform.errormodel.lattice import Lattice
 from gcxform.errormodel.linear import Linear
-from gcxform.errormodel.model import AXES, FloatArray
+from gcxform.errormodel.model import AXES
 from gcxform.errormodel.rigid import NOWHERE
+from gcxform.system.arrays import Floats
 
 Grid = list[list[list[float]]]
 
@@ -99,7 +100,7 @@ def height_map(document: TomlText) -> Lattice:
     return surface(np.array(file.X), np.array(file.Y), np.array(file.height))
 
 
-def surface(x: FloatArray, y: FloatArray, height: FloatArray) -> Lattice:
+def surface(x: Floats, y: Floats, height: Floats) -> Lattice:
     """Return the model of a surface: `height` (ny, nx) in mm over the positions x and y in mm."""
     values = np.zeros((len(x), len(y), 1, 3))
     values[:, :, 0, 2] = -height.T

@@ -16,11 +16,11 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from gcxform.errormodel.model import FloatArray
 from gcxform.errormodel.tabled import Positions, Tabled
+from gcxform.system.arrays import Floats
 
 Cell = npt.NDArray[np.intp]
-Field = tuple[list[FloatArray], FloatArray]
+Field = tuple[list[Floats], Floats]
 CORNERS = tuple(itertools.product((0, 1), repeat=3))
 
 
@@ -33,14 +33,14 @@ class Lattice(Tabled):
     the angular errors in rad if they are known, and `measured` the tool (mm) of the measurement.
     """
 
-    grid: tuple[FloatArray, FloatArray, FloatArray]
-    values: FloatArray
-    turns: FloatArray | None = None
+    grid: tuple[Floats, Floats, Floats]
+    values: Floats
+    turns: Floats | None = None
     measured: tuple[float, float, float] | None = None
     kind: ClassVar[str] = "lattice"
 
     @property
-    def tool(self) -> FloatArray | None:
+    def tool(self) -> Floats | None:
         """The way (3,) in mm from the gauge point to the measured point."""
         return None if self.measured is None else np.array(self.measured)
 
@@ -57,10 +57,10 @@ class Lattice(Tabled):
 
     def add(
         self,
-        total: FloatArray,
-        place: FloatArray,
-        tool: FloatArray | None,
-        sense: FloatArray | None,
+        total: Floats,
+        place: Floats,
+        tool: Floats | None,
+        sense: Floats | None,
     ) -> None:
         """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
         cells = [self._cell(axis, place[:, axis]) for axis in range(3)]
@@ -85,7 +85,7 @@ class Lattice(Tabled):
             origin = np.zeros(3) if self.tool is None else self.tool
             total += np.cross(found[3:].T, tool - origin).T
 
-    def _cell(self, axis: int, coordinate: FloatArray) -> tuple[Cell, FloatArray]:
+    def _cell(self, axis: int, coordinate: Floats) -> tuple[Cell, Floats]:
         """Return the cell (n,) and the part of it (n,); no parts where an axis has one node."""
         nodes = self.grid[axis]
         if len(nodes) == 1:
@@ -94,7 +94,7 @@ class Lattice(Tabled):
         return cell, (coordinate - nodes[cell]) / (nodes[cell + 1] - nodes[cell])
 
     @cached_property
-    def _flat(self) -> FloatArray:
+    def _flat(self) -> Floats:
         """The values, and the turns below them, as rows (3 or 6, points)."""
         rows = [self.values] if self.turns is None else [self.values, self.turns]
         return np.ascontiguousarray(np.vstack([r.reshape(-1, 3).T for r in rows]))
@@ -109,7 +109,7 @@ class Lattice(Tabled):
         """
         return self._steepness[0] + reach * self._steepness[1]
 
-    def curvature(self, reach: float = 0.0) -> FloatArray:
+    def curvature(self, reach: float = 0.0) -> Floats:
         """Return bounds (3, 3) of |d2E/dci dcj| (mm/mm2), from the faces of all cells."""
         return self._twists[0] + reach * self._twists[1]
 
@@ -126,7 +126,7 @@ class Lattice(Tabled):
         return _steepest(*values), _steepest(*turns)
 
     @cached_property
-    def _twists(self) -> tuple[FloatArray, FloatArray]:
+    def _twists(self) -> tuple[Floats, Floats]:
         values, turns = self._fields()
         return _twist(*values), _twist(*turns)
 
@@ -143,7 +143,7 @@ class Lattice(Tabled):
             found += reach * float(np.sqrt((self.turns**2).sum(axis=-1)).max())
         return found
 
-    def _wider(self, values: FloatArray, cells: float = 1.0) -> Field:
+    def _wider(self, values: Floats, cells: float = 1.0) -> Field:
         """Return the grid and values with a number of extrapolated cells on every side."""
         grid = list(self.grid)
         for axis in range(3):
@@ -155,13 +155,13 @@ class Lattice(Tabled):
         return grid, values
 
 
-def _beyond(rows: FloatArray, cells: float) -> FloatArray:
+def _beyond(rows: Floats, cells: float) -> Floats:
     """Return rows with one more at both ends, as far beyond them as a number of steps."""
     before = rows[:1] + cells * (rows[:1] - rows[1:2])
     return np.concatenate([before, rows, rows[-1:] + cells * (rows[-1:] - rows[-2:-1])])
 
 
-def _steepest(grid: list[FloatArray], values: FloatArray) -> float:
+def _steepest(grid: list[Floats], values: Floats) -> float:
     """Return the largest norm of the columns of the derivative over all cells."""
     square = np.zeros([max(len(n) - 1, 1) for n in grid])
     with np.errstate(over="ignore", invalid="ignore"):
@@ -177,7 +177,7 @@ def _steepest(grid: list[FloatArray], values: FloatArray) -> float:
     return largest if math.isfinite(largest) else math.inf
 
 
-def _twist(grid: list[FloatArray], values: FloatArray) -> FloatArray:
+def _twist(grid: list[Floats], values: Floats) -> Floats:
     """Return the largest mixed derivatives (3, 3) of all cells."""
     found = np.zeros((3, 3))
     for i, j in ((0, 1), (0, 2), (1, 2)):
@@ -187,14 +187,14 @@ def _twist(grid: list[FloatArray], values: FloatArray) -> FloatArray:
     return found
 
 
-def _along(grid: list[FloatArray], values: FloatArray, axis: int) -> FloatArray:
+def _along(grid: list[Floats], values: Floats, axis: int) -> Floats:
     """Return the slopes of values along an axis, one fewer there."""
     width = np.diff(grid[axis]).reshape([-1 if k == axis else 1 for k in range(4)])
     with np.errstate(over="ignore", invalid="ignore"):
         return np.asarray(np.diff(values, axis=axis) / width)
 
 
-def _larger_neighbour(size: FloatArray, axis: int) -> FloatArray:
+def _larger_neighbour(size: Floats, axis: int) -> Floats:
     """Return the larger of each two neighbours along an axis."""
     s = np.moveaxis(size, axis, 0)
     return np.moveaxis(np.maximum(s[:-1], s[1:]), 0, axis)

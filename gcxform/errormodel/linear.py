@@ -8,7 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from gcxform.errormodel.model import ErrorModel, FloatArray, Outside
+from gcxform.errormodel.model import ErrorModel, Outside
+from gcxform.system.arrays import Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,17 +19,17 @@ class Linear(ErrorModel):
     `matrix` (3, 3) is in mm per mm, `origin` (3,) in mm the place without error.
     """
 
-    matrix: FloatArray
-    origin: FloatArray
+    matrix: Floats
+    origin: Floats
     kind: ClassVar[str] = "skew"
 
     def error(
         self,
-        position: FloatArray,
+        position: Floats,
         outside: Outside = Outside.ERROR,
-        tool: FloatArray | None = None,
-        sense: FloatArray | None = None,
-    ) -> FloatArray:
+        tool: Floats | None = None,
+        sense: Floats | None = None,
+    ) -> Floats:
         """Return E (n, 3) in mm at the positions (n, 3) in mm: see `ErrorModel.error`."""
         total = np.zeros((3, len(position)))
         for to, by in zip(*np.nonzero(self.matrix), strict=True):
@@ -36,7 +37,7 @@ class Linear(ErrorModel):
         return total.T
 
     @property
-    def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def nodes(self) -> tuple[Floats, Floats, Floats]:
         """No nodes: the field is straight."""
         return np.empty(0), np.empty(0), np.empty(0)
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gcxform.errormodel.model import ErrorModel, FloatArray, Outside, State
+from gcxform.errormodel.model import ErrorModel, Outside, State
+from gcxform.system.arrays import Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,11 +18,11 @@ class Mean(ErrorModel):
 
     def error(
         self,
-        position: FloatArray,
+        position: Floats,
         outside: Outside = Outside.ERROR,
-        tool: FloatArray | None = None,
-        sense: FloatArray | None = None,
-    ) -> FloatArray:
+        tool: Floats | None = None,
+        sense: Floats | None = None,
+    ) -> Floats:
         """Return E (n, 3) in mm at the positions (n, 3) in mm: see `ErrorModel.error`."""
         return self.model.error(position, outside, tool)
 
@@ -31,7 +32,7 @@ class Mean(ErrorModel):
         return self.model.states
 
     @property
-    def tool(self) -> FloatArray | None:
+    def tool(self) -> Floats | None:
         """The way (3,) in mm from the gauge point to where the errors were measured."""
         return self.model.tool
 
@@ -41,7 +42,7 @@ class Mean(ErrorModel):
         return self.model.needs_tool
 
     @property
-    def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def nodes(self) -> tuple[Floats, Floats, Floats]:
         """The nodes of the model."""
         return self.model.nodes
 
@@ -49,7 +50,7 @@ class Mean(ErrorModel):
         """Return the bound of the model, which holds in both directions and so between them."""
         return self.model.lipschitz(reach)
 
-    def curvature(self, reach: float = 0.0) -> FloatArray:
+    def curvature(self, reach: float = 0.0) -> Floats:
         """Return the bounds of the model."""
         return self.model.curvature(reach)
 

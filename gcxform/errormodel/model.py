@@ -14,12 +14,9 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from gcxform.diagnostics import InputError, Location, UsageError
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from gcxform.system.arrays import Flags, Floats
 
 AXES = "XYZ"
 BORDER = 1e-9  # mm: so little outside the table still counts as inside
@@ -70,11 +67,11 @@ class ErrorModel(ABC):
     @abstractmethod
     def error(
         self,
-        position: FloatArray,
+        position: Floats,
         outside: Outside = Outside.ERROR,
-        tool: FloatArray | None = None,
-        sense: FloatArray | None = None,
-    ) -> FloatArray:
+        tool: Floats | None = None,
+        sense: Floats | None = None,
+    ) -> Floats:
         """Return E (n, 3) in mm, a new column-major array, at the positions (n, 3) in mm.
 
         `tool` (3,) or (n, 3) mm is the way from the gauge point to the tool's tip; None is that of
@@ -90,7 +87,7 @@ class ErrorModel(ABC):
 
     @property
     @abstractmethod
-    def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def nodes(self) -> tuple[Floats, Floats, Floats]:
         """The positions on X, Y and Z in mm where the field bends; empty for an axis without."""
 
     @abstractmethod
@@ -101,7 +98,7 @@ class ErrorModel(ABC):
         for every policy but `ZERO`, which makes the field jump at the border.
         """
 
-    def curvature(self, reach: float = 0.0) -> FloatArray:
+    def curvature(self, reach: float = 0.0) -> Floats:
         """Return bounds (3, 3) of |d2E/dci dcj| (mm/mm2) between nodes; zero: linear there.
 
         On a straight way w (mm) between two nodes the field is off its chord by at most
@@ -124,7 +121,7 @@ class ErrorModel(ABC):
         return 0.0, 0.0
 
     @property
-    def tool(self) -> FloatArray | None:
+    def tool(self) -> Floats | None:
         """The way (3,) in mm from the gauge point to where the errors were measured.
 
         None where the model does not depend on the tool, or does not know.
@@ -137,7 +134,7 @@ class ErrorModel(ABC):
         return False
 
     @property
-    def backlash(self) -> BoolArray:
+    def backlash(self) -> Flags:
         """The axes (3,) whose error depends on the direction of travel."""
         return np.zeros(3, np.bool_)
 
@@ -162,7 +159,7 @@ class ErrorModel(ABC):
             return low, high
         return low - cells * float(nodes[1] - nodes[0]), high + cells * float(nodes[-1] - nodes[-2])
 
-    def outside(self, position: FloatArray) -> BoolArray:
+    def outside(self, position: Floats) -> Flags:
         """Return (n, 3): which coordinates (mm) lie beyond the table by more than `BORDER`.
 
         An unknown coordinate (nan) is not outside.
@@ -180,17 +177,17 @@ class ErrorModel(ABC):
 class Command:
     """The `position` (n, 3) in mm to command, column-major, and the `steps` it took to find it."""
 
-    position: FloatArray
+    position: Floats
     steps: int
 
 
 def compensate(
     model: ErrorModel,
-    target: FloatArray,
+    target: Floats,
     outside: Outside = Outside.ERROR,
     iterations: int = 0,
-    tool: FloatArray | None = None,
-    sense: FloatArray | None = None,
+    tool: Floats | None = None,
+    sense: Floats | None = None,
 ) -> Command:
     """Return the command c (n, 3) in mm which puts the tool on the target p: c + E(c) = p.
 
@@ -210,7 +207,7 @@ def compensate(
     return Command(command, steps)
 
 
-def reach_of(model: ErrorModel, tool: FloatArray | None) -> float:
+def reach_of(model: ErrorModel, tool: Floats | None) -> float:
     """Return how far (mm) tips (3,) or (n, 3) are at most from where they were measured."""
     if tool is None or not model.needs_tool:
         return 0.0
@@ -218,7 +215,7 @@ def reach_of(model: ErrorModel, tool: FloatArray | None) -> float:
     return float(np.sqrt((away**2).sum(axis=1)).max(initial=0.0))
 
 
-def part_of(column: FloatArray | None, piece: slice) -> FloatArray | None:
+def part_of(column: Floats | None, piece: slice) -> Floats | None:
     """Return some rows of tools or senses; one for all, or none, stays as it is."""
     return column if column is None or column.ndim == 1 else column[piece]
 
@@ -228,16 +225,16 @@ class _Pieces(NamedTuple):
 
     model: ErrorModel
     outside: Outside
-    tool: FloatArray | None
-    sense: FloatArray | None
+    tool: Floats | None
+    sense: Floats | None
 
-    def error(self, position: FloatArray) -> FloatArray:
+    def error(self, position: Floats) -> Floats:
         return self.model.error(position, self.outside, self.tool, self.sense)
 
 
 def _solve(
-    here: _Pieces, target: FloatArray, contraction: float, iterations: int
-) -> tuple[FloatArray, int]:
+    here: _Pieces, target: Floats, contraction: float, iterations: int
+) -> tuple[Floats, int]:
     """Return the command (n, 3) of one block of targets, and its number of steps."""
     command = target
     known = contraction < 0.5
@@ -259,7 +256,7 @@ def _solve(
     )
 
 
-def _farthest(one: FloatArray, other: FloatArray) -> float:
+def _farthest(one: Floats, other: Floats) -> float:
     """Return the largest difference of two arrays, unknown values left out."""
     moved = one - other
     np.abs(moved, out=moved)

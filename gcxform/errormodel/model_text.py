@@ -11,9 +11,10 @@ import numpy as np
 from gcxform.errormodel.functions import COLUMNS, AxisFunction, AxisFunctions
 from gcxform.errormodel.lattice import Lattice
 from gcxform.errormodel.linear import Linear
-from gcxform.errormodel.model import AXES, ErrorModel, FloatArray
+from gcxform.errormodel.model import AXES, ErrorModel
 from gcxform.errormodel.pitch import PitchTables
 from gcxform.errormodel.rigid import RigidBody
+from gcxform.system.arrays import Floats
 
 
 def to_toml(model: ErrorModel) -> str:
@@ -67,7 +68,7 @@ def _plain(values: Iterable[float]) -> list[float]:
     return [float(value) for value in values]
 
 
-def _rows(values: FloatArray) -> str:
+def _rows(values: Floats) -> str:
     """Return a nested list, a line for each position on X."""
     return "[\n" + "".join(f"  {plane.tolist()},\n" for plane in values) + "]"
 

@@ -15,8 +15,8 @@ import numpy as np
 
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.errormodel.functions import AxisFunction, faults
-from gcxform.errormodel.model import BoolArray, FloatArray
 from gcxform.errormodel.tabled import Positions, Tabled
+from gcxform.system.arrays import Flags, Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,9 +26,9 @@ class PitchTable:
     `forward` is the error after travel in the positive direction, `reverse` after the negative.
     """
 
-    position: FloatArray
-    forward: FloatArray
-    reverse: FloatArray
+    position: Floats
+    forward: Floats
+    reverse: Floats
 
     def __post_init__(self) -> None:
         columns = {"forward": self.forward, "reverse": self.reverse}
@@ -62,10 +62,10 @@ class PitchTables(Tabled):
 
     def add(
         self,
-        total: FloatArray,
-        place: FloatArray,
-        tool: FloatArray | None,
-        sense: FloatArray | None,
+        total: Floats,
+        place: Floats,
+        tool: Floats | None,
+        sense: Floats | None,
     ) -> None:
         """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
         for k, table in enumerate(self.axes):
@@ -75,7 +75,7 @@ class PitchTables(Tabled):
                 total[k] += found[0] if sense is None else found[0] + sense[..., k] * found[1]
 
     @property
-    def backlash(self) -> BoolArray:
+    def backlash(self) -> Flags:
         """The axes (3,) whose error depends on the direction of travel."""
         return np.array([table is not None and table.backlash for table in self.axes])
 

@@ -23,8 +23,9 @@ from typing import ClassVar
 import numpy as np
 
 from gcxform.errormodel.functions import AxisFunction
-from gcxform.errormodel.model import AXES, FloatArray
+from gcxform.errormodel.model import AXES
 from gcxform.errormodel.tabled import Positions, Tabled
+from gcxform.system.arrays import Floats
 
 Triple = tuple[float, float, float]
 NOWHERE: Triple = (0.0, 0.0, 0.0)
@@ -52,7 +53,7 @@ class RigidBody(Tabled):
         object.__setattr__(self, "_turning", turning)
 
     @property
-    def tool(self) -> FloatArray:
+    def tool(self) -> Floats:
         """The way (3,) in mm from the gauge point to the measured point."""
         return np.array(self.measured)
 
@@ -73,10 +74,10 @@ class RigidBody(Tabled):
 
     def add(
         self,
-        total: FloatArray,
-        place: FloatArray,
-        tool: FloatArray | None,
-        sense: FloatArray | None,
+        total: Floats,
+        place: Floats,
+        tool: Floats | None,
+        sense: Floats | None,
     ) -> None:
         """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
         away = None if tool is None else np.broadcast_to(tool - self.tool, place.shape)
@@ -95,9 +96,7 @@ class RigidBody(Tabled):
                 total[after] += turn[3 + before] * lever
                 total[before] -= turn[3 + after] * lever
 
-    def _levers(
-        self, axis: int, place: FloatArray, away: FloatArray | None
-    ) -> dict[int, FloatArray]:
+    def _levers(self, axis: int, place: Floats, away: Floats | None) -> dict[int, Floats]:
         """Return the components (n,) in mm of the lever of an axis which are not zero."""
         levers = {j: place[:, j] - self.at[axis][j] for j in self.after(axis)}
         if away is not None:
@@ -127,7 +126,7 @@ class RigidBody(Tabled):
                 found += self._longest(k, function.values, 0.0) + reach * float(angle)
         return found
 
-    def curvature(self, reach: float = 0.0) -> FloatArray:
+    def curvature(self, reach: float = 0.0) -> Floats:
         """Return bounds (3, 3) of |d2E/dci dcj| (mm/mm2): e_i' x u_j, j after i, and no other."""
         found = np.zeros((3, 3))
         for k, function in enumerate(self.axes):
@@ -148,7 +147,7 @@ class RigidBody(Tabled):
         return angle, float(np.sqrt((self._turns**2).sum()))
 
     @cached_property
-    def _slopes(self) -> FloatArray:
+    def _slopes(self) -> Floats:
         """Bounds (3,) of the columns of dE/dc with the tool of the measurement."""
         found = np.zeros(3)
         for k, function in enumerate(self.axes):
@@ -163,7 +162,7 @@ class RigidBody(Tabled):
         return found
 
     @cached_property
-    def _turns(self) -> FloatArray:
+    def _turns(self) -> Floats:
         """The largest slopes (3,) in rad/mm of the turns of each axis."""
         with np.errstate(over="ignore"):
             return np.array(
@@ -173,7 +172,7 @@ class RigidBody(Tabled):
                 ]
             )
 
-    def _longest(self, axis: int, rows: FloatArray, cells: float) -> float:
+    def _longest(self, axis: int, rows: Floats, cells: float) -> float:
         """Return the largest |d + e x lever| of rows (n, 6), over all levers of an axis.
 
         It is convex in the lever, so the corners of the box of levers are enough. The box reaches a
@@ -193,7 +192,7 @@ class RigidBody(Tabled):
         return found
 
 
-def _reached(function: AxisFunction | None, cells: float) -> FloatArray:
+def _reached(function: AxisFunction | None, cells: float) -> Floats:
     """Return the lowest and highest position of an axis, a number of cells beyond its table."""
     if function is None:
         return np.array([-math.inf, math.inf])
@@ -202,7 +201,7 @@ def _reached(function: AxisFunction | None, cells: float) -> FloatArray:
     return np.array([nodes[0] - cells * first, nodes[-1] + cells * last])
 
 
-def _extended(function: AxisFunction, cells: float = 1.0) -> FloatArray:
+def _extended(function: AxisFunction, cells: float = 1.0) -> Floats:
     """Return the values at the nodes and a number of cells beyond them."""
     values = function.values
     before = values[0] + cells * (values[0] - values[1])

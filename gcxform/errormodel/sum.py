@@ -11,7 +11,8 @@ import numpy as np
 
 from gcxform.config.toml_text import TomlText
 from gcxform.diagnostics import UsageError
-from gcxform.errormodel.model import BoolArray, ErrorModel, FloatArray, Outside, State
+from gcxform.errormodel.model import ErrorModel, Outside, State
+from gcxform.system.arrays import Flags, Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,11 +29,11 @@ class Sum(ErrorModel):
 
     def error(
         self,
-        position: FloatArray,
+        position: Floats,
         outside: Outside = Outside.ERROR,
-        tool: FloatArray | None = None,
-        sense: FloatArray | None = None,
-    ) -> FloatArray:
+        tool: Floats | None = None,
+        sense: Floats | None = None,
+    ) -> Floats:
         """Return E (n, 3) in mm at the positions (n, 3) in mm: see `ErrorModel.error`."""
         total = np.zeros((3, len(position))).T
         for model in self.models:
@@ -42,7 +43,7 @@ class Sum(ErrorModel):
         return total
 
     @property
-    def tool(self) -> FloatArray | None:
+    def tool(self) -> Floats | None:
         """The tool (3,) in mm of those that need it."""
         known = [model.tool for model in self.models if model.needs_tool]
         return known[0] if known else None
@@ -53,7 +54,7 @@ class Sum(ErrorModel):
         return any(model.needs_tool for model in self.models)
 
     @property
-    def backlash(self) -> BoolArray:
+    def backlash(self) -> Flags:
         """The axes (3,) with an error that depends on the direction of travel in a model."""
         return np.asarray(np.any([model.backlash for model in self.models], axis=0))
 
@@ -67,7 +68,7 @@ class Sum(ErrorModel):
         return Sum(tuple(model.at_time(time) for model in self.models))
 
     @property
-    def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def nodes(self) -> tuple[Floats, Floats, Floats]:
         """The nodes of all models."""
         x, y, z = (
             reduce(np.union1d, (model.nodes[axis] for model in self.models)) for axis in range(3)
@@ -78,7 +79,7 @@ class Sum(ErrorModel):
         """Return the sum of the bounds."""
         return sum(model.lipschitz(reach) for model in self.models)
 
-    def curvature(self, reach: float = 0.0) -> FloatArray:
+    def curvature(self, reach: float = 0.0) -> Floats:
         """Return the sum of the bounds."""
         return np.asarray(np.sum([model.curvature(reach) for model in self.models], axis=0))
 

@@ -11,9 +11,10 @@ from abc import abstractmethod
 
 import numpy as np
 
-from gcxform.errormodel.model import BLOCK, ErrorModel, FloatArray, Outside, part_of
+from gcxform.errormodel.model import BLOCK, ErrorModel, Outside, part_of
+from gcxform.system.arrays import Floats
 
-Positions = tuple[FloatArray | None, FloatArray | None, FloatArray | None]
+Positions = tuple[Floats | None, Floats | None, Floats | None]
 
 
 class Tabled(ErrorModel):
@@ -27,10 +28,10 @@ class Tabled(ErrorModel):
     @abstractmethod
     def add(
         self,
-        total: FloatArray,
-        place: FloatArray,
-        tool: FloatArray | None,
-        sense: FloatArray | None,
+        total: Floats,
+        place: Floats,
+        tool: Floats | None,
+        sense: Floats | None,
     ) -> None:
         """Add the errors (3, n) in mm at places (n, 3) in mm to `total`, in place.
 
@@ -39,11 +40,11 @@ class Tabled(ErrorModel):
 
     def error(
         self,
-        position: FloatArray,
+        position: Floats,
         outside: Outside = Outside.ERROR,
-        tool: FloatArray | None = None,
-        sense: FloatArray | None = None,
-    ) -> FloatArray:
+        tool: Floats | None = None,
+        sense: Floats | None = None,
+    ) -> Floats:
         """Return E (n, 3) in mm at the positions (n, 3) in mm: see `ErrorModel.error`."""
         total = np.zeros((3, len(position)))
         place = self._clamped(position) if outside is Outside.CLAMP else position
@@ -56,13 +57,13 @@ class Tabled(ErrorModel):
             total[:, self.outside(position).any(axis=1)] = 0.0
         return total.T
 
-    def _clamped(self, position: FloatArray) -> FloatArray:
+    def _clamped(self, position: Floats) -> Floats:
         """Return positions, those beyond the table at its border."""
         columns = [np.clip(position[:, k], *self.range_of(k)) for k in range(3)]
         return np.array(columns).T
 
     @property
-    def nodes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def nodes(self) -> tuple[Floats, Floats, Floats]:
         """The node positions of X, Y and Z in mm; empty for an axis without a table."""
         x, y, z = (np.empty(0) if nodes is None else nodes for nodes in self.positions)
         return x, y, z

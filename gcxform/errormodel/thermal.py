@@ -15,8 +15,9 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from gcxform.errormodel.model import BORDER, FloatArray, State
+from gcxform.errormodel.model import BORDER, State
 from gcxform.errormodel.tabled import Positions, Tabled
+from gcxform.system.arrays import Floats
 
 
 class Held(NamedTuple):
@@ -52,22 +53,22 @@ class Rod:
     held       the bearings if both ends are held; None: one end floats
     """
 
-    at: FloatArray
+    at: Floats
     expansion: float
     zero: float = 0.0
     sense: int = 1
     still: float = 0.0
     held: Held | None = None
 
-    def places(self, position: FloatArray | float) -> FloatArray:
+    def places(self, position: Floats | float) -> Floats:
         """Return the places (n,) mm on the rod that belong to axis positions (n,) mm."""
         return np.asarray(self.zero + self.sense * np.asarray(position, dtype=np.float64))
 
-    def positions(self, place: FloatArray | float) -> FloatArray:
+    def positions(self, place: Floats | float) -> Floats:
         """Return the axis positions (n,) mm that belong to places (n,) mm on the rod."""
         return np.asarray(self.sense * (np.asarray(place, dtype=np.float64) - self.zero))
 
-    def strain(self, warmer: FloatArray, place: FloatArray) -> FloatArray:
+    def strain(self, warmer: Floats, place: Floats) -> Floats:
         """Return du/ds (n,) at places (n,) mm, with sensors warmer by (m,) K."""
         strain = self.expansion * np.interp(place, self.at, warmer)
         if self.held is not None:
@@ -75,7 +76,7 @@ class Rod:
             strain += self.held.strain(float(np.diff(self._free(warmer, ends))[0]))
         return np.asarray(strain)
 
-    def growth(self, warmer: FloatArray, place: FloatArray) -> FloatArray:
+    def growth(self, warmer: Floats, place: Floats) -> Floats:
         """Return u (n,) in mm at places (n,) mm, with sensors warmer by (m,) K.
 
         It counts from the bearing A, which gives way by N/a if both ends are held.
@@ -87,7 +88,7 @@ class Rod:
             grown += strain * (place + self.held.section / self.held.a) - bearings[0]
         return grown
 
-    def _free(self, warmer: FloatArray, place: FloatArray) -> FloatArray:
+    def _free(self, warmer: Floats, place: Floats) -> Floats:
         """Return the integral of alpha theta (n,) in mm from the first sensor to places (n,) mm."""
         gap = np.diff(self.at)
         nodes = np.append(0.0, np.cumsum(gap * (warmer[:-1] + warmer[1:]) / 2.0))
@@ -98,7 +99,7 @@ class Rod:
             self.expansion * (nodes[cell] + (warmer[cell] + rise * beyond / 2.0) * beyond)
         )
 
-    def error(self, warmer: FloatArray, position: FloatArray) -> FloatArray:
+    def error(self, warmer: Floats, position: Floats) -> Floats:
         """Return the error (n,) in mm at axis positions (n,) mm: zero at `still`."""
         still = np.atleast_1d(self.places(self.still))
         grown = self.growth(warmer, self.places(position)) - self.growth(warmer, still)
@@ -115,12 +116,12 @@ class Stretch:
     bend      (n - 1,) second derivative, 1/mm
     """
 
-    position: FloatArray
-    value: FloatArray
-    slope: FloatArray
-    bend: FloatArray
+    position: Floats
+    value: Floats
+    slope: Floats
+    bend: Floats
 
-    def at(self, coordinate: FloatArray) -> FloatArray:
+    def at(self, coordinate: Floats) -> Floats:
         """Return the error (n,) in mm at positions (n,) in mm."""
         inside = np.clip(coordinate, self.position[0], self.position[-1])
         cell = np.searchsorted(self.position[1:-1], inside, side="right")
@@ -150,9 +151,7 @@ class Stretch:
         return float(np.abs(np.append(self.value, between)).max())
 
 
-def stretch(
-    rod: Rod, warmer: FloatArray, travel: tuple[float, float], linear: bool = False
-) -> Stretch:
+def stretch(rod: Rod, warmer: Floats, travel: tuple[float, float], linear: bool = False) -> Stretch:
     """Return the error of an axis along its travel (mm), with sensors warmer by (n,) K.
 
     `linear` is what a control does that has the errors at the sensors and interpolates between
@@ -203,10 +202,10 @@ class ThermalScrew(Tabled):
 
     def add(
         self,
-        total: FloatArray,
-        place: FloatArray,
-        tool: FloatArray | None,
-        sense: FloatArray | None,
+        total: Floats,
+        place: Floats,
+        tool: Floats | None,
+        sense: Floats | None,
     ) -> None:
         """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
         for k, axis in enumerate(self.stretches):
@@ -218,7 +217,7 @@ class ThermalScrew(Tabled):
         slopes = [0.0 if axis is None else axis.steepest for axis in self.stretches]
         return max(slopes) if all(map(math.isfinite, slopes)) else math.inf
 
-    def curvature(self, reach: float = 0.0) -> FloatArray:
+    def curvature(self, reach: float = 0.0) -> Floats:
         """Return the largest |d2E/dx2| of each axis on the diagonal."""
         bends = [0.0 if axis is None else float(np.abs(axis.bend).max()) for axis in self.stretches]
         return np.diag(bends)

@@ -18,9 +18,10 @@ import numpy as np
 from gcxform.config.toml_text import TomlText, convert
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.errormodel.functions import faults
-from gcxform.errormodel.model import AXES, BORDER, FloatArray, State
+from gcxform.errormodel.model import AXES, BORDER, State
 from gcxform.errormodel.temperatures import Readings, Row, read_readings, unknown_sensor
 from gcxform.errormodel.thermal import Held, Rod, Stretch, ThermalScrew, drift, stretch
+from gcxform.system.arrays import Floats
 from gcxform.system.inputs import referred
 
 UM = 1e-3  # mm
@@ -168,7 +169,7 @@ class _Work:
         """Return the readings of the sensors of an axis in a row, degC."""
         return self.readings.temperatures(row, axis.sensors, self.file.sensor_range)
 
-    def _reference(self, axis: ThermalAxis) -> FloatArray:
+    def _reference(self, axis: ThermalAxis) -> Floats:
         """Return the temperatures (n,) of the sensors when the geometry was measured, degC."""
         if isinstance(self.file.reference, float):
             return np.full(len(axis.sensors), self.file.reference)

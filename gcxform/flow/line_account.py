@@ -9,14 +9,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, Location, VerificationError
+from gcxform.system.arrays import Flags, Ints
 
 if TYPE_CHECKING:
     from gcxform.flow.execution import Execution
 
-Ints = NDArray[np.int64]
 HINT = "nothing was written; this is a bug of gcxform"
 
 
@@ -44,7 +43,7 @@ def _written(program: Execution) -> Ints:
     return np.asarray(times)
 
 
-def _refuse(program: Execution, wrong: NDArray[np.bool_], message: str) -> None:
+def _refuse(program: Execution, wrong: Flags, message: str) -> None:
     if wrong.any():
         where = Location(program.listing.file, int(np.argmax(wrong)) + 1)
         raise VerificationError((Diagnostic("GX601", message, where, HINT),))

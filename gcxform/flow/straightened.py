@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import GcxformError
 from gcxform.dialect.arithmetic import Key
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.detection import has_flow
-from gcxform.modal.inventory import Account, Ints, Tally, nothing_held
+from gcxform.modal.inventory import Account, Tally, nothing_held
 from gcxform.modal.state import Reading
 from gcxform.syntax.source import Source
+from gcxform.system.arrays import Flags, Ints
 
 if TYPE_CHECKING:
     from gcxform.flow.execution import Execution
@@ -67,7 +67,7 @@ class WrittenOut(Source):
         self,
         source: Source,
         text: bytes,
-        origin: NDArray[np.int64],
+        origin: Ints,
         assumed: Iterable[str] = (),
     ) -> None:
         super().__init__(Source.of_bytes(text).stream, source.name)
@@ -117,7 +117,7 @@ def written_out(
     return found
 
 
-def _inside(run: Execution) -> NDArray[np.bool_]:
+def _inside(run: Execution) -> Flags:
     """Return which lines of a program stand in its subprograms."""
     inside = np.zeros(len(run.listing.window), np.bool_)
     for definition in run.definitions():

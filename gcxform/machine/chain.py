@@ -14,8 +14,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gcxform.diagnostics import Location, UsageError
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.machine import Axis, Machine, Tool
+from gcxform.system.arrays import Floats
 
 Triple = tuple[float, float, float]
 Span = tuple[float, float]
@@ -41,16 +41,16 @@ class Rotary:
     wrap: float | None = None
     max_speed: float | None = None
 
-    def turn(self, points: FloatArray, degrees: FloatArray) -> FloatArray:
+    def turn(self, points: Floats, degrees: Floats) -> Floats:
         """Return points (..., 3) as the axis carries them when it is commanded to angles (...)."""
         point = np.array(self.point)
         return np.asarray(turned(points - point, self.direction, self.sign * degrees) + point)
 
-    def swing(self, vectors: FloatArray, degrees: FloatArray) -> FloatArray:
+    def swing(self, vectors: Floats, degrees: Floats) -> Floats:
         """Return vectors (..., 3) as the axis carries them."""
         return turned(vectors, self.direction, self.sign * degrees)
 
-    def shown(self, degrees: FloatArray) -> FloatArray:
+    def shown(self, degrees: Floats) -> Floats:
         """Return angles as the display has them, from 0 up to the wrap if there is one."""
         if self.wrap is None:
             return degrees
@@ -58,7 +58,7 @@ class Rotary:
         return np.where(found < self.wrap, found, 0.0)  # the remainder of -1e-17 is the wrap
 
 
-def turned(vectors: FloatArray, direction: Triple, degrees: FloatArray) -> FloatArray:
+def turned(vectors: Floats, direction: Triple, degrees: Floats) -> Floats:
     """Return vectors (..., 3) turned right-handed about a unit vector by angles (...).
 
     The formula of Rodrigues: v + sin K v + (1 - cos) K K v, with K v = direction x v. Column by
@@ -111,51 +111,51 @@ class Chain:
 
     # --- from the machine to the workpiece and back ---
 
-    def forward(self, linear: FloatArray, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def forward(self, linear: Floats, angles: Floats) -> tuple[Floats, Floats]:
         """Return tip (..., 3) in mm and tool axis (..., 3) in the frame of the workpiece.
 
         `linear` (..., 3) are X, Y and Z. The tool axis is a unit vector from tip to spindle.
         """
         return self.onto_workpiece(linear + self.arm(angles), angles), self.tool_axis(angles)
 
-    def linear(self, tip: FloatArray, angles: FloatArray) -> FloatArray:
+    def linear(self, tip: Floats, angles: Floats) -> Floats:
         """Return X, Y and Z (..., 3) that bring the tip to points of the workpiece."""
         return np.asarray(self.onto_machine(tip, angles) - self.arm(angles))
 
-    def onto_workpiece(self, points: FloatArray, angles: FloatArray) -> FloatArray:
+    def onto_workpiece(self, points: Floats, angles: Floats) -> Floats:
         """Return points (..., 3) of the machine in the frame of the workpiece, mm."""
         for k, axis in enumerate(self.table):
             points = axis.turn(points, -angles[..., k])
         return points
 
-    def onto_machine(self, points: FloatArray, angles: FloatArray) -> FloatArray:
+    def onto_machine(self, points: Floats, angles: Floats) -> Floats:
         """Return points (..., 3) of the workpiece where they are in the machine, mm."""
         for k, axis in reversed([*enumerate(self.table)]):
             points = axis.turn(points, angles[..., k])
         return points
 
-    def arm(self, angles: FloatArray) -> FloatArray:
+    def arm(self, angles: Floats) -> Floats:
         """Return the tip (..., 3) with X, Y and Z at 0, in machine coordinates, mm."""
         points = self._everywhere(self.tip, angles)
         for k, axis in reversed([*enumerate(self.head, len(self.table))]):
             points = axis.turn(points, angles[..., k])
         return points
 
-    def tool_axis(self, angles: FloatArray) -> FloatArray:
+    def tool_axis(self, angles: Floats) -> Floats:
         """Return the tool axis (..., 3) in the frame of the workpiece, from tip to spindle."""
         vectors = self.spindle(angles)
         for k, axis in enumerate(self.table):
             vectors = axis.swing(vectors, -angles[..., k])
         return vectors
 
-    def spindle(self, angles: FloatArray) -> FloatArray:
+    def spindle(self, angles: Floats) -> Floats:
         """Return the tool axis (..., 3) in machine coordinates, from tip to spindle."""
         vectors = self._everywhere(SPINDLE, angles)
         for k, axis in reversed([*enumerate(self.head, len(self.table))]):
             vectors = axis.swing(vectors, angles[..., k])
         return vectors
 
-    def upwards(self, angles: FloatArray) -> FloatArray:
+    def upwards(self, angles: Floats) -> Floats:
         """Return the Z of the workpiece (..., 3) in machine coordinates: out of the table."""
         vectors = self._everywhere(SPINDLE, angles)
         for k, axis in reversed([*enumerate(self.table)]):
@@ -163,7 +163,7 @@ class Chain:
         return vectors
 
     @staticmethod
-    def _everywhere(point: Triple, angles: FloatArray) -> FloatArray:
+    def _everywhere(point: Triple, angles: Floats) -> Floats:
         return np.broadcast_to(np.array(point), (*angles.shape[:-1], 3)).copy()
 
 

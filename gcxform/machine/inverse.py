@@ -23,17 +23,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import UsageError
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import EVERYWHERE, SPINDLE, Chain, Rotary, Triple, turned
+from gcxform.system.arrays import Bytes, Flags, Floats
 
 TOLERANCE = 1e-9  # degrees; a tip of a tool of 100 mm is then off by 2e-9 mm
 SLACK = 1e-9  # degrees and mm that rounding may take a position beyond a limit
 PARALLEL = 1e-6  # sine between axes below which they are one axis
 TURN = 360.0
-Bools = NDArray[np.bool_]
 
 
 class State(enum.IntEnum):
@@ -60,10 +58,10 @@ class Attitudes:
     nearest to 0.
     """
 
-    angle: FloatArray
-    state: NDArray[np.uint8]
-    miss: FloatArray
-    tilt: FloatArray
+    angle: Floats
+    state: Bytes
+    miss: Floats
+    tilt: Floats
     free: int | None
 
 
@@ -74,13 +72,13 @@ class Poses:
     `linear` (n, c, 3) in mm, `angle` (n, c, m) in degrees, `allowed` (n, c).
     """
 
-    linear: FloatArray
-    angle: FloatArray
-    allowed: Bools
+    linear: Floats
+    angle: Floats
+    allowed: Flags
     attitudes: Attitudes
 
 
-def inverse(chain: Chain, tip: FloatArray, axis: FloatArray, tolerance: float = TOLERANCE) -> Poses:
+def inverse(chain: Chain, tip: Floats, axis: Floats, tolerance: float = TOLERANCE) -> Poses:
     """Return all positions that bring the tip to points (n, 3) with tool axes (n, 3).
 
     Points and vectors are in the frame of the workpiece. Candidates are the branches, each with all
@@ -96,7 +94,7 @@ def inverse(chain: Chain, tip: FloatArray, axis: FloatArray, tolerance: float = 
     return Poses(linear, angle, allowed, found)
 
 
-def turns(chain: Chain, angle: FloatArray) -> tuple[FloatArray, Bools]:
+def turns(chain: Chain, angle: Floats) -> tuple[Floats, Flags]:
     """Return angles (n, b, m) with full turns added, (n, c, m), and which are within limits (n, c).
 
     An axis without limits may be a full turn away from what is returned, to either side.
@@ -130,7 +128,7 @@ class _Turn:
     factor: int
 
 
-def attitudes(chain: Chain, axis: FloatArray, tolerance: float = TOLERANCE) -> Attitudes:
+def attitudes(chain: Chain, axis: Floats, tolerance: float = TOLERANCE) -> Attitudes:
     """Return the angles which give tool axes (n, 3), of any length, in the workpiece's frame.
 
     Raises UsageError for a chain of more than two rotary axes, or of two that do the same, and
@@ -180,9 +178,7 @@ def _loop(chain: Chain) -> list[_Turn]:
     return loop
 
 
-def _by_two(
-    one: _Turn, two: _Turn, axis: FloatArray, tilt: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _by_two(one: _Turn, two: _Turn, axis: Floats, tilt: Floats) -> tuple[Floats, Floats, Floats]:
     """Return angles (n, 2, m) in degrees, miss (n,) and distance to the border (n,) in rad."""
     spindle = np.array(SPINDLE)
     a = float(_between(spindle, two.direction))
@@ -201,9 +197,7 @@ def _by_two(
     return angle, miss, np.minimum(np.abs(tilt - least), np.abs(tilt - most))
 
 
-def _by_one(
-    loop: list[_Turn], axis: FloatArray, tilt: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _by_one(loop: list[_Turn], axis: Floats, tilt: Floats) -> tuple[Floats, Floats, Floats]:
     """Return the same for one axis, or none: one branch, and no border."""
     angle = np.zeros((len(axis), 1, len(loop)))
     fixed = np.zeros(1)
@@ -216,7 +210,7 @@ def _by_one(
     return angle, np.abs(tilt - fixed), np.full(len(axis), math.pi)
 
 
-def _corner(a: float, b: float, tilt: FloatArray) -> FloatArray:
+def _corner(a: float, b: float, tilt: Floats) -> Floats:
     """Return the angle (n,) of a spherical triangle between its sides a and b, rad."""
     sine = np.sin((tilt + a - b) / 2.0) * np.sin((tilt - a + b) / 2.0)
     cosine = np.sin((a + b + tilt) / 2.0) * np.sin((a + b - tilt) / 2.0)
@@ -225,7 +219,7 @@ def _corner(a: float, b: float, tilt: FloatArray) -> FloatArray:
     )
 
 
-def _between(vectors: FloatArray, direction: Triple) -> FloatArray:
+def _between(vectors: Floats, direction: Triple) -> Floats:
     """Return the angles (...) of vectors (..., 3) to a direction, 0 to pi rad."""
     across = np.linalg.norm(np.cross(vectors, direction), axis=-1)
     return np.asarray(np.arctan2(across, vectors @ np.array(direction)))
@@ -235,7 +229,7 @@ def _sine(one: Triple, other: Triple) -> float:
     return float(np.linalg.norm(np.cross(one, other)))
 
 
-def _azimuth(vectors: FloatArray, direction: Triple, start: Triple | None = None) -> FloatArray:
+def _azimuth(vectors: Floats, direction: Triple, start: Triple | None = None) -> Floats:
     """Return the angles (...) of vectors (..., 3) about a direction from some start, degrees."""
     axis = np.array(direction)
     zero = np.array(start) if start else np.eye(3)[np.argmin(np.abs(axis))]

@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Chain, Rotary
+from gcxform.system.arrays import Floats
 
 SIDES = {
     "+X": "the right",
@@ -46,7 +46,7 @@ def jog_test(chain: Chain, at: Mapping[str, float], step: float) -> Iterator[str
         yield from _seen(chain, (linear, angles, moved), (tip, axis))
 
 
-def _words(letters: tuple[str, ...], angles: FloatArray) -> str:
+def _words(letters: tuple[str, ...], angles: Floats) -> str:
     return "".join(f" {a}{value:g}" for a, value in zip(letters, angles, strict=True))
 
 
@@ -72,14 +72,14 @@ def _about(rotary: Rotary, table: bool) -> Iterator[str]:
     yield f"  + moves what is on the {which} side of the axis to {towards} ({WAYS[towards]})"
 
 
-def _across(way: FloatArray) -> FloatArray:
+def _across(way: Floats) -> Floats:
     """Return the coordinate, as a vector (3,), that is most square to an axis, Y before X and Z."""
     order = [1, 0, 2]
     best = min(order, key=lambda k: round(abs(float(way[k])), 2))
     return np.asarray(np.eye(3)[best])
 
 
-def _nearest(vector: FloatArray) -> tuple[str, float]:
+def _nearest(vector: Floats) -> tuple[str, float]:
     """Return the coordinate that a vector (3,) is nearest to, with its sign, and degrees to it."""
     k = int(np.argmax(np.abs(np.round(vector, 9))))
     across = float(np.linalg.norm(np.delete(vector, k)))
@@ -92,8 +92,8 @@ def _nearest(vector: FloatArray) -> tuple[str, float]:
 
 def _seen(
     chain: Chain,
-    position: tuple[FloatArray, FloatArray, FloatArray],
-    before: tuple[FloatArray, FloatArray],
+    position: tuple[Floats, Floats, Floats],
+    before: tuple[Floats, Floats],
 ) -> Iterator[str]:
     """Yield where tip and tool axis go if one axis is jogged alone, and what holds the tip."""
     linear, angles, moved = position
@@ -114,11 +114,11 @@ def _seen(
     yield f"    the tip is held there if X, Y, Z move by {_vector(held)} mm"
 
 
-def _point(point: FloatArray) -> str:
+def _point(point: Floats) -> str:
     values = zip("XYZ", (np.round(point, 3) + 0.0).tolist(), strict=True)
     return " ".join(f"{letter}{value:.3f}" for letter, value in values)
 
 
-def _vector(vector: FloatArray, digits: int = 3) -> str:
+def _vector(vector: Floats, digits: int = 3) -> str:
     values = (np.round(vector, digits) + 0.0).tolist()  # + 0.0: no -0
     return f"({', '.join(f'{value:.{digits}f}' for value in values)})"

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Flags = NDArray[np.bool_]
+from gcxform.system.arrays import Flags
 
 
 def fill(values: NDArray[Any], present: Flags, initial: float) -> NDArray[Any]:

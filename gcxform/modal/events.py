@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.modal.lines import Lines
+from gcxform.system.arrays import Ints
 from gcxform.toolpath.path import Event
-
-Ints = NDArray[np.int64]
 
 
 def events_of(

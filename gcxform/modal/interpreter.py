@@ -12,7 +12,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.config.quantities import LENGTH
 from gcxform.diagnostics import UsageError
@@ -28,6 +27,7 @@ from gcxform.modal.meaning.tables import GROUPS, NUMBER, SPLINES, MeaningTable
 from gcxform.modal.moves.moves import Moves
 from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, State
 from gcxform.syntax.scan import Window
+from gcxform.system.arrays import Floats, Ints
 from gcxform.toolpath.path import Toolpath
 
 
@@ -43,9 +43,9 @@ class Interpreted:
     path: Toolpath
     modes: Modes
     live: int
-    shape: NDArray[np.int64]
+    shape: Ints
     before: State
-    value: NDArray[np.float64]
+    value: Floats
     assigned: tuple[Assigned, ...] = ()
 
 

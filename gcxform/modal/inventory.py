@@ -10,14 +10,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import Dialect
 from gcxform.modal.meaning.meaning import OWN_MOVES, Meaning
 from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.syntax.tree import Block, Comment, Mark, Number, Statement, Word
+from gcxform.system.arrays import Ints
 
-Ints = NDArray[np.int64]
 KINDS = (
     *("motions", "definitions", "assignments", "messages", "stops", "ends", "m_codes"),
     "path_modes",

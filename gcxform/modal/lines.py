@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.arithmetic import Key
 from gcxform.dialect.dialect import INCH, LINEAR, Dialect
@@ -25,11 +24,7 @@ from gcxform.modal.meaning.tables import (
 from gcxform.modal.numbers_without_point import Pointless
 from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
 from gcxform.syntax.scan import Window
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Small = NDArray[np.int8]
-Flags = NDArray[np.bool_]
+from gcxform.system.arrays import Flags, Floats, Small
 
 DISTANCES = "XYZABCUVWIJKR"
 

@@ -9,7 +9,6 @@ are, and rounded to the increment.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic
 from gcxform.dialect.dialect import ROTARY, Dialect
@@ -18,10 +17,7 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.meaning.tables import NUMBER
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import COMPUTED
-
-Floats = NDArray[np.float64]
-Small = NDArray[np.int8]
-Flags = NDArray[np.bool_]
+from gcxform.system.arrays import Flags, Floats, Ints, Small
 
 UNKNOWN = Increments("")
 
@@ -72,7 +68,7 @@ class Pointless:
     # --- distances ---
 
     def distances(
-        self, address: str, value: Floats, present: Flags, decimals: NDArray[np.int64], inch: Flags
+        self, address: str, value: Floats, present: Flags, decimals: Ints, inch: Flags
     ) -> Floats:
         """Return distances in units; those whose worth is not known are refused."""
         pointless = present & (decimals < 0) & (value != 0)
@@ -138,7 +134,7 @@ class Pointless:
     # --- feeds ---
 
     def feeds(
-        self, value: Floats, present: Flags, decimals: NDArray[np.int64], mode: Small, inch: Flags
+        self, value: Floats, present: Flags, decimals: Ints, mode: Small, inch: Flags
     ) -> Floats:
         """Return feeds in units; those whose unit is not known are refused."""
         odd = present & (decimals < 0) & (value != 0)

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.config import arguments
 from gcxform.config.quantities import AXIS_LETTERS
@@ -15,11 +14,8 @@ from gcxform.dialect.increments import Increments
 from gcxform.machine.machine import TIP_AT_START, Machine, Tool
 from gcxform.modal.cycles.expansion import Cycles
 from gcxform.modal.frames.state import FrameState
+from gcxform.system.arrays import Flags, Floats, Small
 from gcxform.toolpath.frames import Frame
-
-Floats = NDArray[np.float64]
-Small = NDArray[np.int8]
-Flags = NDArray[np.bool_]
 
 BLOCK_DELETE = ("execute", "skip", "")
 UNITS = ("mm", "in", "")

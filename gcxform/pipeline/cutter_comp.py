@@ -10,13 +10,10 @@ import re
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.contract.passes import Pass
+from gcxform.system.arrays import Flags, Ints
 from gcxform.toolpath.path import Toolpath
-
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 CODE = re.compile(rb"[Gg][ \t]*0*4[ \t]*([012])")
 COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")

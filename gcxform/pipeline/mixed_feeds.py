@@ -8,13 +8,12 @@ same unit; in inverse time (G93) it is the same everywhere.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.contract.passes import PassContext
 from gcxform.dialect.dialect import LINEAR
+from gcxform.system.arrays import Ints
 from gcxform.toolpath.path import FeedMode, Kind, Toolpath
 
-Ints = NDArray[np.int64]
 STILL = 1e-7  # mm, degrees
 MAIN = frozenset("XYZ")
 

@@ -9,9 +9,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gcxform.contract.passes import Pass, resolved
 from gcxform.contract.tip_codes import switches_of
 from gcxform.diagnostics import GcxformError, InputError, Location, VerificationError
@@ -37,11 +34,11 @@ from gcxform.stamps.comment import StampReader
 from gcxform.stamps.writing import Heads, Seal, comment_line
 from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source, lines_in
+from gcxform.system.arrays import Floats
 from gcxform.system.heap import Heap
 from gcxform.system.worker import Worker, ahead, worker
 from gcxform.toolpath.path import Toolpath
 
-Floats = NDArray[np.float64]
 Progress = Callable[[int], object]
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 import numpy as np
 
 from gcxform.diagnostics import Location, UsageError
-from gcxform.errormodel.model import FloatArray
+from gcxform.system.arrays import Floats
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -114,14 +114,14 @@ def empty(axes: Axes, text: str) -> None:
     axes.text(0.5, 0.5, text, ha="center", va="center", color=GREY, transform=axes.transAxes)
 
 
-def isometric(points: FloatArray) -> FloatArray:
+def isometric(points: Floats) -> Floats:
     """Return points (..., 3) as they are seen from the front right above, (..., 2)."""
     right = np.array([1.0, 1.0, 0.0]) / math.sqrt(2.0)
     up = np.array([-1.0, 1.0, 2.0]) / math.sqrt(6.0)
     return np.stack([points @ right, points @ up], axis=-1)
 
 
-def triad(axes: Axes, corner: FloatArray, length: float) -> None:
+def triad(axes: Axes, corner: Floats, length: float) -> None:
     """Draw the directions of X, Y and Z, from a point (3,) in mm."""
     start = isometric(corner)
     for k, letter in enumerate("XYZ"):

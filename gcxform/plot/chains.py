@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import SPINDLE, Chain, Rotary
 from gcxform.plot.canvas import AFTER, BEFORE, GREY, figure, isometric, styled, triad
+from gcxform.system.arrays import Floats
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,12 +58,12 @@ def _axis(axes: Axes, axis: Rotary, side: tuple[str, str], size: float) -> None:
     axes.annotate(f" {axis.letter}+ ({name})", xy=tuple(place), color=colour, fontsize=10.0)
 
 
-def _link(axes: Axes, points: list[FloatArray], colour: str) -> None:
+def _link(axes: Axes, points: list[Floats], colour: str) -> None:
     """Draw what carries what."""
     if len(points) > 1:
         _line(axes, np.array(points), "carries", color=colour, alpha=0.35, linewidth=4.0)
 
 
-def _line(axes: Axes, points: FloatArray, name: str, **style: Any) -> None:
+def _line(axes: Axes, points: Floats, name: str, **style: Any) -> None:
     across, up = isometric(points).T
     axes.plot(across, up, gid=name, **({"color": GREY} | style))

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gcxform.errormodel.model import FloatArray
 from gcxform.plot.canvas import AFTER, BEFORE, empty, figure, magnified, styled
 from gcxform.simulate.circles import Circles
 from gcxform.simulate.figures import Positioning
 from gcxform.simulate.virtual import BODY, FACES, Outcome
+from gcxform.system.arrays import Floats
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,7 +62,7 @@ def _around_labels(plane: str) -> list[str]:
     return [ways.get(angle, f"{angle}°") for angle in range(0, 360, 45)]
 
 
-def _around(path: FloatArray, value: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _around(path: Floats, value: Floats) -> tuple[Floats, Floats]:
     """Return angles (rad) and values of a closed path, in the order of the angle, not too many."""
     angle = np.arctan2(path[:, 1], path[:, 0])
     order = np.argsort(angle, kind="stable")[:: max(1, len(path) // POINTS)]

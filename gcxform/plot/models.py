@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gcxform.errormodel.model import AXES, ErrorModel, FloatArray, Outside
+from gcxform.errormodel.model import AXES, ErrorModel, Outside
 from gcxform.errormodel.pitch import PitchTables
 from gcxform.errormodel.sum import Sum
 from gcxform.errormodel.thermal import ThermalScrew
 from gcxform.plot.canvas import AFTER, BEFORE, GREY, empty, figure, isometric, nice, styled, triad
 from gcxform.simulate.virtual import ranges
+from gcxform.system.arrays import Floats
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,7 +28,7 @@ SHOWN = 0.06  # part of the volume's diagonal that the largest error is drawn as
 
 REVERSE = " reverse"  # behind the name of a function after travel in the negative direction
 
-Curves = dict[str, tuple[FloatArray, FloatArray]]
+Curves = dict[str, tuple[Floats, Floats]]
 """Functions by ISO 230-1 name: position in mm, value in mm or rad."""
 
 
@@ -103,7 +104,7 @@ def squareness(found: Curves) -> dict[str, float]:
     }
 
 
-def _slope(curve: tuple[FloatArray, FloatArray]) -> float:
+def _slope(curve: tuple[Floats, Floats]) -> float:
     position, value = curve
     return float((value[-1] - value[0]) / (position[-1] - position[0]))
 
@@ -183,13 +184,13 @@ def _volume(axes: Axes, shown: ErrorModel) -> None:
     axes.set_title(f"errors x {factor:g}, largest {UM * largest:.2f} um at the places shown")
 
 
-def _shown_box(shown: ErrorModel) -> FloatArray:
+def _shown_box(shown: ErrorModel) -> Floats:
     """Return the volume (3, 2) in mm that is drawn: that of the model, or one if it has no end."""
     box = ranges(shown)
     return box if (box[:, 1] > box[:, 0]).any() else np.tile([-ENDLESS, ENDLESS], (3, 1))
 
 
-def _lines(places: list[FloatArray]) -> Iterator[FloatArray]:
+def _lines(places: list[Floats]) -> Iterator[Floats]:
     """Yield the lines (k, 3) of the grid on the outside of the volume."""
     for axis, along in enumerate(places):
         if len(along) < 2:

@@ -14,10 +14,11 @@ import numpy as np
 from gcxform.calibrate.ballbar.ballbar import Eccentricity, Identified
 from gcxform.calibrate.ballbar.file import bar_name
 from gcxform.calibrate.bundle.bundle import Bundled
-from gcxform.calibrate.rotary.axis import Kept, Placed
+from gcxform.calibrate.rotary.axis import Placed
 from gcxform.calibrate.rotary.check import components
-from gcxform.errormodel.model import AXES, FloatArray
+from gcxform.errormodel.model import AXES
 from gcxform.plot.canvas import AFTER, BEFORE, MEAN, figure, magnified, styled
+from gcxform.system.arrays import Flags, Floats
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -84,7 +85,7 @@ def _trace(axes: Any, test: Eccentricity, name: str) -> None:
 
 
 def _points(
-    axes: Any, letter: str, degrees: FloatArray, parts: Mapping[str, FloatArray], kept: Kept
+    axes: Any, letter: str, degrees: Floats, parts: Mapping[str, Floats], kept: Flags
 ) -> None:
     """Draw residuals, um, over the angle of an axis; those not kept as crosses, near the rim."""
     turns = np.radians(degrees)

@@ -15,7 +15,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.contract.passes import Pass, PassContext
 from gcxform.deviations.matching import match
@@ -24,6 +23,7 @@ from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
 from gcxform.plugin.registry import default_registry
 from gcxform.proof.compensated_stretches import Stretches
+from gcxform.system.arrays import Ints
 from gcxform.toolpath.facts import NO_CUTTER_COMP
 from gcxform.toolpath.path import Toolpath
 
@@ -184,7 +184,7 @@ def _too_short(path: Toolpath) -> InputError:
     return path.refuse("GX351", rows if len(rows) else np.arange(1), message, MENDED)
 
 
-def _row_beside(one: Toolpath, other: Toolpath, error: InputError) -> NDArray[np.int64]:
+def _row_beside(one: Toolpath, other: Toolpath, error: InputError) -> Ints:
     """Return the row of the source beside the row of the output that an error is about."""
     where = error.diagnostics[0].where
     line = where.line - 1 if where is not None else -1

@@ -7,19 +7,17 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.deviations.runs import SAME_FEED
 from gcxform.dialect.dialect import LINEAR
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.moves.moves import moves_linear, turns_only
 from gcxform.proof.trace import Trace
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import FeedMode, Kind
 from gcxform.toolpath.travel import Lengths, lengths
 
-Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
 TIME_ERROR = 1e-3  # relative: what the rounding of the feeds of pieces may change
 UNEVEN = 0.25  # relative; a chord of a quarter of a circle is a tenth shorter than its arc
 
@@ -145,7 +143,7 @@ class FeedProof:
         angle = np.sqrt((way**2).sum(axis=1))
         return Lengths(angle, angle, np.ones(len(written), np.bool_))
 
-    def _uneven(self, way: Lengths) -> NDArray[np.bool_]:
+    def _uneven(self, way: Lengths) -> Flags:
         """Return which written moves do not take the share of the time that is their way's."""
         written, owner = self.trace.written, self.trace.written_owner
         mine, inverse = written.kind != Kind.RAPID, written.feed_mode == FeedMode.INVERSE_TIME
@@ -160,7 +158,7 @@ class FeedProof:
             off = np.abs(time - slow * along) > slow * (UNEVEN * along + slack)
         return np.asarray(off & free & (whole > 0))
 
-    def _at_full_speed(self) -> NDArray[np.bool_]:
+    def _at_full_speed(self) -> Flags:
         """Return the written rows in inverse time in which an axis is as fast as it can be."""
         written = self.trace.written
         if not self.speeds:
@@ -174,7 +172,7 @@ class FeedProof:
         timed = written.feed_mode == FeedMode.INVERSE_TIME
         return np.asarray(timed & (least * written.feed >= 1.0 - TIME_ERROR))
 
-    def _may_be_converted(self, owner: Ints) -> NDArray[np.bool_]:
+    def _may_be_converted(self, owner: Ints) -> Flags:
         """Return the rows whose feeds a pass may have converted, there and back if there are two.
 
         Passes leave what is in their mode; blocks after which another program may run keep theirs.
@@ -218,12 +216,12 @@ class FeedProof:
 
     def _late_at_full_speed(
         self,
-        mine: NDArray[np.bool_],
-        full: NDArray[np.bool_],
+        mine: Flags,
+        full: Flags,
         ways: Floats,
         new: Lengths,
         old: Lengths,
-    ) -> NDArray[np.bool_]:
+    ) -> Flags:
         """Return the rows of the source that are late only by their pieces at full speed.
 
         The other pieces have no more than their share of the time.
@@ -238,7 +236,7 @@ class FeedProof:
         most = np.maximum(share, rest) * (1 + TIME_ERROR) + slack
         return np.asarray((self._sums(full, new.most) > 0.0) & ~(time > most))
 
-    def _part(self, free: NDArray[np.bool_], mine: NDArray[np.bool_], new: Lengths) -> Floats:
+    def _part(self, free: Flags, mine: Flags, new: Lengths) -> Floats:
         """Return how much of the way of each row of the source is that of some written rows.
 
         It is the largest by what is written, by what the machine makes of it, and by angles.
@@ -250,7 +248,7 @@ class FeedProof:
             parts = [self._sums(free, way.most) / self._sums(mine, way.most) for way in ways]
         return np.asarray(np.nan_to_num(parts).max(axis=0))
 
-    def _sums(self, mine: NDArray[np.bool_], values: Floats) -> Floats:
+    def _sums(self, mine: Flags, values: Floats) -> Floats:
         """Return the sums of values over the written rows `mine` of each row of the source."""
         return np.bincount(
             self.trace.written_owner[mine], values[mine], len(self.trace.before)

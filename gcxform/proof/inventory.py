@@ -12,13 +12,14 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.flow.straightened import Executed
 from gcxform.modal.expressions.value import written
 from gcxform.modal.interpreter import Interpreted
-from gcxform.modal.inventory import KINDS, Account, Ints, Tally, nothing_held
+from gcxform.modal.inventory import KINDS, Account, Tally, nothing_held
 from gcxform.modal.lines import Assigned
 from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.modal.program_end import Ending
 from gcxform.proof.trace import Trace
 from gcxform.stamps.comment import without_lines
 from gcxform.syntax.scan import Window
+from gcxform.system.arrays import Ints
 
 Wrong = tuple[str, int, int]
 """What is wrong, the line of the source and the line of the output, both from 0."""

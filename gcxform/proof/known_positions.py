@@ -5,16 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.contract.passes import PassContext
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.dialect import INCH
 from gcxform.proof.trace import Trace
+from gcxform.system.arrays import Flags, Ints
 from gcxform.toolpath.path import Event, Kind, Toolpath
-
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 LENGTHS = frozenset("XYZUVWIJKR")
 

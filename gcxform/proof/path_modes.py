@@ -11,18 +11,16 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.contract.passes import PassContext
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.proof.inventory import Wrong
 from gcxform.proof.trace import Trace
+from gcxform.system.arrays import Flags, Ints
 from gcxform.toolpath.path import Event, Form
 from gcxform.toolpath.travel import ways
 
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 Stated = tuple[str, tuple[tuple[str, float], ...]]
 """A path mode and its words, in mm; nothing where none has been stated."""
 EXACT: Stated = ("G61", ())

@@ -11,13 +11,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.contract.passes import Pass, PassContext
+from gcxform.system.arrays import Flags, Ints
 from gcxform.toolpath.path import Form, Kind, Toolpath
-
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 STILL = 1e-9  # mm, deg
 

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.deviations.runs import Runs, runs_of
+from gcxform.system.arrays import Ints
 from gcxform.toolpath.path import Toolpath
 from gcxform.toolpath.travel import ways
-
-Ints = NDArray[np.int64]
 
 
 class Trace:

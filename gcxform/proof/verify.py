@@ -12,7 +12,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.contract.passes import Pass, PassContext
 from gcxform.deviations.runs import Runs, deviation_of_runs
@@ -38,13 +37,10 @@ from gcxform.proof.path_modes import PathModes
 from gcxform.proof.spared_rapids import led_elsewhere, spared_rows, told
 from gcxform.proof.trace import Trace
 from gcxform.syntax.scan import Window
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.facts import IN_AIR, between_taps
 from gcxform.toolpath.path import WHOLE, Event, Kind, Toolpath
 from gcxform.toolpath.travel import ways
-
-Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(slots=True)

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError, Location, UsageError, VerificationError
 from gcxform.dialect.dialect import INCH, Dialect
@@ -19,6 +18,7 @@ from gcxform.resume.memory import Memory, shapes_seen
 from gcxform.resume.preamble import Approach, Preamble
 from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source
+from gcxform.system.arrays import Flags
 from gcxform.toolpath.path import Kind, Toolpath
 
 CLOSE = 1e-6  # mm, degrees: positions are written with so many decimals
@@ -298,7 +298,7 @@ class Restart:
             raise self._difference(line)
 
 
-def _other_frames(one: Toolpath, other: Toolpath) -> NDArray[np.bool_]:
+def _other_frames(one: Toolpath, other: Toolpath) -> Flags:
     """Return the rows (n,) with other frames; the two paths may number theirs differently."""
     wrong = [[mine != theirs for theirs in other.frames] for mine in one.frames]
     shape = len(one.frames), len(other.frames)

@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from gcxform.calibrate.ballbar.ballbar import SetUp, Trace, readings
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Chain, Triple
+from gcxform.system.arrays import Floats
 
 
 def simulate_trace(
@@ -37,7 +37,7 @@ def simulate_trace(
     return Trace(setup, turned, exact + noise * generator.standard_normal(len(turned)))
 
 
-def standard_setups(chain: Chain, ball: Triple) -> list[tuple[SetUp, FloatArray]]:
+def standard_setups(chain: Chain, ball: Triple) -> list[tuple[SetUp, Floats]]:
     """Return two tests of each axis of the table, a bar square to it and one along it.
 
     The ball is the same in all. With each test stand the ends (2,) of its arc in degrees: the
@@ -58,7 +58,7 @@ def standard_setups(chain: Chain, ball: Triple) -> list[tuple[SetUp, FloatArray]
 def simulate_tests(
     control: Chain,
     true: Chain,
-    tests: Sequence[tuple[SetUp, FloatArray]],
+    tests: Sequence[tuple[SetUp, Floats]],
     samples: int,
     spindle: tuple[float, float] = (0.0, 0.0),
     *,

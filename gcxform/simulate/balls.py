@@ -16,8 +16,9 @@ import numpy.typing as npt
 
 from gcxform.calibrate.bundle.bundle import Poses
 from gcxform.diagnostics import UsageError
-from gcxform.errormodel.model import ErrorModel, FloatArray, compensate
+from gcxform.errormodel.model import ErrorModel, compensate
 from gcxform.machine.chain import Chain, Rotary
+from gcxform.system.arrays import Floats
 
 
 def simulate_balls(
@@ -28,7 +29,7 @@ def simulate_balls(
     noise: float = 0.0,
     circles: int | None = None,
     generator: np.random.Generator | None = None,
-) -> FloatArray:
+) -> Floats:
     """Return centres (n, 3), mm, at angles (n,); with `circles` as many measurements (m, n, 3).
 
     Without `generator` the noise is the same every time.

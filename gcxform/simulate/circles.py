@@ -17,13 +17,13 @@ from functools import cached_property
 
 import numpy as np
 
-from gcxform.errormodel.model import FloatArray
+from gcxform.system.arrays import Floats
 
 STEPS = 20
 CONVERGED = 1e-12  # mm
 
 
-def least_squares_circle(points: FloatArray) -> tuple[FloatArray, float]:
+def least_squares_circle(points: Floats) -> tuple[Floats, float]:
     """Return the centre (2,) and radius in mm of the circle nearest to points (n, 2) in mm.
 
     The sum of squares of the radial distances is least: Gauss and Newton's method, from the mean of
@@ -52,20 +52,20 @@ class Circles:
     """
 
     radius: float
-    cw: FloatArray
-    ccw: FloatArray
+    cw: Floats
+    ccw: Floats
 
     @cached_property
-    def both(self) -> FloatArray:
+    def both(self) -> Floats:
         """The points of both paths."""
         return np.vstack([self.cw, self.ccw])
 
     @cached_property
-    def centre(self) -> FloatArray:
+    def centre(self) -> Floats:
         """The least-squares centre (2,) of both paths, mm."""
         return least_squares_circle(self.both)[0]
 
-    def radial(self, path: FloatArray) -> FloatArray:
+    def radial(self, path: Floats) -> Floats:
         """Return the radial deviations F (n,) in mm of a path."""
         return np.hypot(path[:, 0], path[:, 1]) - self.radius
 
@@ -86,7 +86,7 @@ class Circles:
         return found
 
 
-def circular_deviation(points: FloatArray) -> float:
+def circular_deviation(points: Floats) -> float:
     """Return the range of radii in mm of points (n, 2) about their least-squares centre: G."""
     centre, _ = least_squares_circle(points)
     radii = np.hypot(*(points - centre).T)

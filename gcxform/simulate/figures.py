@@ -20,7 +20,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gcxform.errormodel.model import FloatArray
+from gcxform.system.arrays import Floats
 
 COVERAGE = 2.0  # the standard's factor for limits: mean plus and minus 2 s
 
@@ -32,41 +32,41 @@ class Positioning:
     With one run there is no standard uncertainty: s, R and A are nan.
     """
 
-    target: FloatArray
-    up: FloatArray
-    down: FloatArray
+    target: Floats
+    up: Floats
+    down: Floats
 
     @cached_property
-    def mean_up(self) -> FloatArray:
+    def mean_up(self) -> Floats:
         """The mean deviations (m,) of the approaches upwards, mm."""
         return np.asarray(self.up.mean(axis=1))
 
     @cached_property
-    def mean_down(self) -> FloatArray:
+    def mean_down(self) -> Floats:
         """The same downwards."""
         return np.asarray(self.down.mean(axis=1))
 
     @property
-    def mean(self) -> FloatArray:
+    def mean(self) -> Floats:
         """The mean bidirectional deviations (m,), mm."""
         return (self.mean_up + self.mean_down) / 2.0
 
     @property
-    def reversal(self) -> FloatArray:
+    def reversal(self) -> Floats:
         """The reversal errors B_i (m,), mm."""
         return self.mean_up - self.mean_down
 
     @cached_property
-    def s_up(self) -> FloatArray:
+    def s_up(self) -> Floats:
         """The standard uncertainties (m,) of the approaches upwards, mm."""
         return _spread(self.up)
 
     @cached_property
-    def s_down(self) -> FloatArray:
+    def s_down(self) -> Floats:
         """The same downwards."""
         return _spread(self.down)
 
-    def limits(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    def limits(self) -> tuple[Floats, Floats, Floats, Floats]:
         """Return mean + 2 s upwards, mean - 2 s upwards, and the same downwards, (m,) mm."""
         up, down = COVERAGE * self.s_up, COVERAGE * self.s_down
         return self.mean_up + up, self.mean_up - up, self.mean_down + down, self.mean_down - down
@@ -98,7 +98,7 @@ class Positioning:
         return float(self.mean[-1] - self.mean[0])
 
 
-def _spread(deviations: FloatArray) -> FloatArray:
+def _spread(deviations: Floats) -> Floats:
     """Return the standard uncertainty (m,) of deviations (m, n); nan for one run."""
     if deviations.shape[1] < 2:
         return np.full(len(deviations), np.nan)

@@ -9,19 +9,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.api import Program
 from gcxform.deviations.deviation import deviation
 from gcxform.deviations.matching import Pieces, cut, moving_rows
 from gcxform.diagnostics import InputError, UsageError
-from gcxform.errormodel.model import FloatArray
 from gcxform.pipeline.pipeline import Pipeline, Result
 from gcxform.simulate.positions import parts_of
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.path import Kind, Toolpath
 from gcxform.toolpath.splines import points_on_splines
-
-Ints = NDArray[np.int64]
 
 PIECES = 4000  # the path is divided into about so many, at least
 MANY = 1000  # splines
@@ -38,10 +35,10 @@ class Heat:
     rapid       (n,) whether the piece is of a rapid
     """
 
-    start: FloatArray
-    end: FloatArray
-    deviation: FloatArray
-    rapid: NDArray[np.bool_]
+    start: Floats
+    end: Floats
+    deviation: Floats
+    rapid: Flags
 
     @property
     def largest(self) -> float:
@@ -98,7 +95,7 @@ def deviations(nominal: Toolpath, actual: Toolpath, owner: Ints) -> Heat:
     return Heat(start[known], end[known], found[known], rapid[known])
 
 
-def _see_splines(nominal: Toolpath, fine: Toolpath, owner: Ints, found: FloatArray) -> None:
+def _see_splines(nominal: Toolpath, fine: Toolpath, owner: Ints, found: Floats) -> None:
     """Lower the deviations of moves along splines, in place, to those of their own ends.
 
     What is proved of a spline is one figure for all of it; a picture shows where on it. Of very
@@ -114,7 +111,7 @@ def _see_splines(nominal: Toolpath, fine: Toolpath, owner: Ints, found: FloatArr
             found[some] = np.minimum(found[some], np.maximum(*away))
 
 
-def _distance(points: FloatArray, curve: FloatArray) -> FloatArray:
+def _distance(points: Floats, curve: Floats) -> Floats:
     """Return how far points (n, 3) are from a curve of short lines (k, 3), mm."""
     start, way = curve[:-1], np.diff(curve, axis=0)
     from_start = points[:, None] - start
@@ -159,7 +156,7 @@ def owners(nominal: Toolpath, written: Toolpath, line_of: Ints) -> Ints:
     return owner
 
 
-def in_order(ends: FloatArray, others: FloatArray) -> Ints:
+def in_order(ends: Floats, others: Floats) -> Ints:
     """Return to which of the ends (m, 3) each of the others (n, 3) belongs or leads, in order."""
     found = np.full(len(others), len(ends) - 1)
     begin = 0

@@ -11,20 +11,18 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.api import read
 from gcxform.contract.options import ModelFile
 from gcxform.dialect.dialect import Dialect, NumberFormat
-from gcxform.errormodel.model import ErrorModel, FloatArray, Outside
+from gcxform.errormodel.model import ErrorModel, Outside
 from gcxform.pipeline.certificate import Certificate
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
 from gcxform.simulate.programs import StandardProgram
+from gcxform.system.arrays import Floats, Ints
 from gcxform.toolpath.circles import points_on_arcs, radius_and_angle
 from gcxform.toolpath.path import Plane, Toolpath
-
-Ints = NDArray[np.int64]
 
 STILL = 1e-9  # mm; an axis that moves by less has not moved
 CORRECTION = 10.0  # mm; a virtual machine may be as bad as it likes
@@ -41,9 +39,9 @@ class VirtualMachine:
 
     model: ErrorModel
     outside: Outside = Outside.ERROR
-    tool: FloatArray | None = None
+    tool: Floats | None = None
 
-    def actual(self, commanded: FloatArray, sense: FloatArray) -> FloatArray:
+    def actual(self, commanded: Floats, sense: Floats) -> Floats:
         """Return where the tool is (n, 3) when the machine is told to be at `commanded` (n, 3), mm.
 
         `sense` (n, 3) is the direction, -1 or +1, in which each axis moved last; 0: not yet.
@@ -59,15 +57,15 @@ class Track:
     line               (n,) line of the standard program, from 0, that the point came from
     """
 
-    commanded: FloatArray
-    actual: FloatArray
+    commanded: Floats
+    actual: Floats
     line: Ints
 
-    def on(self, line: int) -> FloatArray:
+    def on(self, line: int) -> Floats:
         """Return the actual points (k, 3) in mm on the moves of a line."""
         return np.asarray(self.actual[self.line == line])
 
-    def stops(self, lines: tuple[int, ...]) -> FloatArray:
+    def stops(self, lines: tuple[int, ...]) -> Floats:
         """Return where the tool stands (k, 3) in mm at the end of each line; they ascend."""
         last = np.searchsorted(self.line, lines, side="right") - 1
         return np.asarray(self.actual[last])
@@ -150,7 +148,7 @@ def track(machine: VirtualMachine, path: Toolpath, line: Ints, spacing: float) -
     return Track(commanded, machine.actual(commanded, senses(commanded)), line[rows])
 
 
-def parts_of(path: Toolpath, spacing: float) -> tuple[Ints, FloatArray]:
+def parts_of(path: Toolpath, spacing: float) -> tuple[Ints, Floats]:
     """Return the row (n,) and the part (n,), up to 1, of points at most `spacing` (mm) apart."""
     start, end = path.start[:, :3], path.end[:, :3]
     length = np.sqrt(((end - start) ** 2).sum(axis=1))
@@ -171,7 +169,7 @@ def normal(path: Toolpath, row: int) -> int:
     return int(Plane(int(path.plane[row])).axes[2])
 
 
-def points_at(path: Toolpath, rows: Ints, part: FloatArray) -> FloatArray:
+def points_at(path: Toolpath, rows: Ints, part: Floats) -> Floats:
     """Return the points (n, 3) in mm at parts of rows that are lines and arcs."""
     start, end = path.start[rows, :3], path.end[rows, :3]
     point = start + part[:, None] * (end - start)
@@ -183,7 +181,7 @@ def points_at(path: Toolpath, rows: Ints, part: FloatArray) -> FloatArray:
     return np.asarray(point)
 
 
-def senses(points: FloatArray) -> FloatArray:
+def senses(points: Floats) -> Floats:
     """Return the direction (n, 3) in which each axis moved last on the way to points (n, 3)."""
     way = np.diff(points, axis=0, prepend=points[:1])
     sense = np.where(np.abs(way) > STILL, np.sign(way), 0.0)

@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from gcxform.dialect.dialect import Dialect
-from gcxform.errormodel.model import AXES, FloatArray
+from gcxform.errormodel.model import AXES
+from gcxform.system.arrays import Floats
 from gcxform.toolpath.path import Plane
 
 DWELL = 2.0  # s: the machine stands still before the instrument reads
@@ -50,10 +51,10 @@ class _Writer:
         text = f"{round(value, self.decimals) + 0.0:.{self.decimals}f}"
         return text.rstrip("0") if self.decimals else f"{text}."
 
-    def words(self, letters: str, values: Sequence[float] | FloatArray) -> str:
+    def words(self, letters: str, values: Sequence[float] | Floats) -> str:
         return " ".join(f"{a}{self.number(float(v))}" for a, v in zip(letters, values, strict=True))
 
-    def move(self, point: Sequence[float] | FloatArray, dwell: bool = True) -> int:
+    def move(self, point: Sequence[float] | Floats, dwell: bool = True) -> int:
         """Go straight to a point, stand there, and return the line of the move."""
         self.blocks.append(f"G1 {self.words(AXES, point)}")
         line = len(self.blocks) - 1
@@ -121,20 +122,20 @@ class Line:
     """
 
     name: str
-    targets: FloatArray
+    targets: Floats
     beyond: float = 0.0
 
     @property
-    def direction(self) -> FloatArray:
+    def direction(self) -> Floats:
         """The unit vector (3,) of the way up."""
         way = self.targets[-1] - self.targets[0]
-        unit: FloatArray = way / float((way @ way) ** 0.5)
+        unit: Floats = way / float((way @ way) ** 0.5)
         return unit
 
     @property
-    def along(self) -> FloatArray:
+    def along(self) -> Floats:
         """The targets (m,) in mm: positions of an axis, or distances from the first target."""
-        found: FloatArray = self.targets @ self.direction
+        found: Floats = self.targets @ self.direction
         return found if np.count_nonzero(self.direction) == 1 else found - found[0]
 
 

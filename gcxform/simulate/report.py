@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from gcxform.errormodel.model import FloatArray
 from gcxform.simulate.circles import Circles
 from gcxform.simulate.figures import Positioning
 from gcxform.simulate.virtual import BODY, FACES, Outcome, largest
+from gcxform.system.arrays import Floats
 
 DEGREE = 360  # points of a circle in the data
 
@@ -89,7 +89,7 @@ def circle_readings(circles: Circles) -> dict[str, Any]:
     return found
 
 
-def _around(path: FloatArray, values: FloatArray, angle: FloatArray) -> FloatArray:
+def _around(path: Floats, values: Floats, angle: Floats) -> Floats:
     return np.interp(angle, np.arctan2(path[:, 1], path[:, 0]), values, period=2.0 * np.pi)
 
 

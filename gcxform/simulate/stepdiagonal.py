@@ -14,26 +14,24 @@ import numpy as np
 import numpy.typing as npt
 
 from gcxform.calibrate.diagonal.readings import FOUR, Leg, LinearTest, Signs, beam, sideways
-from gcxform.errormodel.model import FloatArray
+from gcxform.system.arrays import Floats
 
 
 class HasError(Protocol):
     """Anything that says the error (n, 3) in mm at positions (n, 3) in mm."""
 
-    def error(self, position: FloatArray) -> FloatArray:
+    def error(self, position: Floats) -> Floats:
         """Return the errors (n, 3) in mm."""
         ...
 
 
-def step_positions(
-    low: npt.ArrayLike, travel: npt.ArrayLike, steps: int, signs: Signs
-) -> FloatArray:
+def step_positions(low: npt.ArrayLike, travel: npt.ArrayLike, steps: int, signs: Signs) -> Floats:
     """Return the stops (3 steps + 1, 3) in mm of a diagonal: its corner, then X, Y, Z in turn."""
     corner, size = np.asarray(low, np.float64), np.asarray(travel, np.float64)
     moved = (np.arange(3 * steps + 1)[:, None] + 2 - np.arange(3)) // 3  # steps of each axis so far
     part = moved / steps
     along = np.where(np.array(signs) > 0, part, 1.0 - part)
-    stops: FloatArray = corner + size * along
+    stops: Floats = corner + size * along
     return stops
 
 
@@ -99,6 +97,6 @@ def simulate_linear(
     )
 
 
-def _normalised(vector: FloatArray) -> FloatArray:
-    unit: FloatArray = vector / np.linalg.norm(vector)
+def _normalised(vector: Floats) -> Floats:
+    unit: Floats = vector / np.linalg.norm(vector)
     return unit

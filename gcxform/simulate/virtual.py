@@ -14,7 +14,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from gcxform.diagnostics import UsageError
-from gcxform.errormodel.model import AXES, ErrorModel, FloatArray, Outside
+from gcxform.errormodel.model import AXES, ErrorModel, Outside
 from gcxform.simulate.circles import Circles
 from gcxform.simulate.figures import Positioning
 from gcxform.simulate.positions import Chain, Compensated, Track
@@ -26,6 +26,7 @@ from gcxform.simulate.programs import (
     circles,
     linear_cycles,
 )
+from gcxform.system.arrays import Floats
 
 POINTS_AROUND = 7200  # points of a circle: one every 0.05 degrees
 NEVER = 1e9  # mm; spacing of points where only the ends of moves are read
@@ -55,7 +56,7 @@ def _outcome(
     return Outcome(program, done, readings(before), readings(after))
 
 
-def _check_inside(chain: Chain, points: FloatArray) -> None:
+def _check_inside(chain: Chain, points: Floats) -> None:
     """Refuse a test that leaves the model, before anything is computed from it."""
     model = chain.model.model
     beyond = model.outside(points)
@@ -72,7 +73,7 @@ def _check_inside(chain: Chain, points: FloatArray) -> None:
     )
 
 
-def ranges(model: ErrorModel) -> FloatArray:
+def ranges(model: ErrorModel) -> Floats:
     """Return the lowest and highest position (3, 2) in mm; both 0 for an axis without limits."""
     found = np.array([model.range_of(axis) for axis in range(3)])
     found[~np.isfinite(found).all(axis=1)] = 0.0
@@ -117,7 +118,7 @@ class Ballbar:
             found[plane] = Circles(self.radius, paths["cw"], paths["ccw"])
         return found
 
-    def _disturbed(self, path: FloatArray, random: np.random.Generator) -> FloatArray:
+    def _disturbed(self, path: Floats, random: np.random.Generator) -> Floats:
         """Return a path (n, 2) with noise along the bar.
 
         The noise is that of fixed angles, because the number of points depends on how the circle is
@@ -198,7 +199,7 @@ BODY = ("PPP", "NPP", "PNP", "PPN")
 FACES = ("PP0", "NP0", "0PP", "0NP", "P0P", "N0P")
 
 
-def diagonal_line(name: str, box: FloatArray, count: int, beyond: float = 0.0) -> Line:
+def diagonal_line(name: str, box: Floats, count: int, beyond: float = 0.0) -> Line:
     """Return a diagonal of a box (3, 2) in mm by its name in the manner of ISO 230-6:2002.
 
     The letters are the senses of X, Y and Z on the way up: P positive, N negative; 0 for an axis
@@ -215,7 +216,7 @@ def diagonal_line(name: str, box: FloatArray, count: int, beyond: float = 0.0) -
     return Line(name, first + part * (last - first), beyond)
 
 
-def possible(names: Sequence[str], box: FloatArray) -> tuple[str, ...]:
+def possible(names: Sequence[str], box: Floats) -> tuple[str, ...]:
     """Return the diagonals of a box for which each axis that moves has a range."""
     wide = box[:, 1] > box[:, 0]
     return tuple(

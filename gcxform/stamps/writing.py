@@ -12,14 +12,12 @@ import re
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import Dialect
 from gcxform.stamps.comment import parts, sealed, short
 from gcxform.syntax.source import lines_in
 from gcxform.syntax.tree import Comment
-
-Ints = NDArray[np.int64]
+from gcxform.system.arrays import Ints
 
 Lines = Sequence[int] | Ints
 HELD_AT_MOST = 1 << 16  # bytes from a percent sign on that may still be what closes the program

@@ -15,15 +15,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.syntax.shapes import OWN, NumberColumns, ShapeTable
+from gcxform.system.arrays import Bytes, Flags, Floats, Ints
 from gcxform.system.distinct import distinct
-
-Bytes = NDArray[np.uint8]
-Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 LETTER, DIGIT, POINT, SIGN, BLANK, END, CODE, OTHER = 0, 1, 2, 3, 4, 5, 6, 7
 LONGEST = 8  # digits on either side of the point: together exact in 64 bits

@@ -11,13 +11,11 @@ from dataclasses import dataclass, replace
 from itertools import repeat
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.syntax.grammar import Grammar
 from gcxform.syntax.tree import Block, Expression, Number, Word
+from gcxform.system.arrays import Floats, Ints
 
-Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
 NumberColumns = tuple[Ints, Floats, Ints, Ints, Ints]
 
 CODES = frozenset("GMO")

@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.contract.options import build, describe, to_toml
 from gcxform.contract.passes import Pass, PassContext, TextPass
@@ -25,6 +24,7 @@ from gcxform.diagnostics import GcxformError, InputError, Location
 from gcxform.machine.machine import Machine
 from gcxform.pipeline.text_passes import TextRun
 from gcxform.plugin.registry import default_registry
+from gcxform.system.arrays import Flags, Ints
 from gcxform.testing.paths import (
     PROGRAMS,
     Plain,
@@ -241,7 +241,7 @@ class _PathCheck:
         self._assert(gone, trial, "leaves a move out: a line of the program has no row")
         return runs
 
-    def _kinds(self, trial: _Trial, owner: NDArray[np.int64]) -> None:
+    def _kinds(self, trial: _Trial, owner: Ints) -> None:
         before, after = trial.before, trial.after
         rapid = (before.kind == Kind.RAPID)[owner]
         same = bool((rapid == (after.kind == Kind.RAPID)).all())
@@ -258,16 +258,14 @@ class _PathCheck:
         self._assert(kept, trial, "changes the feed")
         self._times(trial, after, owner, timed)
 
-    def _times(
-        self, trial: _Trial, path: Toolpath, owner: NDArray[np.int64], timed: NDArray[np.bool_]
-    ) -> None:
+    def _times(self, trial: _Trial, path: Toolpath, owner: Ints, timed: Flags) -> None:
         """Check that rows in G93 share the time of the row that they come from."""
         time = np.bincount(owner[timed], 1 / path.feed[timed], len(trial.before))
         used = np.unique(owner[timed])
         good = np.allclose(time[used], 1 / trial.before.feed[used], rtol=1e-6)
         self._assert(good, trial, "changes the time of a move in G93: its pieces share it")
 
-    def _converted(self, trial: _Trial, owner: NDArray[np.int64], rows: NDArray[np.bool_]) -> None:
+    def _converted(self, trial: _Trial, owner: Ints, rows: Flags) -> None:
         """Check feeds in another mode: the way that is gone in the same time."""
         before, after = trial.before, trial.after
         way, old = lengths(after), lengths(before)

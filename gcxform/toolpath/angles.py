@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from gcxform.system.arrays import Floats
 
 TURN = 2 * np.pi
 SAME_POINT = 1e-9  # mm; closer points of an arc's plane are one point

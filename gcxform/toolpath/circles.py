@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gcxform.system.arrays import Floats, Ints
 from gcxform.toolpath.angles import TURN, swept
 from gcxform.toolpath.crossings import arc_crossings
 from gcxform.toolpath.path import Plane, Toolpath
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 def radius_and_angle(path: Toolpath, rows: Ints) -> tuple[Floats, Floats, Floats]:

@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import TURN
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 Crossings = tuple[Ints, Floats, Ints, Floats]
 """Row, part of the move (0 to 1), axis and plane of each crossing, by row and part."""

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gcxform.system.arrays import Flags
 from gcxform.system.distinct import distinct
-from gcxform.toolpath.path import OWN_DISTANCES, Flags, Form, Plane, Toolpath
+from gcxform.toolpath.path import OWN_DISTANCES, Form, Plane, Toolpath
 
 
 @dataclass(frozen=True)

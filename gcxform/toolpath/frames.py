@@ -17,10 +17,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from gcxform.system.arrays import Floats, Ints
+
 Vector = tuple[float, ...]
 Matrix = tuple[tuple[float, float, float], ...]
 

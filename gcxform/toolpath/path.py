@@ -18,14 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.system.distinct import distinct
 from gcxform.system.limits import how_to_raise, limits
 from gcxform.toolpath.frames import Frame, by_frame
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Small = NDArray[np.int8]
-Flags = NDArray[np.bool_]
 
 
 class Kind(IntEnum):

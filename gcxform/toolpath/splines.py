@@ -7,12 +7,9 @@ the row starts, P3 where it ends. Formulas: G. Farin, Curves and Surfaces for CA
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gcxform.system.arrays import Floats, Ints
 from gcxform.toolpath.path import Form, Toolpath
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 HALVINGS = 6  # of splines, to measure them: their lengths are known to about 1e-6 then
 TOO_MANY = 2.0**40  # lines for one spline: refused, and still a whole number

@@ -5,16 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import LINEAR
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.path import Plane, Toolpath
 from gcxform.toolpath.splines import spline_lengths
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 
 STILL = 1e-7  # mm; linear axes that move by less stand still
 

@@ -32,8 +32,8 @@ from gcxform.calibrate.bundle.bundle import across, moved
 from gcxform.calibrate.rotary.axis import HOPELESS, REJECTED, arc, condition, distinct
 from gcxform.calibrate.solution import Scatter, Solution, solve
 from gcxform.diagnostics import InputError, Location
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Chain, Rotary, Triple
+from gcxform.system.arrays import Floats
 
 LEVER: Final = 100.0
 """Unknown tilts are scaled by this length in mm, to be as large as shifts."""
@@ -64,8 +64,8 @@ class Trace:
     """Readings (n,) in mm, longer is positive, at angles (n,) in degrees; the place of a row."""
 
     setup: SetUp
-    degrees: FloatArray
-    readings: FloatArray
+    degrees: Floats
+    readings: Floats
     where: Callable[[int], Location | None] = lambda row: None
 
 
@@ -77,24 +77,24 @@ class Eccentricity:
     """
 
     setup: SetUp
-    value: FloatArray
-    covariance: FloatArray
+    value: Floats
+    covariance: Floats
     trace: Trace | None = None
     where: Location | None = None
 
     @cached_property
-    def fitted(self) -> FloatArray:
+    def fitted(self) -> Floats:
         """The three coefficients (3,) of cosine, sine and 1, mm."""
         assert self.trace is not None
         return _harmonic(self.trace.degrees, self.trace.readings)
 
     @property
-    def angles(self) -> FloatArray:
+    def angles(self) -> Floats:
         """Where the readings were taken, degrees; those of eccentricities that are given."""
         return QUARTERS if self.trace is None else self.trace.degrees
 
     @cached_property
-    def residuals(self) -> FloatArray:
+    def residuals(self) -> Floats:
         """What the readings (n,) are off the fit, mm."""
         assert self.trace is not None
         return np.asarray(self.trace.readings - _rows(self.trace.degrees) @ self.fitted)
@@ -120,7 +120,7 @@ class Identified:
     solution: Solution
 
     @cached_property
-    def unknowns(self) -> FloatArray:
+    def unknowns(self) -> Floats:
         """Of each axis two shifts, mm, and two tilts, rad (4 m,)."""
         return np.asarray(self.solution.value * self._scale)
 
@@ -135,13 +135,13 @@ class Identified:
         return Scatter(self.noise, chi_square, freedom + between.redundancy)
 
     @cached_property
-    def covariance(self) -> FloatArray:
+    def covariance(self) -> Floats:
         """Their covariance (4 m, 4 m), for the effective noise."""
         scale = self.scatter.factor * self._scale
         return np.asarray(self.solution.covariance * np.outer(scale, scale))
 
     @property
-    def _scale(self) -> FloatArray:
+    def _scale(self) -> Floats:
         return np.tile([1.0, 1.0, 1.0 / LEVER, 1.0 / LEVER], len(self.believed.table))
 
     @property
@@ -150,7 +150,7 @@ class Identified:
         return tuple(axis.letter for axis in self.believed.table)
 
     @property
-    def predicted(self) -> FloatArray:
+    def predicted(self) -> Floats:
         """The eccentricities (2 n,) of the tests with the axes that were found, mm."""
         found = []
         for test in self.tests:
@@ -231,9 +231,9 @@ def readings(
     control: Chain,
     true: Chain,
     setup: SetUp,
-    degrees: FloatArray,
+    degrees: Floats,
     spindle: tuple[float, float] = (0.0, 0.0),
-) -> FloatArray:
+) -> Floats:
     """Return what the bar reads (n,) in mm at angles (n,) of a test, in any order of the errors.
 
     Nominally the spindle ball is at the end of the bar in the frame of the table, and the control
@@ -248,7 +248,7 @@ def readings(
     return np.asarray(np.linalg.norm(apart, axis=1) - setup.length)
 
 
-def _whitening(tests: Sequence[Eccentricity]) -> FloatArray:
+def _whitening(tests: Sequence[Eccentricity]) -> Floats:
     """Return the matrix (2 n, 2 n) that makes the noise of all eccentricities 1."""
     whole = np.zeros((2 * len(tests), 2 * len(tests)))
     for k, test in enumerate(tests):
@@ -279,13 +279,13 @@ def _check(chain: Chain, tests: Sequence[Eccentricity], solution: Solution) -> N
         )
 
 
-def _seen(names: Sequence[str], row: FloatArray) -> str:
+def _seen(names: Sequence[str], row: Floats) -> str:
     """Return the unknowns in a direction, in words."""
     large = np.abs(row) > 1e-3 * np.abs(row).max()
     return ", ".join(name for name, said in zip(names, large.tolist(), strict=True) if said)
 
 
-def _design(chain: Chain, setup: SetUp) -> FloatArray:
+def _design(chain: Chain, setup: SetUp) -> Floats:
     """Return what shifts and scaled tilts of all axes do to cosine and sine (2, 4 m)."""
     k = [axis.letter for axis in chain.table].index(setup.letter)
     axis = chain.table[k]
@@ -301,23 +301,23 @@ def _design(chain: Chain, setup: SetUp) -> FloatArray:
     return rows
 
 
-def _of_spindle(chain: Chain, setup: SetUp, spindle: tuple[float, float]) -> FloatArray:
+def _of_spindle(chain: Chain, setup: SetUp, spindle: tuple[float, float]) -> Floats:
     """Return what a ball that is off the spindle does to cosine and sine (2,), mm."""
     axis = next(axis for axis in chain.table if axis.letter == setup.letter)
     return np.asarray(_square(axis, setup) @ np.array([*spindle, 0.0]))
 
 
-def _square(axis: Rotary, setup: SetUp) -> FloatArray:
+def _square(axis: Rotary, setup: SetUp) -> Floats:
     """Return how the part of the bar across an axis turns: vectors (2, 3) of cosine and sine."""
     along = np.array(axis.direction)
     square = np.array(setup.bar) - np.dot(setup.bar, along) * along
     return np.array([square, axis.sign * np.cross(along, square)])
 
 
-def _rows(degrees: FloatArray) -> FloatArray:
+def _rows(degrees: Floats) -> Floats:
     radians = np.radians(degrees)
     return np.column_stack([np.cos(radians), np.sin(radians), np.ones(len(degrees))])
 
 
-def _harmonic(degrees: FloatArray, readings: FloatArray) -> FloatArray:
+def _harmonic(degrees: Floats, readings: Floats) -> Floats:
     return np.asarray(np.linalg.lstsq(_rows(degrees), readings, rcond=None)[0])

@@ -22,8 +22,8 @@ import numpy as np
 
 from gcxform.calibrate.ballbar.ballbar import Identified
 from gcxform.calibrate.rotary.predicted_check import effects
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Chain
+from gcxform.system.arrays import Floats
 
 TURNS = "ABC"
 GREEK = ("al", "be", "ga")
@@ -34,11 +34,11 @@ class Named:
     """Errors by name, mm and rad, with the covariance (n, n)."""
 
     names: tuple[str, ...]
-    value: FloatArray
-    covariance: FloatArray
+    value: Floats
+    covariance: Floats
 
     @property
-    def deviation(self) -> FloatArray:
+    def deviation(self) -> Floats:
         """The standard deviations (n,)."""
         return np.asarray(np.sqrt(np.diag(self.covariance).clip(0.0)))
 
@@ -74,7 +74,7 @@ def of_trunnion(found: Identified) -> Named | None:
     return Named(tuple(names), matrix @ where.value, matrix @ where.covariance @ matrix.T)
 
 
-def _in_turn(chain: Chain) -> FloatArray:
+def _in_turn(chain: Chain) -> Floats:
     """Return the eight errors from axis to axis (8, 8) for those of each by itself."""
     first, second = chain.table
     tilting = TURNS.index(first.letter)

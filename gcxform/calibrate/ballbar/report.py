@@ -21,8 +21,8 @@ from gcxform.calibrate.rotary.axis import ILL, arc, condition
 from gcxform.calibrate.rotary.check import two_digits
 from gcxform.calibrate.rotary.predicted_check import Check, effects, predicted, worded
 from gcxform.calibrate.rotary.report import WIDTH
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Rotary
+from gcxform.system.arrays import Floats
 from gcxform.version import VERSION
 
 AROUND: Final = np.arange(0.0, 360.0, 10.0)
@@ -85,7 +85,7 @@ def _axis(found: Identified, letter: str) -> list[str]:
     ]
 
 
-def _spread(found: Identified, k: int) -> tuple[FloatArray, FloatArray]:
+def _spread(found: Identified, k: int) -> tuple[Floats, Floats]:
     """Return the standard deviations of point (3,), mm, and direction (3,) of an axis."""
     basis = effects(found.believed.table[k])[0]
     parts = (slice(4 * k, 4 * k + 2), slice(4 * k + 2, 4 * k + 4))

@@ -22,12 +22,12 @@ from typing import Final
 
 import numpy as np
 
-from gcxform.calibrate.rotary.axis import CAUCHY, OUTLYING, REJECTED, Kept
+from gcxform.calibrate.rotary.axis import CAUCHY, OUTLYING, REJECTED
 from gcxform.calibrate.rotary.circle import STEPS
 from gcxform.calibrate.solution import Scatter, belonging
 from gcxform.diagnostics import InputError, Location
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Chain, Rotary
+from gcxform.system.arrays import Flags, Floats
 
 BLIND: Final = 1e-7
 """Singular values below this part of the largest, columns of length 1, tell nothing."""
@@ -41,9 +41,9 @@ TILT: Final = 1e-4  # rad
 class Poses:
     """Ball centres (n, 3) in mm, angles (n, axes) in degrees, which ball (n,), and the places."""
 
-    degrees: FloatArray
+    degrees: Floats
     ball: tuple[str, ...]
-    points: FloatArray
+    points: Floats
     where: Callable[[int], Location | None] = lambda row: None
 
     @cached_property
@@ -74,13 +74,13 @@ class Layout:
         return (*axes, *balls, *LINEAR[: self.linear])
 
     @cached_property
-    def steps(self) -> FloatArray:
+    def steps(self) -> Floats:
         """The sizes (k,) of the differences: mm, rad or mm per mm."""
         shifted = [SHIFT, SHIFT, TILT, TILT] * len(self.chain.axes)
         balls = [SHIFT] * (3 * len(self.poses.balls))
         return np.array(shifted + balls + [TILT] * self.linear)
 
-    def start(self) -> FloatArray:
+    def start(self) -> Floats:
         """Return the unknowns (k,) of the machine as it is believed to be."""
         found = np.zeros(len(self.names))
         tips = self.chain.forward(self.poses.points, self.poses.degrees)[0]
@@ -90,13 +90,13 @@ class Layout:
             found[first + 3 * k : first + 3 * k + 3] = tips[index == k].mean(axis=0)
         return found
 
-    def machine(self, unknowns: FloatArray) -> Chain:
+    def machine(self, unknowns: Floats) -> Chain:
         """Return the chain with its axes shifted and tilted."""
         axes = [moved(axis, unknowns[4 * k : 4 * k + 4]) for k, axis in enumerate(self.chain.axes)]
         count = len(self.chain.table)
         return replace(self.chain, table=tuple(axes[:count]), head=tuple(axes[count:]))
 
-    def errors(self, unknowns: FloatArray) -> FloatArray:
+    def errors(self, unknowns: Floats) -> Floats:
         """Return M (3, 3): the errors of the linear axes, mm per mm."""
         values = np.zeros(6)
         if self.linear:
@@ -104,14 +104,14 @@ class Layout:
         y, z, c0y, b0z, a0z, scale = values.tolist()
         return np.array([[scale, -c0y, b0z], [0.0, scale + y, -a0z], [0.0, 0.0, scale + z]])
 
-    def readings(self, unknowns: FloatArray) -> FloatArray:
+    def readings(self, unknowns: Floats) -> Floats:
         """Return what X, Y and Z (n, 3) read, mm."""
         first = 4 * len(self.chain.axes)
         balls = unknowns[first : first + 3 * len(self.poses.balls)].reshape(-1, 3)
         stands = self.machine(unknowns).linear(balls[self.poses.index], self.poses.degrees)
         return np.asarray(np.linalg.solve(np.eye(3) + self.errors(unknowns), stands.T).T)
 
-    def design(self, unknowns: FloatArray) -> FloatArray:
+    def design(self, unknowns: Floats) -> Floats:
         """Return what each unknown does to the readings, (3 n, k)."""
         columns = []
         for k, size in enumerate(self.steps.tolist()):
@@ -128,8 +128,8 @@ class Bundled:
 
     layout: Layout
     noise: float
-    unknowns: FloatArray
-    kept: Kept
+    unknowns: Floats
+    kept: Flags
 
     @property
     def chain(self) -> Chain:
@@ -137,16 +137,16 @@ class Bundled:
         return self.layout.machine(self.unknowns)
 
     @cached_property
-    def residuals(self) -> FloatArray:
+    def residuals(self) -> Floats:
         """Measured minus fitted readings (n, 3), mm."""
         return np.asarray(self.layout.poses.points - self.layout.readings(self.unknowns))
 
     @cached_property
-    def _design(self) -> FloatArray:
+    def _design(self) -> Floats:
         return self.layout.design(self.unknowns)
 
     @cached_property
-    def standardised(self) -> FloatArray:
+    def standardised(self) -> Floats:
         """The largest of the three residuals of each pose over its standard deviation, (n,)."""
         weights, noise = self.kept.astype(float), self.scatter.effective
         size = _standardised(self._design, self.residuals, weights, noise)
@@ -159,7 +159,7 @@ class Bundled:
         return Scatter(self.noise, total / self.noise**2, self.redundancy)
 
     @cached_property
-    def covariance(self) -> FloatArray:
+    def covariance(self) -> Floats:
         """The covariance (k, k) of the unknowns, for the effective noise."""
         kept = self._design[np.repeat(self.kept, 3)]
         return np.asarray(self.scatter.effective**2 * np.linalg.inv(kept.T @ kept))
@@ -212,7 +212,7 @@ def bundle(chain: Chain, poses: Poses, noise: float, linear: str = "differences"
     return found
 
 
-def check(layout: Layout, unknowns: FloatArray) -> None:
+def check(layout: Layout, unknowns: Floats) -> None:
     """Raise InputError (GX489) for unknowns that can change together without a reading changing."""
     design = layout.design(unknowns)
     if len(design) < len(unknowns):
@@ -229,13 +229,13 @@ def check(layout: Layout, unknowns: FloatArray) -> None:
         )
 
 
-def rank(design: FloatArray) -> int:
+def rank(design: Floats) -> int:
     """Return how many unknowns the readings determine."""
     values = np.linalg.svd(_scaled(design), compute_uv=False)
     return int((values > BLIND * values[0]).sum())
 
 
-def blind(layout: Layout, design: FloatArray) -> FloatArray:
+def blind(layout: Layout, design: Floats) -> Floats:
     """Return the directions (m, k) among the unknowns in which no reading changes, largest 1."""
     _, values, rows = np.linalg.svd(_scaled(design))
     hidden = rows[values <= BLIND * values[0]] / _lengths(design)
@@ -243,7 +243,7 @@ def blind(layout: Layout, design: FloatArray) -> FloatArray:
     return np.asarray(hidden / largest)
 
 
-def worded(layout: Layout, row: FloatArray) -> str:
+def worded(layout: Layout, row: Floats) -> str:
     """Return a direction among the unknowns in words, for one millimetre or milliradian."""
     if "scale" in layout.names and row[layout.names.index("scale")]:
         row = row / row[layout.names.index("scale")]
@@ -252,7 +252,7 @@ def worded(layout: Layout, row: FloatArray) -> str:
     return " with ".join(f"{name} {value:+.4g}" for name, value, said in pairs if said)
 
 
-def _fitted(layout: Layout, start: FloatArray, weights: FloatArray) -> FloatArray:
+def _fitted(layout: Layout, start: Floats, weights: Floats) -> Floats:
     """Return the unknowns of weighted least squares. Raises InputError (GX486)."""
     unknowns, root = start, np.repeat(np.sqrt(weights), 3)
     for _ in range(STEPS):
@@ -267,7 +267,7 @@ def _fitted(layout: Layout, start: FloatArray, weights: FloatArray) -> FloatArra
     raise InputError.one("GX486", message, layout.poses.where(0))
 
 
-def _believed(layout: Layout, start: FloatArray, noise: float) -> Kept:
+def _believed(layout: Layout, start: Floats, noise: float) -> Flags:
     """Return which poses belong to the rest, by a robust fit."""
     unknowns, weights = start, np.ones(len(layout.poses.points))
     for _ in range(STEPS):
@@ -285,9 +285,7 @@ def _believed(layout: Layout, start: FloatArray, noise: float) -> Kept:
     return kept if enough else np.ones(len(kept), dtype=bool)
 
 
-def _standardised(
-    design: FloatArray, away: FloatArray, weights: FloatArray, noise: float
-) -> FloatArray:
+def _standardised(design: Floats, away: Floats, weights: Floats, noise: float) -> Floats:
     weighted = design * np.repeat(weights, 3)[:, None]
     lengths = _lengths(design)
     inverse = np.linalg.pinv((weighted / lengths).T @ (design / lengths))
@@ -296,7 +294,7 @@ def _standardised(
     return np.asarray((np.abs(away.ravel()) / spread).reshape(-1, 3))
 
 
-def moved(axis: Rotary, step: FloatArray) -> Rotary:
+def moved(axis: Rotary, step: Floats) -> Rotary:
     """Return an axis shifted (2, mm) and tilted (2, rad) along two directions across it."""
     first, second = across(axis)
     point = np.array(axis.point) + step[0] * first + step[1] * second
@@ -306,7 +304,7 @@ def moved(axis: Rotary, step: FloatArray) -> Rotary:
     return replace(axis, direction=(x, y, z), point=(u, v, w))
 
 
-def across(axis: Rotary) -> FloatArray:
+def across(axis: Rotary) -> Floats:
     """Return two unit vectors (2, 3) across an axis, near those of the machine."""
     along = np.array(axis.direction)
     near = np.eye(3)[(int(np.abs(along).argmax()) + 1) % 3]
@@ -315,10 +313,10 @@ def across(axis: Rotary) -> FloatArray:
     return np.array([first, np.cross(along, first)])
 
 
-def _lengths(design: FloatArray) -> FloatArray:
+def _lengths(design: Floats) -> Floats:
     return np.asarray(np.linalg.norm(design, axis=0))
 
 
-def _scaled(design: FloatArray) -> FloatArray:
+def _scaled(design: Floats) -> Floats:
     lengths = _lengths(design)
     return np.asarray(design / np.where(lengths > 0.0, lengths, 1.0))

@@ -19,9 +19,8 @@ from typing import Final
 
 import numpy as np
 
-from gcxform.calibrate.rotary.axis import Kept
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import SPINDLE, Chain, Rotary, Triple
+from gcxform.system.arrays import Flags, Floats
 
 STEP: Final = 1.0  # degrees between the angles at which heights are looked at
 HANGING: Final = -0.02
@@ -29,14 +28,14 @@ HANGING: Final = -0.02
 SUBSETS: Final = ((0,), (1,), (2,), (0, 1), (0, 2), (1, 2), (0, 1, 2))
 
 
-def upright(chain: Chain, degrees: FloatArray, tilt: float) -> Kept:
+def upright(chain: Chain, degrees: Floats, tilt: float) -> Flags:
     """Return where table and probe lean no farther than by a tilt, from Z and from each other."""
     leaning = [chain.tool_axis(degrees), chain.spindle(degrees), chain.upwards(degrees)]
     least = np.min([vectors[:, 2] for vectors in leaning], axis=0)
     return np.asarray(least >= math.cos(math.radians(tilt)) - 1e-12)
 
 
-def inside(chain: Chain, stands: FloatArray, degrees: FloatArray, room: float) -> Kept:
+def inside(chain: Chain, stands: Floats, degrees: Floats, room: float) -> Flags:
     """Return for which positions (n, 3) X, Y and Z have room all around a ball, and before it.
 
     Around is across the probe, and before it is along the probe towards the spindle.
@@ -48,9 +47,7 @@ def inside(chain: Chain, stands: FloatArray, degrees: FloatArray, room: float) -
     return np.asarray(((stands >= low + below) & (stands <= high - above)).all(axis=1))
 
 
-def clear(
-    chain: Chain, balls: Sequence[Triple], number: int, degrees: FloatArray, gap: float
-) -> Kept:
+def clear(chain: Chain, balls: Sequence[Triple], number: int, degrees: Floats, gap: float) -> Flags:
     """Return at which angles a probe that comes down to a ball stays a gap away from the others."""
     along, up = chain.spindle(degrees), chain.upwards(degrees)
     ways = np.stack([along, np.broadcast_to(np.array(SPINDLE), along.shape), up], axis=2)
@@ -61,7 +58,7 @@ def clear(
     return good
 
 
-def _from_cone(ways: FloatArray, goals: FloatArray) -> FloatArray:
+def _from_cone(ways: Floats, goals: Floats) -> Floats:
     """Return how far goals (n, 3) are from all sums of ways (n, 3, columns), none backwards.
 
     The nearest sum is the nearest of all sums of those ways that it needs.
@@ -79,12 +76,12 @@ def _from_cone(ways: FloatArray, goals: FloatArray) -> FloatArray:
 # --- turning ---
 
 
-def hangs(chain: Chain, degrees: FloatArray) -> bool:
+def hangs(chain: Chain, degrees: Floats) -> bool:
     """Return whether the spindle may be below the tip on the way between some angles."""
     return bool(chain.spindle(_between(chain, degrees, chain.head))[:, 2].min() < HANGING)
 
 
-def least_height(chain: Chain, balls: FloatArray, degrees: FloatArray, room: float) -> float:
+def least_height(chain: Chain, balls: Floats, degrees: Floats, room: float) -> float:
     """Return the Z from which on the tip has room above all balls (b, 3), at angles and between."""
     tips = chain.arm(_between(chain, degrees, chain.head))[:, 2]
     lowest = float(tips.min()) - _bend(chain.head, [chain.tip])
@@ -94,7 +91,7 @@ def least_height(chain: Chain, balls: FloatArray, degrees: FloatArray, room: flo
     return highest + room - lowest
 
 
-def _between(chain: Chain, degrees: FloatArray, axes: Sequence[Rotary]) -> FloatArray:
+def _between(chain: Chain, degrees: Floats, axes: Sequence[Rotary]) -> Floats:
     """Return angles (k, m) in every combination that some axes may pass, 0 too; the others at 0."""
     every = []
     for k, axis in enumerate(chain.axes):

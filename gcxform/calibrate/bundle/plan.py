@@ -20,10 +20,9 @@ import numpy as np
 
 from gcxform.calibrate.bundle.bundle import MODES, Bundled, Layout, Poses, check
 from gcxform.calibrate.bundle.clearance import clear, inside, upright
-from gcxform.calibrate.rotary.axis import Kept
 from gcxform.diagnostics import UsageError
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Chain, Rotary, Triple
+from gcxform.system.arrays import Flags, Floats
 
 GRID: Final = 15.0  # degrees
 FAINT: Final = 1e-6
@@ -86,7 +85,7 @@ def planned_circle(chain: Chain, letter: str, ball: Triple, wanted: Wanted) -> P
     return Poses(degrees, ("1",) * len(turns), points)
 
 
-def _whole_degrees(axis: Rotary) -> tuple[FloatArray, bool]:
+def _whole_degrees(axis: Rotary) -> tuple[Floats, bool]:
     """Return the angles of an axis in steps of a degree, and whether they close a turn."""
     if axis.limits is None or axis.limits[1] - axis.limits[0] >= 360.0:
         low = 0.0 if axis.limits is None else axis.limits[0]
@@ -94,7 +93,7 @@ def _whole_degrees(axis: Rotary) -> tuple[FloatArray, bool]:
     return np.arange(axis.limits[0], axis.limits[1] + 1e-9), False
 
 
-def _longest(every: FloatArray, good: Kept, closed: bool) -> tuple[float, float]:
+def _longest(every: Floats, good: Flags, closed: bool) -> tuple[float, float]:
     """Return the ends of the longest run of good angles; over the end of a closed turn too."""
     twice = np.concatenate([good, good & closed])
     edges = np.flatnonzero(np.diff(np.concatenate([[False], twice, [False]]).astype(int)))
@@ -125,7 +124,7 @@ def _candidates(chain: Chain, balls: Sequence[Triple], wanted: Wanted) -> Poses:
     )
 
 
-def _grid(axis: Rotary) -> FloatArray:
+def _grid(axis: Rotary) -> Floats:
     """Return the angles of an axis that are tried: its limits, and what is between."""
     if axis.limits is None or axis.limits[1] - axis.limits[0] >= 360.0:
         low = 0.0 if axis.limits is None else axis.limits[0]
@@ -134,7 +133,7 @@ def _grid(axis: Rotary) -> FloatArray:
     return np.linspace(low, high, max(2, math.ceil((high - low) / GRID) + 1)).round(3)
 
 
-def _best(design: FloatArray, count: int) -> list[int]:
+def _best(design: Floats, count: int) -> list[int]:
     """Return the poses, by the rows (3 n, k) of all, that determine the unknowns best."""
     lengths = np.linalg.norm(design, axis=0)
     rows = (design / np.where(lengths > 0.0, lengths, 1.0)).reshape(-1, 3, design.shape[1])

@@ -15,7 +15,7 @@ from gcxform.calibrate.rotary.axis import ILL
 from gcxform.calibrate.rotary.check import two_digits
 from gcxform.calibrate.rotary.predicted_check import Check, astray, predicted, worded
 from gcxform.calibrate.rotary.report import WIDTH
-from gcxform.errormodel.model import FloatArray
+from gcxform.system.arrays import Floats
 from gcxform.version import VERSION
 
 SEEN = 3.0
@@ -104,7 +104,7 @@ def _axis(found: Bundled, letter: str) -> list[str]:
     ]
 
 
-def _spread(found: Bundled, k: int) -> tuple[FloatArray, FloatArray]:
+def _spread(found: Bundled, k: int) -> tuple[Floats, Floats]:
     """Return the standard deviations of point (3,), mm, and direction (3,) of an axis."""
     frame = across(found.layout.chain.axes[k])
     parts = (slice(4 * k, 4 * k + 2), slice(4 * k + 2, 4 * k + 4))

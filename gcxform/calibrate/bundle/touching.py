@@ -21,8 +21,9 @@ import numpy as np
 from gcxform.calibrate.bundle.bundle import Poses
 from gcxform.calibrate.bundle.clearance import hangs, least_height
 from gcxform.diagnostics import InputError, Location, UsageError
-from gcxform.errormodel.model import AXES, FloatArray
+from gcxform.errormodel.model import AXES
 from gcxform.machine.chain import Chain
+from gcxform.system.arrays import Floats
 
 TOUCHES: Final = 5
 ANGLE: Final = 0.01  # degrees; a log that says others belongs to other poses
@@ -109,7 +110,7 @@ def _height(chain: Chain, poses: Poses, probing: Probing) -> tuple[float, bool]:
 
 
 def _probe_pose(
-    blocks: _Blocks, chain: Chain, centre: FloatArray, degrees: FloatArray, probing: Probing
+    blocks: _Blocks, chain: Chain, centre: Floats, degrees: Floats, probing: Probing
 ) -> None:
     """Write the blocks that probe a ball at a pose: along the probe, then from the sides."""
     outside, inside = probing.radius + probing.clearance, probing.radius - probing.clearance
@@ -146,21 +147,21 @@ class _Blocks:
         """Turn all rotary axes."""
         self.lines.append(" ".join(["G0", *(f"{a}{_number(d)}" for a, d in degrees.items())]))
 
-    def rapid(self, letters: str, place: FloatArray) -> None:
+    def rapid(self, letters: str, place: Floats) -> None:
         """Go to some coordinates of a place."""
         self._go("G0", letters, place)
 
-    def feed(self, place: FloatArray) -> None:
+    def feed(self, place: Floats) -> None:
         """Go to a place in a straight line."""
         self._go("G1", "XYZ", place, f"F{_number(FEEDS['way'])}")
 
-    def touch(self, place: FloatArray) -> None:
+    def touch(self, place: Floats) -> None:
         """Probe towards a place. It ends before, and the way back writes whatever moved."""
         self._go(self.style.probe, "XYZ", place, f"F{_number(FEEDS['probe'])}")
         if self.style.after:
             self.lines.append(self.style.after)
 
-    def _go(self, code: str, letters: str, place: FloatArray, *after: str) -> None:
+    def _go(self, code: str, letters: str, place: Floats, *after: str) -> None:
         there = {a: _number(float(place[AXES.index(a)])) for a in letters}
         words = [f"{a}{text}" for a, text in there.items() if text != self._at.get(a)]
         self._at |= there
@@ -168,7 +169,7 @@ class _Blocks:
             self.lines.append(" ".join([code, *words, *after]))
 
 
-def sides(chain: Chain, degrees: FloatArray) -> FloatArray:
+def sides(chain: Chain, degrees: Floats) -> Floats:
     """Return the directions (4, 3) across the probe from which a ball is touched at angles (m,).
 
     Opposite ones are beside each other. The post of the ball points out of the table.
@@ -186,7 +187,7 @@ def sides(chain: Chain, degrees: FloatArray) -> FloatArray:
 # --- what was touched ---
 
 
-def centres(chain: Chain, plan: Poses, touches: FloatArray, radius: float, file: str) -> Poses:
+def centres(chain: Chain, plan: Poses, touches: Floats, radius: float, file: str) -> Poses:
     """Return the centres that touches (5 n, 3 and more) in mm tell at the poses (n) of a plan.
 
     Columns after the third are A, B and C, if there are any, and are compared. Raises InputError
@@ -209,7 +210,7 @@ def centres(chain: Chain, plan: Poses, touches: FloatArray, radius: float, file:
     return replace(plan, points=points)
 
 
-def _check_angles(chain: Chain, plan: Poses, touches: FloatArray, file: str) -> None:
+def _check_angles(chain: Chain, plan: Poses, touches: Floats, file: str) -> None:
     for k, letter in enumerate(chain.letters):
         column = ORDER.index(letter)
         if column >= touches.shape[1]:
@@ -221,7 +222,7 @@ def _check_angles(chain: Chain, plan: Poses, touches: FloatArray, file: str) -> 
             raise InputError.one("GX492", message, Location(file, int(wrong[0]) + 1))
 
 
-def parse_touches(text: str, file: str) -> FloatArray:
+def parse_touches(text: str, file: str) -> Floats:
     """Return the numbers (n, m) of a log of touches, a line each. Raises InputError (GX492)."""
     rows: list[list[float]] = []
     for number, line in enumerate(text.splitlines(), 1):

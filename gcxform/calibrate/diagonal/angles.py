@@ -33,7 +33,8 @@ from gcxform.calibrate.diagonal.equations import equations, increments
 from gcxform.calibrate.diagonal.readings import Diagonals, beam
 from gcxform.calibrate.diagonal.step_diagonal import Identified
 from gcxform.calibrate.solution import RANK
-from gcxform.errormodel.model import AXES, FloatArray
+from gcxform.errormodel.model import AXES
+from gcxform.system.arrays import Floats
 
 DEGREES: Final = (1, 3)  # of f: each is a test
 RATE: Final = 0.01  # of false alarms, of all tests together
@@ -52,7 +53,7 @@ class Field(NamedTuple):
     direction: int
     degree: int
 
-    def error(self, place: FloatArray) -> FloatArray:
+    def error(self, place: Floats) -> Floats:
         """Return the error (n, 3), at most 1, at places (n, 3) of -1 to 1 over the volume."""
         found = np.zeros_like(place)
         shape = legval(place[:, self.axis], [0.0] * self.degree + [1.0])
@@ -213,7 +214,7 @@ def _pattern(found: Identified, degree: int) -> Pattern:
     return Pattern(degree, gain, gained, rest, before.redundancy - gained, largest)
 
 
-def _left(found: Identified, every: list[Field]) -> FloatArray:
+def _left(found: Identified, every: list[Field]) -> Floats:
     """Return what of the readings of fields the unknowns of the method do not take (m, k)."""
     assumed = found.assumed
     system = equations(
@@ -228,7 +229,7 @@ def _left(found: Identified, every: list[Field]) -> FloatArray:
     return rest
 
 
-def _read(found: Identified, every: list[Field]) -> FloatArray:
+def _read(found: Identified, every: list[Field]) -> Floats:
     """Return what is read of fields of 1 mm, then of a polynomial of each linear test (m, k)."""
     diagonals, degree = found.diagonals, max(field.degree for field in every)
     columns = [increments(_measuring(diagonals, field)).mean.ravel() for field in every]
@@ -257,13 +258,13 @@ def _measuring(diagonals: Diagonals, field: Field) -> Diagonals:
     return replace(diagonals, legs=tuple(legs))
 
 
-def _place(diagonals: Diagonals, position: FloatArray, axes: slice = slice(None)) -> FloatArray:
+def _place(diagonals: Diagonals, position: Floats, axes: slice = slice(None)) -> Floats:
     """Return positions (n, k) in mm as -1 to 1 over the volume."""
     volume = diagonals.volume
     return np.asarray(2.0 * (position - volume.low[axes]) / volume.travel[axes] - 1.0)
 
 
-def _size(every: list[Field], amount: FloatArray) -> float:
+def _size(every: list[Field], amount: Floats) -> float:
     """Return the largest error in the volume of fields with amounts (k,) in mm."""
     line = np.linspace(-1.0, 1.0, _GRID)
     places = np.stack(np.meshgrid(line, line, line), axis=-1).reshape(-1, 3)

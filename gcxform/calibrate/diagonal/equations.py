@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gcxform.calibrate.diagonal.readings import Diagonals, LinearTest, Volume, beam, sideways
-from gcxform.errormodel.model import FloatArray
+from gcxform.system.arrays import Floats
 
 
 @dataclass(frozen=True)
@@ -54,9 +54,9 @@ class Equations:
     """Observations (m,) in mm with their standard deviations (m,), and the matrix (m, n)."""
 
     layout: Layout
-    matrix: FloatArray
-    observed: FloatArray
-    deviation: FloatArray
+    matrix: Floats
+    observed: Floats
+    deviation: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +67,8 @@ class Increments:
     repeated.
     """
 
-    mean: FloatArray
-    count: FloatArray
+    mean: Floats
+    count: Floats
     scatter: float
 
 
@@ -120,7 +120,7 @@ def equations(
     )
 
 
-def _diagonal_rows(layout: Layout, diagonals: Diagonals, line: int) -> FloatArray:
+def _diagonal_rows(layout: Layout, diagonals: Diagonals, line: int) -> Floats:
     """Return the rows (3 steps, n) of a set-up: axes, then cells."""
     volume, signs = diagonals.volume, diagonals.lines[line]
     along = beam(signs, volume.travel)
@@ -138,7 +138,7 @@ def _diagonal_rows(layout: Layout, diagonals: Diagonals, line: int) -> FloatArra
     return rows.reshape(-1, layout.size)
 
 
-def _linear_rows(layout: Layout, volume: Volume, run: int, test: LinearTest) -> FloatArray:
+def _linear_rows(layout: Layout, volume: Volume, run: int, test: LinearTest) -> Floats:
     """Return the rows (n targets, n) of a run: the cells passed on the way, and its constant."""
     rows = np.zeros((len(test.position), layout.size))
     cell = (test.position - volume.low[test.axis]) * layout.steps / volume.travel[test.axis]

@@ -46,7 +46,8 @@ from gcxform.calibrate.diagonal.readings import (
     step_diagonals,
 )
 from gcxform.diagnostics import InputError, Location
-from gcxform.errormodel.model import AXES, BORDER, FloatArray
+from gcxform.errormodel.model import AXES, BORDER
+from gcxform.system.arrays import Floats
 
 CONDITIONS = ("temperature", "pressure", "humidity")
 _WAYS = {"": True, "+": True, "-": False}
@@ -125,7 +126,7 @@ def _value_column(table: CsvTable) -> str:
     return present[0]
 
 
-def _leg(signs: Signs, forward: bool, position: FloatArray, values: FloatArray, kind: str) -> Leg:
+def _leg(signs: Signs, forward: bool, position: Floats, values: Floats, kind: str) -> Leg:
     """Return a leg; of readings the nominal is taken off."""
     if kind == "reading":
         away = position - position[0]
@@ -204,7 +205,7 @@ def _linear(table: CsvTable, volume: Volume) -> MeasuredLinear:
     return MeasuredLinear(table.file, tests, _conditions(table, parts, moving[0]))
 
 
-def _check_inside(table: CsvTable, name: str, position: FloatArray, volume: Volume) -> None:
+def _check_inside(table: CsvTable, name: str, position: Floats, volume: Volume) -> None:
     """Raise InputError (GX474) for a position at which the diagonals say nothing."""
     axis = AXES.lower().index(name)
     low, high = volume.nodes(axis)[[0, -1]]

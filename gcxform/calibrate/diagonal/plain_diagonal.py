@@ -21,7 +21,8 @@ import numpy as np
 from gcxform.calibrate.diagonal.readings import Diagonals
 from gcxform.calibrate.solution import Scatter, Solution, solve
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
-from gcxform.errormodel.model import FloatArray, check_contraction
+from gcxform.errormodel.model import check_contraction
+from gcxform.system.arrays import Floats
 
 BLIND: Final = (
     "a plain diagonal test is blind to scale errors with X^2 sX + Y^2 sY + Z^2 sZ = 0 (X, Y, Z: "
@@ -39,7 +40,7 @@ class Squareness:
 
     diagonals: Diagonals
     noise: float
-    lengths: FloatArray
+    lengths: Floats
     solution: Solution
 
     @property
@@ -48,14 +49,14 @@ class Squareness:
         return Scatter(self.noise, self.solution.chi_square, self.solution.redundancy)
 
     @property
-    def _factors(self) -> FloatArray:
+    def _factors(self) -> Floats:
         """From c, p, q, r (mm) to the mean scale and the slopes of EXY, EXZ, EYZ (mm per mm)."""
         x, y, z = self.diagonals.volume.travel
         size = self.diagonals.volume.diagonal
         return np.array((1.0 / size, size / (x * y), size / (x * z), size / (y * z)))
 
     @property
-    def slopes(self) -> FloatArray:
+    def slopes(self) -> Floats:
         """The end slopes (3,) of EXY, EXZ and EYZ, mm per mm: -C0Y, +B0Z, -A0Z in rad."""
         return np.asarray((self._factors * self.solution.value)[1:])
 
@@ -65,7 +66,7 @@ class Squareness:
         return float(self._factors[0] * self.solution.value[0])
 
     @property
-    def covariance(self) -> FloatArray:
+    def covariance(self) -> Floats:
         """The covariance (4, 4) of mean scale and three slopes, for the effective noise."""
         factors = self.scatter.factor * self._factors
         return np.asarray(np.outer(factors, factors) * self.solution.covariance)
@@ -99,6 +100,6 @@ def squareness(diagonals: Diagonals, noise: float) -> Squareness:
     return Squareness(diagonals, noise, measured, found)
 
 
-def spread(found: Squareness) -> FloatArray:
+def spread(found: Squareness) -> Floats:
     """Return the standard deviations (4,) of the mean scale and the three slopes."""
     return np.array([math.sqrt(v) for v in np.diag(found.covariance)])

@@ -16,7 +16,8 @@ from typing import Final, NamedTuple, TypeVar
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
-from gcxform.errormodel.model import AXES, FloatArray
+from gcxform.errormodel.model import AXES
+from gcxform.system.arrays import Floats
 
 Signs = tuple[int, int, int]
 FOUR: Final[tuple[Signs, ...]] = ((1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))
@@ -33,8 +34,8 @@ class Leg:
     """
 
     signs: Signs
-    position: FloatArray
-    deviation: FloatArray
+    position: Floats
+    deviation: Floats
     forward: bool = True
 
     @property
@@ -43,7 +44,7 @@ class Leg:
         return name_of(self.signs)
 
     @property
-    def ahead(self) -> tuple[FloatArray, FloatArray]:
+    def ahead(self) -> tuple[Floats, Floats]:
         """Positions and deviations in the order of the way out."""
         order = slice(None) if self.forward else slice(None, None, -1)
         return self.position[order], self.deviation[order]
@@ -54,16 +55,16 @@ class LinearTest:
     """One run of a direct linear test: deviations (n,) of an axis at its positions (n,), mm."""
 
     axis: int
-    position: FloatArray
-    deviation: FloatArray
+    position: Floats
+    deviation: Floats
 
 
 @dataclass(frozen=True, eq=False)
 class Volume:
     """The box of the diagonals: its low corner (3,), its sides (3,), both in mm."""
 
-    low: FloatArray
-    travel: FloatArray
+    low: Floats
+    travel: Floats
     steps: int
 
     @property
@@ -71,12 +72,12 @@ class Volume:
         """The length of the body diagonals in mm."""
         return float(np.linalg.norm(self.travel))
 
-    def along(self) -> FloatArray:
+    def along(self) -> Floats:
         """Return (3, steps): how far the nodes behind the first are from the low corner, mm."""
         parts = np.linspace(0.0, 1.0, self.steps + 1)[1:]
         return np.outer(self.travel, parts)
 
-    def nodes(self, axis: int) -> FloatArray:
+    def nodes(self, axis: int) -> Floats:
         """Return the positions (steps + 1,) of the nodes of an axis, mm."""
         ends = self.low[axis], self.low[axis] + self.travel[axis]
         return np.linspace(*ends, self.steps + 1)
@@ -100,14 +101,14 @@ def name_of(signs: Signs) -> str:
     return "".join("p" if sign > 0 else "n" for sign in signs)
 
 
-def beam(signs: Signs, travel: FloatArray) -> FloatArray:
+def beam(signs: Signs, travel: Floats) -> Floats:
     """Return the unit vector (3,) along a diagonal of a box with sides `travel` (3,)."""
     along = np.array(signs) * travel
-    unit: FloatArray = along / np.linalg.norm(along)
+    unit: Floats = along / np.linalg.norm(along)
     return unit
 
 
-def sideways(signs: Signs, travel: FloatArray) -> FloatArray:
+def sideways(signs: Signs, travel: Floats) -> Floats:
     """Return two unit vectors (2, 3) square to a diagonal and to each other.
 
     The first is level (in the plane XY); a beam is misaligned by an angle towards each.
@@ -183,7 +184,7 @@ def _sequence_fault(leg: Leg) -> _Fault | None:
     return _turn_fault(leg, moved, turn)
 
 
-def _turn_fault(leg: Leg, moved: FloatArray, turn: Sequence[int]) -> _Fault:
+def _turn_fault(leg: Leg, moved: Floats, turn: Sequence[int]) -> _Fault:
     """Return the first move that is not of the axis whose turn it is."""
     order = ", ".join(AXES[axis] for axis in turn)
     hint = f"steps go {order} in turn; another run of the same diagonal has another name in `run`"
@@ -199,7 +200,7 @@ def _turn_fault(leg: Leg, moved: FloatArray, turn: Sequence[int]) -> _Fault:
     return _Fault(len(moved), "diagonal", message, hint)
 
 
-def _stop_fault(leg: Leg, usual: FloatArray) -> _Fault | None:
+def _stop_fault(leg: Leg, usual: Floats) -> _Fault | None:
     """Return the first stop that is off the equal steps (3, 3) which are usual on the leg."""
     steps = np.tile(usual, ((len(leg.position) - 1) // 3, 1))
     due = np.concatenate((np.zeros((1, 3)), np.cumsum(steps, axis=0)))

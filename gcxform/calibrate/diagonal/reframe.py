@@ -16,7 +16,7 @@ import numpy as np
 
 from gcxform.diagnostics import UsageError
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
-from gcxform.errormodel.model import FloatArray
+from gcxform.system.arrays import Floats
 
 FRAME = (
     "end points: the error is zero at the low corner, and EYX, EZX and EZY end at zero; "
@@ -24,7 +24,7 @@ FRAME = (
 )
 
 
-def turn_of(slopes: FloatArray) -> FloatArray:
+def turn_of(slopes: Floats) -> Floats:
     """Return the turn theta (..., 3) in rad that brings end slopes into the end-point frame.
 
     `slopes` (..., 3, 3) are mm per mm: moving axis, then direction of the error.
@@ -35,9 +35,9 @@ def turn_of(slopes: FloatArray) -> FloatArray:
     return np.stack((about_x, about_y, about_z), axis=-1)
 
 
-def slopes_of(turn: FloatArray) -> FloatArray:
+def slopes_of(turn: Floats) -> Floats:
     """Return the slopes (..., 3, 3) that a turn (..., 3) in rad gives: theta x u of each axis u."""
-    slopes: FloatArray = np.cross(turn[..., None, :], np.eye(3))
+    slopes: Floats = np.cross(turn[..., None, :], np.eye(3))
     return slopes
 
 
@@ -53,7 +53,7 @@ def reframed(model: AxisFunctions) -> AxisFunctions:
     return AxisFunctions((x, y, z), model.order)
 
 
-def _moved(function: AxisFunction, rate: FloatArray) -> AxisFunction:
+def _moved(function: AxisFunction, rate: Floats) -> AxisFunction:
     """Return a function that begins at zero, with slopes (3,) in mm per mm added."""
     along = function.position - function.position[0]
     values = function.values - function.values[0] + along[:, None] * rate

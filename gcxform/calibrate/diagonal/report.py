@@ -17,7 +17,8 @@ from gcxform.calibrate.diagonal.plain_diagonal import ANGLES, BLIND, Squareness,
 from gcxform.calibrate.diagonal.readings import Diagonals, Volume, name_of
 from gcxform.calibrate.diagonal.reframe import FRAME
 from gcxform.calibrate.diagonal.step_diagonal import REJECTED, Identified, together, worded
-from gcxform.errormodel.model import AXES, FloatArray
+from gcxform.errormodel.model import AXES
+from gcxform.system.arrays import Floats
 from gcxform.version import VERSION
 
 UNITS: Final = "mm, rad, mm^2"
@@ -140,7 +141,7 @@ def _redundancy(found: Identified) -> Report:
     }
 
 
-def _squareness(slopes: FloatArray, sigma: FloatArray) -> Report:
+def _squareness(slopes: Floats, sigma: Floats) -> Report:
     triples = zip(SQUARENESS, slopes, sigma, strict=True)
     return {name: _pair(sign * slope, sd) for (name, sign), slope, sd in triples}
 
@@ -153,7 +154,7 @@ def _misalignments(found: Identified) -> Report | None:
     return {name_of(signs): {"level": a[0], "up": a[1], "sd": s} for signs, a, s in triples}
 
 
-def _function(values: FloatArray, sigma: FloatArray) -> Report:
+def _function(values: Floats, sigma: Floats) -> Report:
     return {"values": [0.0, *values.tolist()], "sd": [0.0, *sigma.tolist()]}
 
 
@@ -233,13 +234,13 @@ def _listed(part: Any) -> Iterable[Any]:
     return part if isinstance(part, list) else [part]
 
 
-def _scales(slopes: FloatArray, sigma: FloatArray) -> list[str]:
+def _scales(slopes: Floats, sigma: Floats) -> list[str]:
     pairs = zip(AXES, slopes, sigma, strict=False)
     said = ", ".join(f"{axis} {s * 1e6:.2f} +- {d * 1e6:.2f}" for axis, s, d in pairs)
     return [f"Scale errors (end points): {said} ppm."]
 
 
-def _square_lines(slopes: FloatArray, sigma: FloatArray) -> list[str]:
+def _square_lines(slopes: Floats, sigma: Floats) -> list[str]:
     triples = zip(SQUARENESS, slopes, sigma, strict=True)
     said = ", ".join(f"{n} {sign * s * 1e6:.2f} +- {d * 1e6:.2f}" for (n, sign), s, d in triples)
     return [f"Squareness: {said} urad, in the functions of Y and Z."]

@@ -33,7 +33,8 @@ from gcxform.calibrate.diagonal.reframe import slopes_of, turn_of
 from gcxform.calibrate.solution import Scatter, Solution, plausible, reduced_rows, solve
 from gcxform.diagnostics import InputError
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
-from gcxform.errormodel.model import AXES, BoolArray, FloatArray, check_contraction
+from gcxform.errormodel.model import AXES, check_contraction
+from gcxform.system.arrays import Flags, Floats
 
 NOISE: Final = 0.001  # mm, of one step
 REJECTED: Final = 3.0  # times the stated noise
@@ -77,57 +78,57 @@ class Identified:
         return Scatter(self.assumed.noise, found.chi_square, found.redundancy)
 
     @cached_property
-    def _framing(self) -> FloatArray:
+    def _framing(self) -> Floats:
         """The matrix (outputs, unknowns) from the unknowns to functions and misalignments."""
         return _framed(np.eye(self.layout.size), self.layout, self.diagonals).T
 
     @cached_property
-    def _output(self) -> FloatArray:
+    def _output(self) -> Floats:
         return np.asarray(self._framing @ self.solution.value)
 
     @cached_property
-    def _hidden(self) -> FloatArray:
+    def _hidden(self) -> Floats:
         """How the outputs (n, d) change along the directions that no reading sees."""
         return np.asarray(self._framing @ self.solution.free)
 
     @cached_property
-    def _known(self) -> BoolArray:
+    def _known(self) -> Flags:
         return np.asarray(np.abs(self._hidden).max(axis=1, initial=0.0) < _NOTHING)
 
     @property
-    def functions(self) -> FloatArray:
+    def functions(self) -> Floats:
         """The errors (3, 3, steps) in mm."""
         return np.asarray(self._output[: self.layout.errors].reshape(3, 3, -1))
 
     @property
-    def determined(self) -> BoolArray:
+    def determined(self) -> Flags:
         """Which functions (3, 3) are determined."""
         known = self._known[: self.layout.errors].reshape(3, 3, -1)
         return np.asarray(known.all(axis=2))
 
     @cached_property
-    def covariance(self) -> FloatArray:
+    def covariance(self) -> Floats:
         """The covariance (9 steps, 9 steps) of `functions` in mm^2, for the effective noise."""
         return self._covariance(self._framing[: self.layout.errors])
 
-    def _covariance(self, part: FloatArray) -> FloatArray:
+    def _covariance(self, part: Floats) -> Floats:
         """Return the covariance of outputs of the effective noise, by their rows (k, unknowns)."""
         return np.asarray(self.scatter.factor**2 * (part @ self.solution.covariance @ part.T))
 
     @property
-    def deviations(self) -> FloatArray:
+    def deviations(self) -> Floats:
         """The standard deviations (3, 3, steps) in mm."""
         variance = np.diag(self.covariance).clip(0.0)
         return np.asarray(np.sqrt(variance).reshape(3, 3, -1))
 
     @property
-    def shapes(self) -> FloatArray:
+    def shapes(self) -> Floats:
         """The functions without the line through their ends (3, 3, steps), mm: always known."""
         parts = np.arange(1, self.layout.steps + 1) / self.layout.steps
         return self.functions - self.functions[..., -1:] * parts
 
     @cached_property
-    def _slope_rows(self) -> FloatArray:
+    def _slope_rows(self) -> Floats:
         """The six slopes of `SLOPES` from the outputs (6, outputs)."""
         rows = np.zeros((6, len(self._framing)))
         for k, (axis, direction) in enumerate(_SLOPES_AT):
@@ -136,7 +137,7 @@ class Identified:
         return rows
 
     @property
-    def slopes(self) -> tuple[FloatArray, FloatArray]:
+    def slopes(self) -> tuple[Floats, Floats]:
         """Scales and slopes as in `SLOPES` (6,), mm per mm, and their covariance (6, 6)."""
         through = self._slope_rows[:, : self.layout.errors]
         return self._slope_rows @ self._output, through @ self.covariance @ through.T
@@ -150,21 +151,21 @@ class Identified:
         return float(weights @ value), math.sqrt(max(float(weights @ covariance @ weights), 0.0))
 
     @property
-    def hidden_slopes(self) -> FloatArray:
+    def hidden_slopes(self) -> Floats:
         """A basis (d, 6), in echelon form, of the slopes that change no reading."""
         seen = (self._slope_rows @ self._hidden).T * self.diagonals.volume.diagonal
         seen[np.abs(seen) < _NOTHING] = 0.0
         return reduced_rows(seen)
 
     @property
-    def observable_slopes(self) -> FloatArray:
+    def observable_slopes(self) -> Floats:
         """A basis (6 - d, 6), in echelon form, of the combinations that the readings tell."""
         hidden = self.hidden_slopes
         right = np.linalg.svd(np.pad(hidden, ((0, 6 - len(hidden)), (0, 0))))[2]
         return reduced_rows(right[len(hidden) :])
 
     @property
-    def misalignments(self) -> tuple[FloatArray, FloatArray] | None:
+    def misalignments(self) -> tuple[Floats, Floats] | None:
         """Angles of the beams (set-ups, 2) and standard deviations, rad; None if not known."""
         first = self.layout.errors
         if not self.layout.beams or not self._known[first:].all():
@@ -174,7 +175,7 @@ class Identified:
         return self._output[first:].reshape(-1, 2) / scale, spread.reshape(-1, 2) / scale
 
     @property
-    def redundancy(self) -> FloatArray:
+    def redundancy(self) -> Floats:
         """The residuals of each axis and cell (3, steps) in mm, as a step would have them.
 
         With four diagonals of equal weight it is half of the modulus of the closure, such as
@@ -261,7 +262,7 @@ def solved(
     )
 
 
-def _framed(unknowns: FloatArray, layout: Layout, diagonals: Diagonals) -> FloatArray:
+def _framed(unknowns: Floats, layout: Layout, diagonals: Diagonals) -> Floats:
     """Return functions and misalignments (..., outputs), mm, in the end-point frame.
 
     A turn theta of the machine in its beams is the turn -theta of the beams about the machine.
@@ -381,7 +382,7 @@ def misalignment_gain(found: Identified) -> tuple[float, float]:
     return found.solution.chi_square - freed.solution.chi_square, plausible(max(gained, 1))
 
 
-def worded(row: FloatArray) -> str:
+def worded(row: Floats) -> str:
     """Return a combination of `SLOPES` in words, such as `scale X + 2.12 scale Y`."""
     text = ""
     for factor, name in zip(row.tolist(), SLOPES, strict=True):
@@ -392,7 +393,7 @@ def worded(row: FloatArray) -> str:
     return text
 
 
-def together(row: FloatArray) -> str:
+def together(row: Floats) -> str:
     """Return a direction among `SLOPES` in words, such as `scale X +1 with scale Z -1.14`."""
     pairs = zip(row.tolist(), SLOPES, strict=True)
     return " with ".join(f"{name} {factor:+.4g}" for factor, name in pairs if abs(factor) > 1e-6)

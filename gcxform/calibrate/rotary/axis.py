@@ -24,13 +24,12 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
 from gcxform.calibrate.rotary.circle import CONVERGED, STEPS, Circles, fit_circles, upright
 from gcxform.calibrate.solution import Scatter, belonging
 from gcxform.diagnostics import InputError, Location
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Triple, turned
+from gcxform.system.arrays import Flags, Floats
 
 UNKNOWNS: Final = 7
 ILL: Final = 20.0
@@ -42,15 +41,14 @@ REJECTED: Final = 3.0
 """Residuals above this many times the stated noise contradict each other."""
 CAUCHY: Final = 2.385  # half of the weight is lost here; 95 % efficient on one normal variable
 EVEN: Final = 1.4  # times the gap of even positions: three at 180 degrees are not around a turn
-Kept = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
 class Centres:
     """Centres of a ball (n, 3) in mm at angles (n,) in degrees; `where` is the place of one."""
 
-    degrees: FloatArray
-    points: FloatArray
+    degrees: Floats
+    points: Floats
     where: Callable[[int], Location | None] = lambda row: None
 
     def __len__(self) -> int:
@@ -61,20 +59,20 @@ class Centres:
 class Figure:
     """Points that go round: c + R(direction, q) arm, right-handed; lengths in mm."""
 
-    centre: FloatArray
-    direction: FloatArray
-    arm: FloatArray
+    centre: Floats
+    direction: Floats
+    arm: Floats
 
     @property
     def radius(self) -> float:
         """The length of the arm, mm."""
         return float(np.linalg.norm(self.arm))
 
-    def arms(self, degrees: FloatArray) -> FloatArray:
+    def arms(self, degrees: Floats) -> Floats:
         """Return the arm (n, 3) at angles (n,)."""
         return turned(np.tile(self.arm, (len(degrees), 1)), _triple(self.direction), degrees)
 
-    def moved(self, step: FloatArray) -> Figure:
+    def moved(self, step: Floats) -> Figure:
         """Return the figure shifted (3), turned (3, rad) about its centre, and grown (1, mm)."""
         angle = float(np.linalg.norm(step[3:6]))
         about = _triple(step[3:6] / angle) if angle else (0.0, 0.0, 1.0)
@@ -94,13 +92,13 @@ class Placed:
 
     centres: Centres
     noise: float
-    kept: Kept
+    kept: Flags
     figure: Figure
     free: Circles
     tip: Triple | None = None
 
     @property
-    def direction(self) -> FloatArray:
+    def direction(self) -> Floats:
         """The unit vector (3,) along the axis, its largest component positive."""
         return upright(self.figure.direction)
 
@@ -110,19 +108,19 @@ class Placed:
         return 1 if float(self.direction @ self.figure.direction) > 0.0 else -1
 
     @property
-    def point(self) -> FloatArray:
+    def point(self) -> Floats:
         """A point (3,) on the axis in machine coordinates, mm."""
         if self.tip is None:
             return self.figure.centre + 0.0
         return np.asarray(self.figure.arm + self.tip)
 
     @cached_property
-    def residuals(self) -> FloatArray:
+    def residuals(self) -> Floats:
         """Measured minus fitted centres (n, 3), mm."""
         return residuals(self.centres, self.figure)
 
     @cached_property
-    def standardised(self) -> FloatArray:
+    def standardised(self) -> Floats:
         """The largest of the three residuals of each centre over its standard deviation, (n,)."""
         weights, noise = self.kept.astype(float), self.scatter.effective
         return np.asarray(standardised(self.centres, self.figure, noise, weights).max(axis=1))
@@ -150,19 +148,19 @@ class Placed:
         return Scatter(self.noise, total / self.noise**2, self.redundancy)
 
     @cached_property
-    def covariance(self) -> FloatArray:
+    def covariance(self) -> Floats:
         """The covariance (6, 6) of point (mm) and direction, for the effective noise."""
         moves = self.moves
         return np.asarray(moves @ self.of_unknowns @ moves.T)
 
     @cached_property
-    def of_unknowns(self) -> FloatArray:
+    def of_unknowns(self) -> Floats:
         """The covariance (7, 7) of shift, turn (rad) and growth of the figure, mm."""
         design = jacobian(self.figure, self.centres.degrees[self.kept]).reshape(-1, UNKNOWNS)
         return np.asarray(self.scatter.effective**2 * np.linalg.inv(design.T @ design))
 
     @property
-    def moves(self) -> FloatArray:
+    def moves(self) -> Floats:
         """What the unknowns do to point and direction (6, 7)."""
         shift = np.hstack([np.eye(3), np.zeros((3, 4))])
         if self.tip is not None:
@@ -201,7 +199,7 @@ def locate(
     return found
 
 
-def _believed(centres: Centres, start: Figure, noise: float) -> Kept:
+def _believed(centres: Centres, start: Figure, noise: float) -> Flags:
     """Return which centres belong to the rest, by a robust fit."""
     figure, weights = start, np.ones(len(centres))
     for _ in range(STEPS):
@@ -215,7 +213,7 @@ def _believed(centres: Centres, start: Figure, noise: float) -> Kept:
     return kept if enough else np.ones(len(centres), dtype=bool)
 
 
-def without_each(found: Placed) -> tuple[FloatArray, FloatArray]:
+def without_each(found: Placed) -> tuple[Floats, Floats]:
     """Return what leaving out each centre changes: the point (n, 3) in mm, the direction (n, 3).
 
     A shift along the axis is no change. nan where the others alone do not determine the axis.
@@ -276,17 +274,17 @@ def _refuse(centres: Centres, message: str, row: int = 0) -> None:
     raise InputError.one("GX486", message, centres.where(row), hint)
 
 
-def distinct(degrees: FloatArray) -> int:
+def distinct(degrees: Floats) -> int:
     """Return how many different positions of the axis there are."""
     return len(np.unique(np.round(np.mod(degrees, 360.0), 6) % 360.0))
 
 
-def condition(degrees: FloatArray) -> float:
+def condition(degrees: Floats) -> float:
     """Return the condition number of the rows (cos q, sin q, 1)."""
     return float(np.linalg.cond(_rows(degrees)))
 
 
-def arc(degrees: FloatArray) -> float:
+def arc(degrees: Floats) -> float:
     """Return the arc that positions cover, degrees: a turn less the largest gap, 360 if even."""
     around = np.sort(np.mod(degrees, 360.0))
     gaps = np.diff(np.append(around, around[0] + 360.0))
@@ -297,7 +295,7 @@ def arc(degrees: FloatArray) -> float:
 # --- the fit ---
 
 
-def fitted(centres: Centres, weights: FloatArray, start: Figure | None = None) -> Figure:
+def fitted(centres: Centres, weights: Floats, start: Figure | None = None) -> Figure:
     """Return the figure of weighted least squares. Raises InputError (GX486)."""
     figure = start or _started(centres)
     root = np.sqrt(weights)[:, None]
@@ -329,12 +327,12 @@ def _started(centres: Centres) -> Figure:
     return Figure(centre, direction, arm)
 
 
-def residuals(centres: Centres, figure: Figure) -> FloatArray:
+def residuals(centres: Centres, figure: Figure) -> Floats:
     """Return measured minus fitted centres (n, 3), mm."""
     return np.asarray(centres.points - figure.centre - figure.arms(centres.degrees))
 
 
-def jacobian(figure: Figure, degrees: FloatArray) -> FloatArray:
+def jacobian(figure: Figure, degrees: Floats) -> Floats:
     """Return what shift, turn (rad) and growth of a figure do to its points, (n, 3, 7)."""
     arms = figure.arms(degrees)
     shift = np.broadcast_to(np.eye(3), (len(arms), 3, 3))
@@ -342,7 +340,7 @@ def jacobian(figure: Figure, degrees: FloatArray) -> FloatArray:
     return np.concatenate([shift, -crossing(arms), growth], axis=-1)
 
 
-def standardised(centres: Centres, figure: Figure, noise: float, weights: FloatArray) -> FloatArray:
+def standardised(centres: Centres, figure: Figure, noise: float, weights: Floats) -> Floats:
     """Return the residuals of each centre over the standard deviation of them, (n, 3)."""
     design = jacobian(figure, centres.degrees)
     weighted = design * weights[:, None, None]
@@ -352,7 +350,7 @@ def standardised(centres: Centres, figure: Figure, noise: float, weights: FloatA
     return np.asarray(np.abs(residuals(centres, figure)) / spread)
 
 
-def crossing(vectors: FloatArray) -> FloatArray:
+def crossing(vectors: Floats) -> Floats:
     """Return the matrices (..., 3, 3) of v x for vectors v (..., 3)."""
     x, y, z = np.moveaxis(vectors, -1, 0)
     none = np.zeros_like(x)
@@ -360,11 +358,11 @@ def crossing(vectors: FloatArray) -> FloatArray:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
-def _rows(degrees: FloatArray) -> FloatArray:
+def _rows(degrees: Floats) -> Floats:
     radians = np.radians(degrees)
     return np.column_stack([np.cos(radians), np.sin(radians), np.ones(len(radians))])
 
 
-def _triple(vector: Sequence[float] | FloatArray) -> Triple:
+def _triple(vector: Sequence[float] | Floats) -> Triple:
     x, y, z = (float(part) for part in vector)
     return x, y, z

@@ -30,9 +30,9 @@ from gcxform.calibrate.rotary.axis import (
     jacobian,
     without_each,
 )
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Rotary, turned
 from gcxform.machine.machine import Axis
+from gcxform.system.arrays import Floats
 
 TURN: Final = 360.0
 GRID: Final = 5.0  # degrees
@@ -52,7 +52,7 @@ def axis_of(found: Placed) -> Axis:
     return Axis(direction=axis.direction, point=axis.point, sign=axis.sign)
 
 
-def dial_spread(found: Placed, degrees: FloatArray) -> FloatArray:
+def dial_spread(found: Placed, degrees: Floats) -> Floats:
     """Return the standard deviations (n,), mm, of what the check shows at angles from its zero."""
     moves, axis, lever = found.moves[:3], found.direction, standing(found)
     turn = np.hstack([np.zeros((3, 3)), np.eye(3), np.zeros((3, 1))])
@@ -68,7 +68,7 @@ def dial_spread(found: Placed, degrees: FloatArray) -> FloatArray:
     return np.array(spread)
 
 
-def dial(true: Rotary, believed: Rotary, ball: FloatArray, degrees: FloatArray) -> FloatArray:
+def dial(true: Rotary, believed: Rotary, ball: Floats, degrees: Floats) -> Floats:
     """Return the vectors (n, 3), mm, that the check shows where the control believes an axis.
 
     `ball` is its centre where the dial is set to zero; the angles (n,) are counted from there.
@@ -77,13 +77,13 @@ def dial(true: Rotary, believed: Rotary, ball: FloatArray, degrees: FloatArray) 
     return np.asarray(believed.turn(places, degrees) - true.turn(places, degrees))
 
 
-def checked_angles(found: Placed) -> FloatArray:
+def checked_angles(found: Placed) -> Floats:
     """Return the angles (n,) of a check at the measured positions, zero at the first, degrees."""
     degrees = found.centres.degrees
     return np.asarray(np.unique((degrees - degrees[0]).round(9)))
 
 
-def standing(found: Placed) -> FloatArray:
+def standing(found: Placed) -> Floats:
     """Return from the point on the axis to the ball at the first position, (3,), mm."""
     arm = found.figure.arms(found.centres.degrees[:1])[0]
     return np.asarray(arm if found.tip is None else -arm)
@@ -213,7 +213,7 @@ def harmonics(found: Placed) -> dict[str, list[float]] | None:
     return {name: sizes[:, k].tolist() for k, name in enumerate(("radial", "tangential", "axial"))}
 
 
-def components(found: Placed) -> FloatArray:
+def components(found: Placed) -> Floats:
     """Return the residuals (n, 3) away from the axis, in the sense of +, and along it, mm."""
     outwards = found.figure.arms(found.centres.degrees) / found.figure.radius
     axis = found.figure.direction

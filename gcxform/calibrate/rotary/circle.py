@@ -15,9 +15,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
-from gcxform.errormodel.model import FloatArray
+from gcxform.system.arrays import Flags, Floats
 
 STEPS: Final = 50
 CONVERGED: Final = 1e-10
@@ -34,14 +33,14 @@ class Circles:
     the points about their mean, mm. Where a circle did not converge its numbers mean nothing.
     """
 
-    direction: FloatArray
-    centre: FloatArray
-    radius: FloatArray
-    singular: FloatArray
-    converged: npt.NDArray[np.bool_]
+    direction: Floats
+    centre: Floats
+    radius: Floats
+    singular: Floats
+    converged: Flags
 
 
-def fit_circles(points: FloatArray) -> Circles:
+def fit_circles(points: Floats) -> Circles:
     """Return the circles through points (..., n, 3) in mm, n >= 3, that are least squares."""
     mean = points.mean(axis=-2, keepdims=True)
     _, singular, axes = np.linalg.svd(points - mean, full_matrices=False)
@@ -52,7 +51,7 @@ def fit_circles(points: FloatArray) -> Circles:
     return Circles(upright(axes[..., 2, :]), centre, radius, singular, converged)
 
 
-def spread(points: FloatArray, circle: Circles, noise: float) -> tuple[FloatArray, FloatArray]:
+def spread(points: Floats, circle: Circles, noise: float) -> tuple[Floats, Floats]:
     """Return the covariance (6, 6) of centre (mm) and direction of a circle, of its radius (mm^2).
 
     With G the rows (cos t, sin t, 1) of the points in its plane, centre and radius have noise^2
@@ -73,13 +72,13 @@ def spread(points: FloatArray, circle: Circles, noise: float) -> tuple[FloatArra
     return both, np.asarray(inverse[2, 2])
 
 
-def upright(vectors: FloatArray) -> FloatArray:
+def upright(vectors: Floats) -> Floats:
     """Return unit vectors (..., 3) turned around where their largest component is negative."""
     largest = np.take_along_axis(vectors, np.abs(vectors).argmax(axis=-1)[..., None], axis=-1)
     return np.asarray(np.where(largest < 0.0, -vectors, vectors) + 0.0)
 
 
-def _in_plane(flat: FloatArray) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
+def _in_plane(flat: Floats) -> tuple[Floats, Floats, Flags]:
     """Return centres (..., 2) and radii (...) of circles through points (..., n, 2)."""
     ones = np.ones((*flat.shape[:-1], 1))
     start = _solve(np.concatenate([2.0 * flat, ones], axis=-1), (flat**2).sum(axis=-1))
@@ -97,7 +96,7 @@ def _in_plane(flat: FloatArray) -> tuple[FloatArray, FloatArray, npt.NDArray[np.
     return centre, radius, converged & np.isfinite(radius) & (radius > 0.0)
 
 
-def _solve(design: FloatArray, wanted: FloatArray) -> FloatArray:
+def _solve(design: Floats, wanted: Floats) -> Floats:
     """Return the least-squares solutions (..., k) of designs (..., n, k); nan if there is none."""
     finite = np.asarray(np.isfinite(design).all(axis=(-1, -2)) & np.isfinite(wanted).all(axis=-1))
     q, r = np.linalg.qr(np.where(finite[..., None, None], design, 0.0))

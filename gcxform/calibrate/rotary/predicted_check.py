@@ -15,9 +15,9 @@ import numpy as np
 from gcxform.calibrate.bundle.bundle import across
 from gcxform.calibrate.rotary.axis import crossing
 from gcxform.calibrate.rotary.check import dial
-from gcxform.errormodel.model import FloatArray
 from gcxform.machine.chain import Rotary, turned
 from gcxform.machine.machine import Axis
+from gcxform.system.arrays import Floats
 
 FAR = 1.0  # mm; an axis is not adjusted so badly
 
@@ -25,13 +25,13 @@ FAR = 1.0  # mm; an axis is not adjusted so badly
 class Check(NamedTuple):
     """The dial at angles (n,): its sd with the axis found, and as it was before, mm."""
 
-    degrees: FloatArray
-    spread: FloatArray
-    before: FloatArray
+    degrees: Floats
+    spread: Floats
+    before: Floats
 
 
 def predicted(
-    before: Rotary, found: Rotary, covariance: FloatArray, ball: FloatArray, degrees: FloatArray
+    before: Rotary, found: Rotary, covariance: Floats, ball: Floats, degrees: Floats
 ) -> Check:
     """Return the check of an axis with the covariance (4, 4) of its unknowns, mm and rad.
 
@@ -43,7 +43,7 @@ def predicted(
     return Check(degrees, np.array(spread), shift)
 
 
-def shown(axis: Rotary, ball: FloatArray, degrees: float) -> FloatArray:
+def shown(axis: Rotary, ball: Floats, degrees: float) -> Floats:
     """Return what the unknowns of an axis do to the dial at an angle (3, 4)."""
     whole = np.full(3, axis.sign * degrees)
     rotation = turned(np.eye(3), axis.direction, whole).T
@@ -53,13 +53,13 @@ def shown(axis: Rotary, ball: FloatArray, degrees: float) -> FloatArray:
     return np.hstack([(np.eye(3) - rotation) @ shift, tilt @ turn])
 
 
-def effects(axis: Rotary) -> tuple[FloatArray, FloatArray]:
+def effects(axis: Rotary) -> tuple[Floats, Floats]:
     """Return what the unknowns of an axis are in X, Y and Z: shifts (3, 2), and turns (3, 2)."""
     basis = across(axis)
     return basis.T, np.cross(axis.direction, basis).T
 
 
-def astray(letter: str, before: Rotary | Axis | None, point: FloatArray) -> Iterator[str]:
+def astray(letter: str, before: Rotary | Axis | None, point: Floats) -> Iterator[str]:
     """Yield how far a point (3,) mm is from the axis as it was, if that is no error of a machine.
 
     Such is a probe whose length is in the readings and was not told, or told and not in them.

@@ -9,7 +9,6 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked, needed_dialect
@@ -22,6 +21,7 @@ from gcxform.modal.state import Reading, State
 from gcxform.plugin.registry import default_registry
 from gcxform.syntax.source import Source
 from gcxform.syntax.tree import Block, Comment, Mark, Number, Word
+from gcxform.system.arrays import Ints
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.path import Event, FeedMode, Kind, Plane, Toolpath
 
@@ -81,7 +81,7 @@ def _foreign(source: Source, line: int, kind: type[Dialect], reading: Reading) -
     return [*lines, *_told(before, axes, earlier, refused.get(line), path, kind.spelled)]
 
 
-def _run_of(line: int, origin: NDArray[np.int64]) -> tuple[int, int]:
+def _run_of(line: int, origin: Ints) -> tuple[int, int]:
     """Return the blocks, from and to, that a line stands for when it is first executed."""
     own = origin == line
     if not own.any():

@@ -6,14 +6,13 @@ from collections import Counter
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import LINEAR
+from gcxform.system.arrays import Flags, Floats
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 from gcxform.toolpath.splines import spline_lengths
 
-Floats = NDArray[np.float64]
 MINUTE = 60.0
 
 
@@ -91,7 +90,7 @@ class Times:
             each = np.where((way > 0) | np.isnan(way), way / speed * MINUTE, 0.0)
         return np.asarray(each.max(axis=1, initial=0.0))
 
-    def _count(self, path: Toolpath, seconds: Floats, rapid: NDArray[np.bool_]) -> None:
+    def _count(self, path: Toolpath, seconds: Floats, rapid: Flags) -> None:
         known = np.isfinite(seconds)
         self.found["feed"] += float(seconds[known & ~rapid].sum())
         self.found["rapid"] += float(seconds[known & rapid].sum())

@@ -6,15 +6,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import Dialect
+from gcxform.system.arrays import Flags, Floats
 from gcxform.toolpath.circles import arc_extremes
 from gcxform.toolpath.path import Event, FeedMode, Kind, Toolpath
 from gcxform.toolpath.splines import spline_extremes
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 NONE = "none"
 
 

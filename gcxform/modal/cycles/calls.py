@@ -13,18 +13,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import INCH
 from gcxform.modal.cycles.expansion import UNKNOWN, Calls
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames.track import Track
 from gcxform.modal.state import CYCLE_OFF
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.path import Plane, constant
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 SPINDLE = np.array([0, 1, -1, UNKNOWN])
 """How the spindle turns, by the number of its mode: stopped, M3, M4, not known."""

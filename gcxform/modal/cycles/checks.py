@@ -9,8 +9,9 @@ import numpy as np
 
 from gcxform.dialect.cycle_rule import RESUME, CycleRule
 from gcxform.modal.cycles.stretch import Stretch
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
-from gcxform.toolpath.path import Flags, Floats, Ints, Plane
+from gcxform.toolpath.path import Plane
 
 UNKNOWN = 2
 """How the spindle turns where nobody knows; otherwise +1 (M3), -1 (M4), 0."""

@@ -17,7 +17,7 @@ from gcxform.dialect.cycle_rule import CycleRule, Level
 from gcxform.modal.cycles.checks import MOST, UNKNOWN, Checks, Refusal
 from gcxform.modal.cycles.steps import Holes, Rows, pecks_of, rows_of
 from gcxform.modal.cycles.stretch import Calls, Mode, Stretch, follow, follow_fresh, joined
-from gcxform.toolpath.path import Flags, Floats, Ints
+from gcxform.system.arrays import Flags, Floats, Ints
 
 __all__ = ["MOST", "UNKNOWN", "Calls", "Cycles", "Refusal", "Steps"]
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import INCH
 from gcxform.modal.cycles.calls import CallColumns
@@ -21,12 +20,9 @@ from gcxform.modal.cycles.stretch import Mode, Stretch
 from gcxform.modal.frames.track import Break, Track
 from gcxform.modal.moves.rows import Rows
 from gcxform.modal.state import CYCLE_OFF
+from gcxform.system.arrays import Floats, Ints
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Event, Form, Plane
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 MANUAL = 88  # the cycle out of which the operator moves the tool
 

@@ -15,7 +15,8 @@ import numpy as np
 
 from gcxform.dialect.cycle_rule import CycleRule
 from gcxform.modal.columns import fill
-from gcxform.toolpath.path import Flags, Floats, Ints, Plane, constant
+from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.toolpath.path import Plane, constant
 
 STICKY = ("r", "normal", "p", "q", "i", "j", "k")
 SCALARS = ("position", "plane", "unit")

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic
 from gcxform.dialect.arithmetic import Key, NoValueError, whole
@@ -17,6 +16,7 @@ from gcxform.modal.expressions.value import Evaluator, LocatedError, settable
 from gcxform.modal.findings import Findings
 from gcxform.modal.lines import Assigned, Lines
 from gcxform.syntax.tree import Expression, Statement, Word
+from gcxform.system.arrays import Floats
 
 UNKNOWN = float("nan")
 
@@ -41,7 +41,7 @@ def compute(lines: Lines) -> None:
 class _Block:
     """One block that computes something; `value` are the number columns of its window."""
 
-    def __init__(self, lines: Lines, line: int, value: NDArray[np.float64]) -> None:
+    def __init__(self, lines: Lines, line: int, value: Floats) -> None:
         assert lines.dialect.arithmetic is not None
         self.lines = lines
         self.line = line

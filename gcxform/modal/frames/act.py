@@ -8,15 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gcxform.dialect.dialect import Dialect
 from gcxform.modal.frames.state import FrameState
 from gcxform.modal.state import Reading
+from gcxform.system.arrays import Floats
 from gcxform.toolpath.path import Plane
-
-Floats = NDArray[np.float64]
 
 
 class ActError(Exception):

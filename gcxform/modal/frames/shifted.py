@@ -8,14 +8,10 @@ together, by a table with a row for each.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.modal.frames.track import Track
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.path import column_major
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 
 class Shifted:

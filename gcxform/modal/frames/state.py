@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, replace
 from math import isfinite, nan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gcxform.system.arrays import Floats
 from gcxform.toolpath.frames import Frame, Matrix, Vector
 
 NO_TOOL = (0.0, 0.0, 0.0)
@@ -176,9 +176,9 @@ def rotation(angle: float, first: int, second: int) -> Matrix:
     return _matrix(matrix)
 
 
-def _matrix(values: NDArray[np.float64]) -> Matrix:
+def _matrix(values: Floats) -> Matrix:
     return tuple((float(a), float(b), float(c)) for a, b, c in values)
 
 
-def _vector(values: NDArray[np.float64]) -> Vector:
+def _vector(values: Floats) -> Vector:
     return tuple(float(value) for value in values)

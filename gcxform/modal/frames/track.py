@@ -11,7 +11,6 @@ from functools import cached_property
 from math import isfinite, remainder
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import INCH, LINEAR, ROTARY
 from gcxform.modal.columns import fill
@@ -22,13 +21,10 @@ from gcxform.modal.frames.state import FrameState
 from gcxform.modal.lines import LENGTHS, Lines
 from gcxform.modal.meaning.meaning import Act
 from gcxform.modal.state import Modes
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Plane, constant
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 ALONG_Z = "tools whose lengths are not known have them along Z alone: there is no tool table"
 LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar", "no-polar"})

@@ -10,6 +10,7 @@ from gcxform.machine.machine import SWITCHES
 from gcxform.modal.meaning.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning
 from gcxform.modal.meaning.sorting import meaning_of
 from gcxform.syntax.shapes import ShapeTable
+from gcxform.system.arrays import Flags, Ints, Small
 
 GROUPS = (
     "motion",
@@ -119,7 +120,7 @@ FLAGS = (
 )
 
 
-def of_splines(motion: NDArray[np.int8]) -> NDArray[np.bool_]:
+def of_splines(motion: Small) -> Flags:
     """Return which numbers of motion codes are those of splines."""
     return np.asarray((motion == CUBIC) | (motion == QUADRATIC))
 
@@ -139,8 +140,8 @@ class MeaningTable:
         self.shapes = shapes
         self.dialect = dialect
         self.meanings: list[Meaning] = []
-        self.groups: NDArray[np.int8] = np.empty((0, len(COLUMNS)), np.int8)
-        self.flags: NDArray[np.bool_] = np.empty((0, len(FLAGS)), np.bool_)
+        self.groups: Small = np.empty((0, len(COLUMNS)), np.int8)
+        self.flags: Flags = np.empty((0, len(FLAGS)), np.bool_)
         self.slots: NDArray[np.int16] = np.empty((0, 26), np.int16)
 
     def update(self) -> None:
@@ -197,6 +198,6 @@ class MeaningTable:
             bool(meaning.lent),
         )
 
-    def flag(self, name: str, shape: NDArray[np.int64]) -> NDArray[np.bool_]:
+    def flag(self, name: str, shape: Ints) -> Flags:
         """Return a flag of each line, given the lines' shapes."""
         return np.asarray(self.flags[:, FLAGS.index(name)][shape])

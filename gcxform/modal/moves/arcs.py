@@ -9,17 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import ArcRule, Dialect
 from gcxform.modal.findings import Findings
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import SAME_POINT, TURN, swept
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Plane, Toolpath
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import INCH
 from gcxform.machine.machine import Tool
@@ -17,11 +16,8 @@ from gcxform.modal.columns import fill
 from gcxform.modal.findings import Findings
 from gcxform.modal.lines import Lines
 from gcxform.modal.state import CYCLE_OFF, Modes
+from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.toolpath.path import Kind, Plane, constant
-
-Floats = NDArray[np.float64]
-Small = NDArray[np.int8]
-Flags = NDArray[np.bool_]
 
 GIVEN = 3  # the number of G41.1: from here on D is the diameter itself
 SIDES = np.array([0, 1, -1, 1, -1], np.int8)  # by the number of the code: G40 G41 G42 G41.1 G42.1
@@ -148,9 +144,7 @@ def _stop(lines: Lines, line: int, message: str, hint: str = "cancel it with G40
     lines.findings.add(line, "GX230", message, hint=hint)
 
 
-def refuse_ends(
-    lines: Lines, modes: Modes, side: Small, kind: Small, rows: NDArray[np.int64]
-) -> None:
+def refuse_ends(lines: Lines, modes: Modes, side: Small, kind: Small, rows: Ints) -> None:
     """Refuse arcs that begin compensation, or come next after it, where the control stops.
 
     Nor may compensation begin again before a move has ended it.

@@ -6,16 +6,14 @@ So does G31, which is a probing move for its block alone.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, Severity
 from gcxform.modal.frames.track import LEFT, Track
 from gcxform.modal.meaning.meaning import OWN_MOVES, Act
 from gcxform.modal.moves.rows import Rows
 from gcxform.modal.moves.spindle_and_probe import probe
+from gcxform.system.arrays import Floats
 from gcxform.toolpath.path import Form, Kind, Plane
-
-Floats = NDArray[np.float64]
 
 
 def own_moves(track: Track, line: int) -> Rows | None:

@@ -30,13 +30,9 @@ from gcxform.modal.moves.spindle_and_probe import Tied
 from gcxform.modal.moves.splines import read_splines, with_splines
 from gcxform.modal.moves.tool_vectors import Pointing
 from gcxform.modal.state import CYCLE_OFF, Modes
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import Blocks, Kind, Toolpath, constant
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Small = NDArray[np.int8]
-Flags = NDArray[np.bool_]
 
 SAME_PLACE = 1e-7  # mm, deg; an axis that moves by less stands still
 

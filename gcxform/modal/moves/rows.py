@@ -6,13 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gcxform.system.arrays import Floats, Ints, Small
 from gcxform.toolpath.path import Form, column_major, constant
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Small = NDArray[np.int8]
 
 
 @dataclass(frozen=True, slots=True)

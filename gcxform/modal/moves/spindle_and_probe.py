@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import INCH
 from gcxform.modal.findings import Findings
@@ -18,12 +17,8 @@ from gcxform.modal.frames.track import SPATIAL, Break, Track
 from gcxform.modal.meaning.tables import NUMBER, PROBES, TAP, THREAD
 from gcxform.modal.moves.rows import Rows
 from gcxform.modal.state import UNKNOWN_SPINDLE
+from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.toolpath.path import FeedMode, Form, Kind
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Small = NDArray[np.int8]
-Flags = NDArray[np.bool_]
 
 Objection = tuple[Flags, str, str]
 

@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import INCH
 from gcxform.modal.findings import Findings
@@ -21,11 +20,8 @@ from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import CUBIC, NUMBER, of_splines
 from gcxform.modal.moves.rows import Rows
 from gcxform.modal.state import Modes
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.path import Form, Kind, Plane, Toolpath
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 THIRDS = 2.0 / 3.0
 

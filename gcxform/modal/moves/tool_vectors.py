@@ -11,17 +11,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.modal.columns import fill
 from gcxform.modal.findings import Findings
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import NUMBER
 from gcxform.modal.state import CYCLE_OFF, Modes
+from gcxform.system.arrays import Flags, Floats
 from gcxform.toolpath.path import Kind
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 UPRIGHT = (0.0, 0.0, 1.0)
 """The tool axis with all rotary axes at 0, where a program has to begin."""

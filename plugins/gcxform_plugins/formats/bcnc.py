@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 
 import gcxform as gx
+from gcxform.vocabulary import Floats
 from gcxform_plugins.formats.shared import height_points as heightpoints
 from gcxform_plugins.formats.shared.height_points import UNITS
 
@@ -71,7 +72,7 @@ def _text(value: float) -> str:
     return gx.decimal(value, 10)
 
 
-def _limits(row: gx.TextRow, letter: str, most: int) -> heightpoints.Floats:
+def _limits(row: gx.TextRow, letter: str, most: int) -> Floats:
     """Return the positions of the grid: the first, the last, and how many there are."""
     low, high, count = row.numbers(3)
     if not 2 <= count <= most or count != int(count):

@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 import gcxform as gx
+from gcxform.vocabulary import Floats
 from gcxform_plugins.formats.shared import parameters
 from gcxform_plugins.formats.shared.parameters import Order, Parameters, Said, Tool, Values
 
@@ -104,7 +105,7 @@ def _functions(
     header: gx.TextRow,
     lines: list[gx.TextRow],
     names: list[str],
-    numbers: parameters.Floats,
+    numbers: Floats,
     argument: int,
     found: Parameters,
 ) -> None:
@@ -122,7 +123,7 @@ def _constants(
     header: gx.TextRow,
     lines: list[gx.TextRow],
     names: list[str],
-    numbers: parameters.Floats,
+    numbers: Floats,
     found: Parameters,
 ) -> None:
     """Take squareness, which has one row."""

@@ -11,6 +11,7 @@ from typing import Annotated, ClassVar, NamedTuple
 import numpy as np
 
 import gcxform as gx
+from gcxform.vocabulary import Floats
 from gcxform_plugins.formats.shared import height_points as heightpoints
 
 POINTS_AT_MOST = 10_000  # on an axis: a slip in a count must not ask for all memory
@@ -180,7 +181,7 @@ def _unmarked(row: gx.TextRow) -> gx.TextRow:
     return row
 
 
-def _positions(section: _Section, letter: str) -> heightpoints.Floats:
+def _positions(section: _Section, letter: str) -> Floats:
     """Return the positions of the points on an axis."""
     low, high = (section.number(f"{end}_{letter}") for end in ("min", "max"))
     count = section.number(f"{letter}_count")
@@ -193,7 +194,7 @@ def _positions(section: _Section, letter: str) -> heightpoints.Floats:
     return np.linspace(low, high, int(count))
 
 
-def _heights(section: _Section, across: int, along: int) -> heightpoints.Floats:
+def _heights(section: _Section, across: int, along: int) -> Floats:
     """Return the heights (along, across) of the points: a line for each position on Y."""
     head = section.key("points")
     rows = section.below["points"]

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Floats
 from gcxform_plugins.formats.shared import pitches
 
 ENTRIES_AT_MOST = 256
@@ -81,9 +81,7 @@ class LinuxCncComp(gx.ErrorFormat):
             position, self._error(position, forward), self._error(position, reverse)
         )
 
-    def _error(
-        self, position: NDArray[np.float64], column: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def _error(self, position: Floats, column: Floats) -> Floats:
         """Return the errors: of actual positions, or of trims. It is its own inverse but for sign.
 
         At 100 the machine stands at 100.005 after travel forward: the error is +0.005, type 0 says

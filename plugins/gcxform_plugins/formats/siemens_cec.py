@@ -10,9 +10,10 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 import numpy as np
 
 import gcxform as gx
+from gcxform.vocabulary import Floats
 from gcxform_plugins.formats.shared import pitches
 from gcxform_plugins.formats.shared import sinumerik as siemens
-from gcxform_plugins.formats.shared.sinumerik import UNITS, Floats, Table
+from gcxform_plugins.formats.shared.sinumerik import UNITS, Table
 
 VALUE = "$AN_CEC"
 AXIS_KEYS = ("_INPUT_AXIS", "_OUTPUT_AXIS")

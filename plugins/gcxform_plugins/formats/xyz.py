@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 
 import gcxform as gx
+from gcxform.vocabulary import Floats
 from gcxform_plugins.formats.shared import height_points as heightpoints
 from gcxform_plugins.formats.shared.height_points import UNITS
 
@@ -54,7 +55,7 @@ class Xyz(gx.ErrorFormat):
         return {"": "\n".join(lines) + "\n"}
 
 
-def _lines(values: heightpoints.Floats) -> heightpoints.Floats:
+def _lines(values: Floats) -> Floats:
     """Return the lines of the grid: positions that differ by more than rounding."""
     found = np.unique(values[np.isfinite(values)])
     near = 10 * heightpoints.BESIDE * np.ptp(found) / max(len(found), 1) if len(found) else 0.0

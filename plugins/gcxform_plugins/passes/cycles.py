@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class ExpandCycles(gx.Pass):
         still = cycle & (path.end == path.start).all(axis=1)
         return path.with_rows((~still).astype(np.int64)) if still.any() else path
 
-    def _check_dwells(self, path: gx.Toolpath, tied: NDArray[np.bool_]) -> None:
+    def _check_dwells(self, path: gx.Toolpath, tied: Flags) -> None:
         """Refuse taps that dwell: for how long may have been said by a cycle that is expanded."""
         rows = [e.row for e in path.events if e.within and e.what == "DWELL" and e.values[0][1] > 0]
         before = np.array([row - 1 for row in rows], np.int64)

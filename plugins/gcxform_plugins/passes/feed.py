@@ -11,13 +11,9 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from gcxform.vocabulary import Flags, Floats, Ints
 
 LINEAR = "XYZUVW"
 INCH = 25.4  # mm

@@ -6,13 +6,9 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from gcxform.vocabulary import Flags, Floats, Ints
 
 WIDEST = np.pi / 2
 """The largest angle of a chord: with larger ones the sense of rotation could be lost."""

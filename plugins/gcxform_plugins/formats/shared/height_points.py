@@ -9,11 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Floats
 
-Floats = NDArray[np.float64]
 UNITS = {"mm": 1.0, "in": 25.4}
 BESIDE = 1e-3  # of a step: so far a point may be from its place, as numbers are rounded
 

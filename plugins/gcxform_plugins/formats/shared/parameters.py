@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Floats
 
 AXES = "XYZ"
 COLUMNS = "XYZABC"
@@ -23,7 +23,6 @@ FUNCTION = re.compile("E[XYZABC][XYZ]")
 SQUARENESS = {"C0Y": ("EXY", -1.0), "B0Z": ("EXZ", 1.0), "A0Z": ("EYZ", -1.0)}
 """The functions that squareness adds to, and with which sign times the position."""
 HINT = "--kind functions fits functions, and says what is left"
-Floats = NDArray[np.float64]
 Tool = Annotated[gx.Vector | None, gx.Option("way from the gauge point to the measured point")]
 Order = Annotated[
     Literal["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"] | None,

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Floats
 
 AXES = "XYZ"
 UNITS = {"mm": 1.0, "in": 25.4}
@@ -19,7 +19,6 @@ WORDS = r"[^\s\[\],=]+"
 GRAIN = 1e6  # per mm: positions are whole nanometres
 _ASSIGNMENT = re.compile(r"\s*\$\w+\s*\[[^\]]*\]\s*=\s*[^\s=]+\s*")
 _FRAME = re.compile(r"%_N_\w+_INI|CHANDATA\(\d+\)|M17|M30", re.I)
-Floats = NDArray[np.float64]
 
 
 def assignments(path: Path, widths: Mapping[str, int]) -> Iterator[gx.TextRow]:

@@ -15,15 +15,11 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.arcs.fit import Fit, Limits
 from gcxform_plugins.passes.arcs.reach import farthest_reaching
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 INCH = 25.4
 STEPS = 200

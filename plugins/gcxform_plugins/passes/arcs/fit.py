@@ -16,11 +16,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from gcxform.vocabulary import Flags, Floats, Ints
 
 WIDEST = np.pi / 2  # rad; the largest angle of a line: beyond, its sense could be mistaken
 CORNER = np.radians(5.0)  # by which a line may point elsewhere than its arc

@@ -11,12 +11,9 @@ the end of one, so that a block is either gone as a whole or still has its begin
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gcxform.vocabulary import Flags, Ints
 from gcxform_plugins.passes.arcs.fit import Fit
-
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 BLOCK = 512  # lines; runs are walked in blocks of at most so many
 SHORT = 4  # times the fewest lines: an arc so short may be what led to a better one

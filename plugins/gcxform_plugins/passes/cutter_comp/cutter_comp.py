@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Floats, Ints
 from gcxform_plugins.passes.cutter_comp.offsetting import (
     CannotOffsetError,
     Corners,
@@ -20,9 +20,6 @@ from gcxform_plugins.passes.cutter_comp.offsetting import (
     swept,
 )
 from gcxform_plugins.passes.cutter_comp.proof import prove_beside
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 CODES = ("G41", "G42", "G41.1", "G42.1")
 STILL = 1e-9  # mm; a row that moves by less in the plane stands still there

@@ -10,13 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from gcxform.vocabulary import Flags, Floats, Ints
 
 CLOSE = 1e-6  # mm
 ANGLE = 1e-6  # rad

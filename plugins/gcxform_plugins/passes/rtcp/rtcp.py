@@ -19,9 +19,9 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Ints
 from gcxform_plugins.passes.rtcp.forward.cutting import Cutting
 from gcxform_plugins.passes.rtcp.forward.great_circles import Circling
 from gcxform_plugins.passes.rtcp.forward.moving import Correcting, Moving
@@ -39,8 +39,6 @@ from gcxform_plugins.passes.rtcp.proof.vectors import PointedProof
 from gcxform_plugins.passes.rtcp.switches import Switches
 from gcxform_plugins.passes.rtcp.tool_vectors import without_left
 from gcxform_plugins.passes.rtcp.user_lines import UserLines
-
-Ints = NDArray[np.int64]
 
 PLAIN = frozenset({gx.ABSOLUTE, gx.LINEAR_ONLY, gx.NOMINAL})
 

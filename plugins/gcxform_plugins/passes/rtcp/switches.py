@@ -11,13 +11,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats
 from gcxform_plugins.passes.rtcp.place import off_zero
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 SAY = 'switch it before; or say what holds: tip-at-start = "off" in [control] of the machine file'
 TURN_BACK = "turn them to 0 before; or say where they stand: start = { A = 0.0, ... } in [input]"

@@ -5,12 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from gcxform.vocabulary import Flags, Floats
 
 UPRIGHT = np.array([0.0, 0.0, 1.0])
 

@@ -16,11 +16,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
-
-Floats = NDArray[np.float64]
+from gcxform.vocabulary import Floats
 
 
 @dataclass

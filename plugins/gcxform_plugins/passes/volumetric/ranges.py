@@ -5,16 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.volumetric.volumetric import Volumetric
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 BORDER = 1e-9  # mm
 CURVED_CELLS = 1.0  # the bounds of a curved field hold for one cell beyond the table

@@ -17,18 +17,15 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats
 from gcxform_plugins.passes.volumetric.forward.compensation import Compensation, left_to_machine
 from gcxform_plugins.passes.volumetric.levers import UNKNOWN, lever_of
 from gcxform_plugins.passes.volumetric.place import Place
 from gcxform_plugins.passes.volumetric.ranges import beyond
 from gcxform_plugins.passes.volumetric.undo.commands import Commands
 from gcxform_plugins.passes.volumetric.undo.machine import Machine
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 ARC_TOLERANCE = 0.001  # mm, where no tolerance is given: an arc cannot be exact
 
@@ -177,7 +174,7 @@ class Volumetric(gx.Pass):
         undoing = Commands if self.inverse else Machine
         return undoing(self, path, self._place(path, context)).run() if len(path) else path
 
-    def spares(self, path: gx.Toolpath) -> NDArray[np.bool_]:
+    def spares(self, path: gx.Toolpath) -> Flags:
         """Return the rapids to points of the machine, to unknown places, or all if so asked."""
         return left_to_machine(path, self.rapids == "skip")
 

@@ -17,12 +17,9 @@ from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from gcxform.vocabulary import Flags, Floats, Ints
 
 LEAP = 45.0
 """Degrees; an axis that turns farther from one point to the next leaps."""
@@ -90,7 +87,7 @@ class _Step:
 
     angle: Floats
     cost: Floats
-    come: NDArray[np.int64]
+    come: Ints
 
 
 class Choice:

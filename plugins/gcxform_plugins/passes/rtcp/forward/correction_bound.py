@@ -17,11 +17,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
-
-Floats = NDArray[np.float64]
+from gcxform.vocabulary import Floats
 
 
 class Curve(NamedTuple):

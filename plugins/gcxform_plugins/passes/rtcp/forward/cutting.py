@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.rtcp.forward.ways import Way
 from gcxform_plugins.passes.rtcp.place import SAME, Place, turned_at
 from gcxform_plugins.passes.rtcp.proof.undoing import SHARE
@@ -15,9 +16,6 @@ from gcxform_plugins.passes.rtcp.proof.undoing import SHARE
 if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp.rtcp import Rtcp
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 STILL = 1e-7  # mm, degrees; what moves by less stands still
 ASTRAY = 0.7  # of the tolerance; what rounded angles may take of it, where they move the tip

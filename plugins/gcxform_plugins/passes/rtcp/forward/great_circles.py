@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Floats, Ints
 from gcxform_plugins.passes.rtcp.forward.choice import LEAP
 from gcxform_plugins.passes.rtcp.forward.moving import STILL, Moving
 from gcxform_plugins.passes.shared.tip_bound import leaving
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SOON = 1e-6  # part of a block in which an axis turns by a leap, if it ever does at its ends
 SOON_LESS = 0.02  # of a leap within the block

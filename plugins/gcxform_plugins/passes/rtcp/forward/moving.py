@@ -11,9 +11,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.rtcp.forward.choice import DRAWN_BACK, WHY, Choice, NoWayError, nearest
 from gcxform_plugins.passes.rtcp.forward.correction_bound import bend_of_correction
 from gcxform_plugins.passes.rtcp.forward.cutting import Cutting
@@ -26,9 +26,6 @@ from gcxform_plugins.passes.shared.tip_bound import leaving
 if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp.rtcp import Rtcp
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 NEXT = 1e-9  # degrees; rows that do not turn still follow one another
 NEAR = 1e-7  # part of a row

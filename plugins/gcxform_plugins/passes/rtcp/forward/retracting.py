@@ -19,14 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Floats, Ints
 from gcxform_plugins.passes.rtcp.user_lines import Line
 from gcxform_plugins.passes.shared.tip_bound import leaving
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp.forward.moving import Moving
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 HELD = 0.08
 """How far the tip may move while axes turn, as a part of the way it was drawn back."""

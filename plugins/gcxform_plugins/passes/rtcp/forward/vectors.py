@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.rtcp.forward.choice import TURN
 from gcxform_plugins.passes.rtcp.forward.great_circles import OnCircles
 from gcxform_plugins.passes.rtcp.forward.moving import STILL
@@ -24,9 +24,6 @@ from gcxform_plugins.passes.rtcp.tool_vectors import Vectors, without_left
 if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp.rtcp import Rtcp
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 MOST = 179.0  # degrees that the tool turns in a block: of half a turn nobody knows the way
 LEAST = 0.5  # degrees; where no axis turns by as much in a block, none leaps in it

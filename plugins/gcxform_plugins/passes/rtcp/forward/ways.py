@@ -6,14 +6,11 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gcxform.vocabulary import Floats, Ints
 from gcxform_plugins.passes.rtcp.forward.correction_bound import bend_of_correction
 from gcxform_plugins.passes.rtcp.place import Place
 from gcxform_plugins.passes.shared.tip_bound import leaving
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Way(Protocol):

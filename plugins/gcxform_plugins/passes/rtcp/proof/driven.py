@@ -5,18 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Floats, Ints
 from gcxform_plugins.passes.rtcp.place import Place
 from gcxform_plugins.passes.rtcp.proof.undoing import Undoing
 from gcxform_plugins.passes.rtcp.tool_vectors import Vectors
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp.rtcp import Rtcp
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Leading(Protocol):

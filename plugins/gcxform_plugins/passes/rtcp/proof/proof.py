@@ -11,9 +11,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.rtcp.proof.driven import Driven, Leading, Straight
 from gcxform_plugins.passes.rtcp.proof.retracted import Retracted
 from gcxform_plugins.passes.rtcp.proof.undoing import SHARE
@@ -22,9 +22,6 @@ from gcxform_plugins.passes.rtcp.user_lines import UserLines
 if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp.rtcp import Rtcp
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 AT_ONCE = 20_000  # places compared at once
 LEAN_SHARE = 0.02  # of the tolerance of the tool axis, that is left to the places looked at

@@ -17,9 +17,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Floats, Ints
 from gcxform_plugins.passes.rtcp.proof.driven import Driven
 from gcxform_plugins.passes.rtcp.proof.undoing import SHARE
 from gcxform_plugins.passes.rtcp.user_lines import Line, UserLines
@@ -27,8 +27,6 @@ from gcxform_plugins.passes.rtcp.user_lines import Line, UserLines
 if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp.rtcp import Rtcp
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 NEAR = 0.1
 """How far the tip may move while axes turn, as a part of the way it was drawn back."""

@@ -10,18 +10,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Ints
 from gcxform_plugins.passes.rtcp.place import turned_at
 from gcxform_plugins.passes.rtcp.proof.driven import Driven, Straight
 from gcxform_plugins.passes.rtcp.proof.proof import Proof
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp.rtcp import Rtcp
-
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 
 class TipProof(Proof):

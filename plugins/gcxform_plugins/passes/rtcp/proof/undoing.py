@@ -12,16 +12,14 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.rtcp.place import Place
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp.rtcp import Rtcp
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 TOO_MANY = 2.0**40  # pieces: refused, and still a whole number
 SHARE = 0.1
@@ -63,7 +61,7 @@ class Undoing:
         slack = float(np.max(bend / pieces**2, initial=0.0))
         return new.replace(entry=self._entry(), slack=path.slack + slack)
 
-    def _timed(self, row: Ints) -> NDArray[np.bool_]:
+    def _timed(self, row: Ints) -> Flags:
         return np.asarray(self.path.feed_mode[row] == gx.FeedMode.INVERSE_TIME)
 
     def _turned(self, positions: Floats, rows: Ints) -> Floats:

@@ -12,18 +12,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.rtcp.proof.driven import Driven, Pointed
 from gcxform_plugins.passes.rtcp.proof.proof import LEAN_SHARE, STILL, Proof
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.rtcp.rtcp import Rtcp
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 ROOM = 1e-9  # degrees
 HALF_A_TURN = 180.0

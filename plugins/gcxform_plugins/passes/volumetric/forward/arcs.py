@@ -5,16 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.volumetric.forward.compensation import Compensation
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 FEWEST, MOST = 8, 256  # points at which a piece is looked at
 AT_ONCE = 200_000  # points looked at together

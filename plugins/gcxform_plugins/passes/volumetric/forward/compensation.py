@@ -10,9 +10,9 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.volumetric.forward.arcs import ArcFitter
 from gcxform_plugins.passes.volumetric.forward.lines import cuts_of_lines
 from gcxform_plugins.passes.volumetric.forward.turning_head import Swing
@@ -22,9 +22,6 @@ from gcxform_plugins.passes.volumetric.ranges import beyond_tables, check_inside
 if TYPE_CHECKING:
     from gcxform_plugins.passes.volumetric.volumetric import Volumetric
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 PACE = 0.1  # of a way; by so much more or less of it, at most, a turn of the head may be faster
 PROOF = 1.5e-5  # mm; what the proof may add to what is off, for what it does not follow

@@ -9,16 +9,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.volumetric.forward.compensation import Compensation
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 TIED = (gx.Form.THREAD, gx.Form.SYNCHRONISED, gx.Form.PROBE)
 REFINEMENTS = 4  # each shrinks the error of a crossing by the Lipschitz constant of the error

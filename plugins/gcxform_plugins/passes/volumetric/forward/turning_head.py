@@ -15,17 +15,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.shared.tip_bound import leaving
 from gcxform_plugins.passes.volumetric.levers import Lever
 
 if TYPE_CHECKING:
     from gcxform_plugins.passes.volumetric.volumetric import Volumetric
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Swing:
@@ -57,7 +54,7 @@ class Swing:
         return np.asarray((2.0 * self.slope * length * speed + self.angle * curved) / 8.0)
 
 
-def _sags(lever: Lever, turning: NDArray[np.bool_]) -> Floats:
+def _sags(lever: Lever, turning: Flags) -> Floats:
     """Return how far (n,) mm the tip leaves the chord of its way while the head turns."""
     found = np.zeros(len(turning))
     rows = np.flatnonzero(turning)

@@ -9,13 +9,11 @@ straight along straight commands in it. So ways are cut until that is so of ever
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.volumetric.undo.machine import BEND_SLACK, UNDO_SLACK, Arm, Machine
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Cuts = tuple[Ints, Floats]
 
 STEPS = 40  # of the search for a command, each of which leaves less than half of what is off
@@ -101,7 +99,7 @@ class Commands(Machine):
                 parts.append(begin[which] + share * (stop - begin)[which])
         return np.concatenate(rows), np.concatenate(parts), farthest
 
-    def _straight(self, lines: NDArray[np.bool_], row: Ints, part: Floats) -> Cuts:
+    def _straight(self, lines: Flags, row: Ints, part: Floats) -> Cuts:
         """Return the cuts, and more of lines where the error between two of them is curved."""
         mine = lines[row]
         of, begin, stop = _pieces(np.flatnonzero(lines), row[mine], part[mine])

@@ -9,9 +9,9 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gcxform as gx
+from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.volumetric.levers import Lever
 from gcxform_plugins.passes.volumetric.place import Place
 from gcxform_plugins.passes.volumetric.ranges import beyond_tables, check_inside
@@ -19,9 +19,6 @@ from gcxform_plugins.passes.volumetric.ranges import beyond_tables, check_inside
 if TYPE_CHECKING:
     from gcxform_plugins.passes.volumetric.volumetric import Volumetric
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 NO_WAY = 1e-12  # of a move; two cuts nearer to each other are one
 UNDO_SLACK = 2e-6  # mm; how far pieces of an undone arc are from the curve they stand for
