@@ -379,10 +379,11 @@ class Verifier:
     def _events(self, old: tuple[Event, ...], new: tuple[Event, ...], trace: Trace) -> None:
         """Check that events are the same, in order, at the same place between the moves."""
         self.findings.events += len(old)
+        budget = self.budget
         for before, after in zip(old, new, strict=False):
             line = trace.line_of(after.line)
             same = (before.what, before.values, before.line) == (after.what, after.values, line)
-            if not same or not trace.stands_before(after.row, before.row, self.budget):
+            if not same or not trace.stands_before(after.row, before.row, budget):
                 message = f"{before.what} of the source became {after.what}, or moved"
                 self._raise(message, before.line, after.line)
         if len(old) != len(new):
