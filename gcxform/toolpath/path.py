@@ -130,6 +130,10 @@ class Event:
         """Return the same event before another row: `replace` takes five times as long."""
         return Event(row, self.what, self.values, self.line, self.within)
 
+    def __reduce__(self) -> tuple[type[Event], tuple[object, ...]]:
+        """Go between processes by what it is made of: a dataclass of slots asks for its fields."""
+        return Event, (self.row, self.what, self.values, self.line, self.within)
+
 
 @dataclass(frozen=True, slots=True)
 class Given:
