@@ -38,7 +38,7 @@ MUTATIONS = (
     _verifier("missing events are ignored", "if len(old) != len(new):"),
     _verifier(
         "the place of events is ignored",
-        "or not trace.stands_before(after.row, before.row, self.budget)",
+        "or not trace.stands_before(after.row, before.row, budget)",
         "",
     ),
     _verifier("missing moves are ignored", "self._missing(trace, runs)\n        if not", "if not"),
