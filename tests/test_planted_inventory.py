@@ -98,14 +98,14 @@ def lost_copy(self: Execution, stop: int) -> None:
     """Take the lines but for the last one."""
     lines = np.arange(self.at, stop)
     self.times[lines] += 1
-    self._put(self.listing.raw(self.at, stop - 1), lines[:-1])
+    self.put(self.listing.raw(self.at, stop - 1), lines[:-1])
     self.at = stop
 
 
 def short_copy(self: Execution, stop: int) -> None:
     """Leave out the first line without any trace, behind which nothing jumps."""
     first = self.at + (self.at > 0 and stop - self.at > 1)
-    self._put(self.listing.raw(first, stop), np.arange(first, stop))
+    self.put(self.listing.raw(first, stop), np.arange(first, stop))
     self.times[first:stop] += 1
     self.at = stop
 

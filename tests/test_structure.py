@@ -123,7 +123,6 @@ def test_circles_are_found() -> None:
 
 
 LEFT = (
-    "gcxform.flow",
     "gcxform_plugins.passes.rtcp",
     "gcxform_plugins.passes.volumetric",
 )

@@ -7,8 +7,9 @@ from typing import Any
 
 from lark import Token
 
-from gcxform.flow.execution import HINT, Execution, whole_number
+from gcxform.flow.execution import HINT, Execution
 from gcxform.flow.listing import bare
+from gcxform.flow.run_state import whole_number
 from gcxform.syntax.grammar import is_comment
 from gcxform.syntax.tree import BLANKS, Statement, Word
 

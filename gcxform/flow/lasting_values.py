@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from gcxform.dialect.arithmetic import Key, NoValueError
 from gcxform.flow.messages import prints_values, told
+from gcxform.flow.run_state import Edit, RunState
 from gcxform.flow.text import assignment
 from gcxform.modal.expressions.value import written
 from gcxform.syntax.tree import Block, Comment
-
-if TYPE_CHECKING:
-    from gcxform.flow.execution import Edit, Execution
 
 
 class Lasting:
@@ -22,7 +19,7 @@ class Lasting:
     locals_set  how often one was set that ends with its call, or with the program
     """
 
-    def __init__(self, program: Execution) -> None:
+    def __init__(self, program: RunState) -> None:
         self.program = program
         self.assigned: list[tuple[int, Key, float]] = []
         self.locals_set = 0

@@ -6,15 +6,11 @@ stands behind a loop or a branch that was entered, if nothing inside goes elsewh
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, Location, VerificationError
+from gcxform.flow.execution import Execution
 from gcxform.system.arrays import Flags, Ints
-
-if TYPE_CHECKING:
-    from gcxform.flow.execution import Execution
 
 HINT = "nothing was written; this is a bug of gcxform"
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
@@ -13,6 +15,20 @@ from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statem
 
 CODES_OF_CALLS = frozenset({97, 98, 99, 198})
 STORED_MODES = frozenset({70, 71, 72, 73})
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """A subprogram as it stands in the file: what calls it by, its first and its last line."""
+
+    name: str
+    first: int
+    last: int
+
+    @property
+    def lines(self) -> slice:
+        """Its lines behind the first, which names it and is not executed by a call."""
+        return slice(self.first + 1, self.last + 1)
 
 
 class Listing:

@@ -17,9 +17,9 @@ from typing import Any
 from lark import Token
 
 from gcxform.dialect.arithmetic import MACRO_B, Arithmetic, NoValueError
-from gcxform.flow.execution import HINT, UNKNOWN, Call, Execution, whole_number
-from gcxform.flow.listing import Listing, bare
-from gcxform.flow.uncalled_subprograms import Definition
+from gcxform.flow.execution import HINT, Execution
+from gcxform.flow.listing import Definition, Listing, bare
+from gcxform.flow.run_state import UNKNOWN, Call, whole_number
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import BLANKS, Block, Mark, Number, Statement, Word
 

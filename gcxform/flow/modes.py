@@ -9,12 +9,9 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from gcxform.flow.run_state import RunState
 from gcxform.syntax.tree import Block, Number
-
-if TYPE_CHECKING:
-    from gcxform.flow.owords import OWords
 
 UNITS, FEED, SPEED, SPINDLE, MIST, FLOOD = "units", "F", "S", "spindle", "M7", "M8"
 RESTORED = ("plane", "distance", "arc-distance", "feed-mode", "frame", "retract")
@@ -35,7 +32,7 @@ class Level:
 class StoredModes:
     """Follows the codes in force along the executed blocks, and writes those that come back."""
 
-    def __init__(self, program: OWords) -> None:
+    def __init__(self, program: RunState) -> None:
         self.program = program
         self.levels = [Level()]
         initial = program.dialect.initial

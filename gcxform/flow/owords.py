@@ -14,11 +14,11 @@ from collections.abc import Iterator
 from gcxform.diagnostics import InputError
 from gcxform.dialect.arithmetic import RS274, Key, NoValueError, whole
 from gcxform.flow.constructs import Construct, Constructs, OWord
-from gcxform.flow.execution import HINT, Call, Edit, Execution, whole_number
-from gcxform.flow.listing import Listing, bare
+from gcxform.flow.execution import HINT, Execution
+from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.modes import StoredModes
 from gcxform.flow.places import FIRST, Places
-from gcxform.flow.uncalled_subprograms import Definition
+from gcxform.flow.run_state import Call, Edit, whole_number
 from gcxform.modal.state import Reading
 from gcxform.syntax.grammar import span_of
 from gcxform.syntax.tree import Block, Statement, Word

@@ -6,12 +6,12 @@ The blocks that have been executed so far are read as any program is; they end a
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import INCH, LINEAR
+from gcxform.flow.run_state import Edit, RunState
 from gcxform.flow.text import decimal
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.meaning.tables import NUMBER
@@ -19,19 +19,15 @@ from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import State
 from gcxform.syntax.tree import Block, Word
 
-if TYPE_CHECKING:
-    from gcxform.flow.owords import OWords
-
 FIRST = 5420
 RADIUS, ANGLE = "@", "^"
 AXES_OF_PLANE = frozenset("XY")
-Edit = tuple[int, int, str]
 
 
 class Places:
     """Reads the executed blocks as they come."""
 
-    def __init__(self, program: OWords) -> None:
+    def __init__(self, program: RunState) -> None:
         self.program = program
         self.reader = WindowReader(program.dialect)
         self.interpreter = Interpreter(program.dialect, program.reading, file=program.listing.file)

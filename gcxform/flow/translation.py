@@ -23,7 +23,7 @@ from lark.exceptions import UnexpectedInput
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
-from gcxform.flow.straightened import WrittenOut
+from gcxform.flow.executed import WrittenOut
 from gcxform.modal.state import Reading
 from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.grammar import parsed, refusal_of, rule_of, span_of

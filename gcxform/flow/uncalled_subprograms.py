@@ -7,39 +7,25 @@ with the switch off the control executes it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gcxform.flow.execution import Execution
+from gcxform.flow.listing import Definition
 from gcxform.modal.meaning.meaning import OWN_MOVES
-
-if TYPE_CHECKING:
-    from gcxform.flow.execution import Execution
 
 NAMED = 5  # of the subprograms that a refusal names
 HINT = "transform the program that calls it, with this one in the same file"
 
 
-@dataclass(frozen=True, slots=True)
-class Definition:
-    """A subprogram as it stands in the file: what calls it by, its first and its last line."""
-
-    name: str
-    first: int
-    last: int
-
-    @property
-    def lines(self) -> slice:
-        """Its lines behind the first, which names it and is not executed by a call."""
-        return slice(self.first + 1, self.last + 1)
-
-
 def kept(program: Execution) -> tuple[Definition, ...]:
-    """Return the subprograms that nothing has called, or what is copied may call.
+    """Return the subprograms that nothing has called in a run, or what is copied may call.
 
-    What they do is not transformed, so a file in which nothing else moves is refused: InputError.
+    There are none if the run has decided nothing, or its blocks are not to be written. What they do
+    is not transformed, so a file in which nothing else moves is refused: InputError.
     """
+    if not (program.acted and program.keeps):
+        return ()
     every = tuple(program.definitions())
     skipped = {name for line in program.skipped for name in program.callees(line) or ()}
     found = tuple(

@@ -9,7 +9,7 @@ from gcxform.contract.passes import PassContext
 from gcxform.diagnostics import Diagnostic, GcxformError, InputError, Location, VerificationError
 from gcxform.dialect.arithmetic import Key
 from gcxform.dialect.dialect import Dialect
-from gcxform.flow.straightened import Executed
+from gcxform.flow.executed import Executed
 from gcxform.modal.expressions.value import written
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.inventory import KINDS, Account, Tally, nothing_held

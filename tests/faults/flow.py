@@ -134,14 +134,14 @@ MUTATIONS = (
     ),
     _flow(
         "a distance is not rounded",
-        "gcxform/flow/execution.py",
+        "gcxform/flow/run_state.py",
         "math.floor(abs(value) * steps + 0.5)",
         "abs(value) * steps",
         "tests/test_flow.py",
     ),
     _flow(
         "lines are those that were executed",
-        "gcxform/flow/straightened.py",
+        "gcxform/flow/executed.py",
         "int(self.origin[line - 1]) + 1 if inside else line",
         "line",
         "tests/test_flow.py",

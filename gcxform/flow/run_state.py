@@ -1,0 +1,226 @@
+"""What a run of a program holds at each moment, and what expressions are worth there.
+
+That is the line that is executed, the parameters, the calls that have not returned, and the blocks
+that were executed so far.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from gcxform.diagnostics import InputError
+from gcxform.dialect.arithmetic import Arithmetic, Key, NoValueError, whole
+from gcxform.flow.listing import CODES_OF_CALLS, STORED_MODES, Listing
+from gcxform.flow.text import DECIMALS, decimal
+from gcxform.modal.expressions.value import Evaluator, LocatedError, parameter_key, settable
+from gcxform.modal.lines import DISTANCES
+from gcxform.modal.numbers_without_point import assumed_rounding, hint_of_rounding
+from gcxform.modal.state import Reading
+from gcxform.syntax.tree import Block, Expression, Mark, Number, Word
+from gcxform.system.arrays import Ints
+
+NAMED = 5  # of the calls that a refusal stands in
+UNKNOWN = math.nan
+
+
+Edit = tuple[int, int, str]
+"""Columns of a block, from 0, and what stands there instead."""
+
+
+@dataclass(slots=True)
+class Call:
+    """A call that has not returned: the line it goes on at, and what is put back then.
+
+    `times` are the runs that are left, `first` the first line of the subprogram, `name` what
+    called it by.
+    """
+
+    name: str
+    back: int
+    first: int = 0
+    times: int = 1
+    locals: dict[Key, float] = field(default_factory=dict)
+    counters: dict[int, int] = field(default_factory=dict)
+
+
+class RunState:
+    """Where a run is; `text` and `origin` are the executed blocks and their lines.
+
+    `keeps`: the blocks are to be written, so what lasts in parameters and what nothing calls stands
+    in them; otherwise they are only read.
+    """
+
+    def __init__(self, listing: Listing, reading: Reading, keeps: bool) -> None:
+        assert listing.dialect.arithmetic is not None
+        self.listing = listing
+        self.dialect = listing.dialect
+        self.arithmetic: Arithmetic = listing.dialect.arithmetic
+        self.reading = reading
+        self.keeps = keeps
+        given = {parameter_key(name): v for name, v in reading.parameters.items()}
+        self.parameters = {k: v for k, v in given.items() if self.arithmetic.owns(k)}
+        self.calls: list[Call] = []
+        self.line = 0
+        self.text: list[bytes] = []
+        self.origin: list[Ints] = []
+        self.size = self.changes = 0
+        self.assumed: dict[str, None] = {}
+        self.inch = (reading.units or self.dialect.initial["units"]) in ("in", "G20")
+        self.seen = 0
+
+    def set(self, values: Mapping[Key, float]) -> None:
+        """Give parameters their values."""
+        self.changes += any(self.parameters.get(k) != v for k, v in values.items())
+        self.parameters.update(values)
+
+    def put(self, text: bytes, lines: Ints) -> None:
+        """Take executed lines, from 0, with what is written for them."""
+        if text and not text.endswith((b"\n", b"\r")):
+            text += b"\n"
+        self.text.append(text)
+        self.origin.append(lines)
+        self.size += len(text)
+
+    def write_line(self, text: str) -> None:
+        """Write a block that the line stands for."""
+        self.put(text.encode("latin-1") + self.listing.line_end(self.line), np.array([self.line]))
+
+    def stands(self, block: Block) -> bool:
+        """Whether a line counts where lines are put together: not if it is skipped."""
+        policy = self.reading.block_delete or self.dialect.block_delete
+        return not (policy == "skip" and has_slash(block))
+
+    # --- values ---
+
+    def value(self, node: Any, conditions: bool = False) -> float:
+        """Return the value of an expression of the line. Raises InputError."""
+        arithmetic = self.conditions if conditions else self.arithmetic
+        try:
+            return Evaluator(arithmetic, self.parameters).value(node)
+        except LocatedError as why:
+            raise self.refusal(why.code, why.message, why.hint, (why.start, why.end)) from None
+
+    @property
+    def conditions(self) -> Arithmetic:
+        """The arithmetic of conditions."""
+        return self.arithmetic
+
+    def number(self, block: Block, address: str, default: float = UNKNOWN) -> float:
+        """Return the value of the word with an address, or the default."""
+        for word in block.words:
+            if word.address == address:
+                value = word.value
+                return self.value(value.tree) if isinstance(value, Expression) else value.value
+        return default
+
+    def written(self, word: Word) -> str:
+        """Return the value of a word that is computed, as it is written."""
+        assert isinstance(word.value, Expression)
+        evaluator = Evaluator(self.arithmetic, self.parameters, in_word=True)
+        try:
+            value = evaluator.value(word.value.tree)
+            length = self.listing.meaning(self.line).is_length(word.address)
+            if word.address in self.arithmetic.whole and not length:
+                value = float(whole(value, self.arithmetic.whole_slip))
+            if word.address in "GM":
+                value = whole(value * 10) / 10
+                self._refuse_flow(word, value)
+        except NoValueError as why:
+            start, end = (
+                (why.start, why.end) if isinstance(why, LocatedError) else (word.start, word.end)
+            )
+            raise self.refusal(why.code, why.message, why.hint, (start, end)) from None
+        if self.dialect.feed_point_required and word.address == "F":
+            message = "F is computed: its unit depends on the control"
+            raise self.refusal("GX205", message, place=(word.start, word.end))
+        if self.dialect.point_required and word.address in DISTANCES:
+            return self._on_increment(word, value)
+        return decimal(value).removesuffix(".")
+
+    def _refuse_flow(self, word: Word, value: float) -> None:
+        """Refuse a computed M code that decides what is executed next, and a computed unit."""
+        if word.address == "G" and value in (20, 21) and self.dialect.point_required:
+            message = f"G{value:g} is the unit of what is computed, and is computed itself"
+            raise self.refusal("GX206", message, "write the code", (word.start, word.end))
+        code = self.dialect.m_codes.get(int(value)) if word.address == "M" else None
+        if code is not None and (code.ends or value in CODES_OF_CALLS or value in STORED_MODES):
+            message = f"M{value:g} decides what is executed, and is computed: it must be written"
+            raise self.refusal("GX206", message, place=(word.start, word.end))
+
+    def _on_increment(self, word: Word, value: float) -> str:
+        """Return a distance as the control rounds it."""
+        inch, said = self._inch(), self.reading.increments
+        steps = None if said is None else said.per_unit(word.address, inch)
+        if said is None or steps is None:
+            message = f"{word.address} is computed: to what it is rounded depends on the control"
+            hint = hint_of_rounding(word.address, inch)
+            raise self.refusal("GX205", message, hint, (word.start, word.end))
+        self.assumed[assumed_rounding(word.address, inch, said)] = None
+        count = math.floor(abs(value) * steps + 0.5)
+        return decimal(math.copysign(round(count / steps, DECIMALS), value))
+
+    def _inch(self) -> bool:
+        """Whether the line is in inches, behind the blocks that have been written."""
+        fresh, self.seen = self.origin[self.seen :], len(self.origin)
+        for lines in (*fresh, np.array([self.line])):
+            said = self.listing.units[lines]
+            said = said[said >= 0]
+            self.inch = bool(said[-1]) if len(said) else self.inch
+        return self.inch
+
+    def assignment(self, tree: Any, place: tuple[int, int]) -> tuple[Key, float]:
+        """Return the parameter that a tree sets, and its value. Raises InputError."""
+        parameter, expression = tree.children
+        evaluator = Evaluator(self.arithmetic, self.parameters)
+        try:
+            return settable(self.arithmetic, evaluator.key(parameter)), evaluator.value(expression)
+        except LocatedError as why:
+            place, error = (why.start, why.end), why
+        except NoValueError as why:
+            error = why  # type: ignore[assignment]
+        raise self.refusal(error.code, error.message, error.hint, place)
+
+    # --- refusals ---
+
+    def located(self, error: InputError) -> InputError:
+        """Return an error about executed blocks as one about the lines of the program."""
+        lines = np.concatenate(self.origin)
+        return InputError(
+            tuple(
+                d.at(replace(d.where, line=int(lines[d.where.line - 1]) + 1)) if d.where else d
+                for d in error.diagnostics
+            )
+        )
+
+    def refusal(
+        self, code: str, message: str, hint: str = "", place: tuple[int, int] | None = None
+    ) -> InputError:
+        """Return the error about the line that is executed."""
+        error = self.listing.refusal(self.line, code, message, hint, place)
+        if not self.calls:
+            return error
+        names = [call.name for call in reversed(self.calls)]
+        inside = " in ".join(names[:NAMED] + ["..."] * (len(names) > NAMED))
+        found = tuple(replace(d, context=f"called by {inside}") for d in error.diagnostics)
+        return InputError(found)
+
+
+def computed(word: Word) -> bool:
+    """Whether the value of a word is an expression."""
+    return isinstance(word.value, Expression)
+
+
+def has_slash(block: Block) -> bool:
+    """Whether a switch of the control decides if a block is executed."""
+    return any(isinstance(item, Mark) and item.kind == "block_delete" for item in block.items)
+
+
+def whole_number(word: Word) -> int | None:
+    """Return the whole number that a word was written with; None for another."""
+    value = word.value.value if isinstance(word.value, Number) else UNKNOWN
+    return int(value) if value == value and value % 1 == 0 else None
