@@ -39,9 +39,10 @@ if TYPE_CHECKING:
     from gcxform.dialect.codes import Code as Code
     from gcxform.dialect.codes import CutterComp as CutterComp
     from gcxform.dialect.codes import MCode as MCode
-    from gcxform.dialect.dialect import ArcRule as ArcRule
     from gcxform.dialect.dialect import Dialect as Dialect
     from gcxform.dialect.dialect import NumberFormat as NumberFormat
+    from gcxform.dialect.move_rules import ArcRule as ArcRule
+    from gcxform.dialect.move_rules import FeedRule as FeedRule
     from gcxform.errormodel.converting import Fit as Fit
     from gcxform.errormodel.converting import to_functions as to_functions
     from gcxform.errormodel.converting import to_lattice as to_lattice
@@ -139,7 +140,8 @@ _HOMES = {
     "contract.passes": "Pass PassContext TextPass",
     "diagnostics": "Diagnostic FileError GcxformError InputError Location UsageError "
     "VerificationError",
-    "dialect.dialect": "ArcRule Dialect NumberFormat",
+    "dialect.dialect": "Dialect NumberFormat",
+    "dialect.move_rules": "ArcRule FeedRule",
     "flow.translation": "Item Translator",
     "guess": "Evidence Guess guess_dialect",
     "plugin.hookspecs": "hookimpl",

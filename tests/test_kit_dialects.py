@@ -99,3 +99,9 @@ def test_a_good_dialect():
 def test_broken_dialects(broken, said):
     with pytest.raises(AssertionError, match=re.escape(said)):
         check_dialect(broken)
+
+
+def test_what_nothing_reads_is_refused():
+    """Such as a fact that has moved into a rule: it would be left out without a word."""
+    with pytest.raises(TypeError, match=r"Old\.arc_planes: gcxform\.Dialect has no arc_planes"):
+        type("Old", (Plain,), {"arc_planes": frozenset({"XY"})})

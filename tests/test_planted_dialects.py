@@ -78,7 +78,7 @@ def starting(base: Kind, **changes: str) -> Kind:
     return changed(base, initial={**base.initial, **modes})
 
 
-def arcs(base: Kind, **changes: float) -> Kind:
+def arcs(base: Kind, **changes: Any) -> Kind:
     return changed(base, arc_rule=replace(base.arc_rule, **changes))
 
 
@@ -304,7 +304,7 @@ PLANTED: dict[str, tuple[Callable[[], Kind], str]] = {
     "arcs without a largest": (lambda: arcs(GRBL, largest=float("inf")), "by inf mm"),
     "arcs in inches the other way": (lambda: arcs(NGC, in_inch=1 / 25.4), "times as much"),
     "an R that falls far short": (lambda: arcs(NGC, r_short=1.0), "fall short of"),
-    "turns counted by R": (lambda: changed(NGC, turns_address="R"), "counts the turns"),
+    "turns counted by R": (lambda: arcs(NGC, turns="R"), "counts the turns"),
     "whole millimetres": (lambda: changed(FANUC, numbers=gx.NumberFormat(mm=1)), "are coarse"),
     "inches coarser": (
         lambda: changed(NGC, numbers=gx.NumberFormat(mm=4, inch=3)),

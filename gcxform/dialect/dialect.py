@@ -6,7 +6,7 @@ A new dialect inherits its nearest relative and overrides what differs:
         "Acme 9000, firmware 3."
         name = "acme"
         axes = "XYZ"
-        arc_planes = frozenset({"XY"})
+        arc_rule = gx.ArcRule(planes=frozenset({"XY"}))
 
 Everything is data; the reader, the emitter and the verifier ask here and nowhere else.
 """
@@ -22,6 +22,7 @@ from gcxform.dialect.arithmetic import Arithmetic
 from gcxform.dialect.codes import ISO, ISO_M, Code, CutterComp, MCode
 from gcxform.dialect.cycle_rule import CycleRule
 from gcxform.dialect.language import Language
+from gcxform.dialect.move_rules import ArcRule, FeedRule
 from gcxform.machine.control import Setting, declare
 from gcxform.syntax.grammar import Grammar, load
 
@@ -51,23 +52,6 @@ class NumberFormat:
                 self, name, arguments.whole(name, getattr(self, name), MOST_DECIMALS)
             )
         object.__setattr__(self, "zeros", arguments.flag("zeros", self.zeros))
-
-
-@dataclass(frozen=True, slots=True)
-class ArcRule:
-    """When the control accepts an arc whose start and end radius differ by `delta` (mm).
-
-    Accepted if delta <= `absolute`, or if delta <= `relative` * radius and delta <= `largest`.
-    `smallest` is the least radius; `r_short` is how much an R may fall short of the half chord.
-    `in_inch`: how many times as large `absolute` and `largest` are in blocks in inches.
-    """
-
-    absolute: float
-    relative: float = 0.0
-    largest: float = float("inf")
-    smallest: float = 0.0
-    r_short: float = 0.0
-    in_inch: float = 1.0
 
 
 class Dialect:
@@ -116,28 +100,10 @@ class Dialect:
     """A distance without a point counts in increments of the control, or in units: a setting."""
     feed_point_required: ClassVar[bool] = False
     """An F without a point counts in a unit of the control, which must be configured."""
-    feed_of_linear_axes: ClassVar[bool] = False
-    """A feed per minute counts the way of X, Y and Z where they move, and no degrees beside it."""
     calculator_words: ClassVar[str] = "XYZUVWABCIJKRQF"
     """Words to which the control can be set to add a point where they have none."""
     feed_steps: ClassVar[Mapping[str, tuple[float, float]]] = {}
     """Steps in mm/min and inch/min of an F without a point, by the system in which it counts."""
-    circle_needs_axis_word: ClassVar[bool] = False
-    turns_address: ClassVar[str] = ""
-    """The word that counts the turns of an arc (n - 1 full turns beyond the arc itself)."""
-    feed_mode_clears_feed: ClassVar[bool] = False
-    feed_before_units: ClassVar[bool] = False
-    """F is read in the unit that was in force before a G20 or G21 of its own block."""
-    change_clears_feed: ClassVar[bool] = False
-    """After another unit the feed is not known until it is programmed; after another feed mode it
-    never is."""
-    feed_along_lines: ClassVar[bool] = False
-    """In moves of several kinds of axes a feed counts along X Y Z, or along all rotary axes where
-    they move alone; otherwise the length of such moves is not known."""
-    inverse_time_arcs: ClassVar[bool] = True
-    """Whether arcs take the time that G93 gives them."""
-    least_inverse_rate: ClassVar[float] = 0.0
-    """Units of the program per minute: in G93 the control moves no slower."""
     lone_cr_is_blank: ClassVar[bool] = False
     """A CR without LF is a blank inside a block, and no line end."""
     resets_at_end: ClassVar[Mapping[str, str]] = {}
@@ -190,7 +156,6 @@ class Dialect:
     needs_end: ClassVar[bool] = False
     """A file without M2 or M30, and not between two percent signs, is refused by the control."""
     stops_at_end: ClassVar[bool] = True
-    skips_first_text: ClassVar[bool] = False
     lower_case: ClassVar[bool] = True
     """Whether words may be written in small letters."""
     number_first: ClassVar[bool] = False
@@ -243,11 +208,10 @@ class Dialect:
     calls_own_lines: ClassVar[bool] = False
     """M97 calls lines of the same program, up to M99."""
     numbers: ClassVar[NumberFormat] = NumberFormat()
-    arc_planes: ClassVar[frozenset[str]] = frozenset({"XY", "ZX", "YZ"})
-    """Planes in which the control can cut arcs."""
-    arc_rotary: ClassVar[bool] = False
-    """Whether a rotary axis may turn along an arc."""
-    arc_rule: ClassVar[ArcRule] = ArcRule(absolute=0.01)
+    arc_rule: ClassVar[ArcRule] = ArcRule()
+    """Which arcs the control cuts."""
+    feed_rule: ClassVar[FeedRule] = FeedRule()
+    """What a feed is about, and when it is lost."""
     cycle_rule: ClassVar[CycleRule | None] = None
     """What the control makes of canned cycles; None: it has none, or they are not known."""
 
@@ -260,8 +224,14 @@ class Dialect:
     these attributes, and from where that is known. The conformance kit asks for it."""
 
     def __init_subclass__(cls) -> None:
-        """Let machine files have the settings that the dialect asks for."""
+        """Let machine files have the settings that the dialect asks for.
+
+        Raises TypeError for an attribute that nothing would read, as one that is misspelled.
+        """
         super().__init_subclass__()
+        for name in vars(cls):
+            if not (name.startswith("_") or hasattr(Dialect, name)):
+                raise TypeError(f"{cls.__name__}.{name}: gcxform.Dialect has no {name}")
         declare(cls.settings)
 
     @classmethod

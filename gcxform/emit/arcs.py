@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gcxform.dialect.dialect import ArcRule
+from gcxform.dialect.move_rules import ArcRule
 from gcxform.modal.moves.arcs import accepts
 from gcxform.system.arrays import Flags, Floats
 from gcxform.toolpath.angles import TURN, swept

@@ -58,7 +58,7 @@ class Centres:
 
     def _in_plane(self, plane: Plane, rows: Ints, start: Floats) -> None:
         manner = self.task.manner
-        if plane.name not in manner.target.arc_planes:
+        if plane.name not in manner.target.arc_rule.planes:
             message = f"{manner.target.name} has no arcs in {plane.name}"
             self._refuse(rows, "GX501", message, 'put the pass "plane" before')
         axes = np.array(plane.axes[:2])
@@ -106,7 +106,7 @@ class Centres:
         silent = full & ~on_grid & refit
         # LinuxCNC counts a circle that closes but for the last bit as no way at all in G93.
         silent |= full & (self.path.feed_mode[rows] == FeedMode.INVERSE_TIME)
-        if self.task.manner.target.circle_needs_axis_word:
+        if self.task.manner.target.arc_rule.circle_needs_axis_word:
             silent[:] = False
         for axis in axes.tolist():
             self.positions.write[rows[full], axis] = True

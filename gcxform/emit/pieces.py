@@ -304,10 +304,10 @@ class Pieces:
         target = self.task.manner.target
         stated = self.feed_mode >= 0
         lost = stated
-        if not target.feed_mode_clears_feed and stated.any():
+        if not target.feed_rule.mode_clears and stated.any():
             held = self._held(self.feed_mode, "feed-mode", self.believed.feed_mode)
             lost = stated & (self.feed_mode != held)
-        if target.change_clears_feed:
+        if target.feed_rule.change_clears:
             inch = fill(self.inch, self.inch >= 0, self.believed.inch)
             lost = lost | (np.append(np.int8(self.believed.inch), inch[:-1])[: len(inch)] != inch)
         return np.asarray(lost)
@@ -315,7 +315,7 @@ class Pieces:
     def _inch_for_feed(self) -> Flags:
         """Return, per piece, whether the control reads its feed in inches."""
         after = fill(self.inch, self.inch >= 0, self.believed.inch) == 1
-        if not self.task.manner.target.feed_before_units:
+        if not self.task.manner.target.feed_rule.before_units:
             return np.asarray(after)
         return np.append(self.believed.inch == 1, after[:-1])[: len(after)]
 

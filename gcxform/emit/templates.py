@@ -212,7 +212,7 @@ class TemplateWriter:
             self._centre(lead)
         else:
             spline = self.meaning.groups.get("motion") in ("G5", "G5.1")
-            return word.address == self.source.turns_address or (spline and word.address in "PQ")
+            return word.address == self.source.arc_rule.turns or (spline and word.address in "PQ")
         return True
 
     def _cycle_word(self, address: str, lead: bytes) -> bool:
@@ -280,14 +280,14 @@ class TemplateWriter:
             self.draft.fields.append(Centre(self.draft.gap_before(lead), OFFSETS[axis], index))
             lead = b""
         if self.key.turns:
-            if not self.target.turns_address:
+            if not self.target.arc_rule.turns:
                 raise CannotSayError(
                     0,
                     len(self.text),
                     f"{self.target.name} has no arcs of more than a turn",
                 )
             self.draft.literal(
-                self.draft.gap_before(b""), f"{self.target.turns_address}{self.key.turns + 1}"
+                self.draft.gap_before(b""), f"{self.target.arc_rule.turns}{self.key.turns + 1}"
             )
 
     def _feed(self, word: Word, lead: bytes, slot: int) -> None:

@@ -92,7 +92,7 @@ def _number_too_large(lines: Lines) -> None:
 
 def _turns_without_arc(lines: Lines, modes: Modes) -> None:
     """Refuse the word for the turns of an arc where there is none."""
-    address = lines.dialect.turns_address
+    address = lines.dialect.arc_rule.turns
     turns = lines.word(address) if address else None
     if turns is None:
         return

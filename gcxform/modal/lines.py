@@ -316,7 +316,7 @@ class Lines:
                 decimals = self.window.decimals[np.where(present, self.first + slot, 0)]
                 value = self.pointless.feeds(value, present, decimals, feed_mode, inch)
         present = present | self._cleared(feed_mode, inch)
-        if self.dialect.feed_before_units:
+        if self.dialect.feed_rule.before_units:
             inch = np.append(self.state.groups["units"] == 1, inch[:-1])[: self.live]
         unit = np.where(inch, INCH, 1.0)
         return (
@@ -327,11 +327,11 @@ class Lines:
     def _cleared(self, feed_mode: Small, inch: Flags) -> Flags:
         """Return the lines that leave no feed in force unless they program one."""
         cleared = np.zeros(self.live, np.bool_)
-        if self.dialect.feed_mode_clears_feed:
+        if self.dialect.feed_rule.mode_clears:
             cleared |= self.stated("feed-mode")
         mode = np.append(np.int8(self.state.groups["feed-mode"]), feed_mode)
         cleared |= mode[1:] != mode[:-1]
-        if self.dialect.change_clears_feed:
+        if self.dialect.feed_rule.change_clears:
             unit = np.append(self.state.groups["units"] == 1, inch)
             cleared |= unit[1:] != unit[:-1]
         return cleared

@@ -24,9 +24,9 @@ def check_mixed(read: Toolpath, path: Toolpath, context: PassContext) -> None:
     `read` is the path of the source, `path` the one to be written, of the same lines.
     """
     source, target = context.source, context.target
-    same_rule = source is target or (source.feed_along_lines and target.feed_along_lines)
+    same_rule = source is target or (source.feed_rule.along_lines and target.feed_rule.along_lines)
     inches = path.blocks.inch != read.blocks.inch
-    if same_rule and (target.feed_along_lines or not inches.any()):
+    if same_rule and (target.feed_rule.along_lines or not inches.any()):
         return
     main, second, rotary = _axes_moved(path)
     rows = (path.kind != Kind.RAPID) & (path.feed_mode != FeedMode.INVERSE_TIME)
@@ -56,6 +56,6 @@ def _axes_moved(path: Toolpath) -> tuple[Ints, Ints, Ints]:
 
 def _way_out(context: PassContext) -> str:
     """Return what to do: G93 says the time of a move, where the source says how long it takes."""
-    if context.source.feed_along_lines and "G93" in context.target.codes:
+    if context.source.feed_rule.along_lines and "G93" in context.target.codes:
         return 'put the pass "feed" before, with mode = "inverse-time"'
     return "let the CAM write this part in inverse time (G93), or in the dialect and unit wanted"

@@ -207,7 +207,7 @@ class Verifier:
         self._feeds(self._proof(trace))
 
     def _feeds(self, proof: FeedProof) -> None:
-        if self.context.target.feed_of_linear_axes:
+        if self.context.target.feed_rule.of_linear_axes:
             for wrong in proof.turned_alone():
                 where = Location(self.file, wrong.line + 1)
                 hint = "write it in inverse time: feed mode=inverse-time, before this step"

@@ -118,7 +118,8 @@ def _check_tables(dialect: type[Dialect]) -> None:
         code = dialect.initial.get(group, "")
         check(code in NUMBER, f"initial[{group!r}] is {code!r}, which is no code of that group")
     planes = {plane.name for plane in Plane}
-    check(dialect.arc_planes <= planes, f"arc_planes are {set(dialect.arc_planes)}, not {planes}")
+    cut = dialect.arc_rule.planes
+    check(cut <= planes, f"arc_rule.planes are {set(cut)}, not {planes}")
     check(set(dialect.comments) <= set("(;"), f"comments begin with {dialect.comments!r}")
     check(dialect.block_delete in ("", "execute", "skip"), "block_delete is not one of its words")
     numbers = dialect.numbers
@@ -184,7 +185,7 @@ def program(dialect: type[Dialect]) -> str:
         lines.append("S1000 M3")
     lines += ["G1 Z-1.5 F100.", "X30. Y25."]
     for plane, code in (("XY", "G17"), ("ZX", "G18"), ("YZ", "G19")):
-        if plane not in dialect.arc_planes or code not in has or not {"G2", "G3"} <= set(has):
+        if plane not in dialect.arc_rule.planes or code not in has or not {"G2", "G3"} <= set(has):
             break
         lines.append(ARCS[plane])
     for axis in dialect.axes[3:]:
@@ -237,7 +238,7 @@ def _check_refusals(dialect: type[Dialect]) -> None:
 def _check_planes(dialect: type[Dialect]) -> None:
     """Check that arcs in planes the control lacks are refused when they are written."""
     for plane, arc in ARCS.items():
-        if plane in dialect.arc_planes:
+        if plane in dialect.arc_rule.planes:
             continue
         start = "G21 G90 G94\nG0 X30. Y25. Z-1.5\n"
         move = {"ZX": "G1 X40. F100.\n", "YZ": "G1 X50. Y15. Z-11.5 F100.\n"}.get(plane, "")

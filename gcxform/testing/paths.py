@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import Dialect
+from gcxform.dialect.move_rules import ArcRule
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.toolpath.path import BLOCK_MODES, COLUMNS, Kind, Toolpath
@@ -75,7 +76,7 @@ class PlainXY(Plain):
     """A control that cuts arcs in the XY plane only."""
 
     name = "plain-xy"
-    arc_planes: ClassVar[frozenset[str]] = frozenset({"XY"})
+    arc_rule = ArcRule(planes=frozenset({"XY"}))
 
 
 def paths() -> Iterator[tuple[str, Toolpath]]:

@@ -26,7 +26,9 @@ Complaints = Iterator[tuple[str, str]]
 def check_declared(dialect: type[Dialect]) -> None:
     """Hold a dialect's tables to what controls agree on. Raises AssertionError."""
     for key, reason in dialect.differs.items():
-        known = key in dialect.codes or hasattr(dialect, key) or key[1:].isdigit()
+        rule, _, fact = key.partition(".")
+        has = hasattr(dialect, rule) and (not fact or hasattr(getattr(dialect, rule), fact))
+        known = key in dialect.codes or has or key[1:].isdigit()
         assert known, f"{dialect.name}: differs names {key}, which the dialect does not have"
         assert reason.strip(), f"{dialect.name}: differs[{key!r}] does not say why"
     for check in CHECKS:
@@ -141,10 +143,10 @@ def _families(dialect: type[Dialect]) -> Complaints:
     if "G40" not in has and {"G41", "G42"} & set(has):
         yield "G40", "there is G41 and no G40"
     codes = {"XY": "G17", "ZX": "G18", "YZ": "G19"}
-    for plane in sorted(dialect.arc_planes):
+    for plane in sorted(dialect.arc_rule.planes):
         code = has.get(codes[plane])
         if code is None or not _done(code):
-            yield "arc_planes", f"there are arcs in {plane} and no {codes[plane]}"
+            yield "arc_rule.planes", f"there are arcs in {plane} and no {codes[plane]}"
 
 
 def _m_codes(dialect: type[Dialect]) -> Complaints:
@@ -294,9 +296,9 @@ def _letters(dialect: type[Dialect]) -> Complaints:
     wanted += "S" * (3 in dialect.m_codes) + "T" * (6 in dialect.m_codes)
     if lacks := sorted(set(wanted) - set(words)):
         yield "words", f"there are codes that want {lacks}, and no such words"
-    turns = dialect.turns_address
+    turns = dialect.arc_rule.turns
     if turns and (turns not in words or turns in "FIJKRSTN"):
-        yield "turns_address", f"{turns!r} counts the turns of arcs, and is another word"
+        yield "arc_rule.turns", f"{turns!r} counts the turns of arcs, and is another word"
     for text in dialect.active_comments:
         if text != text.upper().strip():
             yield "active_comments", f"{text!r} is compared with capitals, and never found"

@@ -358,7 +358,7 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
     meaning.centres = "".join(a for a in CENTRE if a in slots)
     if meaning.dwell and meaning.axes and set(dialect.dwell) & set(dialect.axes):
         yield Refusal("GX203", 0, len(shape.block.text), "a dwell and axis words in one block")
-    motion = {*meaning.axes, *meaning.centres, *"FNRST", dialect.turns_address}
+    motion = {*meaning.axes, *meaning.centres, *"FNRST", dialect.arc_rule.turns}
     motion |= _offset_word(dialect, meaning)
     for word in shape.block.words:
         address = word.address

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gcxform.dialect.dialect import ArcRule, Dialect
+from gcxform.dialect.dialect import Dialect
+from gcxform.dialect.move_rules import ArcRule
 from gcxform.modal.findings import Findings
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import SAME_POINT, TURN, swept
@@ -165,7 +166,7 @@ class _Part:
             "GX303",
             "an absolute centre (G90.1) needs both of its words",
         )
-        if self.dialect.circle_needs_axis_word:
+        if self.dialect.arc_rule.circle_needs_axis_word:
             named = self.words.named[:, self.first] | self.words.named[:, self.second]
             self._refuse(~named, "GX303", "the arc names no axis of its plane")
 

@@ -165,7 +165,7 @@ class Moves:
             meaning = self.lines.table.meanings[int(self.lines.shape[line])]
             wanted = "D" if meaning.compensates else ""
             if arc[line]:
-                wanted += "IJKR" + ("PQ" if self.splines[line] else self.dialect.turns_address)
+                wanted += "IJKR" + ("PQ" if self.splines[line] else self.dialect.arc_rule.turns)
             rule = self.dialect.cycle_rule
             if rule is not None and self.modes.cycle[line] != CYCLE_OFF:
                 wanted += "R" + rule.repeats + rule.takes.get(int(self.modes.cycle[line]), "")
@@ -383,7 +383,7 @@ class Moves:
             lines,
             np.stack([column(a) * scale for a in "IJK"], axis=1),
             column("R") * scale,
-            column(self.dialect.turns_address),
+            column(self.dialect.arc_rule.turns),
             np.stack([~np.isnan(column(a)) for a in "XYZ"], axis=1),
             self.modes.absolute_centre[lines],
             self.modes.inch[lines],

@@ -169,9 +169,9 @@ class Fanuc(gx.Dialect):
     last_code_wins = True
     cutter_comp = gx.CutterComp(stored=True)
     point_required = True
-    change_clears_feed = True
     lower_case = False
     dwell: ClassVar[Mapping[str, float]] = {"X": 1.0, "U": 1.0, "P": 0.001}
+    feed_rule = gx.FeedRule(change_clears=True)
     arc_rule = gx.ArcRule(absolute=0.01)
     cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE
     arithmetic = v.MACRO_B

@@ -65,7 +65,6 @@ class Grbl(gx.Dialect):
     g10_ignores_g91 = True
     g53_in_g91 = "absolute"
     g28_without_axes = True
-    circle_needs_axis_word = True
     block_delete = "execute"
     stops_at_end = False
     resets_at_end: ClassVar[Mapping[str, str]] = {
@@ -82,5 +81,5 @@ class Grbl(gx.Dialect):
     has_percent = False
     has_program_number = False
     words = "FIJKLNPRST"
-    inverse_time_arcs = False
-    arc_rule = gx.ArcRule(absolute=0.005, relative=0.001, largest=0.5)
+    feed_rule = gx.FeedRule(arcs_in_time=False)
+    arc_rule = gx.ArcRule(absolute=0.005, relative=0.001, largest=0.5, circle_needs_axis_word=True)

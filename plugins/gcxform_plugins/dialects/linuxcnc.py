@@ -204,29 +204,29 @@ class LinuxCNC(gx.Dialect):
         before=frozenset({"tool", "override", "output"}),
         after=frozenset({"non-modal", "tool-length", "frame", "path", "retract"}),
     )
-    feed_mode_clears_feed = True
-    feed_before_units = True
-    feed_of_linear_axes = True
     lone_cr_is_blank = True
     number_first = True
     needs_end = True
     most_m_words = 4
     tools_in_table = True
     spindle_words = frozenset({"S", "M3", "M4", "M5", "M19", "M51", "G95", "G96", "G97"})
-    turns_address = "P"
     cycle_rule = CYCLE_RULE
     cycles_stop = True
     line_length = 252
     comments = "(;"
     active_comments = ACTIVE
     words = "DEFHIJKLNPQRST@^$"
-    arc_rotary = True
-    feed_along_lines = True
     lone_codes_count = True
-    least_inverse_rate = 0.1
     arithmetic = v.RS274
     flow = "o-words"
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
+    feed_rule = gx.FeedRule(
+        mode_clears=True,
+        before_units=True,
+        of_linear_axes=True,
+        along_lines=True,
+        least_inverse_rate=0.1,
+    )
     arc_rule = gx.ArcRule(
         absolute=0.0282843,
         relative=0.001,
@@ -234,4 +234,5 @@ class LinuxCNC(gx.Dialect):
         smallest=0.00127,
         r_short=0.00127,
         in_inch=2.54,
+        turns="P",
     )

@@ -76,7 +76,7 @@ class FeedPass(gx.Pass):
         per_minute = there if self.mode == "inverse-time" else here
         timed = here if self.mode == "inverse-time" else there
         mixed = (moves.families > 1) | (moves.rotary.sum(axis=1) > 1)
-        if per_minute.feed_along_lines:
+        if per_minute.feed_rule.along_lines:
             mixed = moves.both_linear
         arcs = path.is_arc[rows]
         for wrong, why in (
@@ -86,7 +86,7 @@ class FeedPass(gx.Pass):
             (path.side[rows] != 0, "cutter compensation changes its length"),
             (np.isnan(moves.lengths()), "where it starts is not known"),
             (mixed, f"{per_minute.name} may measure it along any of its axes"),
-            (arcs & (not timed.inverse_time_arcs), f"{timed.name} does not time arcs in G93"),
+            (arcs & (not timed.feed_rule.arcs_in_time), f"{timed.name} does not time arcs in G93"),
             (self._goes_nowhere(moves), "it goes nowhere, but takes time in G93"),
         ):
             if wrong.any():
@@ -101,7 +101,7 @@ class FeedPass(gx.Pass):
     ) -> None:
         """Refuse what the control moves faster in G93 than it is told."""
         inverse = self.mode == "inverse-time"
-        least = (context.target if inverse else context.source).least_inverse_rate
+        least = (context.target if inverse else context.source).feed_rule.least_inverse_rate
         rate = path.feed[rows] * (1.0 if inverse else way)
         inches = path.blocks.inch[path.block[rows]] & ~_Moves(path, rows).turns
         slow = (rate < least * np.where(inches, INCH, 1.0)) & (way > 0.0)

@@ -32,7 +32,7 @@ class PlanePass(gx.Pass):
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path with arcs in the target's planes only."""
-        lacking = [p for p in gx.Plane if p.name not in context.target.arc_planes]
+        lacking = [p for p in gx.Plane if p.name not in context.target.arc_rule.planes]
         todo = path.is_arc & np.isin(path.plane, lacking)
         if not todo.any():
             return path

@@ -96,7 +96,7 @@ class Fagor(gx.Dialect):
     spelled: ClassVar[Mapping[str, str]] = {"M128": "#RTCP ON", "M129": "#RTCP OFF"}
     has_percent = False
     has_program_number = False
-    change_clears_feed = True
+    feed_rule = gx.FeedRule(change_clears=True)
     arc_rule = gx.ArcRule(absolute=0.01)
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     words = "DFHIJKNPQRST"

@@ -78,5 +78,4 @@ class Heidenhain(gx.Dialect):
     translator = Klartext
     follows_at_start = False  # a new program resets M128: TNC 410/426/430, ISO, p. 169
     tip_switches: ClassVar[Mapping[str, str]] = {"tip-on": "M128", "tip-off": "M129"}
-    turns_address = "P"
-    arc_rule = gx.ArcRule(absolute=0.016)
+    arc_rule = gx.ArcRule(absolute=0.016, turns="P")

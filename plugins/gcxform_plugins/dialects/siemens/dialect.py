@@ -103,5 +103,5 @@ class Siemens(gx.Dialect):
     )
     tip_switches: ClassVar[Mapping[str, str]] = {"tip-on": "M128", "tip-off": "M129"}
     spelled: ClassVar[Mapping[str, str]] = {"M128": "TRAORI", "M129": "TRAFOOF"}
-    turns_address = "P"
-    change_clears_feed = True
+    arc_rule = gx.ArcRule(turns="P")
+    feed_rule = gx.FeedRule(change_clears=True)

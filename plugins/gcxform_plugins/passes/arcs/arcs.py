@@ -60,7 +60,7 @@ class Arcs(gx.Pass):
         follows = self._follows(path)
         for plane in gx.Plane:
             here = follows & (path.plane == plane)
-            if plane.name not in context.target.arc_planes or not here.any():
+            if plane.name not in context.target.arc_rule.planes or not here.any():
                 continue
             fit = Fit(_corners(path, plane), self._limits(path, context))
             first, last = farthest_reaching(fit, here, path.source, self.min_lines)
