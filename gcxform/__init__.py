@@ -41,8 +41,11 @@ if TYPE_CHECKING:
     from gcxform.dialect.codes import MCode as MCode
     from gcxform.dialect.dialect import Dialect as Dialect
     from gcxform.dialect.dialect import NumberFormat as NumberFormat
+    from gcxform.dialect.frame_rules import OffsetRule as OffsetRule
+    from gcxform.dialect.frame_rules import ToolRule as ToolRule
     from gcxform.dialect.move_rules import ArcRule as ArcRule
     from gcxform.dialect.move_rules import FeedRule as FeedRule
+    from gcxform.dialect.move_rules import MotionRule as MotionRule
     from gcxform.errormodel.converting import Fit as Fit
     from gcxform.errormodel.converting import to_functions as to_functions
     from gcxform.errormodel.converting import to_lattice as to_lattice
@@ -141,7 +144,8 @@ _HOMES = {
     "diagnostics": "Diagnostic FileError GcxformError InputError Location UsageError "
     "VerificationError",
     "dialect.dialect": "Dialect NumberFormat",
-    "dialect.move_rules": "ArcRule FeedRule",
+    "dialect.frame_rules": "OffsetRule ToolRule",
+    "dialect.move_rules": "ArcRule FeedRule MotionRule",
     "flow.translation": "Item Translator",
     "guess": "Evidence Guess guess_dialect",
     "plugin.hookspecs": "hookimpl",

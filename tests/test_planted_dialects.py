@@ -82,6 +82,10 @@ def arcs(base: Kind, **changes: Any) -> Kind:
     return changed(base, arc_rule=replace(base.arc_rule, **changes))
 
 
+def offsets(base: Kind, **changes: Any) -> Kind:
+    return changed(base, offset_rule=replace(base.offset_rule, **changes))
+
+
 G41 = FANUC.codes["G41"]
 
 # name: the dialect with the fault, and a part of what is said of it
@@ -205,30 +209,33 @@ PLANTED: dict[str, tuple[Callable[[], Kind], str]] = {
     "an act that is none": (lambda: codes(FANUC, G16=v.frame("polar", "pole")), "'act pole'"),
     "an own act that is none": (lambda: codes(FANUC, G301=v.frame("own", "pole")), "not exist"),
     "two names in one": (
-        lambda: changed(HAAS, work_names={**HAAS.work_names, "G111": "G154 P1"}),
+        lambda: offsets(HAAS, names={**HAAS.offset_rule.names, "G111": "G154 P1"}),
         "G110 and G111 are both G154 P1",
     ),
     "G54 and G55 swapped": (
-        lambda: changed(FANUC, work_names={"G54": "G55", "G55": "G54"}),
+        lambda: offsets(FANUC, names={"G54": "G55", "G55": "G54"}),
         "G54 has the name G55",
     ),
     "a name of nothing": (
-        lambda: changed(HAAS, work_names={**HAAS.work_names, "G110": "G159 P1"}),
+        lambda: offsets(HAAS, names={**HAAS.offset_rule.names, "G110": "G159 P1"}),
         "one of them is no work offset",
     ),
     "G10 P1 and P2 are one": (
-        lambda: changed(FANUC, g10_offsets=("G54", "G54", "G56")),
+        lambda: offsets(FANUC, g10_offsets=("G54", "G54", "G56")),
         "name G54 G54 G56",
     ),
     "G10 P1 and P2 swapped": (
-        lambda: changed(FANUC, g10_offsets=("G55", "G54", "G56", "G57", "G58", "G59")),
+        lambda: offsets(FANUC, g10_offsets=("G55", "G54", "G56", "G57", "G58", "G59")),
         "and not G54 G55",
     ),
     "G10 sets what is not there": (
-        lambda: changed(GRBL, g10_offsets=NGC.g10_offsets),
+        lambda: offsets(GRBL, g10_offsets=NGC.offset_rule.g10_offsets),
         "sets G59.1",
     ),
-    "a length along X alone": (lambda: changed(GRBL, length_axes="X"), "not along Z"),
+    "a length along X alone": (
+        lambda: changed(GRBL, tool_rule=gx.ToolRule(length_axes="X")),
+        "not along Z",
+    ),
     # dwell
     "P of Fanuc in seconds": (lambda: changed(FANUC, dwell={"P": 1.0, "X": 1.0}), "1 s here"),
     "P of Haas in seconds": (lambda: changed(HAAS, dwell={"P": 1.0}), "P of G4 is 1 s here"),
@@ -395,7 +402,7 @@ def test_swapped_numbers(pair, dialect, monkeypatch):
 
 def p_alone(state, asked):
     """Name a work offset by P alone: G15 H1 and G15 H2 are one."""
-    name = asked.dialect.work_names.get(asked.code, asked.code)
+    name = asked.dialect.offset_rule.names.get(asked.code, asked.code)
     return state.in_work(f"{name} P{asked.words['P']:g}" if "P" in asked.words else name)
 
 

@@ -21,8 +21,9 @@ from gcxform.config import arguments
 from gcxform.dialect.arithmetic import Arithmetic
 from gcxform.dialect.codes import ISO, ISO_M, Code, CutterComp, MCode
 from gcxform.dialect.cycle_rule import CycleRule
+from gcxform.dialect.frame_rules import OffsetRule, ToolRule
 from gcxform.dialect.language import Language
-from gcxform.dialect.move_rules import ArcRule, FeedRule
+from gcxform.dialect.move_rules import ArcRule, FeedRule, MotionRule
 from gcxform.machine.control import Setting, declare
 from gcxform.syntax.grammar import Grammar, load
 
@@ -67,8 +68,6 @@ class Dialect:
     chosen: ClassVar[Mapping[str, str]] = {}
     """What is taken for the meaning of a code, or of words of an axis, where a parameter decides:
     a sentence for the certificate."""
-    rounds_corners: ClassVar[bool] = False
-    """Whether corners are rounded where no path mode is stated, as they are in G64."""
     unknown_m: ClassVar[MCode | None] = None
     """What an M code outside `m_codes` is; None: it is refused."""
     m_first: ClassVar[bool] = False
@@ -86,8 +85,6 @@ class Dialect:
     """The modal state a program is taken to start in; the certificate says what was taken."""
     settings: ClassVar[tuple[Setting, ...]] = ()
     """Settings in [control] of a machine file that the dialect asks for, beside the common ones."""
-    lone_codes_count: ClassVar[bool] = False
-    """G1, G2 and G3 are executed without axis words too: G1 asks for a feed, arcs for words."""
     axis_words_once: ClassVar[bool] = False
     """A motion code beside a code that takes the axis words for itself (G92, G28) is refused."""
     g80_beside_motion: ClassVar[bool] = True
@@ -114,43 +111,6 @@ class Dialect:
     """A dwell that is written with a point is in seconds."""
     spindle_stands: ClassVar[bool] = False
     """Whether the spindle stands still, as far as the control knows, when a program starts."""
-    starts_in_frame: ClassVar[bool] = False
-    """Whether the work offset of `initial` is in force for certain when a program starts."""
-    work_names: ClassVar[Mapping[str, str]] = {}
-    """Work offsets that have a second code: the code, and the name by which they are known."""
-    g10_offsets: ClassVar[tuple[str, ...]] = ("G54", "G55", "G56", "G57", "G58", "G59")
-    """The work offsets that P1, P2 ... of G10 L2 name."""
-    g10_p0_is_active: ClassVar[bool] = False
-    g10_needs_p: ClassVar[bool] = True
-    length_axes: ClassVar[str] = "XYZ"
-    """The axes along which G43.1 gives a length."""
-    g10_sets_position: ClassVar[bool] = False
-    """G10 L20 makes the present position read what is given."""
-    g10_ignores_g91: ClassVar[bool] = False
-    g10_rotates: ClassVar[bool] = False
-    """R in G10 L2 turns the work offset about Z."""
-    g52_is_g92: ClassVar[bool] = False
-    """G52 and G92 set one and the same shift."""
-    g52_known: ClassVar[bool] = True
-    """Whether G52 and G92 mean what they mean on most controls; otherwise a setting decides."""
-    mirrors_at_zero: ClassVar[bool] = False
-    """A mirror stands at the zero of the work offset; other places are refused."""
-    tools_aside: ClassVar[bool] = False
-    """The control's tool table has lengths along X and Y too."""
-    g43_takes_spindle_tool: ClassVar[bool] = False
-    """G43 without H takes the length of the tool in the spindle."""
-    length_may_move: ClassVar[bool] = False
-    """Another tool length may move the axis by itself; where it stands is then not known."""
-    units_spoil_length: ClassVar[bool] = False
-    """A tool length in force keeps its number when the unit changes, so that it is another one."""
-    g49_takes_axes: ClassVar[bool] = False
-    """G49 takes the axis words of its block, and leaves them out."""
-    g53_in_g91: ClassVar[str] = "refused"
-    """What G53 does under G91: "absolute", or "refused" by the control or by us."""
-    g53_is_rapid: ClassVar[bool] = False
-    """G53 moves in rapid whatever motion code is in force."""
-    g28_without_axes: ClassVar[bool] = False
-    """G28 without an axis word sends all axes home."""
     block_delete: ClassVar[str] = ""
     """What the control does with `/` blocks: "execute", "skip", or "" when a switch decides."""
     needs_end: ClassVar[bool] = False
@@ -178,8 +138,6 @@ class Dialect:
     """How many digits a program number may have; 0: any number."""
     most_m_words: ClassVar[int] = 0
     """How many M words a block may have; 0: any number."""
-    tools_in_table: ClassVar[bool] = False
-    """A tool that the tool table does not have is refused where it is named."""
     spindle_words: ClassVar[frozenset[str]] = frozenset()
     """Codes, and S, beside which a word `$` says which spindle is meant."""
     words: ClassVar[str] = "DEFHIJKLNPQRST"
@@ -210,14 +168,16 @@ class Dialect:
     numbers: ClassVar[NumberFormat] = NumberFormat()
     arc_rule: ClassVar[ArcRule] = ArcRule()
     """Which arcs the control cuts."""
+    motion_rule: ClassVar[MotionRule] = MotionRule()
+    """What motion codes and path modes do where words alone do not say it."""
     feed_rule: ClassVar[FeedRule] = FeedRule()
     """What a feed is about, and when it is lost."""
+    offset_rule: ClassVar[OffsetRule] = OffsetRule()
+    """Work offsets, and what shifts them."""
+    tool_rule: ClassVar[ToolRule] = ToolRule()
+    """Tools and their lengths."""
     cycle_rule: ClassVar[CycleRule | None] = None
     """What the control makes of canned cycles; None: it has none, or they are not known."""
-
-    cycles_stop: ClassVar[bool] = False
-    """The moves of a cycle end exactly, also where G64 rounds corners: G61 is in force in its
-    block, and behind it G64 as it was stated."""
 
     differs: ClassVar[Mapping[str, str]] = {}
     """What is otherwise here than on controls that agree, on purpose: a code or the name of one of

@@ -1,4 +1,4 @@
-"""How a control moves: when it takes an arc for one, and what a feed is about."""
+"""How a control moves: which arcs it cuts, what a feed is about, what codes do beyond words."""
 
 from __future__ import annotations
 
@@ -54,3 +54,25 @@ class FeedRule:
     along_lines: bool = False
     arcs_in_time: bool = True
     least_inverse_rate: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class MotionRule:
+    """What motion codes and path modes do where words alone do not say it.
+
+    lone_codes_count  G1, G2 and G3 are executed without axis words too: G1 asks for a feed, arcs
+                      for words
+    g28_without_axes  G28 without an axis word sends all axes home
+    g53_in_g91        what G53 does under G91: "absolute", or "refused" by the control or by us
+    g53_is_rapid      G53 moves in rapid whatever motion code is in force
+    rounds_corners    corners are rounded where no path mode is stated, as they are in G64
+    cycles_stop       the moves of a cycle end exactly, also where G64 rounds corners: G61 is in
+                      force in its block, and behind it G64 as it was stated
+    """
+
+    lone_codes_count: bool = False
+    g28_without_axes: bool = False
+    g53_in_g91: str = "refused"
+    g53_is_rapid: bool = False
+    rounds_corners: bool = False
+    cycles_stop: bool = False

@@ -189,7 +189,7 @@ def other_in(
         return f"{name} with the spindle tied to the feed in the same way"
     if code.act == "home" and stores_home(source) != stores_home(target):
         return f"{name}: it goes to a point of another kind there"
-    if code.act == "local" and source.g52_is_g92 != target.g52_is_g92:
+    if code.act == "local" and source.offset_rule.g52_is_g92 != target.offset_rule.g52_is_g92:
         return f"{name} without changing what G92 has set"
     if dwells and code.group == "non-modal" and not same_dwell(source, target):
         return "this dwell"

@@ -1,6 +1,6 @@
 """Path modes around the moves that stand for canned cycles.
 
-A control whose cycles stop (`Dialect.cycles_stop`) ends every move of a cycle exactly, also under
+A control whose cycles stop (`MotionRule.cycles_stop`) ends every move of one exactly, also under
 G64: before a block that calls one it goes to exact path, and behind it back to what was stated,
 with its tolerances. Where such a block is written as plain moves, blocks of their own say the same:
 `G61` before them, and behind them `G64` with the words it was stated with. Where that cannot be
@@ -61,7 +61,7 @@ class Exactness:
         self.rows = np.array([event.row for event in stated], np.int64)
         self.lines = np.array([event.line for event in stated], np.int64)
         self.modes = [before, *(self._mode(event, called) for event in stated)]
-        self.says = source is task.manner.target and source.cycles_stop
+        self.says = source is task.manner.target and source.motion_rule.cycles_stop
         self.says &= {EXACT, BLENDING} <= coded
 
     @property
@@ -118,7 +118,8 @@ class Exactness:
     def refuse(self, expanded: Flags) -> bool:
         """Refuse cycles whose ends would be rounded; return whether their exactness is assumed."""
         manner = self.task.manner
-        if not (manner.source.cycles_stop or manner.target.rounds_corners) or not expanded.any():
+        rounds = manner.target.motion_rule.rounds_corners
+        if not (manner.source.motion_rule.cycles_stop or rounds) or not expanded.any():
             return False
         lines, first, _ = self._calls(expanded)
         modes = [self.modes[n] for n in np.searchsorted(self.rows, first, "right").tolist()]
@@ -127,4 +128,4 @@ class Exactness:
             if lacks is not None:
                 message = ": ".join(filter(None, (MESSAGE, lacks[0])))
                 self.task.refuse(np.array([row]), "GX506", message, lacks[1])
-        return manner.target.rounds_corners and any(not mode.what for mode in modes)
+        return rounds and any(not mode.what for mode in modes)

@@ -62,7 +62,7 @@ def _negative(lines: Lines, events: Iterable[Event]) -> None:
 def _no_such_tool(lines: Lines, events: Iterable[Event]) -> None:
     """Refuse tools that are not in the table, where a table is given and the control looks."""
     tools = lines.reading.tools
-    if not tools or not lines.dialect.tools_in_table:
+    if not tools or not lines.dialect.tool_rule.in_table:
         return
     for event in events:
         named = event.values[0][1] if event.what in NAMES_TOOL and event.values else 0.0

@@ -94,7 +94,7 @@ class Interpreter:
         frames = FrameState.at_start(
             self.axes,
             self.dialect.initial["frame"],
-            bool(start) or self.dialect.starts_in_frame,
+            bool(start) or self.dialect.offset_rule.known_at_start,
             self.reading.work_offsets,
             self.reading.homes,
         )

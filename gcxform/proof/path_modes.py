@@ -1,7 +1,8 @@
 """Proves in which path mode each move is made: G61 ends moves exactly, G64 rounds corners.
 
-Where a control ends the moves of canned cycles exactly whatever is stated (`Dialect.cycles_stop`),
-moves that stand for one under G64 have to be in G61, and all others in the mode of the source. What
+Where a control ends the moves of canned cycles exactly whatever is stated
+(`MotionRule.cycles_stop`), moves that stand for one under G64 have to be in G61, and all others in
+the mode of the source. What
 was added for that is taken out of the events, and is nothing but a pair around each such block.
 """
 
@@ -34,7 +35,7 @@ class PathModes:
 
     def __init__(self, context: PassContext) -> None:
         source = context.source
-        self.looks = source is context.target and source.cycles_stop
+        self.looks = source is context.target and source.motion_rule.cycles_stop
         self.coded = {code for code, what in source.codes.items() if what.group == "path"}
         self.source: Stated = ("", ())
         self.output: Stated = ("", ())

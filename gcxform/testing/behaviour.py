@@ -258,7 +258,7 @@ def _work_offsets(dialect: type[Dialect]) -> Findings:
             numbers = ("1", "2") if code.takes else ("",)
             for number in numbers:
                 said = "".join(f" {letter}{number}" for letter in code.takes)
-                blocks[name + said] = dialect.work_names.get(name, name) + said
+                blocks[name + said] = dialect.offset_rule.names.get(name, name) + said
     seen = {block: _frame(dialect, block) for block in blocks}
     for one, two in combinations(blocks, 2):
         same = seen[one] is not None and seen[one] == seen[two]

@@ -105,7 +105,7 @@ def _act_words(dialect: type[Dialect], name: str, code: Code) -> Complaints:
         yield name, f"{name} takes {sorted(numbers - set(heard))}, of which its act knows nothing"
     needed = canon.NEEDED.get(code.act, "")
     needed += "P" if name in ("G54.1", "G154") and code.act == "work" else ""
-    needed += dialect.length_axes if code.act == "length-vector" else ""
+    needed += dialect.tool_rule.length_axes if code.act == "length-vector" else ""
     if lacks := sorted(set(needed) - set(code.takes)):
         yield name, f"{name} does not take {lacks}, by which its act is told what to do"
     if axes and code.act in canon.MOVING | {"work", "length", "length-negative", "no-length"}:
@@ -264,23 +264,26 @@ def _of_ngc(dialect: type[Dialect]) -> bool:
 
 def _offsets(dialect: type[Dialect]) -> Complaints:
     order = (*canon.WORK, *canon.MORE_WORK)
-    named = dialect.g10_offsets
+    rule, along = dialect.offset_rule, dialect.tool_rule.length_axes
+    named = rule.g10_offsets
     if named != order[: len(named)]:
-        yield "g10_offsets", f"P1, P2 ... of G10 name {' '.join(named)}, and not G54 G55 ..."
+        text = f"P1, P2 ... of G10 name {' '.join(named)}, and not G54 G55 ..."
+        yield "offset_rule.g10_offsets", text
     lacking = [c for c in named if c not in dialect.codes or dialect.codes[c].act != "work"]
     if lacking:
-        yield "g10_offsets", f"G10 sets {lacking[0]}, which is no work offset of the dialect"
-    for one, two in combinations(sorted(dialect.work_names), 2):
-        if dialect.work_names[one] == dialect.work_names[two]:
-            yield "work_names", f"{one} and {two} are both {dialect.work_names[one]}"
-    for code, name in dialect.work_names.items():
+        text = f"G10 sets {lacking[0]}, which is no work offset of the dialect"
+        yield "offset_rule.g10_offsets", text
+    for one, two in combinations(sorted(rule.names), 2):
+        if rule.names[one] == rule.names[two]:
+            yield "offset_rule.names", f"{one} and {two} are both {rule.names[one]}"
+    for code, name in rule.names.items():
         if code in order:
-            yield "work_names", f"{code} has the name {name}; it is the one that others are"
+            yield "offset_rule.names", f"{code} has the name {name}; it is the one that others are"
         first = dialect.codes.get(name.split(" ", maxsplit=1)[0])
         if first is None or first.act != "work" or dialect.codes[code].act != "work":
-            yield "work_names", f"{code} is called {name}, and one of them is no work offset"
-    if set(dialect.length_axes) - set(dialect.axes) or not dialect.length_axes.endswith("Z"):
-        yield "length_axes", f"a tool length lies along {dialect.length_axes!r}, not along Z"
+            yield "offset_rule.names", f"{code} is called {name}, and one of them is no work offset"
+    if set(along) - set(dialect.axes) or not along.endswith("Z"):
+        yield "tool_rule.length_axes", f"a tool length lies along {along!r}, not along Z"
 
 
 def _letters(dialect: type[Dialect]) -> Complaints:

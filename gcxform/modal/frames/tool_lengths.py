@@ -69,7 +69,7 @@ def _tool_vector(
 ) -> tuple[tuple[float, float, float], str]:
     """Return the vector of a tool, nan along Z where its length is not known, and its name."""
     number = asked.words.get("H", np.nan)
-    if asked.dialect.g43_takes_spindle_tool and not number > 0:
+    if asked.dialect.tool_rule.g43_takes_spindle_tool and not number > 0:
         if number < 0:
             raise ActError("GX213", "H is not a number of a tool")
         if state.in_spindle < 1:
@@ -83,7 +83,7 @@ def _tool_vector(
         return NO_TOOL, ""
     tool = asked.reading.tools.get(int(number))
     if tool is None:
-        if asked.reading.tools and asked.dialect.g43_takes_spindle_tool:
+        if asked.reading.tools and asked.dialect.tool_rule.g43_takes_spindle_tool:
             raise ActError("GX213", f"the tool table has no tool {number:g}")
         return (0.0, 0.0, np.nan), f"H{number:g}"
     x, y, z = tool.vector
@@ -108,7 +108,7 @@ def length_vector(state: FrameState, asked: Asked) -> FrameState:
     """G43.1: the vector given."""
     vector = np.array(state.tool)
     for axis, value in asked.axes.items():
-        if axis not in asked.dialect.length_axes:
+        if axis not in asked.dialect.tool_rule.length_axes:
             raise ActError("GX213", f"{asked.code} takes no {axis} on this control")
         vector[asked.column(state, axis)] = value
     return state.with_tool(tuple(vector.tolist()), "G43.1")

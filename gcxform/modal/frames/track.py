@@ -123,9 +123,10 @@ class Track:
             self.state.position[:] = LEFT  # the angles are the control's own choice
         if act.name in SWITCHED and before.following is not frames.following:
             self._lose(line, 0 if self._upright() else SPATIAL)
-        if act.name in LENGTHENED and self.dialect.length_may_move and frames.frame() != old:
+        tools = self.dialect.tool_rule
+        if act.name in LENGTHENED and tools.length_may_move and frames.frame() != old:
             self._lose(line, 4)
-        if np.isnan(frames.tool[2]) and frames.tool[0] == 0.0 and self.dialect.tools_aside:
+        if np.isnan(frames.tool[2]) and frames.tool[0] == 0.0 and tools.lengths_aside:
             self.state.assumed[ALONG_Z] = None
         if act.name == "polar":
             self.state.polar = np.nan, np.nan

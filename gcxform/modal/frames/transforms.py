@@ -51,7 +51,7 @@ def mirror(state: FrameState, asked: Asked) -> FrameState:
     """G51.1: mirror named axes about the points given."""
     if not asked.axes or set(asked.axes) - set("XYZ"):
         raise ActError("GX213", f"{asked.code} needs X, Y or Z")
-    if asked.dialect.mirrors_at_zero and any(asked.axes.values()):
+    if asked.dialect.offset_rule.mirrors_at_zero and any(asked.axes.values()):
         raise ActError("GX213", f"where {asked.code} mirrors is known for zeros only")
     matrix, centre = np.eye(3), [0.0, 0.0, 0.0]
     for axis, value in asked.axes.items():

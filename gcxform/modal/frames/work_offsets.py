@@ -28,7 +28,7 @@ def _article(address: str) -> str:
 
 def work(state: FrameState, asked: Asked) -> FrameState:
     """G54 and its like: another work offset; a code that takes words names one by each of them."""
-    name = asked.dialect.work_names.get(asked.code, asked.code)
+    name = asked.dialect.offset_rule.names.get(asked.code, asked.code)
     for address in asked.numbers:
         number = asked.words.get(address)
         if number is None:
@@ -49,7 +49,7 @@ def set_work(state: FrameState, asked: Asked) -> FrameState:
         return _set_tool(state, asked, int(kind))
     if kind not in (2, 20):
         raise ActError("GX213", "this G10 writes something into the control that is not followed")
-    turns = kind == 2 and asked.dialect.g10_rotates
+    turns = kind == 2 and asked.dialect.offset_rule.g10_rotates
     for address in asked.written:
         if address not in asked.axes and address not in ("LPR" if turns else "LP"):
             raise ActError("GX213", f"{address} has no meaning in G10 L{kind:g}")
@@ -60,12 +60,12 @@ def set_work(state: FrameState, asked: Asked) -> FrameState:
 
 
 def _named_work(state: FrameState, asked: Asked) -> str:
-    number = asked.words.get("P", np.nan if asked.dialect.g10_needs_p else 0.0)
-    if asked.words.get("L") == 20 and not asked.dialect.g10_sets_position:
+    number = asked.words.get("P", np.nan if asked.dialect.offset_rule.g10_needs_p else 0.0)
+    if asked.words.get("L") == 20 and not asked.dialect.offset_rule.g10_sets_position:
         raise ActError("GX213", "G10 L20 sets other offsets on this control")
-    if number == 0 and asked.dialect.g10_p0_is_active:
+    if number == 0 and asked.dialect.offset_rule.g10_p0_is_active:
         return state.work
-    names = [*asked.dialect.g10_offsets]
+    names = [*asked.dialect.offset_rule.g10_offsets]
     if not (number % 1 == 0 and 1 <= number <= len(names)):
         raise ActError("GX213", "P names no work offset", "P1 is G54")
     return names[int(number) - 1]
@@ -73,7 +73,7 @@ def _named_work(state: FrameState, asked: Asked) -> str:
 
 def _set_zero(state: FrameState, asked: Asked, name: str) -> FrameState:
     """G10 L2: the zero of a work offset in machine coordinates."""
-    if asked.incremental and not asked.dialect.g10_ignores_g91:
+    if asked.incremental and not asked.dialect.offset_rule.g10_ignores_g91:
         raise ActError("GX213", "under G91, G10 adds on some controls and does not on others")
     turned = "R" in asked.written or state.rotation.get(name, 0.0)
     if turned and name == state.work and any(state.preset[:2]):
@@ -131,7 +131,7 @@ def local(state: FrameState, asked: Asked) -> FrameState:
     _refuse_turned(state, asked)
     if not asked.axes:
         raise ActError("GX213", f"{asked.code} names no axis")
-    if asked.dialect.g52_is_g92:
+    if asked.dialect.offset_rule.g52_is_g92:
         return _with_preset(state, moved_to_names(state, asked, state.preset))
     _refuse_unset(asked)
     return replace(state, local=moved_to_names(state, asked, state.local))
@@ -166,7 +166,7 @@ def _with_preset(state: FrameState, shift: Vector) -> FrameState:
 
 
 def _refuse_turned(state: FrameState, asked: Asked) -> None:
-    if asked.incremental and not asked.dialect.g10_ignores_g91:
+    if asked.incremental and not asked.dialect.offset_rule.g10_ignores_g91:
         message = f"under G91, {asked.code} adds on some controls and does not on others"
         raise ActError("GX213", message, "write it under G90")
     if state.turns or state.polar:
@@ -175,7 +175,7 @@ def _refuse_turned(state: FrameState, asked: Asked) -> None:
 
 def _refuse_unset(asked: Asked) -> None:
     """Refuse G52 and G92 where a setting decides what they shift, but for the one that is known."""
-    if asked.dialect.g52_known or asked.reading.control.get("g52") == "fanuc":
+    if asked.dialect.offset_rule.g52_known or asked.reading.control.get("g52") == "fanuc":
         return
     raise ActError(
         "GX214",

@@ -203,7 +203,7 @@ def _g_act(
         yield Refusal("GX202", word.start, width, f"{name} takes H or axis words, not both")
     motion = meaning.groups.get("motion", "G80") != "G80"
     moves = motion or not meaning.slots.keys().isdisjoint(dialect.axes)
-    if code.act == "no-length" and dialect.g49_takes_axes and moves:
+    if code.act == "no-length" and dialect.tool_rule.g49_takes_axes and moves:
         message = f"{name} takes the axis words here, and has no use for them"
         yield Refusal("GX202", word.start, width, message, "move in a block of its own")
     if code.act in TAKES_MOTION and dialect.axis_words_once and "motion" in meaning.groups:

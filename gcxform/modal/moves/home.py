@@ -64,7 +64,7 @@ def _home(track: Track, line: int, code: str) -> Rows:
     if words:
         moves.append((Kind.RAPID, _reached(track, line, words)))
         _warn_of_plunge(track, line, code, float(moves[0][1][2]))
-    elif not track.dialect.g28_without_axes:
+    elif not track.dialect.motion_rule.g28_without_axes:
         track.findings.add(
             line,
             "GX213",
@@ -134,14 +134,14 @@ def _in_frame(track: Track, k: int, value: float) -> float:
 
 def _in_machine(track: Track, line: int) -> Rows:
     """G53: to a point in the coordinates of the machine, without any offset."""
-    if track.modes.incremental[line] and track.dialect.g53_in_g91 != "absolute":
+    if track.modes.incremental[line] and track.dialect.motion_rule.g53_in_g91 != "absolute":
         message = "G53 under G91: controls refuse it, ignore it, or take it as absolute"
         track.findings.add(line, "GX213", message, hint="write it under G90")
     kind = int(track.modes.motion[line])
     if kind not in (Kind.RAPID, Kind.LINE):
         track.findings.add(line, "GX213", "G53 needs G0 or G1", hint="write G0 in this block")
         kind = Kind.RAPID
-    if kind == Kind.LINE and track.dialect.g53_is_rapid:
+    if kind == Kind.LINE and track.dialect.motion_rule.g53_is_rapid:
         message = "G53 under G1: this control moves in rapid whatever is in force"
         track.findings.add(line, "GX213", message, hint="write G0 in this block")
     words = track.words_on(line)

@@ -56,7 +56,7 @@ class Moves:
         self.splines = of_splines(modes.motion)
         self.bends = bool(self.splines.any())
         self._new_units: list[int] = []  # lines that change it, where that spoils tool lengths
-        if self.dialect.units_spoil_length:
+        if self.dialect.tool_rule.units_spoil_length:
             before = np.append(self.state.groups["units"] == 1, modes.inch)
             self._new_units = np.flatnonzero(np.diff(before)).tolist()
 
@@ -149,7 +149,7 @@ class Moves:
 
         A control that executes them asks for a feed, and an arc for its words.
         """
-        if not self.dialect.lone_codes_count:
+        if not self.dialect.motion_rule.lone_codes_count:
             return np.zeros(len(moves), np.bool_)
         lone = self.lines.stated("motion") & ~moves & ~drilling
         arc = (self.modes.motion == Kind.ARC_CW) | (self.modes.motion == Kind.ARC_CCW)

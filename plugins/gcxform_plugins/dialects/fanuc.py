@@ -164,8 +164,8 @@ class Fanuc(gx.Dialect):
         "M29": "M29 makes the next tap rigid and moves nothing (parameter 5210)",
     }
     unknown_m = gx.MCode("user", loses_position=True)
-    length_may_move = True
-    g53_is_rapid = True
+    tool_rule = gx.ToolRule(length_may_move=True)
+    motion_rule = gx.MotionRule(g53_is_rapid=True)
     last_code_wins = True
     cutter_comp = gx.CutterComp(stored=True)
     point_required = True

@@ -56,15 +56,15 @@ class Grbl(gx.Dialect):
     acts_anywhere = "!?~\x18" + "".join(map(chr, range(0x80, 0x100)))
     axis_words_once = True
     g80_beside_motion = False
-    g49_takes_axes = True
-    starts_in_frame = True
-    g10_p0_is_active = True
-    g10_needs_p = False
-    length_axes = "Z"
-    g10_sets_position = True
-    g10_ignores_g91 = True
-    g53_in_g91 = "absolute"
-    g28_without_axes = True
+    motion_rule = gx.MotionRule(g28_without_axes=True, g53_in_g91="absolute")
+    offset_rule = gx.OffsetRule(
+        known_at_start=True,
+        g10_p0_is_active=True,
+        g10_needs_p=False,
+        g10_sets_position=True,
+        g10_ignores_g91=True,
+    )
+    tool_rule = gx.ToolRule(length_axes="Z", g49_takes_axes=True)
     block_delete = "execute"
     stops_at_end = False
     resets_at_end: ClassVar[Mapping[str, str]] = {

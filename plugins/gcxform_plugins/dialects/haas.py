@@ -110,11 +110,12 @@ class Haas(Fanuc):
         alone="cycle-without-place",
     )
     settings = (gx.Setting("cycle-without-place", "haas: Setting 28", ("drills",)),)
-    work_names: ClassVar[Mapping[str, str]] = {
-        code: f"G154 P{int(code[1:]) - 109}" for code in MORE_OFFSETS
-    }
-    g52_known = False
-    mirrors_at_zero = True
+    offset_rule = replace(
+        Fanuc.offset_rule,
+        names={code: f"G154 P{int(code[1:]) - 109}" for code in MORE_OFFSETS},
+        g52_known=False,
+        mirrors_at_zero=True,
+    )
     words = Fanuc.words + "UVW"
     lower_case = True
     chosen: ClassVar[Mapping[str, str]] = {"M16": "M16 is M6"}

@@ -179,21 +179,24 @@ class LinuxCNC(gx.Dialect):
     chosen: ClassVar[Mapping[str, str]] = {
         "M6": "a tool change leaves the axes where they are (no TOOL_CHANGE_POSITION)"
     }
-    rounds_corners = True
     m_first = True
     axis_words_once = True
     spindle_stands = True
-    starts_in_frame = True
-    g10_offsets = (*gx.Dialect.g10_offsets, "G59.1", "G59.2", "G59.3")
-    g10_p0_is_active = True
-    g10_sets_position = True
-    g10_ignores_g91 = True
-    g10_rotates = True
-    g52_is_g92 = True
-    g43_takes_spindle_tool = True
-    tools_aside = True
-    units_spoil_length = True
-    g28_without_axes = True
+    motion_rule = gx.MotionRule(
+        lone_codes_count=True, g28_without_axes=True, rounds_corners=True, cycles_stop=True
+    )
+    offset_rule = gx.OffsetRule(
+        known_at_start=True,
+        g10_offsets=(*gx.Dialect.offset_rule.g10_offsets, "G59.1", "G59.2", "G59.3"),
+        g10_p0_is_active=True,
+        g10_sets_position=True,
+        g10_ignores_g91=True,
+        g10_rotates=True,
+        g52_is_g92=True,
+    )
+    tool_rule = gx.ToolRule(
+        in_table=True, lengths_aside=True, g43_takes_spindle_tool=True, units_spoil_length=True
+    )
     cutter_comp = gx.CutterComp(
         planes=frozenset({"XY", "ZX"}),
         changes=False,
@@ -208,15 +211,12 @@ class LinuxCNC(gx.Dialect):
     number_first = True
     needs_end = True
     most_m_words = 4
-    tools_in_table = True
     spindle_words = frozenset({"S", "M3", "M4", "M5", "M19", "M51", "G95", "G96", "G97"})
     cycle_rule = CYCLE_RULE
-    cycles_stop = True
     line_length = 252
     comments = "(;"
     active_comments = ACTIVE
     words = "DEFHIJKLNPQRST@^$"
-    lone_codes_count = True
     arithmetic = v.RS274
     flow = "o-words"
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)

@@ -1,0 +1,60 @@
+"""How codes change what words count from: work offsets, shifts, tool lengths."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class OffsetRule:
+    """Work offsets, and what shifts them: G10, G52, G92, mirrors.
+
+    known_at_start    the work offset of `initial` is in force for certain when a program starts
+    names             work offsets that have a second code: the code, and the name of the offset
+    g10_offsets       the work offsets that P1, P2 ... of G10 L2 name
+    g10_p0_is_active  P0 of G10 names the one in force
+    g10_needs_p       G10 without P names none; otherwise it is as with P0
+    g10_sets_position G10 L20 makes the present position read what is given
+    g10_ignores_g91   under G91, G10, G52 and G92 set what they set under G90
+    g10_rotates       R in G10 L2 turns the work offset about Z
+    g52_is_g92        G52 and G92 set one and the same shift
+    g52_known         G52 and G92 mean what they mean on most controls; otherwise a setting decides
+    mirrors_at_zero   a mirror stands at the zero of the work offset; other places are refused
+    """
+
+    known_at_start: bool = False
+    names: Mapping[str, str] = field(default_factory=dict)
+    g10_offsets: tuple[str, ...] = ("G54", "G55", "G56", "G57", "G58", "G59")
+    g10_p0_is_active: bool = False
+    g10_needs_p: bool = True
+    g10_sets_position: bool = False
+    g10_ignores_g91: bool = False
+    g10_rotates: bool = False
+    g52_is_g92: bool = False
+    g52_known: bool = True
+    mirrors_at_zero: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ToolRule:
+    """Tools and their lengths.
+
+    in_table               a tool that the tool table does not have is refused where it is named
+    lengths_aside          the control's tool table has lengths along X and Y too
+    length_axes            the axes along which G43.1 gives a length
+    g43_takes_spindle_tool G43 without H takes the length of the tool in the spindle
+    g49_takes_axes         G49 takes the axis words of its block, and leaves them out
+    length_may_move        another length may move the axis by itself; where it stands is then not
+                           known
+    units_spoil_length     a length in force keeps its number when the unit changes, so that it is
+                           another one
+    """
+
+    in_table: bool = False
+    lengths_aside: bool = False
+    length_axes: str = "XYZ"
+    g43_takes_spindle_tool: bool = False
+    g49_takes_axes: bool = False
+    length_may_move: bool = False
+    units_spoil_length: bool = False
