@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gcxform_plugins.passes.volumetric.forward.window import Window
 from htm import actual
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
@@ -183,10 +184,9 @@ def beside(path, row: int, place: np.ndarray) -> float:
 def test_a_wrong_path_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """What the program says already, or the error subtracted, is no place of the machine."""
     chain = gx.Pipeline.parse(INVERSE, "linuxcnc")
-    made = type(chain.path_passes[0])
     chain.run(LINES)
     for sign in (0.0, -1.0):
-        monkeypatch.setattr(made, "command", lambda s, p, t=None, k=sign: p + k * s.error(p, t))
+        monkeypatch.setattr(Window, "commanded", lambda s, p, t, k=sign: p + k * s.step.error(p, t))
         with pytest.raises(gx.VerificationError):
             chain.run(LINES)
 

@@ -122,10 +122,7 @@ def test_circles_are_found() -> None:
     assert circles({"a": {"b"}, "b": {"c"}, "c": {"b"}, "d": {"d"}}) == [["b", "c"]]
 
 
-LEFT = (
-    "gcxform_plugins.passes.rtcp",
-    "gcxform_plugins.passes.volumetric",
-)
+LEFT = ("gcxform_plugins.passes.rtcp",)
 """Packages inside of which modules still import one another, for types or late."""
 
 
@@ -299,7 +296,6 @@ STILL_LATE: dict[str, int] = {
     "gcxform_plugins.passes.cutter_comp.proof._Proof": 20,
     "gcxform_plugins.passes.rtcp.forward.cutting.Cutting": 1,
     "gcxform_plugins.passes.rtcp.forward.moving.Moving": 3,
-    "gcxform_plugins.passes.volumetric.forward.compensation.Compensation": 1,
 }
 """Classes, and how many attributes they are still given late."""
 

@@ -67,8 +67,8 @@ MUTATIONS = (
     _fault(
         "what a straight way is off is found with the tool of the end",
         SPLITTING,
-        "exact = work.command(start + part[:, None] * way, row, part)",
-        "exact = work.command(start + part[:, None] * way, row)",
+        "exact = window.command(start + part[:, None] * way, row, part)",
+        "exact = window.command(start + part[:, None] * way, row)",
     ),
     _fault(
         "no pace is too fast",

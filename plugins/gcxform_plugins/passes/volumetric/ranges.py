@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.volumetric.volumetric import Volumetric
-
+from gcxform_plugins.passes.volumetric.options import VolumetricOptions
 
 BORDER = 1e-9  # mm
 CURVED_CELLS = 1.0  # the bounds of a curved field hold for one cell beyond the table
 
 
 def check_inside(
-    step: Volumetric, path: gx.Toolpath, offset: Floats, rows: Ints, margin: float = 0.0
+    step: VolumetricOptions, path: gx.Toolpath, offset: Floats, rows: Ints, margin: float = 0.0
 ) -> None:
     """Refuse rows that go beyond the tables, or too far beyond them, by more than `margin` (mm).
 
@@ -31,7 +26,7 @@ def check_inside(
         _refuse(step, path, int(rows[first]), points[first])
 
 
-def beyond_tables(step: Volumetric, points: Floats, margin: float = 0.0) -> Flags:
+def beyond_tables(step: VolumetricOptions, points: Floats, margin: float = 0.0) -> Flags:
     """Return which points (n, 3), in the table, are farther beyond the tables than is allowed."""
     found = np.zeros(len(points), np.bool_)
     if step.outside in (gx.Outside.ERROR, gx.Outside.EXTRAPOLATE):
@@ -41,13 +36,15 @@ def beyond_tables(step: Volumetric, points: Floats, margin: float = 0.0) -> Flag
     return found
 
 
-def _allowed(step: Volumetric) -> list[tuple[float, float]]:
+def _allowed(step: VolumetricOptions) -> list[tuple[float, float]]:
     """Return the lowest and the highest position of each axis."""
     cells = _cells(step)
     return [step.model.model.extended(axis, cells) for axis in range(3)]
 
 
-def beyond(step: Volumetric, path: gx.Toolpath, offset: Floats, rows: Ints) -> dict[str, float]:
+def beyond(
+    step: VolumetricOptions, path: gx.Toolpath, offset: Floats, rows: Ints
+) -> dict[str, float]:
     """Return by how much (mm) rows go beyond the tables at most, by what the certificate calls it.
 
     `offset` is as in `check_inside`.
@@ -62,7 +59,7 @@ def beyond(step: Volumetric, path: gx.Toolpath, offset: Floats, rows: Ints) -> d
     return found
 
 
-def _cells(step: Volumetric) -> float:
+def _cells(step: VolumetricOptions) -> float:
     """Return by how many cells the tables may be extrapolated."""
     if step.outside is gx.Outside.ERROR:
         return 0.0
@@ -80,7 +77,7 @@ def _points(path: gx.Toolpath, offset: Floats, rows: Ints) -> tuple[Floats, Ints
     return points, rows
 
 
-def _refuse(step: Volumetric, path: gx.Toolpath, row: int, point: Floats) -> None:
+def _refuse(step: VolumetricOptions, path: gx.Toolpath, row: int, point: Floats) -> None:
     model, cells = step.model.model, _cells(step)
     pairs = zip(point.tolist(), _allowed(step), strict=True)
     off = [max(low - x, x - high) for x, (low, high) in pairs]

@@ -14,24 +14,23 @@ c + E(c), cut where the error bends. The undo is then the search for the command
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Annotated, Literal
 
 import numpy as np
 
 import gcxform as gx
-from gcxform.vocabulary import Flags, Floats
-from gcxform_plugins.passes.volumetric.forward.compensation import Compensation, left_to_machine
+from gcxform.vocabulary import Flags
+from gcxform_plugins.passes.volumetric.forward.compensation import Compensation
+from gcxform_plugins.passes.volumetric.forward.window import left_to_machine
 from gcxform_plugins.passes.volumetric.levers import UNKNOWN, lever_of
+from gcxform_plugins.passes.volumetric.options import VolumetricOptions
 from gcxform_plugins.passes.volumetric.place import Place
 from gcxform_plugins.passes.volumetric.ranges import beyond
 from gcxform_plugins.passes.volumetric.undo.commands import Commands
 from gcxform_plugins.passes.volumetric.undo.machine import Machine
 
-ARC_TOLERANCE = 0.001  # mm, where no tolerance is given: an arc cannot be exact
-
 
 @dataclass(frozen=True)
-class Volumetric(gx.Pass):
+class Volumetric(VolumetricOptions, gx.Pass):
     """Compensate the volumetric errors of a machine.
 
     Positions in the table are program + part-origin - table-origin; with a machine file the work
@@ -42,54 +41,6 @@ class Volumetric(gx.Pass):
     requires = frozenset({gx.NOMINAL, gx.AXIS_POSITIONS})
     ensures = frozenset({gx.COMPENSATED})
     clears = frozenset({gx.NOMINAL})
-
-    model: Annotated[gx.ModelFile, gx.Option("error model: TOML, or a format of a plugin")]
-    outside: Annotated[gx.Outside, gx.Option("what the error is beyond the table")] = (
-        gx.Outside.ERROR
-    )
-    tolerance: Annotated[
-        gx.Length | None,
-        gx.Option(
-            "residual allowed between cuts; absent: lines are exact, arcs within 1 um", above=0.0
-        ),
-    ] = None
-    max_correction: Annotated[
-        gx.Length, gx.Option("a larger correction is an error", above=0.0)
-    ] = 0.2
-    split: Annotated[Literal["adaptive", "nodes", "none"], gx.Option("where moves are cut")] = (
-        "adaptive"
-    )
-    rapids: Annotated[
-        Literal["ends", "skip"], gx.Option("rapids: compensate their ends, or leave them")
-    ] = "ends"
-    iterations: Annotated[
-        int, gx.Option("steps of the inverse; 0: until it has converged", at_least=0, at_most=20)
-    ] = 0
-    arc_centres: Annotated[
-        Literal["refit", "nominal"], gx.Option("nominal: I, J stay as they were")
-    ] = "refit"
-    table_origin: Annotated[gx.Vector, gx.Option("origin of the measurement")] = (0.0, 0.0, 0.0)
-    part_origin: Annotated[gx.Vector | None, gx.Option("origin of the program")] = None
-    max_extrapolation: Annotated[
-        float, gx.Option("cells by which the table may be extrapolated", above=0.0)
-    ] = 1.0
-    min_length: Annotated[
-        gx.Length,
-        gx.Option(
-            "shorter pieces are not cut; refused where the tolerance (1 um if absent) needs them",
-            at_least=0.0,
-        ),
-    ] = 0.0
-    time: Annotated[
-        str | None, gx.Option("time (ISO 8601) whose temperatures hold; absent: as the model says")
-    ] = None
-    backlash: Annotated[
-        Literal["refuse", "mean"],
-        gx.Option("of a model with backlash: refuse it, or take the mean of both directions"),
-    ] = "refuse"
-    inverse: Annotated[
-        bool, gx.Option("the program holds commands: write where the machine goes with them")
-    ] = False
 
     def __post_init__(self) -> None:
         """Take the model at its time and between its directions; turn facts round for the inverse.
@@ -111,26 +62,6 @@ class Volumetric(gx.Pass):
             turned = {"requires": asked, "ensures": nominal, "clears": self.ensures}
             for name, facts in turned.items():
                 object.__setattr__(self, name, facts)
-
-    @property
-    def promise(self) -> float:
-        """The tolerance; nothing where moves are not cut, or rapids not compensated."""
-        if self.split == "none" or self.rapids == "skip" or self.arc_centres == "nominal":
-            return float("inf")
-        return self.limit
-
-    @property
-    def limit(self) -> float:
-        """The residual (mm) that arcs are held to."""
-        return ARC_TOLERANCE if self.tolerance is None else self.tolerance
-
-    @property
-    def cells(self) -> float:
-        """By how many cells beyond the tables bounds of the error have to hold.
-
-        One is for commands, which may be a little beyond where their targets are not.
-        """
-        return 1.0 + self.max_extrapolation * (self.outside is gx.Outside.EXTRAPOLATE)
 
     def begin(self, context: gx.PassContext) -> None:
         """Refuse a model that cannot be inverted, and a run without origin."""
@@ -239,28 +170,3 @@ class Volumetric(gx.Pass):
                     + ("" if tools else " instead of part-origin")
                 )
                 raise path.refuse("GX314", rows, message, hint)
-
-    def nodes(self) -> tuple[Floats, Floats, Floats]:
-        """Return the planes on which the error bends, under the policy for outside."""
-        bends = self.outside in (gx.Outside.CLAMP, gx.Outside.ZERO)
-        x, y, z = (n if bends else n[1:-1] for n in self.model.model.nodes)
-        return x, y, z
-
-    def error(self, position: Floats, tool: Floats | None = None) -> Floats:
-        """Return the error (n, 3) at positions in the table (n, 3), mm, for tools."""
-        return self.model.model.error(position, self.outside, tool)
-
-    def command(self, target: Floats, tool: Floats | None = None) -> Floats:
-        """Return what is written (n, 3) for targets in the table (n, 3), mm, for tools."""
-        return self._actual(target, tool) if self.inverse else self._solved(target, tool)
-
-    def meant(self, written: Floats, tool: Floats | None = None) -> Floats:
-        """Return the targets (n, 3) for which something else (n, 3) is written, mm, for tools."""
-        return self._solved(written, tool) if self.inverse else self._actual(written, tool)
-
-    def _actual(self, command: Floats, tool: Floats | None) -> Floats:
-        return command + self.error(command, tool)
-
-    def _solved(self, target: Floats, tool: Floats | None) -> Floats:
-        model = self.model.model
-        return gx.compensate(model, target, self.outside, self.iterations, tool).position

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.volumetric.forward.compensation import Compensation
-
+from gcxform_plugins.passes.volumetric.forward.window import Window
 
 FEWEST, MOST = 8, 256  # points at which a piece is looked at
 AT_ONCE = 200_000  # points looked at together
@@ -28,12 +23,12 @@ LONGEST = 1.9 * np.pi  # rad; rounded, the ends of a longer piece may change pla
 class ArcFitter:
     """Finds the pieces into which the arcs of a path are cut, and their centres."""
 
-    def __init__(self, work: Compensation) -> None:
-        self.work = work
-        self.path = work.path
-        self.step = work.step
-        self.limit = min(MARGIN * self.step.limit, work.room)
-        self.reach = work.undone
+    def __init__(self, window: Window) -> None:
+        self.window = window
+        self.path = window.path
+        self.step = window.step
+        self.limit = min(MARGIN * self.step.limit, window.room)
+        self.reach = window.undone
         rotary = np.nan_to_num(self.path.end - self.path.start)[:, 3:]
         self._turning = (rotary != 0).any(axis=1)
 
@@ -71,7 +66,7 @@ class ArcFitter:
             if shortest < self.step.min_length:
                 even = self._even(row, int(mine.sum()) + 1, int(length / self.step.min_length))
                 if even is None:
-                    raise self.work.refuse_short(row, shortest)
+                    raise self.window.refuse_short(row, shortest)
                 cut_row = np.append(cut_row[~mine], np.full(len(even), row))
                 cut_part = np.append(cut_part[~mine], even)
         return cut_row, cut_part
@@ -150,7 +145,7 @@ class ArcFitter:
         first = self._command(row, low)
         second = self._command(row, low + (high - low) * share)
         third = self._command(row, np.where(share < 0.5, low + (high - low) * 2 / 3, high))
-        shift = (self.work.correction(row, low) + self.work.correction(row, high)) / 2
+        shift = (self.window.correction(row, low) + self.window.correction(row, high)) / 2
         size, last, _ = gx.radius_and_angle(self.path, row)
         sag = size * (1 - np.cos((high - low) * self.path.sweep[row] / 2))
         uneven = np.where(high - low < 1.0, -np.inf, np.abs(last - size) + UNEVEN)
@@ -170,9 +165,9 @@ class ArcFitter:
 
     def _command(self, row: Ints, part: Floats) -> Floats:
         """Return commands (n, 3), in the program's coordinates, for points of arcs."""
-        offset = self.work.offset_of(row)
+        offset = self.window.offset_of(row)
         target = gx.points_on_arcs(self.path, row, part) + offset
-        return self.work.command(target, row) - offset
+        return self.window.command(target, row) - offset
 
     def _residual(self, row: Ints, low: Floats, high: Floats) -> Floats:
         """Return how far (mm) the machine is from the arcs when it is sent along fitted ones.
@@ -200,9 +195,9 @@ class ArcFitter:
         every = np.repeat(np.arange(len(row)), number)
         part = np.tile((np.arange(number) + 0.5) / number, len(row))
         command = gx.points_on_arcs(pieces, 2 * every + 1, part)
-        place = self.work.place
+        place = self.window.place
         offset = place.offset_of(row[every])
-        actual = self.step.meant(command + offset, place.tool_of(row[every])) - offset
+        actual = self.window.meant(command + offset, place.tool_of(row[every])) - offset
         along = low[every] + part * (high - low)[every]
         wanted = gx.points_on_arcs(self.path, row[every], along)
         off = self._beside(row[every], along, wanted, actual)

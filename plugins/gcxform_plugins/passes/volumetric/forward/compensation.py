@@ -7,75 +7,24 @@ then a command, and a *command* where the machine goes with it.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from functools import cached_property
 
 import numpy as np
 
 import gcxform as gx
-from gcxform.vocabulary import Flags, Floats, Ints
+from gcxform.vocabulary import Floats, Ints
 from gcxform_plugins.passes.volumetric.forward.arcs import ArcFitter
 from gcxform_plugins.passes.volumetric.forward.lines import cuts_of_lines
-from gcxform_plugins.passes.volumetric.forward.turning_head import Swing
-from gcxform_plugins.passes.volumetric.place import Place
+from gcxform_plugins.passes.volumetric.forward.window import Window
 from gcxform_plugins.passes.volumetric.ranges import beyond_tables, check_inside
 
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.volumetric.volumetric import Volumetric
-
-
 PACE = 0.1  # of a way; by so much more or less of it, at most, a turn of the head may be faster
-PROOF = 1.5e-5  # mm; what the proof may add to what is off, for what it does not follow
-PROOF_SHARE = 0.25  # of a tolerance, at most
 SAME = 1e-9  # mm; an axis that moves by less stays where it is
 MOST_TURNS = 100  # of an arc; cutting each takes a tenth of a second
 
 
-def left_to_machine(path: gx.Toolpath, skip: bool = False) -> Flags:
-    """Return the rapids (n,) that are not compensated; `skip`: all of them.
-
-    These are moves to points of the machine itself (G28, G53), and those that end where some axis
-    is at an unknown place, as between a tool change and the first Z.
-    """
-    left = np.isnan(path.end[:, :3]).any(axis=1) | skip
-    left |= (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
-    return np.asarray(left & (path.kind == gx.Kind.RAPID))
-
-
-class Compensation:
+class Compensation(Window):
     """The forward work on one window."""
-
-    def __init__(self, step: Volumetric, path: gx.Toolpath, place: Place) -> None:
-        self.step = step
-        self.path = path
-        self.place = place
-        self.offset = place.offset
-        self.start = path.start[:, :3] + self.offset
-        self.end = path.end[:, :3] + self.offset
-        model = step.model.model
-        self.swing = None if place.lever is None else Swing(step, place.lever)
-        reach = gx.reach_of(model, place.tool) if self.swing is None else self.swing.reach
-        self.lipschitz, self.curvature = model.lipschitz(reach), model.curvature(reach)
-        steep = self.lipschitz / (1 - min(self.lipschitz, 0.5))
-        self.undone = steep if step.inverse else self.lipschitz  # of what the undo moves, mm/mm
-        self.left = left_to_machine(path)
-        self.skipped = left_to_machine(path, step.rapids == "skip")
-        self.room = step.limit - min(PROOF, PROOF_SHARE * step.limit)
-
-    def offset_of(self, rows: Ints) -> Floats:
-        """Return table position minus program position of rows."""
-        return self.place.offset_of(rows)
-
-    def command(self, target: Floats, rows: Ints, part: Floats | None = None) -> Floats:
-        """Return the commands (n, 3) for targets in the table (n, 3) at parts of rows, mm.
-
-        Without parts the rows are at their ends, or their heads do not turn.
-        """
-        return self.step.command(target, self.place.tool_of(rows, part))
-
-    def correction(self, rows: Ints, part: Floats) -> Floats:
-        """Return command minus target (n, 3) at parts of the way of arcs."""
-        target = gx.points_on_arcs(self.path, rows, part) + self.offset_of(rows)
-        return self.command(target, rows) - target
 
     def run(self) -> gx.Toolpath:
         """Return the commands."""
@@ -83,8 +32,7 @@ class Compensation:
         self._check_own()
         self._check_known()
         check_inside(self.step, self.path, self.offset, np.flatnonzero(~self.left))
-        self.entry_command = self._first_command()
-        commands = self._commands()
+        commands = self._commands(self.entry_command)
         self._check_begins(commands)
         self._check_paces(commands)
         rows, part = self._cuts(commands)
@@ -101,8 +49,9 @@ class Compensation:
             message = "a spline is not compensated"
             raise self.path.refuse("GX506", rows, message, 'put the pass "segment" before')
 
-    def _first_command(self) -> Floats:
-        """Return where the axes stand before the first row, in the table (3,).
+    @cached_property
+    def entry_command(self) -> Floats:
+        """Where the axes stand before the first row, in the table (3,).
 
         It is what was written before; where nothing was, the control says where they stand, and the
         machine is off by its error there.
@@ -112,12 +61,15 @@ class Compensation:
             return np.asarray(np.where(np.isnan(start), start, path.held[:3] + self.offset[0]))
         if self.step.rapids == "skip" and path.after_rapid:
             return np.asarray(start)
-        return np.asarray(self.step.command(self.start[:1], self.place.first_tool)[0])
+        return np.asarray(self.commanded(self.start[:1], self.place.first_tool)[0])
 
-    def _commands(self) -> Floats:
-        """Return the commands for the ends of the rows; what G28 and G53 say stays as it is."""
+    def _commands(self, entry: Floats) -> Floats:
+        """Return the commands for the ends of the rows; what G28 and G53 say stays as it is.
+
+        `entry` (3,) is the command before the first row.
+        """
         if not self.left.any():
-            return self.step.command(self.end, self.place.tool)
+            return self.commanded(self.end, self.place.tool)
         commands = self.end.copy()
         rows = np.flatnonzero(~self.left)
         commands[rows] = self.command(self.end[rows], rows)
@@ -126,7 +78,7 @@ class Compensation:
         distances &= np.append(path.nth[1:] > 0, False)[: len(path)]  # the way to G28's own point
         named = (path.blocks.named[path.block][:, None] >> np.arange(3) & 1).astype(np.bool_)
         for row in np.flatnonzero(self.left).tolist():
-            before = self._written(commands, row - 1) if row else self.entry_command
+            before = self._written(commands, row - 1) if row else entry
             way = self.end[row] - self.start[row]
             stays = (np.abs(way) < SAME) & ~named[row]
             commands[row] = np.where(stays, before, commands[row])
@@ -150,7 +102,7 @@ class Compensation:
         """Return row and part of all cuts."""
         if self.step.split == "none":
             return np.empty(0, np.int64), np.empty(0)
-        row, part = cuts_of_lines(self, commands)
+        row, part = cuts_of_lines(self, self.entry_command, commands)
         if self.path.has_arcs:
             self._check_turns()
             arc_row, arc_part = ArcFitter(self).cuts()
@@ -212,7 +164,7 @@ class Compensation:
         `commands` (rows + 1, 3) are those before each row of the path.
         """
         places = np.vstack([self.start[:1], self.end])[rows]
-        meant = self.step.meant(commands[rows], self.place.tool_before(rows))
+        meant = self.meant(commands[rows], self.place.tool_before(rows))
         gap = np.where(np.isnan(places), 0.0, meant - places)
         off = np.sqrt((gap**2).sum(axis=1))
         near = self.step.max_correction
@@ -233,17 +185,6 @@ class Compensation:
             np.array([row]),
             f"this feed move begins {what}, where the machine is {size}",
             f"before it, write a rapid to where it begins: G90 G0 {there}{more}",
-        )
-
-    def refuse_short(self, row: int, shortest: float) -> gx.InputError:
-        """Return the error about a move that has to be cut into too short pieces."""
-        step = self.step
-        return self.path.refuse(
-            "GX315",
-            np.array([row]),
-            f"to be within {step.limit * 1000:g} um takes a piece of {shortest:.3f} mm, shorter "
-            f"than min-length, which is {step.min_length:g} mm",
-            "give a larger tolerance, or a smaller min-length",
         )
 
     def _check_paces(self, commands: Floats) -> None:

@@ -6,16 +6,11 @@ too large for a piece between two nodes, it is divided, and these places may be 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.volumetric.forward.compensation import Compensation
-
+from gcxform_plugins.passes.volumetric.forward.window import Window
 
 TIED = (gx.Form.THREAD, gx.Form.SYNCHRONISED, gx.Form.PROBE)
 REFINEMENTS = 4  # each shrinks the error of a crossing by the Lipschitz constant of the error
@@ -26,44 +21,47 @@ CURVED_SHARE = 0.25  # of a tolerance, for the same
 BEHIND = 10.0  # times what it moves the machine aside counts what a command is ahead or behind
 
 
-def cuts_of_lines(work: Compensation, commands: Floats) -> tuple[Ints, Floats]:
-    """Return row and part of each cut; `commands` (n, 3) are those for the ends of the rows."""
-    step, path = work.step, work.path
+def cuts_of_lines(window: Window, entry: Floats, commands: Floats) -> tuple[Ints, Floats]:
+    """Return row and part of each cut.
+
+    `entry` (3,) is the command before the first row, `commands` (n, 3) those for the ends of rows.
+    """
+    step, path = window.step, window.path
     points = np.empty((3, len(path) + 1)).T
-    points[0], points[1:] = work.entry_command, commands
-    bending = np.vstack([work.start[:1], work.end]) if step.inverse else points
+    points[0], points[1:] = entry, commands
+    bending = np.vstack([window.start[:1], window.end]) if step.inverse else points
     whole = np.isin(path.form, TIED)
     lines = (path.kind == gx.Kind.LINE) & ((path.form == gx.Form.PLAIN) | whole)
-    lines &= path.starts_known & ~work.left
-    row, part = _at_nodes(work, bending, lines)
+    lines &= path.starts_known & ~window.left
+    row, part = _at_nodes(window, bending, lines)
     exact = step.tolerance is None or step.split == "nodes"
-    most = np.full(len(path), work.room)
-    if work.curvature.any() or work.swing is not None:
+    most = np.full(len(path), window.room)
+    if window.curvature.any() or window.swing is not None:
         between = CURVED if exact else CURVED_SHARE * step.limit
-        row, part, left = _divided(work, row, part, lines, between)
+        row, part, left = _divided(window, row, part, lines, between)
         most -= left
     if not len(row):
         return row, part
     residual = np.where(whole, most, NEGLIGIBLE) if exact else most
-    row, part = _needed(work, row, part, points, (residual, most))
+    row, part = _needed(window, row, part, points, (residual, most))
     if whole[row].any():
         message = "this move is tied to the spindle or to a probe and cannot be cut, and the error "
-        message += f"bends on its way by more than {work.step.limit * 1000:g} um"
+        message += f"bends on its way by more than {window.step.limit * 1000:g} um"
         hint = "give volumetric a larger tolerance, or the move a shorter way"
         raise path.refuse("GX506", row[whole[row]][:1], message, hint)
     return row, part
 
 
-def _at_nodes(work: Compensation, points: Floats, lines: Flags) -> tuple[Ints, Floats]:
+def _at_nodes(window: Window, points: Floats, lines: Flags) -> tuple[Ints, Floats]:
     """Return row and part of the places where commands cross a node; `points`: their ends."""
-    step = work.step
+    step = window.step
     row, part, axis, plane = gx.line_crossings(points, lines, step.nodes())
     if not len(row):
         return row, part
-    start, way = work.start[row], work.end[row] - work.start[row]
+    start, way = window.start[row], window.end[row] - window.start[row]
     index = np.arange(len(row))
     for _ in range(0 if step.inverse else REFINEMENTS):
-        command = work.command(start + part[:, None] * way, row, part)
+        command = window.command(start + part[:, None] * way, row, part)
         with np.errstate(divide="ignore", invalid="ignore"):
             shift = (plane - command[index, axis]) / way[index, axis]
         part = part + np.where(np.isfinite(shift) & (np.abs(shift) < 0.5), shift, 0.0)
@@ -74,7 +72,7 @@ def _at_nodes(work: Compensation, points: Floats, lines: Flags) -> tuple[Ints, F
 
 
 def _divided(
-    work: Compensation, row: Ints, part: Floats, lines: Flags, between: float
+    window: Window, row: Ints, part: Floats, lines: Flags, between: float
 ) -> tuple[Ints, Floats, Floats]:
     """Return the places, and more so that between two of them the error bends by `between` mm.
 
@@ -85,12 +83,12 @@ def _divided(
     order = np.lexsort((part, row))
     row, part = row[order], part[order]
     before = np.where(np.append(True, row[1:] != row[:-1]), 0.0, np.append(0.0, part[:-1]))
-    way = np.abs(work.end[row] - work.start[row]) * (part - before)[:, None]
-    bend = np.einsum("ni,ij,nj->n", way, work.curvature, way) / 8 * (1 + 4 * work.lipschitz)
-    if work.swing is not None:
-        bend += work.swing.bend(row, way, part - before) * (1 + 4 * work.lipschitz)
+    way = np.abs(window.end[row] - window.start[row]) * (part - before)[:, None]
+    bend = np.einsum("ni,ij,nj->n", way, window.curvature, way) / 8 * (1 + 4 * window.lipschitz)
+    if window.swing is not None:
+        bend += window.swing.bend(row, way, part - before) * (1 + 4 * window.lipschitz)
     pieces = np.ceil(np.sqrt(bend / between)).astype(np.int64)
-    left = np.zeros(len(work.path))
+    left = np.zeros(len(window.path))
     np.maximum.at(left, row, bend / np.maximum(pieces, 1) ** 2)
     long = np.flatnonzero(pieces > 1)
     which = np.repeat(long, pieces[long] - 1)
@@ -104,7 +102,7 @@ def _divided(
 
 
 def _needed(
-    work: Compensation,
+    window: Window,
     row: Ints,
     part: Floats,
     points: Floats,
@@ -115,13 +113,13 @@ def _needed(
     A straight command from one exact point to another is off at the places between them, and
     nowhere more than there, by its distance from the exact command.
     """
-    steep = float(np.hypot(1 + work.undone, 1 / BEHIND))
+    steep = float(np.hypot(1 + window.undone, 1 / BEHIND))
     limit, most = (residual * (1 - 1e-6) / steep for residual in residuals)
-    start, way = work.start[row], work.end[row] - work.start[row]
-    exact = work.command(start + part[:, None] * way, row, part)
+    start, way = window.start[row], window.end[row] - window.start[row]
+    exact = window.command(start + part[:, None] * way, row, part)
     straight = points[row] + part[:, None] * (points[row + 1] - points[row])
-    along = _along(work, row)
-    off = np.sqrt((_squeezed(work, exact - straight, along) ** 2).sum(axis=1))
+    along = _along(window, row)
+    off = np.sqrt((_squeezed(window, exact - straight, along) ** 2).sum(axis=1))
     begins = np.flatnonzero(np.append(True, row[1:] != row[:-1]))
     stops = np.append(begins[1:], len(row))
     worst = np.maximum.reduceat(off, begins)
@@ -131,37 +129,37 @@ def _needed(
         owner = int(row[begins[which]])
         ends = points[[owner]], points[[owner + 1]]
         way = np.vstack([ends[0], exact[members], ends[1]])
-        way = _squeezed(work, way, along[[begins[which]]])
+        way = _squeezed(window, way, along[[begins[which]]])
         parts = np.concatenate([[0.0], part[members], [1.0]])
         inner = _farthest_reaching(way, parts, float(limit[owner]))
-        if work.step.min_length:
-            inner = _long_enough(work, owner, (way, parts), inner, float(most[owner]))
+        if window.step.min_length:
+            inner = _long_enough(window, owner, (way, parts), inner, float(most[owner]))
         kept += [int(begins[which]) + k - 1 for k in inner]
     chosen = np.array(kept, np.int64)
     return row[chosen], part[chosen]
 
 
-def _along(work: Compensation, row: Ints) -> Floats:
+def _along(window: Window, row: Ints) -> Floats:
     """Return the directions (n, 3) in which rows may be ahead or behind; 0 where they may not.
 
     A machine that is ahead is still on its path, unless a rotary axis turns along it. Without a
     tolerance lines are exact in their time as well.
     """
-    way = work.end[row] - work.start[row]
+    way = window.end[row] - window.start[row]
     length = np.sqrt((way**2).sum(axis=1))
-    turning = (np.nan_to_num(work.path.end - work.path.start)[:, 3:] != 0).any(axis=1)
-    free = (length > 0) & ~turning[row] & (work.step.tolerance is not None)
+    turning = (np.nan_to_num(window.path.end - window.path.start)[:, 3:] != 0).any(axis=1)
+    free = (length > 0) & ~turning[row] & (window.step.tolerance is not None)
     return np.where(free[:, None], way / np.where(free, length, 1.0)[:, None], 0.0)
 
 
-def _squeezed(work: Compensation, points: Floats, along: Floats) -> Floats:
+def _squeezed(window: Window, points: Floats, along: Floats) -> Floats:
     """Return points (n, 3) brought together along directions (n or 1, 3) of unit length.
 
     A command that is ahead by s and aside by q moves the machine aside by (1 + k) q + k s at most,
     where k is the Lipschitz constant. With s squeezed to b k s this is no more than the length of
     both times the root of (1 + k)^2 + 1 / b^2.
     """
-    kept = min(BEHIND * work.undone, 1.0)
+    kept = min(BEHIND * window.undone, 1.0)
     ahead = (points * along).sum(axis=1)
     return np.asarray(points - (1.0 - kept) * ahead[:, None] * along)
 
@@ -208,17 +206,17 @@ def _shortest(parts: Floats, inner: list[int]) -> float:
 
 
 def _long_enough(
-    work: Compensation, row: int, places: tuple[Floats, Floats], inner: list[int], most: float
+    window: Window, row: int, places: tuple[Floats, Floats], inner: list[int], most: float
 ) -> list[int]:
     """Return the inner points, or others where they make too short pieces. Raises InputError."""
-    length = float(np.linalg.norm(work.end[row] - work.start[row]))
-    least = work.step.min_length / length
+    length = float(np.linalg.norm(window.end[row] - window.start[row]))
+    least = window.step.min_length / length
     if _shortest(places[1], inner) >= least:
         return inner
     long = _long_pieces(*places, most, least)
     if long is None:
         shortest = _shortest(places[1], _farthest_reaching(*places, most))
-        raise work.refuse_short(row, shortest * length)
+        raise window.refuse_short(row, shortest * length)
     return long
 
 

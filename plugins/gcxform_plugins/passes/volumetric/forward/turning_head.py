@@ -12,7 +12,6 @@ undo, which has bounds of its own.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,9 +19,7 @@ import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.shared.tip_bound import leaving
 from gcxform_plugins.passes.volumetric.levers import Lever
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.volumetric.volumetric import Volumetric
+from gcxform_plugins.passes.volumetric.options import VolumetricOptions
 
 
 class Swing:
@@ -34,7 +31,7 @@ class Swing:
     reach    mm, how far the tip is at most from where the errors were measured
     """
 
-    def __init__(self, step: Volumetric, lever: Lever) -> None:
+    def __init__(self, step: VolumetricOptions, lever: Lever) -> None:
         model = step.model.model
         self.angle, self.slope = model.turning(step.cells)
         self.turning = (lever.begin != lever.stop).any(axis=1)

@@ -6,19 +6,15 @@ The forward model alone: nothing here is shared with the search for commands.
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.volumetric.levers import Lever
+from gcxform_plugins.passes.volumetric.options import VolumetricOptions
 from gcxform_plugins.passes.volumetric.place import Place
 from gcxform_plugins.passes.volumetric.ranges import beyond_tables, check_inside
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.volumetric.volumetric import Volumetric
-
 
 NO_WAY = 1e-12  # of a move; two cuts nearer to each other are one
 UNDO_SLACK = 2e-6  # mm; how far pieces of an undone arc are from the curve they stand for
@@ -37,7 +33,7 @@ class Arm:
     reach mm, how far the tip is at most from where the errors were measured
     """
 
-    def __init__(self, step: Volumetric, lever: Lever) -> None:
+    def __init__(self, step: VolumetricOptions, lever: Lever) -> None:
         model = step.model.model
         self.angle, self.slope = model.turning(step.cells)
         self.turn = np.abs(np.radians(lever.stop - lever.begin)).sum(axis=1)
@@ -58,7 +54,7 @@ class Arm:
 class Machine:
     """Where the machine goes with commands: the forward model alone."""
 
-    def __init__(self, step: Volumetric, path: gx.Toolpath, place: Place) -> None:
+    def __init__(self, step: VolumetricOptions, path: gx.Toolpath, place: Place) -> None:
         self.step = step
         self.path = path
         self.place = place
