@@ -195,6 +195,6 @@ def test_policies_outside(policy):
     elif policy is Outside.CLAMP:
         assert np.array_equal(found[0], border)
     else:
-        slope = model.stretches[0].at(np.array([301.0]))[0] - border[0]
+        slope = model.axes[0].at(np.array([301.0]))[0] - border[0]
         assert found[0, 0] == pytest.approx(border[0] + 20 * slope, abs=1e-12)
     assert model.outside(beyond).tolist() == [[True, False, False], [False] * 3, [False] * 3]

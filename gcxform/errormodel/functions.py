@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.errormodel.model import AXES
-from gcxform.errormodel.tabled import Positions, Tabled
+from gcxform.errormodel.tabled import AxisTables
 from gcxform.system.arrays import Floats
 
 COMBINATIONS_AT_MOST = 250_000  # cells (50 ms) for which the Lipschitz constant is computed exactly
@@ -154,7 +154,7 @@ def _is_uniform(position: Floats) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class AxisFunctions(Tabled):
+class AxisFunctions(AxisTables[AxisFunction]):
     """The model of nine functions, E = Dx(x) + Dy(y) + Dz(z).
 
     It is the first-order rigid-body model without angular errors, hence independent of the tool
@@ -162,23 +162,10 @@ class AxisFunctions(Tabled):
     limits. `order` names the axes from the workpiece to the tool.
     """
 
-    axes: tuple[AxisFunction | None, AxisFunction | None, AxisFunction | None]
     order: str = AXES
     kind: ClassVar[str] = "axis-functions"
 
-    @property
-    def positions(self) -> Positions:
-        """The node positions of X, Y and Z in mm."""
-        x, y, z = (None if f is None else f.position for f in self.axes)
-        return x, y, z
-
-    def add(
-        self,
-        total: Floats,
-        place: Floats,
-        tool: Floats | None,
-        sense: Floats | None,
-    ) -> None:
+    def add(self, total: Floats, place: Floats, tool: Floats | None, sense: Floats | None) -> None:
         """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
         for k, function in enumerate(self.axes):
             if function is not None and not function.trivial:

@@ -55,13 +55,7 @@ class Lattice(Tabled):
         x, y, z = (n if len(n) > 1 else None for n in self.grid)
         return x, y, z
 
-    def add(
-        self,
-        total: Floats,
-        place: Floats,
-        tool: Floats | None,
-        sense: Floats | None,
-    ) -> None:
+    def add(self, total: Floats, place: Floats, tool: Floats | None, sense: Floats | None) -> None:
         """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
         cells = [self._cell(axis, place[:, axis]) for axis in range(3)]
         flat = self._flat

@@ -15,7 +15,7 @@ import numpy as np
 
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.errormodel.functions import AxisFunction, faults
-from gcxform.errormodel.tabled import Positions, Tabled
+from gcxform.errormodel.tabled import AxisTables
 from gcxform.system.arrays import Flags, Floats
 
 
@@ -48,25 +48,12 @@ class PitchTable:
 
 
 @dataclass(frozen=True, eq=False)
-class PitchTables(Tabled):
+class PitchTables(AxisTables[PitchTable]):
     """The positioning errors of X, Y and Z; an axis which is None has no error and no limits."""
 
-    axes: tuple[PitchTable | None, PitchTable | None, PitchTable | None]
     kind: ClassVar[str] = "pitch"
 
-    @property
-    def positions(self) -> Positions:
-        """The positions of X, Y and Z in mm."""
-        x, y, z = (None if t is None else t.position for t in self.axes)
-        return x, y, z
-
-    def add(
-        self,
-        total: Floats,
-        place: Floats,
-        tool: Floats | None,
-        sense: Floats | None,
-    ) -> None:
+    def add(self, total: Floats, place: Floats, tool: Floats | None, sense: Floats | None) -> None:
         """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
         for k, table in enumerate(self.axes):
             if table is not None:

@@ -24,7 +24,7 @@ import numpy as np
 
 from gcxform.errormodel.functions import AxisFunction
 from gcxform.errormodel.model import AXES
-from gcxform.errormodel.tabled import Positions, Tabled
+from gcxform.errormodel.tabled import AxisTables
 from gcxform.system.arrays import Floats
 
 Triple = tuple[float, float, float]
@@ -32,7 +32,7 @@ NOWHERE: Triple = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
-class RigidBody(Tabled):
+class RigidBody(AxisTables[AxisFunction]):
     """The rigid-body model of linear axes with angular errors.
 
     `axes` holds the functions of X, Y and Z, of six columns each; None is an axis without error
@@ -41,7 +41,6 @@ class RigidBody(Tabled):
     gauge point. An axis after one with angular errors has functions, because its travel is a lever.
     """
 
-    axes: tuple[AxisFunction | None, AxisFunction | None, AxisFunction | None]
     order: str = AXES
     at: tuple[Triple, Triple, Triple] = (NOWHERE, NOWHERE, NOWHERE)
     measured: Triple = NOWHERE
@@ -66,19 +65,7 @@ class RigidBody(Tabled):
         """Return the axes which are nearer to the tool than an axis."""
         return [AXES.index(letter) for letter in self.order[self.order.index(AXES[axis]) + 1 :]]
 
-    @property
-    def positions(self) -> Positions:
-        """The node positions of X, Y and Z in mm."""
-        x, y, z = (None if f is None else f.position for f in self.axes)
-        return x, y, z
-
-    def add(
-        self,
-        total: Floats,
-        place: Floats,
-        tool: Floats | None,
-        sense: Floats | None,
-    ) -> None:
+    def add(self, total: Floats, place: Floats, tool: Floats | None, sense: Floats | None) -> None:
         """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
         away = None if tool is None else np.broadcast_to(tool - self.tool, place.shape)
         for k, function in enumerate(self.axes):

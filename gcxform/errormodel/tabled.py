@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
@@ -26,13 +28,7 @@ class Tabled(ErrorModel):
         """The ascending positions (mm) of X, Y and Z; None for an axis without limits and nodes."""
 
     @abstractmethod
-    def add(
-        self,
-        total: Floats,
-        place: Floats,
-        tool: Floats | None,
-        sense: Floats | None,
-    ) -> None:
+    def add(self, total: Floats, place: Floats, tool: Floats | None, sense: Floats | None) -> None:
         """Add the errors (3, n) in mm at places (n, 3) in mm to `total`, in place.
 
         Beyond the table they are extrapolated; tool and sense are as for `ErrorModel.error`.
@@ -72,3 +68,27 @@ class Tabled(ErrorModel):
         """Return the first and last node of an axis in mm; infinite for one without a table."""
         nodes = self.positions[axis_index]
         return (-math.inf, math.inf) if nodes is None else (float(nodes[0]), float(nodes[-1]))
+
+
+class OneAxis(Protocol):
+    """A table of one axis."""
+
+    @property
+    def position(self) -> Floats:
+        """The ascending positions (n,) of the nodes in mm."""
+
+
+Table = TypeVar("Table", bound=OneAxis)
+
+
+@dataclass(frozen=True, eq=False)
+class AxisTables(Tabled, Generic[Table]):
+    """A table each for X, Y and Z; an axis which is None has no error and no limits."""
+
+    axes: tuple[Table | None, Table | None, Table | None]
+
+    @property
+    def positions(self) -> Positions:
+        """The positions of X, Y and Z in mm."""
+        x, y, z = (None if table is None else table.position for table in self.axes)
+        return x, y, z

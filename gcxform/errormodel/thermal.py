@@ -16,7 +16,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from gcxform.errormodel.model import BORDER, State
-from gcxform.errormodel.tabled import Positions, Tabled
+from gcxform.errormodel.tabled import AxisTables
 from gcxform.system.arrays import Floats
 
 
@@ -172,14 +172,13 @@ def stretch(rod: Rod, warmer: Floats, travel: tuple[float, float], linear: bool 
 
 
 @dataclass(frozen=True, eq=False)
-class ThermalScrew(Tabled):
+class ThermalScrew(AxisTables[Stretch]):
     """The positioning errors of axes whose screws or scales are warm; see `Stretch`.
 
     An axis whose stretch is None has no error and no limits. `choose` returns the model in its
     state at another time.
     """
 
-    stretches: tuple[Stretch | None, Stretch | None, Stretch | None]
     known: tuple[State, ...] = ()
     choose: Callable[[str], ThermalScrew] | None = field(default=None, compare=False, repr=False)
     kind: ClassVar[str] = "thermal-screw"
@@ -194,37 +193,25 @@ class ThermalScrew(Tabled):
         """Return the model in its state at a time (ISO 8601). Raises UsageError."""
         return self if self.choose is None else self.choose(time)
 
-    @property
-    def positions(self) -> Positions:
-        """The sensors as positions of X, Y and Z in mm, and the ends of the travel."""
-        x, y, z = (None if axis is None else axis.position for axis in self.stretches)
-        return x, y, z
-
-    def add(
-        self,
-        total: Floats,
-        place: Floats,
-        tool: Floats | None,
-        sense: Floats | None,
-    ) -> None:
+    def add(self, total: Floats, place: Floats, tool: Floats | None, sense: Floats | None) -> None:
         """Add the errors (3, n) at places (n, 3): see `Tabled.add`."""
-        for k, axis in enumerate(self.stretches):
+        for k, axis in enumerate(self.axes):
             if axis is not None:
                 total[k] += axis.at(place[:, k])
 
     def lipschitz(self, reach: float = 0.0) -> float:
         """Return the steepest slope: dE/dc is diagonal, so it is the spectral norm, exactly."""
-        slopes = [0.0 if axis is None else axis.steepest for axis in self.stretches]
+        slopes = [0.0 if axis is None else axis.steepest for axis in self.axes]
         return max(slopes) if all(map(math.isfinite, slopes)) else math.inf
 
     def curvature(self, reach: float = 0.0) -> Floats:
         """Return the largest |d2E/dx2| of each axis on the diagonal."""
-        bends = [0.0 if axis is None else float(np.abs(axis.bend).max()) for axis in self.stretches]
+        bends = [0.0 if axis is None else float(np.abs(axis.bend).max()) for axis in self.axes]
         return np.diag(bends)
 
     def largest(self, reach: float = 0.0) -> float:
         """Return the largest |E| in mm: that of the axes together, as each has its own place."""
-        return math.hypot(*(0.0 if axis is None else axis.largest for axis in self.stretches))
+        return math.hypot(*(0.0 if axis is None else axis.largest for axis in self.axes))
 
 
 def drift(rod: Rod, travel: tuple[float, float]) -> float:

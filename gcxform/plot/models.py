@@ -57,7 +57,7 @@ def curves(model: ErrorModel) -> Curves:
 def _stretches(model: ThermalScrew) -> Curves:
     """Return the positioning errors of warm axes, which are curved."""
     found: Curves = {}
-    for axis, stretch in zip(AXES, model.stretches, strict=True):
+    for axis, stretch in zip(AXES, model.axes, strict=True):
         if stretch is not None:
             position = np.linspace(stretch.position[0], stretch.position[-1], FINE)
             found[f"E{axis}{axis}"] = position, stretch.at(position)

@@ -303,7 +303,7 @@ MUTATIONS = (
         BUNDLE,
     ),
     _rotary(
-        "gcxform/calibrate/bundle/report.py",
+        "gcxform/calibrate/rotary/predicted_check.py",
         "a shift is a tilt",
         "for part in parts",
         "for part in parts[::-1]",

@@ -19,8 +19,8 @@ from gcxform.calibrate.ballbar.file import bar_name
 from gcxform.calibrate.ballbar.locations import Named, locations, of_trunnion
 from gcxform.calibrate.rotary.axis import ILL, arc, condition
 from gcxform.calibrate.rotary.check import two_digits
-from gcxform.calibrate.rotary.predicted_check import Check, effects, predicted, worded
-from gcxform.calibrate.rotary.report import WIDTH
+from gcxform.calibrate.rotary.predicted_check import Check, predicted, spreads, worded
+from gcxform.calibrate.rotary.report import WIDTH, located
 from gcxform.machine.chain import Rotary
 from gcxform.system.arrays import Floats
 from gcxform.version import VERSION
@@ -74,25 +74,12 @@ def _test(number: int, test: Eccentricity) -> str:
 
 def _axis(found: Identified, letter: str) -> list[str]:
     k = found.letters.index(letter)
-    axis = found.chain.axes[k]
-    direction = ", ".join(f"{part:.7f}" for part in axis.direction)
-    point = " ".join(f"{a}{v:.4f}" for a, v in zip("XYZ", axis.point, strict=True))
-    shift, tilt = _spread(found, k)
-    tilts, shifts = (", ".join(map(two_digits, sd)) for sd in (1e6 * tilt, 1e3 * shift))
-    return [
-        f"direction ({direction}) +- ({tilts}) urad, sign {axis.sign:+d}",
-        f"point {point} mm +- ({shifts}) um; it may be shifted along the axis",
-    ]
+    return located(found.chain.axes[k], *_spread(found, k))
 
 
 def _spread(found: Identified, k: int) -> tuple[Floats, Floats]:
     """Return the standard deviations of point (3,), mm, and direction (3,) of an axis."""
-    basis = effects(found.believed.table[k])[0]
-    parts = (slice(4 * k, 4 * k + 2), slice(4 * k + 2, 4 * k + 4))
-    shift, tilt = (
-        np.sqrt(np.diag(basis @ found.covariance[part, part] @ basis.T).clip(0.0)) for part in parts
-    )
-    return shift, tilt
+    return spreads(found.believed.table[k], found.covariance, k)
 
 
 def _error(named: Named, k: int) -> str:

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from gcxform.calibrate.bundle.bundle import LINEAR, Bundled, across
+from gcxform.calibrate.bundle.bundle import LINEAR, Bundled
 from gcxform.calibrate.rotary.axis import ILL
 from gcxform.calibrate.rotary.check import two_digits
-from gcxform.calibrate.rotary.predicted_check import Check, astray, predicted, worded
-from gcxform.calibrate.rotary.report import WIDTH
+from gcxform.calibrate.rotary.predicted_check import Check, astray, predicted, spreads, worded
+from gcxform.calibrate.rotary.report import WIDTH, located
 from gcxform.system.arrays import Floats
 from gcxform.version import VERSION
 
@@ -93,25 +93,12 @@ def comments(found: Bundled, letter: str, file: str) -> list[str]:
 
 def _axis(found: Bundled, letter: str) -> list[str]:
     k = found.chain.letters.index(letter)
-    axis = found.chain.axes[k]
-    direction = ", ".join(f"{part:.7f}" for part in axis.direction)
-    point = " ".join(f"{a}{v:.4f}" for a, v in zip("XYZ", axis.point, strict=True))
-    shift, tilt = _spread(found, k)
-    tilts, shifts = (", ".join(map(two_digits, sd)) for sd in (1e6 * tilt, 1e3 * shift))
-    return [
-        f"direction ({direction}) +- ({tilts}) urad, sign {axis.sign:+d}",
-        f"point {point} mm +- ({shifts}) um; it may be shifted along the axis",
-    ]
+    return located(found.chain.axes[k], *_spread(found, k))
 
 
 def _spread(found: Bundled, k: int) -> tuple[Floats, Floats]:
     """Return the standard deviations of point (3,), mm, and direction (3,) of an axis."""
-    frame = across(found.layout.chain.axes[k])
-    parts = (slice(4 * k, 4 * k + 2), slice(4 * k + 2, 4 * k + 4))
-    shift, tilt = (
-        np.sqrt(np.diag(frame.T @ found.covariance[part, part] @ frame).clip(0.0)) for part in parts
-    )
-    return shift, tilt
+    return spreads(found.layout.chain.axes[k], found.covariance, k)
 
 
 def _linear(found: Bundled) -> list[str]:

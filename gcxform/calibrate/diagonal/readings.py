@@ -144,26 +144,27 @@ def step_diagonals(legs: Sequence[Leg], where: Where = nowhere) -> Diagonals:
     Steps have to go X, Y, Z in turn (Z, Y, X on the way back), all steps of an axis have to be
     equal (GX472), and the four diagonals have to be those of one volume (GX473).
     """
-    found = [
-        Diagnostic("GX472", fault.message, where(k, fault.row, fault.column), fault.hint)
-        for k, leg in enumerate(legs)
-        if (fault := _sequence_fault(leg))
-    ]
-    if found:
-        raise InputError(tuple(found))
+    _check_each(legs, _sequence_fault, where)
     return _of_one_volume(legs, [(len(leg.position) - 1) // 3 for leg in legs], where)
 
 
 def plain_diagonals(legs: Sequence[Leg], where: Where = nowhere) -> Diagonals:
     """Return the measurement of four lengths: what is between the ends of a leg is left out."""
+    _check_each(legs, _end_fault, where)
+    return _of_one_volume(legs, [1] * len(legs), where)
+
+
+def _check_each(
+    legs: Sequence[Leg], fault_of: Callable[[Leg], _Fault | None], where: Where
+) -> None:
+    """Raise InputError with what is wrong with the legs."""
     found = [
         Diagnostic("GX472", fault.message, where(k, fault.row, fault.column), fault.hint)
         for k, leg in enumerate(legs)
-        if (fault := _end_fault(leg))
+        if (fault := fault_of(leg))
     ]
     if found:
         raise InputError(tuple(found))
-    return _of_one_volume(legs, [1] * len(legs), where)
 
 
 def _sequence_fault(leg: Leg) -> _Fault | None:

@@ -59,6 +59,19 @@ def effects(axis: Rotary) -> tuple[Floats, Floats]:
     return basis.T, np.cross(axis.direction, basis).T
 
 
+def spreads(axis: Rotary, covariance: Floats, number: int) -> tuple[Floats, Floats]:
+    """Return the standard deviations of point (3,), mm, and direction (3,) of an axis.
+
+    Of a `covariance` of the unknowns of several axes, those of this `number` are taken.
+    """
+    basis, first = across(axis).T, 4 * number
+    parts = (slice(first, first + 2), slice(first + 2, first + 4))
+    shift, tilt = (
+        np.sqrt(np.diag(basis @ covariance[part, part] @ basis.T).clip(0.0)) for part in parts
+    )
+    return shift, tilt
+
+
 def astray(letter: str, before: Rotary | Axis | None, point: Floats) -> Iterator[str]:
     """Yield how far a point (3,) mm is from the axis as it was, if that is no error of a machine.
 

@@ -32,6 +32,7 @@ from gcxform.calibrate.rotary.predicted_check import astray
 from gcxform.machine.axis_text import MARK
 from gcxform.machine.chain import Rotary
 from gcxform.machine.machine import Axis
+from gcxform.system.arrays import Floats
 from gcxform.version import VERSION
 
 WIDTH: Final = 98 - len(MARK)
@@ -81,14 +82,19 @@ def comments(found: Placed, file: str) -> list[str]:
     return [piece for line in said for piece in textwrap.wrap(line, WIDTH, subsequent_indent="  ")]
 
 
-def _result(found: Placed) -> list[str]:
-    direction = ", ".join(f"{part:.7f}" for part in found.direction)
-    point = " ".join(f"{a}{v:.4f}" for a, v in zip("XYZ", found.point, strict=True))
-    sd = np.sqrt(np.diag(found.covariance).clip(0.0))
+def located(axis: Placed | Rotary, shift: Floats, tilt: Floats) -> list[str]:
+    """Return where an axis is, with standard deviations (3,) of point (mm) and direction (rad)."""
+    direction = ", ".join(f"{part:.7f}" for part in axis.direction)
+    point = " ".join(f"{a}{v:.4f}" for a, v in zip("XYZ", axis.point, strict=True))
     return [
-        f"direction ({direction}) +- ({_list(1e6 * sd[3:])}) urad, sign {found.sign:+d}",
-        f"point {point} mm +- ({_list(1e3 * sd[:3])}) um; it may be shifted along the axis",
+        f"direction ({direction}) +- ({_list(1e6 * tilt)}) urad, sign {axis.sign:+d}",
+        f"point {point} mm +- ({_list(1e3 * shift)}) um; it may be shifted along the axis",
     ]
+
+
+def _result(found: Placed) -> list[str]:
+    sd = np.sqrt(np.diag(found.covariance).clip(0.0))
+    return located(found, sd[:3], sd[3:])
 
 
 def _leaving_out(found: Placed) -> str:

@@ -64,20 +64,12 @@ class SiemensCec(siemens.Compensation):
 
     def read(self, path: Path) -> gx.AxisFunctions | gx.PitchTables:
         """Return nine functions, or pitch tables if the tables tell directions apart."""
-        tables: dict[int, Table] = {}
-        for row in siemens.assignments(path, WIDTHS):
-            table = tables.setdefault(siemens.whole(row, 1), Table())
-            if row.word(0).upper() == VALUE:
-                table.put(row, siemens.whole(row, 2))
-            else:
-                table.set(row, row.word(0).upper().removeprefix(VALUE))
-        if not tables:
-            raise gx.UsageError.one("GX417", "the file has no table", gx.Location(str(path)))
-        parts = [self._part(table) for table in tables.values()]
-        for part, table in zip(parts, tables.values(), strict=True):
+        found = self.read_tables(path, WIDTHS, lambda row: siemens.whole(row, 1))
+        parts = [self._part(table) for table in found.values()]
+        for part, table in zip(parts, found.values(), strict=True):
             _check_travel(part, parts, table)
         if any(part.sense for part in parts):
-            for part, table in zip(parts, tables.values(), strict=True):
+            for part, table in zip(parts, found.values(), strict=True):
                 if part.by != part.into:
                     row = table.rows["_OUTPUT_AXIS"]
                     message = "directions of travel beside errors of another axis are not supported"

@@ -43,21 +43,17 @@ class SiemensEec(siemens.Compensation):
     def read(self, path: Path) -> gx.AxisFunctions:
         """Return the positioning errors of the axes."""
         names = siemens.names_of(self.axes, "axes")
-        tables: dict[str, Table] = {}
-        for row in siemens.assignments(path, WIDTHS):
+
+        def axis_of(row: gx.TextRow) -> str:
             axis = len(row.words) - 2
             if row.word(axis).upper() not in names:
                 message = f"{row.word(axis)} is not one of the axes {self.axes}"
                 raise row.refuse("GX482", message, axis, "axes=... names X, Y and Z")
             if siemens.whole(row, 1):
                 raise row.refuse("GX482", "a second encoder is not supported", 1)
-            table = tables.setdefault(names[row.word(axis).upper()], Table())
-            if row.word(0).upper() == VALUE:
-                table.put(row, siemens.whole(row, 2))
-            else:
-                table.set(row, row.word(0).upper().removeprefix(VALUE))
-        if not tables:
-            raise gx.UsageError.one("GX417", "the file has no table", gx.Location(str(path)))
+            return names[row.word(axis).upper()]
+
+        tables = self.read_tables(path, WIDTHS, axis_of)
         x, y, z = (self._function(k, tables.get(axis)) for k, axis in enumerate(siemens.AXES))
         return gx.AxisFunctions((x, y, z))
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, TypeVar
 
 import numpy as np
 
@@ -56,6 +56,9 @@ def finite(row: gx.TextRow) -> float:
     return value
 
 
+Key = TypeVar("Key")
+
+
 class Compensation(gx.ErrorFormat):
     """A file of compensation values: `axes` is an option, `value` the variable of the values."""
 
@@ -70,6 +73,21 @@ class Compensation(gx.ErrorFormat):
     def recognises(cls, path: Path) -> bool:
         """Return whether the file begins with values of this compensation."""
         return cls.value in gx.head_of(path).upper()
+
+    def read_tables(
+        self, path: Path, widths: Mapping[str, int], key: Callable[[gx.TextRow], Key]
+    ) -> dict[Key, Table]:
+        """Return the tables of a file by what `key` says of their rows. Raises UsageError."""
+        found: dict[Key, Table] = {}
+        for row in assignments(path, widths):
+            table = found.setdefault(key(row), Table())
+            if row.word(0).upper() == self.value:
+                table.put(row, whole(row, 2))
+            else:
+                table.set(row, row.word(0).upper().removeprefix(self.value))
+        if not found:
+            raise gx.UsageError.one("GX417", "the file has no table", gx.Location(str(path)))
+        return found
 
 
 class Table:
