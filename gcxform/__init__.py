@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from gcxform.dialect.dialect import NumberFormat as NumberFormat
     from gcxform.dialect.frame_rules import OffsetRule as OffsetRule
     from gcxform.dialect.frame_rules import ToolRule as ToolRule
+    from gcxform.dialect.increments import PointRule as PointRule
     from gcxform.dialect.move_rules import ArcRule as ArcRule
     from gcxform.dialect.move_rules import FeedRule as FeedRule
     from gcxform.dialect.move_rules import MotionRule as MotionRule
@@ -145,6 +146,7 @@ _HOMES = {
     "VerificationError",
     "dialect.dialect": "Dialect NumberFormat",
     "dialect.frame_rules": "OffsetRule ToolRule",
+    "dialect.increments": "PointRule",
     "dialect.move_rules": "ArcRule FeedRule MotionRule",
     "flow.translation": "Item Translator",
     "guess": "Evidence Guess guess_dialect",

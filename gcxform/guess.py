@@ -175,7 +175,7 @@ def _evidence(dialect: type[Dialect], seen: _Seen) -> Iterator[Evidence]:
     if seen.small and not dialect.lower_case:
         yield Evidence("small letters", -4.0)
     yield from _points(dialect, seen)
-    if seen.numbers and dialect.point_required:
+    if seen.numbers and dialect.point_rule.required:
         yield Evidence("a program number", 1.5)
     if dialect.program_number_digits in seen.numbers:
         yield Evidence(f"a program number of {dialect.program_number_digits} digits", 1.0)
@@ -187,20 +187,17 @@ def _evidence(dialect: type[Dialect], seen: _Seen) -> Iterator[Evidence]:
 
 def _points(dialect: type[Dialect], seen: _Seen) -> Iterator[Evidence]:
     """Yield what the points of whole numbers say."""
-    if dialect.point_required and seen.whole_without:
+    if dialect.point_rule.required and seen.whole_without:
         yield Evidence("distances without a point", -1.5)
-    elif dialect.point_required and seen.whole_with_point:
+    elif dialect.point_rule.required and seen.whole_with_point:
         yield Evidence("a point in every distance", 2.0)
 
 
 def _dwell(dialect: type[Dialect], address: str, value: float, decimals: int) -> Iterator[Evidence]:
     """Yield what the number of a dwell says of its unit: hardly anybody waits for minutes."""
-    if address not in dialect.dwell:
+    if address not in dialect.point_rule.dwell:
         return
-    unit = dialect.dwell[address]
-    if dialect.dwell_point_is_seconds and decimals >= 0:
-        unit = 1.0
-    seconds = value * unit
+    seconds = value * dialect.point_rule.seconds(address, decimals >= 0)
     if 0.04 <= seconds < 100:
         yield Evidence(f"a dwell of {seconds:g} s", 1.0)
     else:

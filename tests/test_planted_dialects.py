@@ -86,6 +86,10 @@ def offsets(base: Kind, **changes: Any) -> Kind:
     return changed(base, offset_rule=replace(base.offset_rule, **changes))
 
 
+def points(base: Kind, **changes: Any) -> Kind:
+    return changed(base, point_rule=replace(base.point_rule, **changes))
+
+
 G41 = FANUC.codes["G41"]
 
 # name: the dialect with the fault, and a part of what is said of it
@@ -237,15 +241,15 @@ PLANTED: dict[str, tuple[Callable[[], Kind], str]] = {
         "not along Z",
     ),
     # dwell
-    "P of Fanuc in seconds": (lambda: changed(FANUC, dwell={"P": 1.0, "X": 1.0}), "1 s here"),
-    "P of Haas in seconds": (lambda: changed(HAAS, dwell={"P": 1.0}), "P of G4 is 1 s here"),
-    "P of LinuxCNC in ms": (lambda: changed(NGC, dwell={"P": 0.001}), "P of G4 is 0.001 s here"),
-    "P in hundredths": (lambda: changed(GRBL, dwell={"P": 0.01}), "it is 1 s, or 0.001 s"),
-    "X in ms": (lambda: changed(FANUC, dwell={"X": 0.001, "P": 0.001}), "X of G4 is in seconds"),
-    "a dwell by no word": (lambda: changed(GRBL, dwell={"U": 1.0}), "no word of the dialect"),
-    "no dwell word": (lambda: changed(GRBL, dwell={}), "no word for its time"),
+    "P of Fanuc in seconds": (lambda: points(FANUC, dwell={"P": 1.0, "X": 1.0}), "1 s here"),
+    "P of Haas in seconds": (lambda: points(HAAS, dwell={"P": 1.0}), "P of G4 is 1 s here"),
+    "P of LinuxCNC in ms": (lambda: points(NGC, dwell={"P": 0.001}), "P of G4 is 0.001 s here"),
+    "P in hundredths": (lambda: points(GRBL, dwell={"P": 0.01}), "it is 1 s, or 0.001 s"),
+    "X in ms": (lambda: points(FANUC, dwell={"X": 0.001, "P": 0.001}), "X of G4 is in seconds"),
+    "a dwell by no word": (lambda: points(GRBL, dwell={"U": 1.0}), "no word of the dialect"),
+    "no dwell word": (lambda: points(GRBL, dwell={}), "no word for its time"),
     "a point that is nothing": (
-        lambda: changed(GRBL, dwell_point_is_seconds=True),
+        lambda: points(GRBL, dwell_in_seconds=True),
         "in seconds, as without",
     ),
     # at the start and at the end

@@ -22,6 +22,7 @@ from gcxform.dialect.arithmetic import Arithmetic
 from gcxform.dialect.codes import ISO, ISO_M, Code, CutterComp, MCode
 from gcxform.dialect.cycle_rule import CycleRule
 from gcxform.dialect.frame_rules import OffsetRule, ToolRule
+from gcxform.dialect.increments import PointRule
 from gcxform.dialect.language import Language
 from gcxform.dialect.move_rules import ArcRule, FeedRule, MotionRule
 from gcxform.machine.control import Setting, declare
@@ -93,22 +94,10 @@ class Dialect:
     """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
     cutter_comp: ClassVar[CutterComp] = CutterComp()
     """How G41 and G42 are read, where the dialect has them."""
-    point_required: ClassVar[bool] = False
-    """A distance without a point counts in increments of the control, or in units: a setting."""
-    feed_point_required: ClassVar[bool] = False
-    """An F without a point counts in a unit of the control, which must be configured."""
-    calculator_words: ClassVar[str] = "XYZUVWABCIJKRQF"
-    """Words to which the control can be set to add a point where they have none."""
-    feed_steps: ClassVar[Mapping[str, tuple[float, float]]] = {}
-    """Steps in mm/min and inch/min of an F without a point, by the system in which it counts."""
     lone_cr_is_blank: ClassVar[bool] = False
     """A CR without LF is a blank inside a block, and no line end."""
     resets_at_end: ClassVar[Mapping[str, str]] = {}
     """Where M2 and M30 do not stop the control: the modes they leave behind."""
-    dwell: ClassVar[Mapping[str, float]] = {"P": 1.0}
-    """Seconds for one unit of each word that G4 takes."""
-    dwell_point_is_seconds: ClassVar[bool] = False
-    """A dwell that is written with a point is in seconds."""
     spindle_stands: ClassVar[bool] = False
     """Whether the spindle stands still, as far as the control knows, when a program starts."""
     block_delete: ClassVar[str] = ""
@@ -166,6 +155,8 @@ class Dialect:
     calls_own_lines: ClassVar[bool] = False
     """M97 calls lines of the same program, up to M99."""
     numbers: ClassVar[NumberFormat] = NumberFormat()
+    point_rule: ClassVar[PointRule] = PointRule()
+    """What numbers are worth, with a decimal point and without."""
     arc_rule: ClassVar[ArcRule] = ArcRule()
     """Which arcs the control cuts."""
     motion_rule: ClassVar[MotionRule] = MotionRule()

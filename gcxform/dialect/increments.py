@@ -17,7 +17,8 @@ or second. What is computed is rounded to the increment all the same.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Final
 
 from gcxform.config.quantities import ANGLE, LENGTH, ROTARY_AXES
@@ -28,6 +29,35 @@ CALCULATOR: Final = "calculator"
 NEAR_WHOLE: Final = 1e-9  # of a count of increments: what a quotient of doubles may be off
 INVERSE_TIME: Final = 1000.0
 """Steps of 1/min in an F of G93, in IS-B and IS-C alike (Fanuc 16/18 manual B-62764EN, 5.3)."""
+
+
+@dataclass(frozen=True, slots=True)
+class PointRule:
+    """What numbers are worth, with a decimal point and without.
+
+    required         a distance without a point counts in increments of the control, or in units:
+                     a setting
+    feed_required    an F without a point counts in a unit of the control, which must be configured
+    feed_steps       steps in mm/min and inch/min of such an F, by the system in which it counts
+    calculator_words words to which the control can be set to add a point where they have none
+    dwell            seconds for one unit of each word that G4 takes
+    dwell_in_seconds a dwell that is written with a point is in seconds
+    """
+
+    required: bool = False
+    feed_required: bool = False
+    feed_steps: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    calculator_words: str = "XYZUVWABCIJKRQF"
+    dwell: Mapping[str, float] = field(default_factory=lambda: {"P": 1.0})
+    dwell_in_seconds: bool = False
+
+    def seconds(self, address: str, pointed: bool) -> float:
+        """Return how long (s) a dwell of 1 is, with a point or without; 1 s for other words."""
+        return 1.0 if pointed and self.dwell_in_seconds else self.dwell.get(address, 1.0)
+
+    def waits_as(self, other: PointRule) -> bool:
+        """Whether a dwell is as long under another rule, however it is written."""
+        return self.dwell == other.dwell and self.dwell_in_seconds == other.dwell_in_seconds
 
 
 @dataclass(frozen=True, slots=True)

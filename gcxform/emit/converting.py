@@ -25,7 +25,7 @@ def convertible(task: Task, pieces: Pieces, positions: Positions) -> Flags:
     lost = (named & ~np.isfinite(task.path.end[rows][:, linear])).any(axis=1)
     found[task.path.block[rows[lost]]] = False
     for line in np.flatnonzero(found).tolist():
-        found[line] = not (task.manner.source.point_required and _counts(task, line))
+        found[line] = not (task.manner.source.point_rule.required and _counts(task, line))
     now, old = task.path.blocks, task.read.path.blocks
     return np.asarray(found & (now.incremental == old.incremental))
 

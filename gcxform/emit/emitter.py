@@ -17,7 +17,7 @@ import numpy as np
 from gcxform.diagnostics import InputError
 from gcxform.emit.centres import Centres
 from gcxform.emit.copying import Copying
-from gcxform.emit.expressible import left_out, nothing_left, same_dwell, seconds_of_p
+from gcxform.emit.expressible import left_out, nothing_left
 from gcxform.emit.fields import Role
 from gcxform.emit.manner import Believed, Manner, Task
 from gcxform.emit.path_modes import ENDS_EXACTLY, Exactness, PathMode
@@ -200,14 +200,14 @@ class _Job:
         """Refuse cycles that stand as they are, and would wait for another time in the target."""
         task = self.task
         source, target = task.manner.source, task.manner.target
-        if not task.manner.crossing or same_dwell(source, target):
+        if not task.manner.crossing or source.point_rule.waits_as(target.point_rule):
             return
         waits = task.table.slots[task.shape, ord("P") - 65]
         cycles = self.path.block[self.path.form == Form.CYCLE]
         for line in np.unique(cycles[waits[cycles] >= 0]).tolist():
             number = int(task.window.first_number[line] + waits[line])
             pointed = bool(task.window.decimals[number] >= 0)
-            was, now = (seconds_of_p(dialect, pointed) for dialect in (source, target))
+            was, now = (d.point_rule.seconds("P", pointed) for d in (source, target))
             if was != now and task.window.value[number]:
                 wait = float(task.window.value[number])
                 message = (

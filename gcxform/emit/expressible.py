@@ -112,10 +112,10 @@ def event_text(event: Event, target: type[Dialect], gap: bytes) -> bytes | None:
         known = event.what[0] == "M" and int(event.what[1:]) in target.m_codes
         return event.what.encode() if known else None
     seconds = event.values[0][1]
-    for address, unit in target.dwell.items():
+    for address, unit in target.point_rule.dwell.items():
         count = seconds / unit
         whole = abs(count - round(count)) < 1e-9
-        if unit != 1.0 and (not whole or (target.dwell_point_is_seconds and not whole)):
+        if unit != 1.0 and not whole:
             continue
         number = f"{round(count)}" if unit != 1.0 else f"{seconds:.6f}".rstrip("0")
         return b"G4" + gap + f"{address}{number}".encode()
@@ -154,16 +154,6 @@ def left_out(item: Item, meaning: Meaning) -> bool:
     return item.address == "D"
 
 
-def same_dwell(one: type[Dialect], other: type[Dialect]) -> bool:
-    """Whether a dwell of one dialect is as long in the other, however it is written."""
-    return one.dwell == other.dwell and one.dwell_point_is_seconds == other.dwell_point_is_seconds
-
-
-def seconds_of_p(dialect: type[Dialect], pointed: bool) -> float:
-    """Return how long (s) a P of 1 in a canned cycle waits, with a point or without."""
-    return 1.0 if pointed and dialect.dwell_point_is_seconds else dialect.dwell.get("P", 1.0)
-
-
 def like(text: str, code: str) -> str:
     """Return a code written like another: `g01` for G3 gives `g03`."""
     letter, digits = text[0], text[1:].translate(BLANKS)
@@ -191,7 +181,7 @@ def other_in(
         return f"{name}: it goes to a point of another kind there"
     if code.act == "local" and source.offset_rule.g52_is_g92 != target.offset_rule.g52_is_g92:
         return f"{name} without changing what G92 has set"
-    if dwells and code.group == "non-modal" and not same_dwell(source, target):
+    if dwells and code.group == "non-modal" and not source.point_rule.waits_as(target.point_rule):
         return "this dwell"
     return ""
 

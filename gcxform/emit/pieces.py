@@ -288,16 +288,16 @@ class Pieces:
         manner, task = self.task.manner, self.task
         if not (slot >= 0).any():
             return np.ones(len(self.line), np.bool_)
-        if not manner.crossing and manner.source.point_required and self.other_mode.any():
+        if not manner.crossing and manner.source.point_rule.required and self.other_mode.any():
             number = np.where(slot >= 0, task.window.first_number[: len(slot)] + slot, 0)
             pointed = (slot < 0) | (task.window.decimals[number] >= 0)
             return np.asarray(~self.other_mode | pointed[self.line])
-        if not (manner.crossing and manner.source.point_required):
-            keeps = not (manner.crossing and manner.target.point_required)
+        if not (manner.crossing and manner.source.point_rule.required):
+            keeps = not (manner.crossing and manner.target.point_rule.required)
             return np.full(len(self.line), keeps)
         number = np.where(slot >= 0, task.window.first_number[: len(slot)] + slot, 0)
         alike = _close(task.window.value[number], task.read.modes.feed)
-        return np.asarray(alike & (not manner.target.point_required))[self.line]
+        return np.asarray(alike & (not manner.target.point_rule.required))[self.line]
 
     def _feed_lost(self) -> Flags:
         """Return the pieces at which the target forgets the feed."""

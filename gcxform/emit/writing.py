@@ -227,7 +227,7 @@ class Writing:
             whole = quantise(feed, decimals)
             self._check_feed(feed, whole / 10.0**decimals, members)
             everywhere = np.ones(len(rows), np.bool_)
-            point = manner.target.point_required
+            point = manner.target.point_rule.required
             renderer.number(field.gap, "F", whole, decimals, everywhere, point)
 
     def _computed(self, field: Computed, lines: Ints, renderer: Renderer) -> None:

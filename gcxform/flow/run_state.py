@@ -135,16 +135,16 @@ class RunState:
                 (why.start, why.end) if isinstance(why, LocatedError) else (word.start, word.end)
             )
             raise self.refusal(why.code, why.message, why.hint, (start, end)) from None
-        if self.dialect.feed_point_required and word.address == "F":
+        if self.dialect.point_rule.feed_required and word.address == "F":
             message = "F is computed: its unit depends on the control"
             raise self.refusal("GX205", message, place=(word.start, word.end))
-        if self.dialect.point_required and word.address in DISTANCES:
+        if self.dialect.point_rule.required and word.address in DISTANCES:
             return self._on_increment(word, value)
         return decimal(value).removesuffix(".")
 
     def _refuse_flow(self, word: Word, value: float) -> None:
         """Refuse a computed M code that decides what is executed next, and a computed unit."""
-        if word.address == "G" and value in (20, 21) and self.dialect.point_required:
+        if word.address == "G" and value in (20, 21) and self.dialect.point_rule.required:
             message = f"G{value:g} is the unit of what is computed, and is computed itself"
             raise self.refusal("GX206", message, "write the code", (word.start, word.end))
         code = self.dialect.m_codes.get(int(value)) if word.address == "M" else None

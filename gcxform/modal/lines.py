@@ -184,14 +184,14 @@ class Lines:
         value[rows] = self.window.value[number[rows]]
         if distance is None:
             distance = address in DISTANCES
-        if self.dialect.point_required and distance:
+        if self.dialect.point_rule.required and distance:
             decimals = self.window.decimals[number]
             value = self.pointless.distances(address, value, present, decimals, self.inch)
         return value, present
 
     def refuse_pointless(self, line: int, address: str, number: int) -> None:
         """Refuse a distance without a point in a word that a code takes for itself."""
-        pointless = self.dialect.point_required and address in DISTANCES
+        pointless = self.dialect.point_rule.required and address in DISTANCES
         if pointless and self.window.decimals[number] < 0 and self.window.value[number]:
             self.findings.add(
                 line,
@@ -311,7 +311,7 @@ class Lines:
         present = np.zeros(self.live, np.bool_)
         if word is not None:
             value, present = np.where(word[1], word[0], np.nan), word[1]
-            if self.dialect.point_required:
+            if self.dialect.point_rule.required:
                 slot = self.table.slots[self.shape, ord("F") - 65]
                 decimals = self.window.decimals[np.where(present, self.first + slot, 0)]
                 value = self.pointless.feeds(value, present, decimals, feed_mode, inch)

@@ -57,13 +57,13 @@ class Pointless:
         findings: Findings,
         assumed: dict[str, Diagnostic | None],
     ) -> None:
-        self.dialect, self.reading = dialect, reading
+        self.rule, self.reading = dialect.point_rule, reading
         self.findings, self.assumed = findings, assumed
         self.increments = reading.increments or UNKNOWN
 
     def _floats(self, address: str) -> bool:
         """Whether the control is said to add a point to a word that has none."""
-        return self.increments.calculator and address in self.dialect.calculator_words
+        return self.increments.calculator and address in self.rule.calculator_words
 
     # --- distances ---
 
@@ -143,7 +143,7 @@ class Pointless:
         computed = odd & (decimals == COMPUTED)
         counts = self._feed_counts(mode, inch)
         unknown = odd & (np.isnan(counts) | (computed & (counts != 1.0)))
-        if self.dialect.feed_point_required:
+        if self.rule.feed_required:
             unknown |= computed
         for line in np.flatnonzero(unknown)[: Findings.enough].tolist():
             message = "F has no decimal point: its unit depends on the control"
@@ -156,7 +156,7 @@ class Pointless:
         """Return how many of what is written in an F make a unit, nan where that is not known."""
         counts = np.full(len(mode), np.nan)
         said, per_minute = self.reading.feed_increment, mode == NUMBER["G94"]
-        custom = not self.dialect.feed_point_required
+        custom = not self.rule.feed_required
         if self._floats("F") or said == "calculator":
             counts[:] = 1.0
         elif custom:
@@ -165,8 +165,8 @@ class Pointless:
                 counts[mode == NUMBER["G93"]] = INVERSE_TIME
         if isinstance(said, float | int):
             counts[per_minute] = 1 / said
-        elif said is not None and said in self.dialect.feed_steps:
-            mm, inches = self.dialect.feed_steps[said]
+        elif said is not None and said in self.rule.feed_steps:
+            mm, inches = self.rule.feed_steps[said]
             counts[per_minute] = np.where(inch, inches, mm)[per_minute]
         return counts
 
@@ -175,8 +175,8 @@ class Pointless:
         if mode != NUMBER["G94"]:
             return hint
         unit, steps = ("inch", "0.01") if inch else ("mm", "0.001")
-        if self.dialect.feed_steps:
-            steps = f"{1 / self.dialect.feed_steps['IS-B'][inch]:g}"
+        if self.rule.feed_steps:
+            steps = f"{1 / self.rule.feed_steps['IS-B'][inch]:g}"
         return (
             f"{hint}, or say what 1 is worth: feed-increment = {steps} in [input] if F1 is "
             f'{steps} {unit}/min, feed-increment = "calculator" in [input] if it is 1 {unit}/min'
@@ -194,10 +194,8 @@ class Pointless:
 
     def dwell(self, address: str, decimals: int) -> float | None:
         """Return the seconds that 1 of a dwell word is, None where that is not known."""
-        unit = self.dialect.dwell[address]
-        if decimals >= 0:
-            return 1.0 if self.dialect.dwell_point_is_seconds else unit
-        if not self.dialect.point_required:
+        unit = self.rule.seconds(address, decimals >= 0)
+        if decimals >= 0 or not self.rule.required:
             return unit
         if unit != 1.0:
             return self._counted(address, unit)
@@ -209,7 +207,7 @@ class Pointless:
 
     def _counted(self, address: str, unit: float) -> float | None:
         """Return the worth of a word that has never a point: its usual one, but in odd systems."""
-        systems = self.increments.degree is not None and not self.dialect.dwell_point_is_seconds
+        systems = self.increments.degree is not None and not self.rule.dwell_in_seconds
         if systems and self.increments.second is None:
             return None
         self.assumed[f"{address} of a dwell counts {unit:g} s"] = None

@@ -144,7 +144,7 @@ class Preamble:
         yield f"G1 {self._word('Z', places['Z'], inch)} F{self._feed_text(feed, 3)}"
 
     def _feed_text(self, feed: float, decimals: int) -> str:
-        return text_of(feed, decimals, point=self.dialect.point_required)
+        return text_of(feed, decimals, point=self.dialect.point_rule.required)
 
     def _tail(self, inch: bool) -> Iterator[str]:
         """Yield feed mode and feed, units, distance mode and motion code of the line."""

@@ -63,9 +63,9 @@ class _Writer:
         return line
 
     def dwell(self) -> None:
-        seconds = {letter: unit for letter, unit in self.dialect.dwell.items() if unit == 1.0}
-        letter = next(iter(seconds or self.dialect.dwell))
-        unit = 1.0 if self.dialect.dwell_point_is_seconds else self.dialect.dwell[letter]
+        rule = self.dialect.point_rule
+        letter = next(iter([a for a, unit in rule.dwell.items() if unit == 1.0] or rule.dwell))
+        unit = rule.seconds(letter, pointed=True)
         point = "." if unit == 1.0 else ""
         self.blocks.append(f"G4 {letter}{DWELL / unit:.0f}{point}")
 

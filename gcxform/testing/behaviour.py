@@ -273,13 +273,13 @@ def _frame(dialect: type[Dialect], block: str) -> str | None:
 
 def _dwells(dialect: type[Dialect]) -> Findings:
     """Wait for two times by each word of G4."""
-    for letter, unit in dialect.dwell.items() if "G4" in dialect.codes else ():
+    for letter in dialect.point_rule.dwell if "G4" in dialect.codes else ():
         seconds = []
         for value in (2, 3):
             path = _path(dialect, f"G4 {letter}{value}.\n{THEN}")
             times = [e.values for e in path.events if e.what == "DWELL"] if path else []
             seconds += [dict(values).get("seconds") for values in times[-1:]]
-        whole = 1.0 if dialect.dwell_point_is_seconds else unit
+        whole = dialect.point_rule.seconds(letter, pointed=True)
         if seconds and not np.allclose([s or 0.0 for s in seconds], [2 * whole, 3 * whole]):
             yield "G4", f"G4 {letter}2. and G4 {letter}3. last {seconds} s, not {whole:g} s each 1"
 

@@ -147,7 +147,7 @@ def _check_code(dialect: type[Dialect], name: str) -> None:
     if code.effect is Effect.MODAL:
         assert code.group in COLUMNS, f"{here}: the core has no group {code.group!r}; use inert"
         assert name in NUMBER, f"{here} is a modal code that the core does not know"
-    word = next(iter(dialect.dwell), "P") + "1." if code.effect is Effect.DWELL else ""
+    word = next(iter(dialect.point_rule.dwell), "P") + "1." if code.effect is Effect.DWELL else ""
     meaning = _meaning(dialect, f"{name} {word}".strip())
     refusal = meaning.refusal
     if code.effect is Effect.BARRIER:
@@ -190,8 +190,8 @@ def program(dialect: type[Dialect]) -> str:
         lines.append(ARCS[plane])
     for axis in dialect.axes[3:]:
         lines.append(f"G1 {axis}10. F100.")
-    if "G4" in has and dialect.dwell:
-        lines.append(f"G4 {next(iter(dialect.dwell))}1.")
+    if "G4" in has and dialect.point_rule.dwell:
+        lines.append(f"G4 {next(iter(dialect.point_rule.dwell))}1.")
     lines.append("G1 X31.25 F200.")
     lines += [f"M{number}" for number in (5, 30) if number in dialect.m_codes]
     return "\n".join(line for line in lines if line) + "\n"

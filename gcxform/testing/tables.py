@@ -6,7 +6,7 @@ what was expected, and how to say that a control differs.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import combinations
 
 from gcxform.dialect.codes import Code, Effect, MCode
@@ -230,31 +230,35 @@ def _ends(dialect: type[Dialect]) -> Complaints:
 
 
 def _dwell(dialect: type[Dialect]) -> Complaints:
-    has, units = "G4" in dialect.codes, dialect.dwell
-    if has and _done(dialect.codes["G4"]) and not units:
-        yield "dwell", "there is G4 and no word for its time"
+    rule = dialect.point_rule
+    for text in _dwell_words(dialect, rule.dwell):
+        yield "point_rule.dwell", text
+    if rule.dwell_in_seconds and MILLISECONDS not in rule.dwell.values():
+        yield "point_rule.dwell_in_seconds", "a dwell with a point is in seconds, as without one"
+
+
+def _dwell_words(dialect: type[Dialect], units: Mapping[str, float]) -> Iterator[str]:
+    if "G4" in dialect.codes and _done(dialect.codes["G4"]) and not units:
+        yield "there is G4 and no word for its time"
     for word, unit in units.items():
         if word not in dialect.words + dialect.axes:
-            yield "dwell", f"G4 takes {word}, which is no word of the dialect"
+            yield f"G4 takes {word}, which is no word of the dialect"
         if unit not in (SECONDS, MILLISECONDS):
-            yield "dwell", f"one unit of {word} in G4 is {unit:g} s; it is 1 s, or 0.001 s"
+            yield f"one unit of {word} in G4 is {unit:g} s; it is 1 s, or 0.001 s"
         if word in "XU" and unit != SECONDS:
-            yield "dwell", f"{word} of G4 is in seconds wherever it is known"
-        for other in dialect.__mro__[1:]:
-            kin = issubclass(other, Dialect) and other.name
-            known = getattr(other, "dwell", {}).get(word, unit)
-            if kin and known != unit:
-                yield "dwell", f"{word} of G4 is {unit:g} s here and {known:g} s in {kin}"
+            yield f"{word} of G4 is in seconds wherever it is known"
+        for kin in (c for c in dialect.__mro__[1:] if issubclass(c, Dialect) and c.name):
+            known = kin.point_rule.dwell.get(word, unit)
+            if known != unit:
+                yield f"{word} of G4 is {unit:g} s here and {known:g} s in {kin.name}"
     wanted = MILLISECONDS if _of_macros(dialect) else SECONDS if _of_ngc(dialect) else None
     if wanted is not None and units.get("P", wanted) != wanted:
-        yield "dwell", f"P of G4 is {wanted:g} s on the relatives of this control"
-    if dialect.dwell_point_is_seconds and MILLISECONDS not in units.values():
-        yield "dwell_point_is_seconds", "a dwell with a point is in seconds, as without one"
+        yield f"P of G4 is {wanted:g} s on the relatives of this control"
 
 
 def _of_macros(dialect: type[Dialect]) -> bool:
     """Whether the control is a relative of Fanuc's, by its language and its words."""
-    return dialect.flow == "macro-b" or bool({"X", "U"} & set(dialect.dwell))
+    return dialect.flow == "macro-b" or bool({"X", "U"} & set(dialect.point_rule.dwell))
 
 
 def _of_ngc(dialect: type[Dialect]) -> bool:

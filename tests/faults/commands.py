@@ -64,8 +64,8 @@ MUTATIONS = (
     Mutation(
         "haas: a dwell with a point is in milliseconds",
         "gcxform/modal/numbers_without_point.py",
-        "if decimals >= 0:",
-        "if decimals >= 9:",
+        "self.rule.seconds(address, decimals >= 0)",
+        "self.rule.seconds(address, decimals >= 9)",
         "tests/test_info.py",
     ),
 )

@@ -217,7 +217,7 @@ def _take(
     """Take the words that are parameters to a code away from the block."""
     letters = code.takes
     if isinstance(code, Code) and code.effect is Effect.DWELL:
-        letters = "".join(dialect.dwell)
+        letters = "".join(dialect.point_rule.dwell)
     taken = tuple((a, meaning.slots[a]) for a in letters if a in meaning.slots)
     for address, _ in taken:
         del meaning.slots[address]
@@ -356,7 +356,7 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
             meaning.events.append(event)
     meaning.axes = "".join(a for a in dialect.axes if a in slots)
     meaning.centres = "".join(a for a in CENTRE if a in slots)
-    if meaning.dwell and meaning.axes and set(dialect.dwell) & set(dialect.axes):
+    if meaning.dwell and meaning.axes and set(dialect.point_rule.dwell) & set(dialect.axes):
         yield Refusal("GX203", 0, len(shape.block.text), "a dwell and axis words in one block")
     motion = {*meaning.axes, *meaning.centres, *"FNRST", dialect.arc_rule.turns}
     motion |= _offset_word(dialect, meaning)

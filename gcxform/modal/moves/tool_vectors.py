@@ -108,7 +108,7 @@ class Pointing:
     def _pointless(self) -> Flags:
         """Return the lines whose vector has a number, not 0, without a point."""
         found = np.zeros(self.lines.live, np.bool_)
-        if not self.lines.dialect.point_required:
+        if not self.lines.dialect.point_rule.required:
             return found
         for k, address in enumerate("IJK"):
             slot = self.lines.table.slots[:, ord(address) - 65][self.lines.shape]

@@ -168,9 +168,8 @@ class Fanuc(gx.Dialect):
     motion_rule = gx.MotionRule(g53_is_rapid=True)
     last_code_wins = True
     cutter_comp = gx.CutterComp(stored=True)
-    point_required = True
     lower_case = False
-    dwell: ClassVar[Mapping[str, float]] = {"X": 1.0, "U": 1.0, "P": 0.001}
+    point_rule = gx.PointRule(required=True, dwell={"X": 1.0, "U": 1.0, "P": 0.001})
     feed_rule = gx.FeedRule(change_clears=True)
     arc_rule = gx.ArcRule(absolute=0.01)
     cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE

@@ -119,10 +119,13 @@ class Haas(Fanuc):
     words = Fanuc.words + "UVW"
     lower_case = True
     chosen: ClassVar[Mapping[str, str]] = {"M16": "M16 is M6"}
-    feed_point_required = True
-    calculator_words = "XYZABCEFIJKUW"
-    feed_steps: ClassVar[Mapping[str, tuple[float, float]]] = {"IS-B": (1000.0, 10_000.0)}
-    dwell: ClassVar[Mapping[str, float]] = {"P": 0.001}
-    dwell_point_is_seconds = True
+    point_rule = replace(
+        Fanuc.point_rule,
+        feed_required=True,
+        feed_steps={"IS-B": (1000.0, 10_000.0)},
+        calculator_words="XYZABCEFIJKUW",
+        dwell={"P": 0.001},
+        dwell_in_seconds=True,
+    )
     program_number_digits = 5
     line_length = 256

@@ -107,7 +107,8 @@ def _line(text: str, dialect: type[gx.Dialect], inert: Codes) -> Line:
     codes = [f"G{float(value):g}" for letter, value in words if letter == "G"]
     rest = "".join(letter for letter, _ in words if letter != "G")
     if codes == ["G4"]:
-        _check(len(rest) == 1 and rest in dialect.dwell, "the dwell has not one word for its time")
+        timed = len(rest) == 1 and rest in dialect.point_rule.dwell
+        _check(timed, "the dwell has not one word for its time")
     elif codes:
         _check_move(codes, rest)
     else:
