@@ -294,8 +294,6 @@ STILL_LATE: dict[str, int] = {
     "gcxform_plugins.dialects.heidenhain.moves.Moves": 1,
     "gcxform_plugins.passes.arcs.fit._Runs": 5,
     "gcxform_plugins.passes.cutter_comp.proof._Proof": 20,
-    "gcxform_plugins.passes.rtcp.forward.cutting.Cutting": 1,
-    "gcxform_plugins.passes.rtcp.forward.moving.Moving": 3,
 }
 """Classes, and how many attributes they are still given late."""
 

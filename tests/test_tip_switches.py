@@ -222,9 +222,9 @@ def test_a_switch_that_is_left_out_is_noticed(tmp_path, seed, monkeypatch):
     forget = seed % 2 == 1
     plain = Cutting.__init__
 
-    def wrong(self, step, path, context, place, way):
+    def wrong(self, options, path, context, place, way):
         place.off = np.full(len(path), forget)
-        plain(self, step, path, context, place, way)
+        plain(self, options, path, context, place, way)
 
     monkeypatch.setattr(Cutting, "__init__", wrong)
     with pytest.raises(gx.GcxformError, match=r"GX601|GX320"):
@@ -237,10 +237,10 @@ def test_what_is_not_known_may_not_move(tmp_path, monkeypatch):
     plain = Cutting.run
 
     def moved(self):
-        path = plain(self)
+        path, row = plain(self)
         end = path.end.copy(order="F")
         end[np.flatnonzero(path.end[:, 2] == 100.0 + LENGTH), 0] = 33.0
-        return path.replace(end=end)
+        return path.replace(end=end), row
 
     assert linuxcnc(tmp_path).run(text_of(lines)).certificate.verified
     monkeypatch.setattr(Cutting, "run", moved)

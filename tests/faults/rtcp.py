@@ -259,14 +259,14 @@ MUTATIONS = (
     Mutation(
         "rtcp: a cut may begin where the axes leap to another length",
         CUTTING,
-        "(self.path.kind != gx.Kind.RAPID) | (self.step.rapids",
-        "(self.path.kind < 0) | (self.step.rapids",
+        "(self.path.kind != gx.Kind.RAPID) | (not self.options.rapids",
+        "(self.path.kind < 0) | (not self.options.rapids",
         "tests/test_corpus.py::test_case",
     ),
     Mutation(
         "rtcp: the axes may leap to another length in rapids that are refused",
         CUTTING,
-        'RAPID) | (self.step.rapids == "refuse")',
+        "RAPID) | (not self.options.rapids_turn)",
         "RAPID)",
         "tests/test_corpus.py::test_case",
     ),
@@ -399,8 +399,8 @@ MUTATIONS = (
     Mutation(
         "rtcp: the tip is nowhere while axes turn",
         RETRACTING,
-        "limit, count, worst = HELD * work.step.retract, 1, np.inf",
-        "limit, count, worst = 9.0 * work.step.retract, 1, np.inf",
+        "limit, count, worst = HELD * self.how.length, 1, np.inf",
+        "limit, count, worst = 9.0 * self.how.length, 1, np.inf",
         f"{DRAWN}::test_the_tool_is_drawn_back_where_axes_must_turn",
     ),
     Mutation(

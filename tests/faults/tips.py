@@ -23,8 +23,8 @@ MUTATIONS = (
     Mutation(
         "tips: rounded angles may take them as far as the tolerance",
         CUTTING,
-        "over = astray > ASTRAY * self.step.tolerance",
-        "over = astray > 1e9 * self.step.tolerance",
+        "over = astray > ASTRAY * self.options.tolerance",
+        "over = astray > 1e9 * self.options.tolerance",
         WITHIN,
     ),
     Mutation(
@@ -51,8 +51,8 @@ MUTATIONS = (
     Mutation(
         "tips: the proof has no tolerance",
         TIPS,
-        "if not self.tip <= self.step.tolerance:",
-        "if not self.tip <= 1e9 * self.step.tolerance:",
+        "if not self.tip <= self.options.tolerance:",
+        "if not self.tip <= 1e9 * self.options.tolerance:",
         PROVED,
     ),
     Mutation(

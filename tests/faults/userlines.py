@@ -42,8 +42,8 @@ MUTATIONS = (
     Mutation(
         "lines: the tool comes back to where it cuts, and not to over it",
         MOVES,
-        "target.axes_of(tip, target.angles(place[None, :]), np.array([row]))[0]",
-        "place[:3]",
+        "place[:3] = self.brought(tip, target.angles(place[None, :]))",
+        "pass",
         STANDS,
     ),
     Mutation(
@@ -83,16 +83,16 @@ MUTATIONS = (
     ),
     Mutation(
         "lines: a code is inert if one machine file says so",
-        LINES,
-        "inert = inert & step.target.machine.inert_m",
-        "inert = inert | step.target.machine.inert_m",
+        "plugins/gcxform_plugins/passes/rtcp/rtcp.py",
+        "inert = inert & self.target.machine.inert_m",
+        "inert = inert | self.target.machine.inert_m",
         f"{TESTS}::test_inert_codes_are_those_of_both_machines",
     ),
     Mutation(
         "lines: inches are taken for mm",
         "plugins/gcxform_plugins/passes/rtcp/forward/moving.py",
-        "if self.lines.in_mm:",
-        "if not self.lines:",
+        "if self.options.retraction is not None and self.options.retraction.lines.in_mm:",
+        "if self.options.retraction is None:",
         "tests/test_corpus.py::test_case",
     ),
     Mutation(

@@ -162,7 +162,7 @@ MUTATIONS = (
     Mutation(
         "vectors: angles in proportion are not rounded",
         POINTING,
-        "self.written(one + part * (other - one))",
+        "self.target.written(one + part * (other - one))",
         "one + part * (other - one)",
         f"{TESTS}::test_rounded_angles_are_made_good",
     ),

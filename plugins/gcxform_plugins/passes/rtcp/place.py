@@ -54,6 +54,7 @@ class Place:
         assert context.machine is not None
         self.path = path
         self.others = others
+        self.context = context
         self.chain = chain or gx.chain_of(context.machine)
         self.gauge = np.array(self.chain.tip)
         self.columns = self._columns()
@@ -142,6 +143,12 @@ class Place:
     def angles(self, positions: Floats) -> Floats:
         """Return the angles (n, m) of positions (n, axes), as the chain has them."""
         return np.asarray(positions[:, self.columns])
+
+    def written(self, angles: Floats) -> Floats:
+        """Return angles (n, m) as they are written."""
+        decimals = [self.context.decimals_of_angle(a) for a in self.chain.letters]
+        columns = [np.round(angles[:, k], d) for k, d in enumerate(decimals)]
+        return np.stack(columns, axis=1) + 0.0
 
     def axes_of(self, tips: Floats, angles: Floats, rows: Ints) -> Floats:
         """Return the positions (n, 3) with which the axes take tips to positions (n, 3)."""

@@ -28,7 +28,7 @@ from gcxform_plugins.passes.rtcp.forward.moving import Correcting, Moving
 from gcxform_plugins.passes.rtcp.forward.vectors import InProportion, Pointing
 from gcxform_plugins.passes.rtcp.forward.ways import Between, Corrected
 from gcxform_plugins.passes.rtcp.measured import AXIS_OFF, TIP_OFF, leaning, slowed
-from gcxform_plugins.passes.rtcp.options import check_machines, check_options
+from gcxform_plugins.passes.rtcp.options import Options, Retraction
 from gcxform_plugins.passes.rtcp.place import Place
 from gcxform_plugins.passes.rtcp.proof.driven import Driven, Led, Pointed, Straight
 from gcxform_plugins.passes.rtcp.proof.proof import Proof
@@ -127,7 +127,7 @@ class Rtcp(gx.Pass):
 
     def __post_init__(self) -> None:
         """Turn the facts round for the reverse. Raises ValueError for options that do not fit."""
-        check_options(self)
+        _check_options(self)
         if self.direction in ("repost", "retarget"):
             object.__setattr__(self, "requires", PLAIN | self.ensures)
             object.__setattr__(self, "clears", frozenset())
@@ -212,8 +212,8 @@ class Rtcp(gx.Pass):
             message = "rtcp needs a machine with rotary axes"
             hint = 'file = "machine.toml" in [machine], with `kinematics`, or `table` and `head`'
             raise gx.UsageError.one("GX742", message, hint=hint)
-        UserLines.of(self, context)
-        check_machines(self, context)
+        self._options(context)
+        _check_machines(self, context)
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path of the axes for one of tips; if asked the reverse, or one corrected."""
@@ -226,14 +226,14 @@ class Rtcp(gx.Pass):
             self._place(path, context).refuse_followed_late(bool(context.source.tip_codes))
         if self.turns_anew:
             source, target = self._machines(path, context)
-            path = self._moving(self, path, context, source, target).run()
+            path, _ = self._moving(self._options(context), path, context, source, target).run()
         else:
             place = self._place(path, context)
             way = self._corrected(path, context) or Between(place, self.direction == "to-machine")
-            cutting = Cutting(self, path, context, place, way)
-            before, path = path, cutting.run()
+            cutting = Cutting(self._options(context), path, context, place, way)
+            before, (path, row) = path, cutting.run()
             if self.direction != "to-machine":
-                self._tips(before, path, context, cutting.row).check_tips()
+                self._tips(before, path, context, row).check_tips()
         return path.replace(blocks=self.timed(path.blocks))
 
     def _tips(
@@ -243,8 +243,9 @@ class Rtcp(gx.Pass):
         source, _ = self._machines(before, context)
         _, target = self._machines(after, context)
         led = self.direction == "to-tip"
-        written = Straight(after, target) if led else Driven(self, after, target)
-        return TipProof(self, context, Driven(self, before, source), written, owner)
+        written = Straight(after, target) if led else Driven(after, target)
+        options = self._options(context)
+        return TipProof(options, context, Driven(before, source), written, owner)
 
     def _nothing_to_correct(self, context: gx.PassContext) -> bool:
         """Whether the calibrated machine is where the one posted for is."""
@@ -280,12 +281,29 @@ class Rtcp(gx.Pass):
         source = Place(path, context, others=self.letters)
         return source, Place(path, there, others="".join(source.chain.letters))
 
-    def speeds(self, context: gx.PassContext) -> list[tuple[str, float]]:
-        """Return the axes whose top speed the machine file has, where it counts."""
-        if not self.slows or context.machine is None:
-            return []
-        axes = context.machine.axes.items()
-        return [(a, axis.max_speed) for a, axis in axes if axis.max_speed is not None]
+    def _options(self, context: gx.PassContext) -> Options:
+        """Return what the work and its proof know of the options."""
+        return Options(
+            tolerance=self.tolerance,
+            axis_tolerance=self.axis_tolerance,
+            to_axes=self.direction == "to-machine",
+            rapids_turn=self.rapids == "ends",
+            tip_codes=self.reads_tip_codes,
+            great_circles=self.orientation_path == "great-circle",
+            corrects=self.direction == "repost",
+            largest_turn=self.largest_turn,
+            keeps_at_pole=self.orientation == "correct-if-tilt",
+            target=None if self.target is None else self.target.machine,
+            retraction=self._retraction(context),
+        )
+
+    def _retraction(self, context: gx.PassContext) -> Retraction | None:
+        if self.retract is None or self.retract_feed is None or self.target is None:
+            return None
+        inert = context.machine.inert_m if context.machine else frozenset()
+        inert = inert & self.target.machine.inert_m
+        lines = UserLines.of(self.retract_lines, self.return_lines, context.target, inert)
+        return Retraction(self.retract, self.retract_feed, lines)
 
     @property
     def _moving(self) -> type[Moving]:
@@ -304,13 +322,14 @@ class Rtcp(gx.Pass):
     def _proof(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> Proof:
         source, _ = self._machines(before, context)
         _, target = self._machines(after, context)
-        driven = Driven(self, after, target)
+        driven, options = Driven(after, target), self._options(context)
         if self.reads_vectors:
             pointed = Pointed(without_left(before), source)
-            return PointedProof(self, context, pointed, driven, np.isinf(before.end))
-        if self.direction == "to-machine":
-            return Proof(self, context, Led(before, source), driven)
-        return Proof(self, context, Driven(self, before, source), driven)
+            return PointedProof(options, context, pointed, driven, np.isinf(before.end))
+        led = self.direction == "to-machine"
+        return Proof(
+            options, context, Led(before, source) if led else Driven(before, source), driven
+        )
 
     def added(
         self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
@@ -319,8 +338,7 @@ class Rtcp(gx.Pass):
         if self.retract is None or not len(after):
             return {}
         _, target = self._machines(after, context)
-        lines = UserLines.of(self, context)
-        drawn = Retracted(self, Driven(self, after, target), lines)
+        drawn = Retracted(self._options(context), Driven(after, target))
         found = {"retracts": len(drawn.found), "moves of retracts": drawn.moves}
         return found | ({"lines of retracts": len(drawn.given)} if drawn.given else {})
 
@@ -393,6 +411,84 @@ class Rtcp(gx.Pass):
             return path
         way = self._corrected(path, context)
         if way is not None:
-            return Undoing(self, path, way.axes, True, way.nominal).run()
+            return Undoing(path, way.axes, True, way.nominal).run(self.tolerance)
         inwards = self.direction == "to-machine"
-        return Undoing(self, path, self._place(path, context), inwards).run()
+        return Undoing(path, self._place(path, context), inwards).run(self.tolerance)
+
+
+def _check_options(step: Rtcp) -> None:
+    """Refuse options that do not go together. Raises ValueError."""
+    if (step.direction == "repost") != (step.calibrated is not None):
+        raise ValueError("repost takes calibrated, the file of the measured machine")
+    if (step.direction == "retarget") != (step.target is not None):
+        raise ValueError("retarget takes target, the file of the machine to write for")
+    if step.direction != "repost" and step.orientation != "keep":
+        raise ValueError("orientation is an option of repost")
+    if step.direction != "to-machine" and step.tip_codes != "refuse":
+        raise ValueError("tip-codes is an option of to-machine: the others would do it twice")
+    if step.reads_vectors and step.rapids == "refuse":
+        raise ValueError('vectors turn axes in rapids: say rapids = "ends" if all is clear')
+    if step.direction != "to-machine" and step.orientation_path != "angles":
+        raise ValueError("orientation-path is an option of to-machine")
+    _check_retract(step)
+    if step.direction == "retarget" and step.rapids == "refuse":
+        raise ValueError('retarget turns axes in rapids: say rapids = "ends" if all is clear')
+
+
+def _check_retract(step: Rtcp) -> None:
+    if (step.retract is None) != (step.retract_feed is None):
+        raise ValueError("retract and retract-feed go together")
+    if step.retract is None and (step.retract_lines or step.return_lines):
+        raise ValueError("retract-lines and return-lines go with retract")
+    if step.direction != "retarget" and step.retract is not None:
+        raise ValueError("retract is an option of retarget")
+
+
+def _check_machines(step: Rtcp, context: gx.PassContext) -> None:
+    """Raise UsageError for machines of options, or a control, with which a step cannot work."""
+    assert context.machine is not None
+    if step.reads_vectors and not context.source.vector_codes:
+        message = f"{context.source.name} has no code for tool vectors"
+        raise gx.UsageError.one("GX746", message, hint='leave tip-codes out, or say "read"')
+    _check_calibrated(step, gx.chain_of(context.machine))
+    _check_target(step, context)
+
+
+def _check_calibrated(step: Rtcp, posted: gx.Chain) -> None:
+    """Refuse a calibrated machine that is another one."""
+    if step.calibrated is None:
+        return
+    measured = gx.chain_of(step.calibrated.machine)
+    one, other = ((chain.letters, chain.tip, len(chain.table)) for chain in (posted, measured))
+    if one != other:
+        message = "the calibrated machine has other rotary axes, or another gauge point"
+        hint = "take the machine file that `gcxform calibrate` has made of the one of [machine]"
+        raise gx.UsageError.one("GX743", message, hint=hint)
+
+
+def _check_target(step: Rtcp, context: gx.PassContext) -> None:
+    """Refuse a target whose angles are not found, and one with other tools."""
+    machine = context.machine
+    assert machine is not None
+    files = [file.machine for file in (step.calibrated, step.target) if file is not None]
+    for other in (files or [machine]) if step.turns_anew else ():
+        chain = gx.chain_of(other)
+        gx.attitudes(chain, np.array([[0.0, 0.0, 1.0]]))
+        wrapped = [axis.letter for axis in chain.axes if axis.wrap is not None]
+        wrapped = wrapped if files or step.reads_vectors else []
+        if len(chain.axes) != 2 or wrapped:
+            _refuse_target(wrapped)
+    for number, tool in step.target.machine.tools.items() if step.target else ():
+        if machine.tools.get(number, tool) != tool:
+            message = f"tool {number} is another one in the file of the target"
+            hint = "give both machine files the tools that the program is for"
+            raise gx.UsageError.one("GX744", message, hint=hint)
+
+
+def _refuse_target(wrapped: list[str]) -> None:
+    message = "angles are found for machines with two rotary axes"
+    hint = ""
+    if wrapped:
+        message = f"which way {wrapped[0]} turns is not known: the machine file gives it a wrap"
+        hint = "leave wrap out, and give limits, if the control counts full turns"
+    raise gx.UsageError.one("GX744", message, hint=hint)

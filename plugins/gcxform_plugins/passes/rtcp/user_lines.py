@@ -10,12 +10,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import gcxform as gx
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.rtcp.rtcp import Rtcp
 
 COMMENT = re.compile(r"\([^()]*\)|;.*")
 WORD = re.compile(r"\s*([A-Z])\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*", re.IGNORECASE)
@@ -48,11 +44,18 @@ class UserLines:
     back: tuple[Line, ...] = ()
 
     @classmethod
-    def of(cls, step: Rtcp, context: gx.PassContext) -> UserLines:
-        """Return the lines of the options. Raises UsageError, with the place of the option."""
-        return cls(
-            _read(step.retract_lines, step, context), _read(step.return_lines, step, context)
-        )
+    def of(
+        cls,
+        retract: gx.Lines | None,
+        back: gx.Lines | None,
+        dialect: type[gx.Dialect],
+        inert: Codes,
+    ) -> UserLines:
+        """Return the lines of two options, in a dialect of which some M codes are inert.
+
+        Raises UsageError, with the place of the option.
+        """
+        return cls(_read(retract, dialect, inert), _read(back, dialect, inert))
 
     @property
     def move(self) -> bool:
@@ -78,16 +81,13 @@ class _WrongError(Exception):
     """Why a line is refused."""
 
 
-def _read(lines: gx.Lines | None, step: Rtcp, context: gx.PassContext) -> tuple[Line, ...]:
-    inert = context.machine.inert_m if context.machine else frozenset()
-    if step.target is not None:
-        inert = inert & step.target.machine.inert_m
+def _read(lines: gx.Lines | None, dialect: type[gx.Dialect], inert: Codes) -> tuple[Line, ...]:
     found = []
     if lines is None:
         return ()
     for text in lines.texts:
         try:
-            found.append(_line(text, context.target, inert))
+            found.append(_line(text, dialect, inert))
         except _WrongError as wrong:
             message = f"{text!r}: {wrong}"
             raise gx.UsageError.one("GX745", message, lines.where, HINT) from None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +10,9 @@ from numpy.typing import NDArray
 import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.rtcp.forward.ways import Way
+from gcxform_plugins.passes.rtcp.options import Options
 from gcxform_plugins.passes.rtcp.place import SAME, Place, turned_at
 from gcxform_plugins.passes.rtcp.proof.undoing import SHARE
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.rtcp.rtcp import Rtcp
-
 
 STILL = 1e-7  # mm, degrees; what moves by less stands still
 ASTRAY = 0.7  # of the tolerance; what rounded angles may take of it, where they move the tip
@@ -26,14 +23,14 @@ class Cutting:
     """The work on one window: of positions of one kind those of another."""
 
     def __init__(
-        self, step: Rtcp, path: gx.Toolpath, context: gx.PassContext, place: Place, way: Way
+        self, options: Options, path: gx.Toolpath, context: gx.PassContext, place: Place, way: Way
     ) -> None:
-        self.step = step
+        self.options = options
         self.context = context
         self.place = place
         self.way = way
         self.path = path
-        self.to_axes = step.direction == "to-machine"
+        self.to_axes = options.to_axes
         self.end = self._rounded(path.end)
         self.start = path.start
         self.start[1:] = self.end[:-1]
@@ -49,20 +46,19 @@ class Cutting:
         self.least = np.ones(len(path), np.int64)
         self.nowhere = self.cuts & self.to_axes & per_minute & (self._ways() < STILL)
 
-    def run(self) -> gx.Toolpath:
-        """Return the path converted."""
+    def run(self) -> tuple[gx.Toolpath, Ints]:
+        """Return the path converted, and of which row (n,) each of its rows is a piece."""
         self._check()
         path = self.path
         pieces = np.where(self.nowhere, 0, self._pieces())
         row = np.repeat(np.arange(len(path)), pieces)
         end = self._cut(pieces, row)
-        self.row = row
         self._check_limits(end, row)
         result = end.copy(order="F")
         result[:, :3] = self.way.converted(end, row)
         entry = self._entry()
         feeds = self._feeds(pieces, row, np.concatenate([entry[None, :], result]))
-        return path.with_rows(pieces, end=result, **feeds).replace(entry=entry)
+        return path.with_rows(pieces, end=result, **feeds).replace(entry=entry), row
 
     # --- positions ---
 
@@ -97,7 +93,7 @@ class Cutting:
     def _pieces(self) -> Ints:
         """Return into how many pieces each row is cut, so that the tip stays on its line."""
         pieces = self.least.copy()
-        limit = (1.0 - SHARE) * self.step.tolerance
+        limit = (1.0 - SHARE) * self.options.tolerance
         rows = self._turning()
         while len(rows):
             worst = self._worst(rows, pieces[rows])
@@ -149,7 +145,7 @@ class Cutting:
 
     def _check_astray(self, astray: Floats, row: Ints) -> None:
         """Refuse angles that take the tip so far astray (mm) that nothing is left for its way."""
-        over = astray > ASTRAY * self.step.tolerance
+        over = astray > ASTRAY * self.options.tolerance
         if over.any():
             far, letters = float(astray.max()), self.place.chain.letters
             message = f"angles as they are written would take the tip {far:.4f} mm off"
@@ -208,12 +204,12 @@ class Cutting:
         self._check_known(turned, moved)
         turned |= moved & (self.path.kind != gx.Kind.RAPID) & ~self.place.off  # a whole turn
         self._check_forms(turned)
-        if self.step.direction == "repost":
+        if self.options.corrects:
             self._check_decimals()
         else:
             self._check_ends()
             self._check_feeds(moved)
-            if self.step.rapids == "refuse":
+            if not self.options.rapids_turn:
                 self._check_rapids(moved)
         self._check_ways_round()
         self._check_tools(turned)
@@ -283,8 +279,8 @@ class Cutting:
         which = self.place.which
         changed = (which != self.place.which_before) & self.turned_before
         hint = "call the tool length while the rotary axes are at 0"
-        if self.step.reads_tip_codes:
-            changed &= (self.path.kind != gx.Kind.RAPID) | (self.step.rapids == "refuse")
+        if self.options.tip_codes:
+            changed &= (self.path.kind != gx.Kind.RAPID) | (not self.options.rapids_turn)
             hint += (
                 ', or let a rapid follow and say rapids = "ends" if the tool is clear on any way'
             )
@@ -316,8 +312,8 @@ class Cutting:
     def _check_limits(self, end: Floats, row: Ints) -> None:
         """Refuse positions that the machine does not reach."""
         place = self.way.axes
-        inwards = self.step.direction == "to-tip"
-        axes = end[:, :3] if inwards else self.way.converted(end, row)
+        posted = not self.to_axes and not self.options.corrects
+        axes = end[:, :3] if posted else self.way.converted(end, row)
         axes = axes + place.zero
         angles = place.angles(end)
         named = [*zip("XYZ", place.chain.travel, axes.T, strict=True)]

@@ -39,9 +39,9 @@ class OnCircles(Moving):
     def _far(self, source: tuple[Floats, ...], target: tuple[Floats, ...], row: Ints) -> Floats:
         """Return how far (n,) mm the tip leaves its line, and in proportion the tool axis."""
         one, other = (self.target.angles(side) for side in target)
-        share = np.degrees(self._aside(other - one)) / self.step.axis_tolerance
+        share = np.degrees(self._aside(other - one)) / self.options.axis_tolerance
         far = self._off_line(source, target, row)
-        return np.asarray(np.maximum(far, share * self.step.tolerance))
+        return np.asarray(np.maximum(far, share * self.options.tolerance))
 
     def _off_line(
         self, source: tuple[Floats, ...], target: tuple[Floats, ...], row: Ints
@@ -91,7 +91,7 @@ class OnCircles(Moving):
         """
         miss = gx.attitudes(self.target.chain, self._axis(places, row, part)).miss
         far = np.zeros(len(self.path), np.bool_)
-        far[row[miss > self.step.axis_tolerance / 2.0]] = True
+        far[row[miss > self.options.axis_tolerance / 2.0]] = True
         message = "no angles give the tool axes of the great circle"
         hint = "program points on the way, or turn the axes in proportion"
         self._refuse("GX332", far, message, hint)
@@ -101,7 +101,7 @@ class Circling(OnCircles):
     """The same, where the program says the angles at the ends of blocks."""
 
     def _entered(self, entry: Floats) -> Floats:
-        return self.written(self.place.angles(entry))
+        return self.target.written(self.place.angles(entry))
 
     def _choose(self) -> None:
         """Refuse circles that do not lead from angle to angle."""

@@ -8,8 +8,6 @@ proportion, so both tips are within a bound of the same chord, and both tool axe
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 import gcxform as gx
@@ -17,15 +15,11 @@ from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.rtcp.forward.choice import DRAWN_BACK, WHY, Choice, NoWayError, nearest
 from gcxform_plugins.passes.rtcp.forward.correction_bound import bend_of_correction
 from gcxform_plugins.passes.rtcp.forward.cutting import Cutting
-from gcxform_plugins.passes.rtcp.forward.retracting import Retract, inserted, with_lines
+from gcxform_plugins.passes.rtcp.forward.retracting import Drawing, Retract, inserted, with_lines
 from gcxform_plugins.passes.rtcp.forward.ways import Between
+from gcxform_plugins.passes.rtcp.options import Options
 from gcxform_plugins.passes.rtcp.place import Place
-from gcxform_plugins.passes.rtcp.user_lines import UserLines
 from gcxform_plugins.passes.shared.tip_bound import leaving
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.rtcp.rtcp import Rtcp
-
 
 NEXT = 1e-9  # degrees; rows that do not turn still follow one another
 NEAR = 1e-7  # part of a row
@@ -37,19 +31,25 @@ class Moving(Cutting):
     """The work on one window, of axes of the source machine those of the target."""
 
     def __init__(
-        self, step: Rtcp, path: gx.Toolpath, context: gx.PassContext, source: Place, target: Place
+        self,
+        options: Options,
+        path: gx.Toolpath,
+        context: gx.PassContext,
+        source: Place,
+        target: Place,
     ) -> None:
-        super().__init__(step, path, context, source, Between(source, to_axes=False))
+        super().__init__(options, path, context, source, Between(source, to_axes=False))
         self.target = target
         self.known = np.isfinite(self.end[:, [0, 1, 2, *source.columns]]).all(axis=1) & ~self.own
         self.starts_known = np.isfinite(self.start[:, [0, 1, 2, *source.columns]]).all(axis=1)
         self.retracts = np.zeros(0)
-        self.lines = UserLines.of(step, context)
+        self.first, self.count = np.zeros((2, len(path)))
+        self.samples = np.zeros((1, len(target.chain.axes)))
         self.blocks_may = (path.feed_mode == gx.FeedMode.INVERSE_TIME) & self.cuts
         self.blocks_may &= ~path.blocks.leaves[path.block]
 
-    def run(self) -> gx.Toolpath:
-        """Return the path of the target."""
+    def run(self) -> tuple[gx.Toolpath, Ints]:
+        """Return the path of the target, and of which row (n,) each of its rows is a piece."""
         self._check()
         self._check_lines()
         self._choose()
@@ -73,19 +73,13 @@ class Moving(Cutting):
         new = path.with_rows(pieces, end=np.asfortranarray(end), nth=nth, **feeds)
         new = with_lines(new, retracts)
         others = "".join(a for a in self.place.chain.letters if a not in self.target.chain.letters)
-        return new.replace(entry=entry, left_out=path.left_out + others)
+        return new.replace(entry=entry, left_out=path.left_out + others), row
 
     # --- positions ---
 
     def _rounded(self, positions: Floats) -> Floats:
         """Return positions as they are: angles of the source are not written."""
         return positions.copy()
-
-    def written(self, angles: Floats) -> Floats:
-        """Return angles (n, m) of the target as they are written."""
-        decimals = [self.context.decimals_of_angle(a) for a in self.target.chain.letters]
-        columns = [np.round(angles[:, k], d) for k, d in enumerate(decimals)]
-        return np.stack(columns, axis=1) + 0.0
 
     def _parts(self, pieces: Ints, row: Ints) -> Floats:
         """Return at which part (n,) of its row each piece ends."""
@@ -120,7 +114,7 @@ class Moving(Cutting):
         guess = self._guess(positions[here], row[here], part[here], after)
         axis = self._axis(positions[here], row[here], part[here])
         found = nearest(self.target.chain, axis, guess)
-        angles[here] = self.written(self._mixed(found, positions[here], row[here]))
+        angles[here] = self.target.written(self._mixed(found, positions[here], row[here]))
         return angles
 
     def _mixed(self, angles: Floats, positions: Floats, row: Ints) -> Floats:
@@ -248,10 +242,10 @@ class Moving(Cutting):
                 return choice.run(np.zeros(2)), choice.retracts
             except NoWayError as problem:
                 trouble = problem
-            if self.step.retract is None or trouble.trouble not in DRAWN_BACK:
+            if self.options.retraction is None or trouble.trouble not in DRAWN_BACK:
                 break
         code, message, hint = WHY[trouble.trouble]
-        if self.step.direction != "retarget":
+        if self.options.target is None:
             hint = hint.rpartition('retract = "20 mm"; or ')[2]
         raise self.path.refuse(code, row[trouble.at : trouble.at + 1], message, hint)
 
@@ -272,12 +266,14 @@ class Moving(Cutting):
         inch = self.path.blocks.inch[self.path.block]
         message = "retract-lines and return-lines are in mm, and this block is in inches"
         where = np.isin(np.arange(len(inch)), np.floor(self.retracts - NEAR)) & inch
-        if self.lines.in_mm:
+        if self.options.retraction is not None and self.options.retraction.lines.in_mm:
             self._refuse("GX330", where, message, 'put the pass "metric" before')
         for at in np.searchsorted(row + part, self.retracts - NEAR).tolist():
             here = slice(at, at + 1)
             leaves = self._moved(source[here], row[here], part[here], after=True)[0]
-            found.append(Retract.of(self, at, int(row[at]), (end[at], leaves)))
+            assert self.options.retraction is not None
+            drawn = Drawing(self.target, self.options.retraction, int(row[at]))
+            found.append(drawn.retract(at, (end[at], leaves)))
         return found
 
     # --- pieces ---
@@ -310,8 +306,8 @@ class Moving(Cutting):
                 ends = (place.tips_of(s[:, :3], place.angles(s), row[here]) for s in held)
                 one, other = (place.on_workpiece(tip, chain) for tip in ends)
                 far[here] += leaving(chain, (one, other), (angles[0][here], angles[1][here]))
-        share = np.degrees(lean) / self.step.axis_tolerance
-        return np.asarray(np.maximum(far, share * self.step.tolerance))
+        share = np.degrees(lean) / self.options.axis_tolerance
+        return np.asarray(np.maximum(far, share * self.options.tolerance))
 
     # --- what is refused ---
 
@@ -329,10 +325,10 @@ class Moving(Cutting):
 
     def _has_other_places(self) -> bool:
         """Whether places of the machine are others, as the work offset counts them."""
-        machine, file = self.context.machine, self.step.target
-        if machine is None or file is None:
+        machine, other = self.context.machine, self.options.target
+        if machine is None or other is None:
             return False
-        homes = machine.homes != file.machine.homes
+        homes = machine.homes != other.homes
         return homes or bool((self.place.zero != self.target.zero).any())
 
     def _check_reach(self, result: Floats, row: Ints, drawn: Flags) -> None:
@@ -355,7 +351,7 @@ class Correcting(Moving):
     def _entered(self, entry: Floats) -> Floats:
         said = self.place.angles(entry)
         found = nearest(self.target.chain, self.place.chain.tool_axis(said), said)
-        return self.written(self._mixed(found, entry, np.array([0])))
+        return self.target.written(self._mixed(found, entry, np.array([0])))
 
     def _guess(self, positions: Floats, row: Ints, part: Floats, after: bool = False) -> Floats:
         return self.place.angles(positions)
@@ -366,9 +362,9 @@ class Correcting(Moving):
         Between half of the largest turn and all of it the correction fades out.
         """
         posted = self.place.angles(positions)
-        turn = np.abs(self.written(angles) - posted).max(axis=1, initial=0.0)
-        largest = self.step.largest_turn
-        if self.step.orientation == "correct":
+        turn = np.abs(self.target.written(angles) - posted).max(axis=1, initial=0.0)
+        largest = self.options.largest_turn
+        if not self.options.keeps_at_pole:
             far = np.zeros(len(self.path), np.bool_)
             far[row[turn > largest]] = True
             message = f"an axis would have to turn by more than {largest:g} degrees"

@@ -13,19 +13,17 @@ has moved, then the others, the last ones first.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import gcxform as gx
 from gcxform.vocabulary import Floats, Ints
+from gcxform_plugins.passes.rtcp.options import Retraction
+from gcxform_plugins.passes.rtcp.place import Place
 from gcxform_plugins.passes.rtcp.user_lines import Line
 from gcxform_plugins.passes.shared.tip_bound import leaving
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.rtcp.forward.moving import Moving
-
 
 HELD = 0.08
 """How far the tip may move while axes turn, as a part of the way it was drawn back."""
@@ -51,40 +49,68 @@ class Retract:
     form: Ints
     lines: tuple[tuple[int, Line], ...] = ()
 
-    @classmethod
-    def of(cls, work: Moving, at: int, row: int, sides: tuple[Floats, Floats]) -> Retract:
-        """Return the moves between the positions (axes,) on both sides."""
+
+@dataclass(frozen=True)
+class Drawing:
+    """What drawing the tool back in a row needs to know: where the axes are, and how it is done."""
+
+    target: Place
+    how: Retraction
+    row: int
+
+    def retract(self, at: int, sides: tuple[Floats, Floats]) -> Retract:
+        """Return the moves behind a piece, between the positions (axes,) on both sides."""
         arrives, leaves = sides
-        assert work.step.retract is not None
-        length, target, lines = work.step.retract, work.target, work.lines
+        length, target, lines = self.how.length, self.target, self.how.lines
         angles = target.angles(arrives[None, :])
-        tip = target.tips_of(arrives[None, :3], angles, np.array([row]))
+        tip = target.tips_of(arrives[None, :3], angles, np.array([self.row]))
         tip = tip + length * target.chain.tool_axis(angles)
         over = [arrives.copy(), leaves.copy()]
         for place in over:
-            place[:3] = target.axes_of(tip, target.angles(place[None, :]), np.array([row]))[0]
-        moves = _Moves(work, row, arrives)
+            place[:3] = self.brought(tip, target.angles(place[None, :]))
+        moves = _Moves(self, arrives)
         moves.feed_to(over[0], length)
         moves.follow(lines.retract)
         if any(line.ends for line in lines.retract):
             moves.turn_to([target.angles(leaves[None, :])[0]], None)
         else:
             ends = (angles, target.angles(leaves[None, :]))
-            moves.turn_to([*_turning(work, row, tip, ends)[1:]], tip)
+            moves.turn_to([*self._turning(tip, ends)[1:]], tip)
         moves.follow(lines.back)
         for axes in lines.groups() if lines.move else ():
             moves.go_back(over[1], axes)
         moves.feed_to(leaves, length)
-        return cls(at, row, *moves.columns(), tuple(moves.lines))
+        return Retract(at, self.row, *moves.columns(), tuple(moves.lines))
+
+    def brought(self, tip: Floats, angles: Floats) -> Floats:
+        """Return the position (3,) with which the axes take a tip (1, 3) there at angles (1, m)."""
+        return np.asarray(self.target.axes_of(tip, angles, np.array([self.row]))[0])
+
+    def _turning(self, tip: Floats, sides: tuple[Floats, Floats]) -> Floats:
+        """Return angles (k, m) from one side to the other, between which the tip stays near."""
+        limit, count, worst = HELD * self.how.length, 1, np.inf
+        row = np.array([self.row])
+        ((chain, _),) = self.target.chains(row)
+        point = self.target.on_workpiece(tip, chain)
+        while True:
+            part = np.linspace(0.0, 1.0, count + 1)[:, None]
+            angles = self.target.written(sides[0] + part * (sides[1] - sides[0]))
+            points = np.repeat(point, count, axis=0)
+            worst = float(leaving(chain, (points, points), (angles[:-1], angles[1:])).max())
+            if worst <= limit:
+                return np.asarray(angles[np.diff(angles, axis=0, prepend=np.inf).any(axis=1)])
+            if count > MOST:
+                message = f"to turn here would take more than {MOST} moves"
+                hint = "draw the tool back farther: raise retract"
+                raise self.target.path.refuse("GX330", row, message, hint)
+            count = min(max(int(np.ceil(count * np.sqrt(worst / limit))), count + 1), 4 * count)
 
 
 class _Moves:
     """Moves one after the other, from a position (axes,)."""
 
-    def __init__(self, work: Moving, row: int, here: Floats) -> None:
-        assert work.step.retract_feed is not None
-        self.work, self.row, self.here = work, row, here
-        self.pace = work.step.retract_feed
+    def __init__(self, work: Drawing, here: Floats) -> None:
+        self.work, self.here = work, here
         self.found: list[tuple[Floats, float, int, int]] = []
         self.lines: list[tuple[int, Line]] = []
 
@@ -94,7 +120,7 @@ class _Moves:
 
     def feed_to(self, end: Floats, way: float) -> None:
         """Feed to a position that is so far, in mm or degrees."""
-        self._add(end, self.pace / way, gx.Kind.LINE, gx.Form.PLAIN)
+        self._add(end, self.work.how.feed / way, gx.Kind.LINE, gx.Form.PLAIN)
 
     def follow(self, lines: tuple[Line, ...]) -> None:
         """Do what the user's lines say."""
@@ -114,7 +140,7 @@ class _Moves:
             end = self.here.copy()
             end[target.columns] = there
             if tip is not None:
-                end[:3] = target.axes_of(tip, there[None, :], np.array([self.row]))[0]
+                end[:3] = self.work.brought(tip, there[None, :])
             self.feed_to(end, float(np.linalg.norm((end - self.here)[target.columns])))
 
     def go_back(self, over: Floats, axes: str) -> None:
@@ -130,26 +156,6 @@ class _Moves:
         """Return ends, feeds, kinds and forms."""
         end, feed, kind, form = zip(*self.found, strict=True)
         return np.array(end), np.array(feed), np.array(kind, np.int8), np.array(form, np.int8)
-
-
-def _turning(work: Moving, row: int, tip: Floats, sides: tuple[Floats, Floats]) -> Floats:
-    """Return angles (k, m) from one side to the other, between which the tip stays near."""
-    assert work.step.retract is not None
-    limit, count, worst = HELD * work.step.retract, 1, np.inf
-    ((chain, _),) = work.target.chains(np.array([row]))
-    point = work.target.on_workpiece(tip, chain)
-    while True:
-        part = np.linspace(0.0, 1.0, count + 1)[:, None]
-        angles = work.written(sides[0] + part * (sides[1] - sides[0]))
-        points = np.repeat(point, count, axis=0)
-        worst = float(leaving(chain, (points, points), (angles[:-1], angles[1:])).max())
-        if worst <= limit:
-            return np.asarray(angles[np.diff(angles, axis=0, prepend=np.inf).any(axis=1)])
-        if count > MOST:
-            message = f"to turn here would take more than {MOST} moves"
-            hint = "draw the tool back farther: raise retract"
-            raise work.path.refuse("GX330", np.array([row]), message, hint)
-        count = min(max(int(np.ceil(count * np.sqrt(worst / limit))), count + 1), 4 * count)
 
 
 def inserted(column: NDArray[Any], retracts: list[Retract], name: str) -> NDArray[Any]:

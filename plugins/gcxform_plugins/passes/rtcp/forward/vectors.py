@@ -9,7 +9,6 @@ or the axes turn in proportion. What is outside of sections has positions of axe
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,12 +17,9 @@ from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.rtcp.forward.choice import TURN
 from gcxform_plugins.passes.rtcp.forward.great_circles import OnCircles
 from gcxform_plugins.passes.rtcp.forward.moving import STILL
+from gcxform_plugins.passes.rtcp.options import Options
 from gcxform_plugins.passes.rtcp.place import Place
 from gcxform_plugins.passes.rtcp.tool_vectors import Vectors, without_left
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.rtcp.rtcp import Rtcp
-
 
 MOST = 179.0  # degrees that the tool turns in a block: of half a turn nobody knows the way
 LEAST = 0.5  # degrees; where no axis turns by as much in a block, none leaps in it
@@ -36,13 +32,19 @@ class Pointing(OnCircles):
     """Of tips and vectors the axes of a machine, the tool axis on great circles between blocks."""
 
     def __init__(
-        self, step: Rtcp, path: gx.Toolpath, context: gx.PassContext, source: Place, target: Place
+        self,
+        options: Options,
+        path: gx.Toolpath,
+        context: gx.PassContext,
+        source: Place,
+        target: Place,
     ) -> None:
-        super().__init__(step, without_left(path), context, source, target)
+        super().__init__(options, without_left(path), context, source, target)
         self.left = np.isinf(path.end)
         self.vectors = Vectors.of(path)
         self.turns = np.nan_to_num(np.degrees(self.vectors.turn()))
         self.known &= self.vectors.on
+        self.said: Floats | None = None  # angles (n, m) in proportion, at the ends of rows
 
     # --- what is refused ---
 
@@ -101,7 +103,7 @@ class Pointing(OnCircles):
 
     def _choose(self) -> None:
         super()._choose()
-        if self.step.orientation_path == "great-circle":
+        if self.options.great_circles:
             rows = self._turning()
             self._refuse_leaps(rows[self._turn(rows) > LEAST])
 
@@ -146,9 +148,6 @@ class Pointing(OnCircles):
 class InProportion(Pointing):
     """The same, with angles that change in proportion between the ends of blocks."""
 
-    said: Floats | None = None
-    """The angles (n, m) at the ends of the rows, once they are chosen."""
-
     def _choose(self) -> None:
         """Choose angles along the vectors; those at the ends of blocks are taken."""
         super()._choose()
@@ -162,7 +161,7 @@ class InProportion(Pointing):
             return super()._angles(positions, row, part, after)
         one, other = np.where(row[:, None] > 0, self.said[row - 1], 0.0), self.said[row]
         part = np.where(self.cuts[row], part, 1.0)[:, None]
-        return np.where(part == 1.0, other, self.written(one + part * (other - one)))
+        return np.where(part == 1.0, other, self.target.written(one + part * (other - one)))
 
     def _far(self, source: tuple[Floats, ...], target: tuple[Floats, ...], row: Ints) -> Floats:
         """Return how far (n,) mm the tip leaves its line; the tool axis is where it has to be."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -11,9 +11,6 @@ from gcxform.vocabulary import Floats, Ints
 from gcxform_plugins.passes.rtcp.place import Place
 from gcxform_plugins.passes.rtcp.proof.undoing import Undoing
 from gcxform_plugins.passes.rtcp.tool_vectors import Vectors
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.rtcp.rtcp import Rtcp
 
 
 class Leading(Protocol):
@@ -38,10 +35,10 @@ class Leading(Protocol):
 class Driven:
     """A path whose axes all move in proportion."""
 
-    def __init__(self, step: Rtcp, path: gx.Toolpath, place: Place) -> None:
+    def __init__(self, path: gx.Toolpath, place: Place) -> None:
         self.path, self.place = path, place
         self.start, self.end = path.start, path.end
-        self.bends = Undoing(step, path, place, to_tips=True).bends()
+        self.bends = Undoing(path, place, to_tips=True).bends()
         turn = np.abs(np.radians(place.angles(self.end - self.start))).sum(axis=1)
         self.leans = np.nan_to_num(turn) ** 2 / 8.0
 

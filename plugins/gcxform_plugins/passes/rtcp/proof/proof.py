@@ -8,20 +8,14 @@ that draw the tool back are taken out before (`rtcp_retracted.py`): the rest has
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
+from gcxform_plugins.passes.rtcp.options import Options
 from gcxform_plugins.passes.rtcp.proof.driven import Driven, Leading, Straight
 from gcxform_plugins.passes.rtcp.proof.retracted import Retracted
 from gcxform_plugins.passes.rtcp.proof.undoing import SHARE
-from gcxform_plugins.passes.rtcp.user_lines import UserLines
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.rtcp.rtcp import Rtcp
-
 
 AT_ONCE = 20_000  # places compared at once
 LEAN_SHARE = 0.02  # of the tolerance of the tool axis, that is left to the places looked at
@@ -33,9 +27,9 @@ class Proof:
     """The tips and tool axes of one window, as the source leads them and as the target does."""
 
     def __init__(
-        self, step: Rtcp, context: gx.PassContext, source: Leading, target: Driven | Straight
+        self, options: Options, context: gx.PassContext, source: Leading, target: Driven | Straight
     ) -> None:
-        self.step, self.context = step, context
+        self.options, self.context = options, context
         self.source, self.target = source, target
         self.before, self.after = source.path, target.path
         self.events, self.given = self.after.events, list(self.after.given)
@@ -49,10 +43,9 @@ class Proof:
     def _drawn(self) -> Flags:
         """Return which rows (n,) draw the tool back."""
         drawn = np.zeros(len(self.after), np.bool_)
-        if self.step.retract is not None:
-            lines = UserLines.of(self.step, self.context)
+        if self.options.retraction is not None:
             assert isinstance(self.target, Driven)
-            found = Retracted(self.step, self.target, lines)
+            found = Retracted(self.options, self.target)
             for rows in found.found:
                 drawn[rows.start : rows.stop] = True
             inside = {id(event) for event in found.inside}
@@ -82,8 +75,8 @@ class Proof:
         shared = count[self.owner] ** 2
         bend = self.source.bends[self.owner] / shared + self.target.bends
         lean = self.source.leans[self.owner] / shared + self.target.leans
-        finest = LEAN_SHARE * np.radians(self.step.axis_tolerance)
-        many = np.sqrt(np.maximum(bend / (SHARE * self.step.tolerance), lean / finest))
+        finest = LEAN_SHARE * np.radians(self.options.axis_tolerance)
+        many = np.sqrt(np.maximum(bend / (SHARE * self.options.tolerance), lean / finest))
         many = np.maximum(np.ceil(many - 1e-9), 1.0).astype(np.int64)
         first = np.cumsum(count) - count
         nth = np.cumsum(~self.drawn) - 1 - first[self.owner]
@@ -138,7 +131,7 @@ class Proof:
     def check(self, lean: float, turn: float) -> None:
         """Raise VerificationError for more than the tolerances, and for another speed."""
         self.run()
-        if not self.tip <= self.step.tolerance:
+        if not self.tip <= self.options.tolerance:
             self._fail(f"the tip is {self.tip:.5f} mm off", self.worst)
         if not self.lean <= lean:
             self._fail(f"the tool axis is {self.lean:.5f} degrees off", self.worst)
@@ -185,9 +178,12 @@ class Proof:
         """Return the times (min) that axes take at least for moves of the target."""
         step = np.abs(self.target.end - self.target.start)
         found = np.zeros(len(step))
-        for letter, speed in self.step.speeds(self.context):
-            column = self.after.axes.index(letter)
-            found = np.fmax(found, step[:, column] / speed)
+        machine = self.context.machine
+        axes = machine.axes.items() if machine is not None and self.options.to_axes else ()
+        for letter, axis in axes:
+            if axis.max_speed is not None:
+                column = self.after.axes.index(letter)
+                found = np.fmax(found, step[:, column] / axis.max_speed)
         return found
 
     def _ways(self) -> Floats:

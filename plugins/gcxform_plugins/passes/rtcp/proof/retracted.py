@@ -14,19 +14,14 @@ and then along the others, the last ones first.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Floats, Ints
+from gcxform_plugins.passes.rtcp.options import Options
 from gcxform_plugins.passes.rtcp.proof.driven import Driven
 from gcxform_plugins.passes.rtcp.proof.undoing import SHARE
-from gcxform_plugins.passes.rtcp.user_lines import Line, UserLines
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.rtcp.rtcp import Rtcp
-
+from gcxform_plugins.passes.rtcp.user_lines import Line
 
 NEAR = 0.1
 """How far the tip may move while axes turn, as a part of the way it was drawn back."""
@@ -40,12 +35,11 @@ class Retracted:
     `given` are the user's blocks in them, and `moves` counts the rows that are none of these.
     """
 
-    def __init__(self, step: Rtcp, target: Driven, lines: UserLines) -> None:
-        assert step.retract is not None
-        self.lines = lines
-        assert step.retract_feed is not None
-        self.length, self.feed = step.retract, step.retract_feed
-        self.lean = np.radians(step.axis_tolerance)
+    def __init__(self, options: Options, target: Driven) -> None:
+        assert options.retraction is not None
+        self.lines = options.retraction.lines
+        self.length, self.feed = options.retraction.length, options.retraction.feed
+        self.lean = np.radians(options.axis_tolerance)
         self.path, self.target = target.path, target
         step_of_angles = target.place.angles(target.end) - target.place.angles(target.start)
         self.turn = np.nan_to_num(step_of_angles, nan=np.inf)

@@ -7,18 +7,14 @@ axis. So here the tips of both are followed beside each other, before anything i
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Flags, Ints
+from gcxform_plugins.passes.rtcp.options import Options
 from gcxform_plugins.passes.rtcp.place import turned_at
 from gcxform_plugins.passes.rtcp.proof.driven import Driven, Straight
 from gcxform_plugins.passes.rtcp.proof.proof import Proof
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.rtcp.rtcp import Rtcp
 
 
 class TipProof(Proof):
@@ -26,7 +22,7 @@ class TipProof(Proof):
 
     def __init__(
         self,
-        step: Rtcp,
+        options: Options,
         context: gx.PassContext,
         source: Driven,
         target: Driven | Straight,
@@ -34,7 +30,7 @@ class TipProof(Proof):
     ) -> None:
         """Take the row of the source for each row: where it is a wrong one, tips are far apart."""
         self.given_owner = owner
-        super().__init__(step, context, source, target)
+        super().__init__(options, context, source, target)
 
     def _owners(self) -> Ints:
         return self.given_owner
@@ -52,5 +48,5 @@ class TipProof(Proof):
         if not len(self.after):
             return
         self.run()
-        if not self.tip <= self.step.tolerance:
+        if not self.tip <= self.options.tolerance:
             self._fail(f"the tip is {self.tip:.5f} mm off", self.worst)

@@ -9,17 +9,12 @@ Nothing here is shared with the cutting of lines.
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.rtcp.place import Place
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.rtcp.rtcp import Rtcp
-
 
 TOO_MANY = 2.0**40  # pieces: refused, and still a whole number
 SHARE = 0.1
@@ -30,25 +25,22 @@ class Undoing:
     """The work on one window."""
 
     def __init__(
-        self,
-        step: Rtcp,
-        path: gx.Toolpath,
-        place: Place,
-        to_tips: bool,
-        posted: Place | None = None,
+        self, path: gx.Toolpath, place: Place, to_tips: bool, posted: Place | None = None
     ) -> None:
-        self.step = step
         self.path = path
         self.place = place
         self.posted = posted
         self.to_tips = to_tips
         self.start, self.end = path.start, path.end
 
-    def run(self) -> gx.Toolpath:
-        """Return the path of tips; of axes for the reverse, and of those that were posted for."""
+    def run(self, tolerance: float) -> gx.Toolpath:
+        """Return the path of tips; of axes for the reverse, and of those that were posted for.
+
+        A tenth of the tolerance (mm) is left to the pieces in which it is followed.
+        """
         path = self.path
         bend = self.bends()
-        pieces = np.ceil(np.sqrt(bend / (SHARE * self.step.tolerance)) - 1e-9)
+        pieces = np.ceil(np.sqrt(bend / (SHARE * tolerance)) - 1e-9)
         pieces = path.check_rows(np.clip(pieces, 1.0, TOO_MANY).astype(np.int64))
         row = np.repeat(np.arange(len(path)), pieces)
         nth = np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1

@@ -9,18 +9,13 @@ axis went round the other way, and none flipped over. Rows outside of G43.5 are 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
+from gcxform_plugins.passes.rtcp.options import Options
 from gcxform_plugins.passes.rtcp.proof.driven import Driven, Pointed
 from gcxform_plugins.passes.rtcp.proof.proof import LEAN_SHARE, STILL, Proof
-
-if TYPE_CHECKING:
-    from gcxform_plugins.passes.rtcp.rtcp import Rtcp
-
 
 ROOM = 1e-9  # degrees
 HALF_A_TURN = 180.0
@@ -36,7 +31,7 @@ class PointedProof(Proof):
 
     def __init__(
         self,
-        step: Rtcp,
+        options: Options,
         context: gx.PassContext,
         source: Pointed,
         target: Driven,
@@ -44,10 +39,10 @@ class PointedProof(Proof):
     ) -> None:
         self.left = left
         self.vectors = source.vectors
-        self.circles = step.orientation_path == "great-circle"
+        self.circles = options.great_circles
         self.turned = np.degrees(source.vectors.turn())
         self.ends, self.beside, self.round = 0.0, 0.0, 0.0
-        super().__init__(step, context, source, target)
+        super().__init__(options, context, source, target)
 
     def _known(self) -> Flags:
         return self.vectors.on[self.owner]
@@ -87,7 +82,7 @@ class PointedProof(Proof):
             self._fail(f"the tool axis is {self.ends:.5f} degrees off its vector", self.worst)
         if self.circles:
             return
-        finest = LEAN_SHARE * self.step.axis_tolerance
+        finest = LEAN_SHARE * self.options.axis_tolerance
         if not self.round <= 2.0 * (rounding + finest):
             self._fail(f"the tool axis goes {self.round:.5f} degrees round about", self.worst)
         self._check_proportion()
