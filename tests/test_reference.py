@@ -115,6 +115,24 @@ def test_hypothesis_finds_no_disagreement(source: bytes) -> None:
 
 
 @installed
+def test_linuxcnc_is_asked_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What it answered is kept by digest, that of other text or of another version is not."""
+    monkeypatch.setattr(rs274, "KEPT", tmp_path / "answers")
+    monkeypatch.setattr(rs274, "KEEPS", True)
+    sources = [drawn(1), damaged(7), b"G1 F1 X1 (\xe9)\nM2\n"]
+    before = rs274.run_many(sources)
+    with monkeypatch.context() as blind:
+        blind.setattr(rs274, "_asked", lambda source: pytest.fail("it was asked again"))
+        for one, other in zip(before, rs274.run_many(sources), strict=True):
+            assert vars(one) == vars(other)
+        with pytest.raises(pytest.fail.Exception):
+            rs274.run_many([drawn(2)])
+        blind.setattr(rs274, "_version", lambda: b"another")
+        with pytest.raises(pytest.fail.Exception):
+            rs274.run_many([drawn(1)])
+
+
+@installed
 def test_many_programs_in_one_process_answer_as_each_alone() -> None:
     sources = [drawn(seed) for seed in range(20)] + [damaged(seed) for seed in range(20)]
     sources += [contour(seed) for seed in range(20)] + [whole(seed) for seed in range(20)]
