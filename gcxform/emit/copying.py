@@ -13,6 +13,8 @@ from gcxform.emit.converting import convertible
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, as_written
+from gcxform.emit.stated import Stated
+from gcxform.emit.tapping import Taps
 from gcxform.modal.columns import fill
 from gcxform.modal.meaning.meaning import FRAMING
 from gcxform.modal.meaning.tables import GROUPS
@@ -47,7 +49,13 @@ class Copying:
     """
 
     def __init__(
-        self, task: Task, pieces: Pieces, positions: Positions, believed: Believed
+        self,
+        task: Task,
+        pieces: Pieces,
+        stated: Stated,
+        taps: Taps,
+        positions: Positions,
+        believed: Believed,
     ) -> None:
         self.task = task
         self.positions = positions
@@ -61,7 +69,7 @@ class Copying:
         self._polar = np.array([frame.polar for frame in self.path.frames], np.bool_)
         self.lines = (old_count == 0) & (pieces.count == 0) & ~pieces.expanded_line
         self.converted = np.zeros(live, np.bool_)
-        stands = self._standing(old_count, pieces)
+        stands = self._standing(old_count, pieces, stated)
         self._refuse_changed(stands, pieces)
         self._refuse_presets()
         self._refuse_lengths()
@@ -76,8 +84,8 @@ class Copying:
         self.lines &= ~self._pointed()
         if self.path.blocks.uncompensated:
             self.lines &= ~self.task.table.flag("compensates", self.task.shape)
-        self.lines[pieces.line[pieces.repaired]] = False
-        self.lines &= ~pieces.taps.lines
+        self.lines[pieces.line[stated.repaired]] = False
+        self.lines &= ~taps.lines
         self._skipped()
         self._refuse_unknown()
         self._refuse_polar()
@@ -220,7 +228,7 @@ class Copying:
             & (now.absolute_centre == old.absolute_centre)
         )
 
-    def _standing(self, old_count: Ints, pieces: Pieces) -> Flags:
+    def _standing(self, old_count: Ints, pieces: Pieces, stated: Stated) -> Flags:
         """Return the lines whose rows are those of the source and need no other words."""
         stands = np.zeros(len(old_count), np.bool_)
         special = np.zeros(len(old_count), np.bool_)
@@ -235,10 +243,12 @@ class Copying:
         self.converted = ~alike & convertible(self.task, pieces, self.positions)
         good = (alike | self.converted)[lines]
         if not self.task.manner.crossing:
-            good &= special[lines] | ~pieces.repaired_in(lines)
+            repaired = np.zeros(len(old_count), np.bool_)
+            repaired[pieces.line[stated.repaired]] = True
+            good &= special[lines] | ~repaired[lines]
         good &= self.path.form[rows] == self.original.form[others]
         good &= self.path.kind[rows] == self.original.kind[others]
-        good &= pieces.kind[rows] == as_written(self.original, self.original.kind)[others]
+        good &= stated.kind[rows] == as_written(self.original, self.original.kind)[others]
         plain = self.path.is_free[rows]
         good &= ~plain | self._same_ends(rows, others)
         own = np.flatnonzero(~plain)

@@ -21,9 +21,10 @@ from gcxform.emit.expressible import left_out, nothing_left
 from gcxform.emit.fields import Role
 from gcxform.emit.manner import Believed, Manner, Task
 from gcxform.emit.path_modes import ENDS_EXACTLY, Exactness, PathMode
-from gcxform.emit.pieces import Pieces
+from gcxform.emit.pieces import pieces_of
 from gcxform.emit.positions import Positions, motion_kinds
 from gcxform.emit.render import interleave
+from gcxform.emit.stated import stated_by
 from gcxform.emit.tapping import Taps
 from gcxform.emit.writing import Style, Writing
 from gcxform.modal.interpreter import Interpreted
@@ -98,10 +99,13 @@ class _Job:
         self.path = task.path
         self.positions = Positions(task, emitter.believed)
         self.taps = Taps(task, self.positions, emitter.believed)
-        self.kind = motion_kinds(task, self.positions)
         self.exactness = Exactness(task, emitter.path_mode, emitter.called)
-        self.pieces = Pieces(task, self.kind, emitter.believed, self.taps, self.exactness.around)
-        self.copying = Copying(task, self.pieces, self.positions, emitter.believed)
+        self.pieces = pieces_of(task, self.taps, self.exactness.around)
+        kind = motion_kinds(task, self.positions)
+        self.stated = stated_by(task, self.pieces, kind, emitter.believed)
+        self.copying = Copying(
+            task, self.pieces, self.stated, self.taps, self.positions, emitter.believed
+        )
 
     def run(self) -> Emitted:
         copied = self.copying.lines
@@ -109,11 +113,11 @@ class _Job:
         self._refuse_lost()
         self._refuse_behind_end()
         self._refuse_dwells()
-        centre = Centres(self.task, self.kind, self.positions, self.copying).write()
+        centre = Centres(self.task, self.stated.kind, self.positions, self.copying).write()
         empty = self._without_words() | self._foreign() | self._gone() | self._only_compensates()
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
         self._refuse_lost_times(chosen)
-        style, columns = self.emitter.style, (self.positions, self.taps, self.kind, centre)
+        style, columns = self.emitter.style, (self.stated, self.positions, self.taps, centre)
         text, lengths = Writing(self.task, style, self.pieces, *columns).text(chosen)
         line, nth = self.pieces.line[chosen], self.pieces.of_rows(self.path.nth, 0)[chosen]
         whole, source, nth = interleave(self.task, copied, line, nth, text, lengths)
@@ -122,9 +126,9 @@ class _Job:
 
     def _without_words(self) -> Flags:
         """Return the inner pieces of split blocks that would have no word: nothing moves."""
-        still: Flags = ~self.positions.write.any(axis=1) & (self.kind < Kind.ARC_CW)
+        still: Flags = ~self.positions.write.any(axis=1) & (self.stated.kind < Kind.ARC_CW)
         inner: Flags = (self.pieces.role == Role.MIDDLE) & self.pieces.has_row & ~self.pieces.tap
-        inner &= ~self.pieces.expanded_line[self.pieces.line] | (self.pieces.motion < 0)
+        inner &= ~self.pieces.expanded_line[self.pieces.line] | (self.stated.motion.code < 0)
         return np.asarray(inner & self.pieces.of_rows(still, False))
 
     def _gone(self) -> Flags:
@@ -259,8 +263,7 @@ class _Job:
 
     def _carry(self) -> None:
         """Leave what the control believes after the window."""
-        believed, pieces = self.emitter.believed, self.pieces
-        taps = self.taps
+        believed, stated, taps = self.emitter.believed, self.stated, self.taps
         believed.level, believed.tapping, believed.aside = taps.level, taps.moved, taps.aside
         if len(self.path):
             exact = bool(self.copying.exact[-1])
@@ -268,13 +271,13 @@ class _Job:
             believed.position = np.array(held)
             believed.exact = exact
             believed.said = np.array(self.copying.said_exactly()[-1])
-        if len(pieces.line):
-            believed.motion = int(pieces.motion_after[-1])
-            believed.feed = float(pieces.feed_after[-1])
-            believed.feed_unit = float(pieces.unit_after[-1])
+        if len(self.pieces.line):
+            believed.motion = int(stated.motion.after[-1])
+            believed.feed = float(stated.feed.after[-1])
+            believed.feed_unit = float(stated.feed.unit_after[-1])
             for name in ("inch", "incremental", "absolute_centre", "feed_mode"):
-                stated = getattr(pieces, name)
-                last = np.flatnonzero(stated >= 0)
+                codes = getattr(stated, name)
+                last = np.flatnonzero(codes >= 0)
                 if len(last):
-                    setattr(believed, name, int(stated[last[-1]]))
+                    setattr(believed, name, int(codes[last[-1]]))
             self._leave_end(believed)

@@ -1,16 +1,18 @@
 """Pieces to text: pieces that are written in the same way share a template, rendered as a whole.
 
-Which pieces there are and what each has to say is settled before (`gcxform/emit/pieces.py`). Here
-they are sorted by the way in which they are written, each way gets its template, and what a number
-of a template is worth is looked up in columns. What cannot be written as a number, or makes a block
-too long, is refused.
+Which pieces there are is settled before (`gcxform/emit/pieces.py`), and what each has to say
+(`gcxform/emit/stated.py`). Here they are sorted by the way in which they are written, each way gets
+its template, and what a number of a template is worth is looked up in columns. What cannot be
+written as a number, or makes a block too long, is refused.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import INCH
@@ -33,12 +35,13 @@ from gcxform.emit.numbers import MOST_DECIMALS, decimals_for, decimals_of, quant
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions
 from gcxform.emit.render import Renderer, groups_of
+from gcxform.emit.stated import Stated
 from gcxform.emit.tapping import Taps
 from gcxform.emit.templates import TemplateWriter
 from gcxform.modal.control_limits import without_blanks
 from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.syntax.scan import Window
-from gcxform.system.arrays import Flags, Floats, Ints, Small
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.path import Given, Kind
 
@@ -69,15 +72,15 @@ class Style:
 class Writing:
     """The columns that the text of a window is made of.
 
-    `kind` (rows,) are the motions to be written; `centre` (rows, 2) centre words, in last decimals.
+    `centre` (rows, 2): centre words, in last decimals.
     """
 
     task: Task
     style: Style
     pieces: Pieces
+    stated: Stated
     positions: Positions
     taps: Taps
-    kind: Small
     centre: Floats
 
     def text(self, chosen: Ints) -> tuple[bytes, Ints]:
@@ -94,25 +97,25 @@ class Writing:
 
     def _ways(self, chosen: Ints) -> Ints:
         """Return, per piece, one number for the way in which it has to be written."""
-        pieces = self.pieces
-        arc = pieces.of_rows((self.kind >= Kind.ARC_CW).astype(np.int64), 0)
+        pieces, stated = self.pieces, self.stated
+        arc = pieces.of_rows((stated.kind >= Kind.ARC_CW).astype(np.int64), 0)
         inch = self.task.path.blocks.inch[pieces.line]
         way = self.task.shape[pieces.line].astype(np.int64)
-        parts = [
+        parts: list[tuple[NDArray[Any], int]] = [
             (pieces.role, len(Role)),
             (pieces.event + 1, len(pieces.events) + 1),
             (pieces.expanded_line[pieces.line], 2),
-            (pieces.motion + 1, 128),
-            (pieces.inch + 1, 3),
-            (pieces.incremental + 1, 3),
-            (pieces.absolute_centre + 1, 3),
-            (pieces.feed_mode + 1, 128),
-            (pieces.silent, 2),
-            (pieces.thread, 2),
+            (stated.motion.code + 1, 128),
+            (stated.inch + 1, 3),
+            (stated.incremental + 1, 3),
+            (stated.absolute_centre + 1, 3),
+            (stated.feed_mode + 1, 128),
+            (stated.motion.silent, 2),
+            (stated.motion.thread, 2),
             (pieces.tap, 2),
             (pieces.apart, 2),
             (pieces.converted, 2),
-            (pieces.feed, 3),
+            (stated.feed.word, 3),
             (inch, 2),
         ]
         if arc.any():
@@ -137,24 +140,24 @@ class Writing:
 
     def _template(self, piece: int) -> tuple[Field, ...]:
         """Return the fields of a piece, which are those of all pieces written in its way."""
-        pieces = self.pieces
+        pieces, stated = self.pieces, self.stated
         if pieces.event[piece] >= 0:
             return self._event_text(piece)
         line = int(pieces.line[piece])
         shape = int(self.task.shape[line])
         row = int(pieces.row[piece])
-        arc = bool(pieces.has_row[piece]) and int(self.kind[row]) >= Kind.ARC_CW
+        arc = bool(pieces.has_row[piece]) and int(stated.kind[row]) >= Kind.ARC_CW
         key = Key(
             Role(int(pieces.role[piece])),
-            int(pieces.motion[piece]),
-            int(pieces.inch[piece]),
-            int(pieces.incremental[piece]),
-            int(pieces.absolute_centre[piece]),
-            int(pieces.feed_mode[piece]),
-            bool(pieces.silent[piece]),
-            Feed(int(pieces.feed[piece])),
+            int(stated.motion.code[piece]),
+            int(stated.inch[piece]),
+            int(stated.incremental[piece]),
+            int(stated.absolute_centre[piece]),
+            int(stated.feed_mode[piece]),
+            bool(stated.motion.silent[piece]),
+            Feed(int(stated.feed.word[piece])),
             bool(pieces.expanded_line[line]),
-            bool(pieces.thread[piece]),
+            bool(stated.motion.thread[piece]),
             bool(pieces.tap[piece]),
             bool(pieces.apart[piece]),
             bool(pieces.converted[piece]),
@@ -222,7 +225,7 @@ class Writing:
             everywhere = np.ones(len(rows), np.bool_)
             renderer.number(field.gap, field.address, whole, decimals, everywhere)
         else:
-            feed = self.pieces.feed_value[members]
+            feed = self.stated.feed.value[members]
             decimals = decimals_for(feed, manner.decimals_of("F", inch))
             whole = quantise(feed, decimals)
             self._check_feed(feed, whole / 10.0**decimals, members)

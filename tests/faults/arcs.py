@@ -77,9 +77,9 @@ MUTATIONS = (
     ),
     Mutation(
         "arcs: the motion code of a block that is gone counts",
-        "gcxform/emit/pieces.py",
-        "self.leads & ~self.silent & (self.role != Role.GONE)",
-        "self.leads & ~self.silent",
+        "gcxform/emit/stated.py",
+        "pieces.leads & ~silent & (pieces.role != Role.GONE)",
+        "pieces.leads & ~silent",
         ARCS,
     ),
     Mutation(

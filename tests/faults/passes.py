@@ -357,9 +357,9 @@ MUTATIONS = (
     ),
     Mutation(
         "writing: a feed mode that has changed is not stated",
-        "gcxform/emit/pieces.py",
-        'self._mode("feed-mode", wanted, self.believed.feed_mode, needs)',
-        'self._mode("feed-mode", wanted, self.believed.feed_mode, needs & False)',
+        "gcxform/emit/stated.py",
+        'self.mode("feed-mode", blocks.feed_mode, before, needs)',
+        'self.mode("feed-mode", blocks.feed_mode, before, needs & False)',
         f"{CORPUS}[feed/to-inverse-time]",
     ),
     Mutation(

@@ -36,14 +36,14 @@ MUTATIONS = (
     _writing("exact after the first move", "Event(row, EXACT", "Event(row + 1, EXACT"),
     _writing(
         "G61 leads the block",
-        "(first & ~self.opens) | np.roll(self.opens, 1)",
+        "(first & ~opening) | np.roll(opening, 1)",
         "first",
         "gcxform/emit/pieces.py",
     ),
     _writing(
         "G64 ends the block",
-        "(self.ends & ~self.closes) | np.roll(self.closes, -1)",
-        "self.ends",
+        "(ends & ~closing) | np.roll(closing, -1)",
+        "ends",
         "gcxform/emit/pieces.py",
     ),
     _proof(

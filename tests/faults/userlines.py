@@ -160,9 +160,9 @@ MUTATIONS = (
     ),
     Mutation(
         "lines: behind G53 G0 it is taken for G1",
-        "gcxform/emit/pieces.py",
-        "moves = self.has_row & ((form == Form.PLAIN) | (form == Form.MACHINE))",
-        "moves = self.has_row & (form == Form.PLAIN)",
+        "gcxform/emit/stated.py",
+        "moves = pieces.has_row & ((form == Form.PLAIN) | (form == Form.MACHINE))",
+        "moves = pieces.has_row & (form == Form.PLAIN)",
         STANDS,
     ),
 )

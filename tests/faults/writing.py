@@ -28,8 +28,8 @@ MUTATIONS = (
     ),
     Mutation(
         "writing: a motion code that has changed is not stated",
-        "gcxform/emit/pieces.py",
-        "changes = moves & (before != self.motion_after)",
+        "gcxform/emit/stated.py",
+        "changes = moves & (before != after)",
         "changes = np.zeros(len(before), np.bool_)",
         LAWS + "::test_a_motion_code_that_no_longer_holds_is_stated",
     ),
@@ -105,9 +105,9 @@ MUTATIONS = (
     ),
     Mutation(
         "writing: a feed without a point is the same in every feed mode",
-        "gcxform/emit/pieces.py",
-        "return np.asarray(~self.other_mode | pointed[self.line])",
-        "return np.ones(len(self.line), np.bool_)",
+        "gcxform/emit/stated.py",
+        "return np.asarray(~self._other_mode | pointed[line])",
+        "return np.ones(len(line), np.bool_)",
         CORPUS,
     ),
 )
