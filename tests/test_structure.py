@@ -18,6 +18,7 @@ import gcxform as gx
 
 ROOT = Path(__file__).parents[1]
 ROOTS = ("gcxform", "gcxform_plugins")
+ORDERED = ("importlinter:contract:layers", "importlinter:contract:modal")
 MOST_ROWS = 25
 
 
@@ -27,10 +28,15 @@ def contract_file() -> ConfigParser:
     return parser
 
 
-def rows() -> list[list[str]]:
-    """Return the layers of the core, the highest first; those of a row do not know one another."""
-    text = contract_file()["importlinter:contract:layers"]["layers"]
-    return [[name.strip() for name in row.split("|")] for row in text.split("\n") if row.strip()]
+def rows(contract: str) -> list[list[str]]:
+    """Return the layers of a contract, the highest first; those of a row do not know one another.
+
+    Names are whole: with the package that contains the layers.
+    """
+    options = contract_file()[contract]
+    inside = options["containers"].strip()
+    rows = [row.split("|") for row in options["layers"].split("\n") if row.strip()]
+    return [[f"{inside}.{name.strip()}" for name in row] for row in rows]
 
 
 @cache
@@ -44,8 +50,8 @@ def graph(types: bool) -> grimp.ImportGraph:
 # --- layers ---
 
 
-def layers_contract() -> Contract:
-    options = dict(contract_file()["importlinter:contract:layers"])
+def layers_contract(name: str) -> Contract:
+    options = dict(contract_file()[name])
     several = {
         key: [line.strip() for line in options[key].split("\n") if line.strip()]
         for key in ("layers", "containers")
@@ -61,30 +67,38 @@ def keeps(contract: Contract, imports: grimp.ImportGraph) -> bool:
     return bool(contract.check(imports, verbose=False).kept)
 
 
-def test_the_contract_is_short_and_names_every_package() -> None:
-    assert len(rows()) <= MOST_ROWS
-    assert contract_file()["importlinter:contract:layers"]["exhaustive"] == "true"
-    assert keeps(layers_contract(), graph(False))
+@pytest.mark.parametrize("contract", ORDERED)
+def test_a_contract_of_layers_is_short_and_names_every_package(contract: str) -> None:
+    assert len(rows(contract)) <= MOST_ROWS
+    assert contract_file()[contract]["exhaustive"] == "true"
+    assert keeps(layers_contract(contract), graph(False))
 
 
-PAIRS = [(low, high[0]) for high, row in zip(rows(), rows()[1:], strict=False) for low in row]
+PAIRS = [
+    (contract, low, high[0])
+    for contract in ORDERED
+    for high, row in zip(rows(contract), rows(contract)[1:], strict=False)
+    for low in row
+]
 
 
-@pytest.mark.parametrize(("low", "high"), PAIRS)
-def test_a_new_file_falls_under_the_contract_by_where_it_lies(low: str, high: str) -> None:
+@pytest.mark.parametrize(("contract", "low", "high"), PAIRS)
+def test_a_new_file_falls_under_its_contract_by_where_it_lies(
+    contract: str, low: str, high: str
+) -> None:
     """One that imports what is above it breaks the lint, in each package."""
     planted = graph(False).__deepcopy__({})
-    new = f"gcxform.{low}.planted" if (ROOT / "gcxform" / low).is_dir() else f"gcxform.{low}"
+    new = f"{low}.planted" if (ROOT / low.replace(".", "/")).is_dir() else low
     planted.add_module(new)
-    above = f"gcxform.{high}"
-    planted.add_import(importer=new, imported=above, line_number=1, line_contents="planted")
-    assert not keeps(layers_contract(), planted)
+    planted.add_import(importer=new, imported=high, line_number=1, line_contents="planted")
+    assert not keeps(layers_contract(contract), planted)
 
 
-def test_a_new_package_must_be_given_its_place() -> None:
+@pytest.mark.parametrize("contract", ORDERED)
+def test_a_new_package_must_be_given_its_place(contract: str) -> None:
     planted = graph(False).__deepcopy__({})
-    planted.add_module("gcxform.planted")
-    assert not keeps(layers_contract(), planted)
+    planted.add_module(f"{rows(contract)[0][0].rpartition('.')[0]}.planted")
+    assert not keeps(layers_contract(contract), planted)
 
 
 # --- circles ---

@@ -21,7 +21,7 @@ from gcxform.modal.control_limits import refuse_limits
 from gcxform.modal.cycles.expansion import Cycles
 from gcxform.modal.expressions.assignments import compute
 from gcxform.modal.expressions.value import parameter_key
-from gcxform.modal.frames.state import FrameState
+from gcxform.modal.frame_state import FrameState
 from gcxform.modal.lines import Assigned, Lines
 from gcxform.modal.meaning.tables import GROUPS, NUMBER, SPLINES, MeaningTable
 from gcxform.modal.moves.moves import Moves

@@ -13,7 +13,7 @@ from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.dialect.increments import Increments
 from gcxform.machine.machine import TIP_AT_START, Machine, Tool
 from gcxform.modal.cycles.expansion import Cycles
-from gcxform.modal.frames.state import FrameState
+from gcxform.modal.frame_state import FrameState
 from gcxform.system.arrays import Flags, Floats, Small
 from gcxform.toolpath.frames import Frame
 

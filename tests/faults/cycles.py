@@ -7,7 +7,7 @@ from faults.mutation import CYCLES, Mutation
 LEVELS = "gcxform/modal/cycles/expansion.py"
 STRETCH = "gcxform/modal/cycles/stretch.py"
 STEPS = "gcxform/modal/cycles/steps.py"
-DRILLING = "gcxform/modal/cycles/patterns.py"
+DRILLING = "gcxform/modal/moves/cycle_patterns.py"
 STRETCHES = "tests/test_stretches.py"
 
 FAULTS = (

@@ -21,14 +21,14 @@ MUTATIONS = (
     ),
     Mutation(
         "frames: G92 is added behind the rotation",
-        "gcxform/modal/frames/state.py",
+        "gcxform/modal/frame_state.py",
         "matrix, shift = about @ matrix, about @ shift",
         "matrix = about @ matrix",
         SHIFTS,
     ),
     Mutation(
         "frames: the centre of a turn is forgotten",
-        "gcxform/modal/frames/state.py",
+        "gcxform/modal/frame_state.py",
         "step @ (shift - centre) + centre",
         "step @ shift",
         OFFSETS,
@@ -42,7 +42,7 @@ MUTATIONS = (
     ),
     Mutation(
         "frames: a tool is added twice",
-        "gcxform/modal/frames/state.py",
+        "gcxform/modal/frame_state.py",
         "shift[k] += length\n",
         "shift[k] += 2.0 * length\n",
         SHIFTS,
@@ -105,7 +105,7 @@ MUTATIONS = (
     ),
     Mutation(
         "frames: a tool length of 0 is none",
-        "gcxform/modal/frames/state.py",
+        "gcxform/modal/frame_state.py",
         "bool(self.tool_name),",
         "any(self.tool),",
         "tests/test_corpus.py::test_case[rtcp/tool-length-zero]",

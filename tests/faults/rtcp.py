@@ -328,7 +328,7 @@ MUTATIONS = (
     ),
     Mutation(
         "rtcp: a frame does not say what follows the tip",
-        "gcxform/modal/frames/state.py",
+        "gcxform/modal/frame_state.py",
         "            self.following,\n",
         "            None,\n",
         "tests/test_tip_switches.py",

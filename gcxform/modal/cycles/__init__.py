@@ -1,1 +1,1 @@
-"""Canned cycles: calls, levels, steps, and the moves that they are."""
+"""Canned cycles: levels, steps, and the moves that they are."""

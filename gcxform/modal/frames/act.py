@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from gcxform.dialect.dialect import Dialect
-from gcxform.modal.frames.state import FrameState
+from gcxform.modal.frame_state import FrameState
 from gcxform.modal.state import Reading
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.path import Plane

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from gcxform.modal.frame_state import NO_TOOL, FrameState
 from gcxform.modal.frames.act import ActError, Asked
-from gcxform.modal.frames.state import NO_TOOL, FrameState
 
 
 def change_tool(state: FrameState, asked: Asked) -> FrameState:

@@ -15,9 +15,9 @@ import numpy as np
 from gcxform.dialect.dialect import INCH, LINEAR, ROTARY
 from gcxform.modal.columns import fill
 from gcxform.modal.findings import Findings
+from gcxform.modal.frame_state import FrameState
 from gcxform.modal.frames.act import ActError, Asked
 from gcxform.modal.frames.acts import ACTS, unheard
-from gcxform.modal.frames.state import FrameState
 from gcxform.modal.lines import LENGTHS, Lines
 from gcxform.modal.meaning.meaning import Act
 from gcxform.modal.state import Modes

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from gcxform.modal.frame_state import FrameState, Turn, rotation
 from gcxform.modal.frames.act import Act, ActError, Asked
-from gcxform.modal.frames.state import FrameState, Turn, rotation
 
 
 def rotate(state: FrameState, asked: Asked) -> FrameState:

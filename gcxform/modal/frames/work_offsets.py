@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from gcxform.modal.frame_state import FrameState, rotation
 from gcxform.modal.frames.act import ActError, Asked
-from gcxform.modal.frames.state import FrameState, rotation
 from gcxform.toolpath.frames import Vector
 
 

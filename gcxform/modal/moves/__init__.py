@@ -1,1 +1,1 @@
-"""From lines to rows: plain moves, arcs, splines, threads, probes, G28 and G53."""
+"""From lines to rows: plain moves, arcs, splines, calls of cycles, threads, probes, G28 and G53."""

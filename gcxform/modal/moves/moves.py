@@ -2,7 +2,7 @@
 
 Lines become rows in stretches of one frame (`gcxform/modal/frames/track.py`). A plain line is one
 row; G28 and G53 move in a way of their own (`gcxform/modal/moves/home.py`), and so do canned cycles
-(`gcxform/modal/cycles/patterns.py`), threads, taps and probes
+(`gcxform/modal/moves/cycle_patterns.py`), threads, taps and probes
 (`gcxform/modal/moves/spindle_and_probe.py`).
 """
 
@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect.dialect import INCH, LINEAR
-from gcxform.modal.cycles.patterns import Drilling
 from gcxform.modal.events import events_of
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames.shifted import Shifted
@@ -24,6 +23,7 @@ from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import MANY_WORK, NUMBER, of_splines
 from gcxform.modal.moves.arcs import ArcWords, resolve_arcs
 from gcxform.modal.moves.cutter_comp import compensation, refuse_ends
+from gcxform.modal.moves.cycle_patterns import Drilling
 from gcxform.modal.moves.home import own_moves
 from gcxform.modal.moves.rows import Rows
 from gcxform.modal.moves.spindle_and_probe import Tied

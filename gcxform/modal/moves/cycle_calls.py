@@ -4,7 +4,7 @@ The words of a cycle stay in force from block to block, so a block alone does no
 Here are the columns from which that is seen: each word on all lines, where it stood last, and what
 the modes of a line are to a cycle. They are made once for a window, because a program may have
 thousands of patterns of a few holes, and numpy is slow on few numbers. What the calls do is found
-by `gcxform/modal/cycles/patterns.py`.
+by `gcxform/modal/moves/cycle_patterns.py`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Canned cycles in a program: where each pattern leaves the tool, and the rows that it becomes.
 
 What follows a pattern begins where it ends, so that end is found at once, from the columns of
-`gcxform/modal/cycles/calls.py`. The moves themselves are made by
+`gcxform/modal/moves/cycle_calls.py`. The moves themselves are made by
 `gcxform/modal/cycles/expansion.py`, in the coordinates of the program, for all patterns of a window
 together: that is what makes many short patterns cheap.
 """
@@ -14,10 +14,10 @@ from functools import cached_property
 import numpy as np
 
 from gcxform.dialect.dialect import INCH
-from gcxform.modal.cycles.calls import CallColumns
 from gcxform.modal.cycles.expansion import Calls, Cycles
 from gcxform.modal.cycles.stretch import Mode, Stretch
 from gcxform.modal.frames.track import Break, Track
+from gcxform.modal.moves.cycle_calls import CallColumns
 from gcxform.modal.moves.rows import Rows
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Floats, Ints
