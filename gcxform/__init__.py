@@ -85,6 +85,7 @@ if TYPE_CHECKING:
     from gcxform.machine.chain import Rotary as Rotary
     from gcxform.machine.chain import chain_of as chain_of
     from gcxform.machine.control import Setting as Setting
+    from gcxform.machine.formats import ControlFiles as ControlFiles
     from gcxform.machine.inverse import Attitudes as Attitudes
     from gcxform.machine.inverse import Poses as Poses
     from gcxform.machine.inverse import State as State
@@ -156,6 +157,7 @@ _HOMES = {
     "machine.inverse": "Attitudes Poses State attitudes inverse turns",
     "errormodel.model": "ErrorModel Outside check_contraction compensate reach_of",
     "machine.control": "Setting",
+    "machine.formats": "ControlFiles",
     "errormodel.converting": "Fit to_functions to_lattice to_nine to_pitch",
     "errormodel.functions": "AxisFunction AxisFunctions Fault faults",
     "errormodel.lattice": "Lattice",

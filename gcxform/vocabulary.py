@@ -1,4 +1,4 @@
-"""The vocabulary for plugin authors: of a dialect's code tables, and the types of columns."""
+"""The vocabulary for plugin authors: code tables, files of controls, and the types of columns."""
 
 from gcxform.dialect.arithmetic import MACRO_B, RS274
 from gcxform.dialect.codes import (
@@ -38,6 +38,8 @@ from gcxform.dialect.cycle_rule import (
     rapid,
     tap,
 )
+from gcxform.machine.formats import control_lines
+from gcxform.machine.machine import Axis, Machine, Tool
 from gcxform.system.arrays import Bytes, Flags, Floats, Ints, Small
 
 __all__ = [
@@ -66,16 +68,20 @@ __all__ = [
     "STOP",
     "SYNCHRONISED",
     "TRANSFORM",
+    "Axis",
     "Bytes",
     "CycleRule",
     "Flags",
     "Floats",
     "Ints",
     "Level",
+    "Machine",
     "Small",
     "Step",
+    "Tool",
     "at_end",
     "barrier",
+    "control_lines",
     "feed",
     "frame",
     "inert",

@@ -241,7 +241,12 @@ def test_info_of_anything(here: Path, text: bytes, dialect: str) -> None:
 
 
 def test_lists() -> None:
-    for kind, name in (("passes", "segment"), ("dialects", "grbl"), ("formats", "lddm")):
+    for kind, name in (
+        ("passes", "segment"),
+        ("dialects", "grbl"),
+        ("formats", "lddm"),
+        ("controls", "fanuc"),
+    ):
         found = call("list", kind)
         assert found.exit_code == 0
         (line,) = [line for line in found.stdout.splitlines() if line.startswith(f"{name} ")]

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cli_kit import call
+from gcxform_plugins.controls.fanuc import FanucFiles
+from gcxform_plugins.controls.linuxcnc.hal import machine_of, read_hal
+from gcxform_plugins.controls.siemens import SiemensFiles
 from oracles.linuxcnc_kins import kinematics
 
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.machine.chain import chain_of
-from gcxform.machine.controls.fanuc import read_fanuc
-from gcxform.machine.controls.linuxcnc_hal import machine_of, read_hal
-from gcxform.machine.controls.siemens import read_siemens
 from gcxform.machine.file import load_machine
 from gcxform.machine.machine import Axis, Machine, Tool
 from gcxform.machine.text import to_toml
@@ -202,8 +202,8 @@ def test_a_hal_file_that_is_refused(tmp_path, old, new, line, message):
 def test_a_file_that_is_not_there(tmp_path):
     for read in (
         lambda p: read_hal(p, "mm"),
-        read_fanuc,
-        lambda p: read_siemens(p, ("A", "C")),
+        FanucFiles().kinematics,
+        SiemensFiles("A,C").kinematics,
     ):
         with pytest.raises(FileError, match="cannot read"):
             read(tmp_path / "none")
@@ -231,7 +231,7 @@ N1320 P500.0
 
 def fanuc(folder, text):
     (folder / "parameters.txt").write_text(text)
-    return read_fanuc(folder / "parameters.txt")
+    return FanucFiles().kinematics(folder / "parameters.txt")
 
 
 def test_two_tables(tmp_path):

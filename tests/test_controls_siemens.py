@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 from cli_kit import call
+from gcxform_plugins.controls.siemens import SiemensFiles
 
 from gcxform.diagnostics import UsageError
-from gcxform.machine.controls.siemens import read_siemens
 from gcxform.machine.file import load_machine
 from gcxform.machine.machine import Axis
 from gcxform.machine.text import to_toml
@@ -43,10 +43,10 @@ N24572 $MC_TRAFO5_AXIS2_1[2]=-1
 """
 
 
-def siemens(folder, text, letters=("A", "C")):
+def siemens(folder, text, axes="A,C"):
     """Return the machine of some data, through the machine file that is written."""
     (folder / "data.mpf").write_text(text)
-    machine = read_siemens(folder / "data.mpf", letters)
+    machine = SiemensFiles(axes).kinematics(folder / "data.mpf")
     (folder / "siemens.toml").write_text(to_toml(machine))
     return load_machine(folder / "siemens.toml")
 
@@ -67,7 +67,7 @@ def test_two_axes_in_the_head_of_a_sinumerik(tmp_path):
     text = "$TC_CARR23[2]=T\n$TC_CARR9[2]=1\n$TC_CARR10[2]=1\n"
     text += "$TC_CARR17[2]=150\n$TC_CARR5[2]=2.5\n$TC_CARR6[2]=60\n"
     text += "$TC_CARR2[2]=-2.5\n$TC_CARR3[2]=-210\n"
-    machine = siemens(tmp_path, text, ("C", "A"))
+    machine = siemens(tmp_path, text, "C,A")
     assert (machine.table, machine.head) == ((), ("C", "A"))
     assert machine.axes["A"] == Axis(direction=(1.0, 0, 0), point=(0.0, 0.0, 150.0), sign=1)
     assert machine.axes["C"] == Axis(direction=(0, 0, 1.0), point=(0.0, 2.5, 210.0), sign=1)
@@ -78,7 +78,7 @@ def test_one_axis_each_of_a_sinumerik(tmp_path):
     text = "$MC_TRAFO_TYPE_1=56\n$MC_TRAFO5_AXIS1_1[1]=1\n$MC_TRAFO5_AXIS2_1[2]=-1\n"
     text += "$MC_TRAFO5_BASE_TOOL_1[2]=170\n$MC_TRAFO5_JOINT_OFFSET_1[2]=-170\n"
     text += "$MC_TRAFO5_JOINT_OFFSET_PART_1[0]=1.5\n$MC_TRAFO5_PART_OFFSET_1[0]=-1.5\n"
-    machine = siemens(tmp_path, text, ("B", "C"))
+    machine = siemens(tmp_path, text, "B,C")
     assert (machine.table, machine.head) == (("C",), ("B",))
     assert machine.axes["B"] == Axis(direction=(0, 1.0, 0), point=(0.0, 0.0, 170.0), sign=1)
     assert machine.axes["C"] == Axis(direction=(0, 0, 1.0), point=(1.5, 0.0, 0.0), sign=-1)
@@ -110,9 +110,9 @@ def test_siemens_data_that_is_refused(tmp_path, text, old, new, message):
 
 
 def test_letters_of_siemens_axes(tmp_path):
-    for letters in (("A", "A"), ("A", "X")):
+    for axes in ("A,A", "A,X"):
         with pytest.raises(UsageError, match="not two of the axes A, B and C"):
-            siemens(tmp_path, SWIVEL, letters)
+            siemens(tmp_path, SWIVEL, axes)
 
 
 def test_import_of_a_sinumerik_on_the_command_line(tmp_path, monkeypatch):

@@ -277,10 +277,11 @@ def test_toml_snippets_are_right(folder, tmp_path):
         if "tool-table" in snippet:
             (tmp_path / "tool.tbl").write_text("T1 P1 Z100.0 D10.0 ;end mill\n", "latin-1")
             (tmp_path / "machine.toml").write_text(snippet, "utf-8")
-            assert sorted(load_machine(tmp_path / "machine.toml").tools) == [1, 7]
+            machine = load_machine(tmp_path / "machine.toml", REGISTRY.machines)
+            assert sorted(machine.tools) == [1, 7]
         elif "kinematics" in snippet:
             (tmp_path / "kinds.toml").write_text(f"format = 1\n{snippet}", "utf-8")
-            machine = load_machine(tmp_path / "kinds.toml", REGISTRY.kinematics)
+            machine = load_machine(tmp_path / "kinds.toml", REGISTRY.machines)
             assert chain_of(machine).letters == ("A", "C")
         elif snippet.startswith("format"):
             (folder / "snippet.toml").write_text(snippet, "utf-8")

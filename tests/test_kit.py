@@ -85,7 +85,7 @@ def test_rtcp(tmp_path, direction):
     """The law on the path that tilts, there and back; test_rtcp.py has all kinds of machines."""
     file = tmp_path / "machine.toml"
     file.write_text(TURNING)
-    machine = load_machine(file, default_registry().kinematics)
+    machine = load_machine(file, default_registry().machines)
     made = passes()["rtcp"]
     steps = [made(tolerance=t, rapids="ends", direction=direction) for t in (0.3, 0.01)]
     check_pass(made, *steps, machine=machine)

@@ -11,7 +11,8 @@ from gcxform.catalogue import CATALOGUE
 from gcxform.config.quantities import ANGLE, LENGTH
 from gcxform.diagnostics import Diagnostic, FileError, UsageError
 from gcxform.machine.file import load_machine, schema
-from gcxform.machine.machine import Axis, Tool
+from gcxform.machine.machine import Axis, Machine, Tool
+from gcxform.plugin.registry import default_registry
 
 TRUNNION = """format = 1
 name = "trunnion mill"
@@ -211,8 +212,12 @@ def machine_with(folder: Path, table: str, unit: str = '"mm"', more: str = "") -
     return file
 
 
+def loaded(file: Path) -> Machine:
+    return load_machine(file, default_registry().machines)
+
+
 def test_a_tool_table_gives_the_tools(tmp_path: Path) -> None:
-    machine = load_machine(machine_with(tmp_path, TABLE, more="[tool.3]\nlength = 5.0\n"))
+    machine = loaded(machine_with(tmp_path, TABLE, more="[tool.3]\nlength = 5.0\n"))
     assert machine.tools == {
         1: Tool(radius=25.0),
         2: Tool(length=100.25, x=1.5, y=-2.0),
@@ -222,7 +227,7 @@ def test_a_tool_table_gives_the_tools(tmp_path: Path) -> None:
 
 
 def test_a_tool_table_in_inches(tmp_path: Path) -> None:
-    tool = load_machine(machine_with(tmp_path, "T4 Z1 D.5 X-2 Y3\n", '"in"')).tools[4]
+    tool = loaded(machine_with(tmp_path, "T4 Z1 D.5 X-2 Y3\n", '"in"')).tools[4]
     assert tool.vector == pytest.approx((-50.8, 76.2, 25.4))
     assert tool.radius == pytest.approx(6.35)
 
@@ -244,7 +249,7 @@ def test_a_tool_table_in_inches(tmp_path: Path) -> None:
 )
 def test_a_bad_line_of_a_tool_table(tmp_path: Path, line: str, said: str) -> None:
     with pytest.raises(UsageError, match=said) as caught:
-        load_machine(machine_with(tmp_path, f"T9 Z1\n{line} ; a comment\n"))
+        loaded(machine_with(tmp_path, f"T9 Z1\n{line} ; a comment\n"))
     (found,) = caught.value.diagnostics
     assert found.code == "GX438"
     assert found.where is not None
@@ -255,18 +260,31 @@ def test_the_unit_of_a_tool_table_has_to_be_said(tmp_path: Path) -> None:
     file = machine_with(tmp_path, TABLE)
     file.write_text('format = 1\ntool-table = "tool.tbl"\n', encoding="utf-8")
     with pytest.raises(UsageError, match="unit of the tool table is missing"):
-        load_machine(file)
+        loaded(file)
     with pytest.raises(UsageError, match="tool-table-units"):
-        load_machine(machine_with(tmp_path, TABLE, '"cm"'))
+        loaded(machine_with(tmp_path, TABLE, '"cm"'))
+
+
+@pytest.mark.parametrize("name", ["linuxcn", "fanuc"])
+def test_whose_tool_table_it_is(tmp_path: Path, name: str) -> None:
+    """A control that is known, and has tool tables that are read."""
+    file = machine_with(tmp_path, TABLE, more=f'tool-table-control = "{name}"\n')
+    with pytest.raises(UsageError, match=f"no control '{name}' whose tool tables") as caught:
+        loaded(file)
+    (found,) = caught.value.diagnostics
+    assert (found.code, found.where.line, found.where.column) == ("GX405", 4, 1)
+    assert "linuxcnc" in found.hint
+    file.write_text(file.read_text().replace(name, "linuxcnc"))
+    assert sorted(loaded(file).tools) == [1, 2, 7]
 
 
 def test_a_tool_stands_in_one_of_the_two(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"the tool 2 stands in tool\.tbl as well"):
-        load_machine(machine_with(tmp_path, TABLE, more="[tool.2]\nlength = 5.0\n"))
+        loaded(machine_with(tmp_path, TABLE, more="[tool.2]\nlength = 5.0\n"))
 
 
 def test_a_tool_table_that_is_not_there(tmp_path: Path) -> None:
     file = machine_with(tmp_path, TABLE)
     (tmp_path / "tool.tbl").unlink()
     with pytest.raises(FileError, match="cannot read"):
-        load_machine(file)
+        loaded(file)

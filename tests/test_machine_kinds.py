@@ -11,10 +11,11 @@ import gcxform as gx
 from gcxform.diagnostics import UsageError
 from gcxform.machine.chain import Chain, Rotary, chain_of
 from gcxform.machine.file import load_machine
+from gcxform.machine.formats import Known
 from gcxform.machine.machine import Machine, Tool
 from gcxform.plugin.registry import default_registry
 
-KINDS = default_registry().kinematics
+KNOWN = default_registry().machines
 SHORT = """format = 1
 kinematics = "ac-trunnion"
 gauge-point = [0.0, 0.0, 10.0]
@@ -54,7 +55,7 @@ def file(tmp_path: Path) -> Path:
 
 def loaded(file: Path, text: str) -> Machine:
     file.write_text(text, encoding="utf-8")
-    return load_machine(file, KINDS)
+    return load_machine(file, KNOWN)
 
 
 def test_a_kind_says_what_else_the_file_says(file: Path) -> None:
@@ -71,13 +72,13 @@ def test_the_chain_of_a_machine_file(file: Path) -> None:
     assert chain_of(machine).tip == (0.0, 0.0, 10.0)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", KNOWN.kinematics)
 def test_every_kind_makes_a_machine(file: Path, kind: str) -> None:
-    letters = KINDS[kind].table + KINDS[kind].head
+    letters = KNOWN.kinematics[kind].table + KNOWN.kinematics[kind].head
     points = "".join(f"[axis.{a}]\npoint = [1.0, 2.0, {k}.0]\n" for k, a in enumerate(letters))
     chain = chain_of(loaded(file, f'format = 1\nkinematics = "{kind}"\n{points}'))
-    assert [a.letter for a in chain.table] == [*KINDS[kind].table]
-    assert [a.letter for a in chain.head] == [*KINDS[kind].head]
+    assert [a.letter for a in chain.table] == [*KNOWN.kinematics[kind].table]
+    assert [a.letter for a in chain.head] == [*KNOWN.kinematics[kind].head]
     assert {a.sign for a in chain.table} <= {-1}
     assert {a.sign for a in chain.head} <= {1}
 
@@ -201,6 +202,6 @@ def test_a_plugin_offers_a_kind(file: Path) -> None:
         head = ("A",)
 
     file.write_text('format = 1\nkinematics = "tilting"\n[axis.A]\npoint = [0.0, 0.0, 90.0]\n')
-    machine = load_machine(file, {"tilting": Tilting})
+    machine = load_machine(file, Known({"tilting": Tilting}))
     assert machine.head == ("A",)
     assert (machine.axes["A"].direction, machine.axes["A"].sign) == ((1.0, 0.0, 0.0), 1)

@@ -1,4 +1,4 @@
-"""A distribution of somebody else, built and installed: its dialect and its pass, by name."""
+"""A distribution of somebody else, built and installed: its dialect, pass and control, by name."""
 
 from __future__ import annotations
 
@@ -95,11 +95,63 @@ def test_dialect_and_pass_by_name(acme, tmp_path):
 
 
 def test_they_are_listed_with_their_distribution(acme):
-    for kind, name in (("dialects", "acme9000"), ("passes", "shift")):
+    for kind, name in (("dialects", "acme9000"), ("passes", "shift"), ("controls", "acme")):
         listed = gcxform("list", kind, paths=(acme,))
         assert listed.returncode == 0, listed.stderr
         line = next(line for line in listed.stdout.splitlines() if line.startswith(name))
         assert "gcxform-acme 1.0" in line
+
+
+TABLE = "tool-table = 'acme.tools'\ntool-table-units = 'in'\ntool-table-control = 'acme'\n"
+
+
+def machine(*words, acme, folder):
+    return gcxform("machine", *words, paths=(acme,), folder=folder)
+
+
+def test_the_files_of_its_control(acme, tmp_path):
+    (tmp_path / "pivot.txt").write_text("PIVOT 250.5\n")
+    helped = machine("import", "acme", "--help", acme=acme, folder=tmp_path)
+    assert "Take over the pivot of a swivel head B" in helped.stdout
+    assert "--turns [left|right]  Hand of the head, from its plate.  [required]" in helped.stdout
+    words = ("import", "acme", "--turns", "left", "-o", "m.toml", "pivot.txt")
+    done = machine(*words, acme=acme, folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    written = (tmp_path / "m.toml").read_text()
+    assert "point = [0.0, 0.0, 250.5]\nsign = -1\n" in written
+    (tmp_path / "m.toml").write_text(written.replace("format = 1\n", f"format = 1\n{TABLE}"))
+    (tmp_path / "acme.tools").write_text("; number and length\n7 10.0\n")
+    done = machine("jog", "--tool", "7", "m.toml", acme=acme, folder=tmp_path)
+    assert done.stdout.startswith("acme\nat X0 Y0 Z0 B0 the tip is on the workpiece at\n  X0.000 ")
+    assert " Z-254.000, the tool axis" in done.stdout
+
+
+def test_errors_in_the_files_of_its_control_have_their_places(acme, tmp_path):
+    (tmp_path / "pivot.txt").write_text("\nPIVOT  25O\n")
+    words = ("import", "acme", "--turns", "left", "pivot.txt")
+    refused = machine(*words, acme=acme, folder=tmp_path)
+    assert refused.returncode == 2
+    assert refused.stderr.startswith(
+        "pivot.txt:2:8: error[GX419]: '25O' is not a number\n2 | PIVOT"
+    )
+    (tmp_path / "m.toml").write_text(f"format = 1\n{TABLE}")
+    (tmp_path / "acme.tools").write_text("1 5.0\n 2 long\n")
+    refused = machine("jog", "m.toml", acme=acme, folder=tmp_path)
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("acme.tools:2:4: error[GX419]: 'long' is not a number\n")
+
+
+def test_a_control_that_a_broken_plugin_lacks(tmp_path):
+    """It is no command, and the reason why is said."""
+    changes = {"gcxform-acme": "gcxform-blunt", "gcxform_acme": "gcxform_blunt"}
+    changes["[AcmeFiles]"] = "[gx.ControlFiles]"
+    source = copied(tmp_path / "source", changes)
+    (source / "src" / "gcxform_acme").rename(source / "src" / "gcxform_blunt")
+    blunt = install(source, tmp_path / "installed")
+    done = machine("import", "acme", "pivot.txt", acme=blunt, folder=tmp_path)
+    assert done.returncode == 2
+    assert "gcxform-blunt 1.0 returns in gcxform_control_files what is not a control" in done.stderr
+    assert "No such command 'acme'." in done.stderr
 
 
 def test_without_the_distribution_they_are_not_known(tmp_path):
@@ -135,7 +187,8 @@ def test_it_imports_only_the_public_api():
     tree = ast.parse(MODULE.read_text())
     imported = {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
     imported |= {str(n.module) for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)}
-    assert imported == {"dataclasses", "numpy", "gcxform"}
+    given = {"dataclasses", "pathlib", "typing", "numpy"}
+    assert imported - given == {"gcxform", "gcxform.vocabulary"}
 
 
 def test_two_distributions_with_one_name(acme, tmp_path):

@@ -14,12 +14,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gcxform_plugins.controls.linuxcnc.hal import machine_of
 from oracles import rs274
 from oracles.linuxcnc_kins import kinematics
 from rtcp_kit import ROUNDED, aside, between
 
 import gcxform as gx
-from gcxform.machine.controls.linuxcnc_hal import machine_of
 from gcxform.machine.text import to_toml
 
 DOME = Path(__file__).parents[1] / "examples" / "rtcp-loop" / "dome.nc"

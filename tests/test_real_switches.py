@@ -14,13 +14,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gcxform_plugins.controls.linuxcnc.hal import machine_of
 from oracles import rs274
 from oracles.linuxcnc_kins import kinematics
 from rtcp_kit import ROUNDED, aside, between
 from test_real_control import AXES, CHECKED, LENGTH, NUMBER, PRINTED, ZERO
 
 import gcxform as gx
-from gcxform.machine.controls.linuxcnc_hal import machine_of
 from gcxform.machine.text import to_toml
 from gcxform.pipeline.output import Output
 from gcxform.pipeline.run import Run

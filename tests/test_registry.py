@@ -91,13 +91,16 @@ def test_the_builtin_plugin_has_no_fault() -> None:
     assert set(registry.passes) == names
 
 
-def test_every_builtin_dialect_and_format_is_listed() -> None:
+def test_every_builtin_dialect_format_and_control_is_listed() -> None:
     """The lists in the plugin and what is in its folders agree."""
     folder = Path(gcxform_plugins.__file__).parent
-    listed = gcxform_plugins.gcxform_dialects() + gcxform_plugins.gcxform_error_formats()
-    modules = {cls.__module__.split(".")[2] for cls in listed}
-    files = [*folder.glob("dialects/[!_]*"), *folder.glob("formats/[!_]*")]
-    assert modules == {file.stem for file in files} - {"shared"}
+    dialects, formats = gcxform_plugins.gcxform_dialects(), gcxform_plugins.gcxform_error_formats()
+    listed = [*dialects, *formats, *gcxform_plugins.gcxform_control_files()]
+    modules = {tuple(cls.__module__.split(".")[1:3]) for cls in listed}
+    files = [
+        f for kind in ("dialects", "formats", "controls") for f in folder.glob(f"{kind}/[!_]*")
+    ]
+    assert modules == {(f.parent.name, f.stem) for f in files} - {("formats", "shared")}
 
 
 def test_a_plugin_is_found(install: Install) -> None:
@@ -158,6 +161,7 @@ def test_a_clash_with_the_core(install: Install) -> None:
         (HEAD + "def gcxform_facts(): return ['FACT']", "'FACT' is not a Fact"),
         (HEAD + "def gcxform_error_formats(): return [int]", "is not a subclass of ErrorFormat"),
         (HEAD + "def gcxform_kinematics(): return [3]", "not a kinematics: TypeError: 3 is not"),
+        (HEAD + "def gcxform_control_files(): return [3]", "not a control: TypeError: 3 is not"),
         (
             PASSES.format(name="shift").replace("gx.Vector", "complex"),
             "not a pass: TypeError: the option 'by' has the type <class 'complex'>",
@@ -241,7 +245,7 @@ def test_every_kind_has_an_origin(install: Install) -> None:
     registry = Registry.load()
     assert registry.origin("kinematics", "hexapod") == "acme 1.0"
     assert registry.origin("format", "lddm") == registry.origin("dialect", "grbl")
-    assert set(KINDS) == {"dialect", "pass", "kinematics", "fact", "format"}
+    assert set(KINDS) == {"dialect", "pass", "kinematics", "control", "fact", "format"}
 
 
 def test_what_a_plugin_prints_is_not_part_of_a_program(

@@ -237,7 +237,7 @@ def test_the_commands_of_the_example_print_what_its_readme_shows(tmp_path):
     for name in ("ball-circles", "trunnion"):
         shutil.copytree(EXAMPLES / name, tmp_path / name)
     assert check_console(EXAMPLES / "ball-circles" / "README.md", tmp_path / "ball-circles") == 4
-    kinds = default_registry().kinematics
-    found = load_machine(tmp_path / "ball-circles" / "machine.toml", kinds).axes["C"]
+    known = default_registry().machines
+    found = load_machine(tmp_path / "ball-circles" / "machine.toml", known).axes["C"]
     assert found.direction[:2] == pytest.approx((5.4e-5, 7e-5), abs=4e-5)
     assert found.point[:2] == pytest.approx((5.0093 + 0.0011, -20.0121 + 0.0014), abs=4e-3)

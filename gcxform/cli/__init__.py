@@ -63,7 +63,7 @@ class Verbs(click.Group):
         gc.freeze()  # looking at modules again and again costs a twentieth of a run
         gc.set_threshold(OBJECTS_BETWEEN)
         gc.enable()
-        _equip(command)
+        equip(command)
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -89,12 +89,12 @@ class Verbs(click.Group):
         sys.exit(guarded(self, prog_name or "gcxform", words, extra))
 
 
-def _equip(command: click.Command) -> None:
+def equip(command: click.Command) -> None:
     """Give a verb, and what stands under it, the options that every verb takes."""
     if not command.params or command.params[-1].name != DEBUG:
         command.params += [_limit_option(), _outside_option(), _debug_option()]
     for under in getattr(command, "commands", {}).values():
-        _equip(under)
+        equip(under)
 
 
 def _limit_option() -> click.Option:

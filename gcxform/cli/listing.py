@@ -17,7 +17,13 @@ from gcxform.diagnostics import UsageError
 from gcxform.dialect.dialect import Dialect
 from gcxform.plugin.registry import Registry, default_registry
 
-KINDS = {"passes": "pass", "dialects": "dialect", "kinematics": "kinematics", "formats": "format"}
+KINDS = {
+    "passes": "pass",
+    "dialects": "dialect",
+    "kinematics": "kinematics",
+    "formats": "format",
+    "controls": "control",
+}
 
 
 @click.command("list", help=VERBS["list"], short_help=VERBS["list"])

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from pathlib import Path
+from typing import Any
 
 import click
 
 from gcxform import plot
-from gcxform.cli import VERBS
+from gcxform.cli import VERBS, equip
+from gcxform.cli.common.derived_options import built, help_of, metavar_of
+from gcxform.cli.common.failures import warn
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
 from gcxform.cli.common.request import Asked
+from gcxform.contract.options import OptionDoc, describe
 from gcxform.diagnostics import Location, UsageError
 from gcxform.machine.chain import Chain, chain_of
-from gcxform.machine.controls.fanuc import read_fanuc
-from gcxform.machine.controls.linuxcnc_hal import UNITS, read_hal
-from gcxform.machine.controls.siemens import read_siemens
+from gcxform.machine.formats import ControlFiles
 from gcxform.machine.jog import jog_test
 from gcxform.machine.machine import Machine
 from gcxform.machine.text import to_toml
+from gcxform.plugin.registry import default_registry
 
 
 @click.group("machine", help=VERBS["machine"], short_help=VERBS["machine"])
@@ -84,56 +88,59 @@ def _chain(asked: Asked, number: int | None) -> tuple[Chain, Machine]:
 
 # --- from controls ---
 
-_OUTPUT = click.option(
-    "-o", "--output", metavar="FILE", default=STDOUT, help="The machine file.  [default: stdout]"
-)
+
+class _Controls(click.Group):
+    """The controls whose kinematics plugins read, each with a command made of its options."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of the controls."""
+        controls = default_registry().controls.values() if not self.commands else ()
+        for control in controls:
+            if control.reads("kinematics"):
+                self.add_command(_import_command(control))
+        equip(self)
+        return super().list_commands(ctx)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Return the command of a control; where there is none a plugin may have failed."""
+        if cmd_name not in self.list_commands(ctx):
+            warn(default_registry().diagnostics)
+        return super().get_command(ctx, cmd_name)
 
 
-@command.group("import")
+@command.group("import", cls=_Controls)
 def taken_over() -> None:
     """Turn the kinematics of a control into a machine file."""
 
 
-@taken_over.command("linuxcnc")
-@click.option(
-    "--units",
-    type=click.Choice(UNITS),
-    required=True,
-    help="The unit of the machine, which its HAL files do not say.",
-)
-@_OUTPUT
-@click.argument("file", metavar="HAL")
-def linuxcnc(file: str, units: str, output: str) -> None:
-    """Take over xyzac-trt-kins, xyzbc-trt-kins, 5axiskins or maxkins as HAL or INI files set them.
+def _import_command(control: type[ControlFiles]) -> click.Command:
+    """Return the command that takes over the kinematics of a control."""
 
-    Pins have to be set to numbers by setp, or by sets. Lengths of tools are not taken over.
-    """
-    _write(read_hal(Path(file), units), file, output)
+    def take_over(file: str, output: str, **options: Any) -> None:
+        reader = built(control, options, f"the control {control.name!r}")
+        _write(reader.kinematics(Path(file)), file, output)
 
-
-@taken_over.command("fanuc")
-@_OUTPUT
-@click.argument("file", metavar="PARAMETERS")
-def fanuc(file: str, output: str) -> None:
-    """Take over the parameters 19666 and 19680 to 19714, such as N19700 P5.0, a line each."""
-    _write(read_fanuc(Path(file)), file, output)
+    output = click.Option(
+        ["-o", "--output"],
+        metavar="FILE",
+        default=STDOUT,
+        help="The machine file.  [default: stdout]",
+    )
+    file = click.Argument(["file"], metavar=control.file)
+    parameters = [*map(_option, describe(control)), output, file]
+    text = inspect.getdoc(control.kinematics)
+    return click.Command(control.name, callback=take_over, params=parameters, help=text)
 
 
-@taken_over.command("siemens")
-@click.option(
-    "--axes", metavar="C,A", required=True, help="First and second rotary axis of the data."
-)
-@_OUTPUT
-@click.argument("file", metavar="DATA")
-def siemens(file: str, axes: str, output: str) -> None:
-    """Take over a swivel data set ($TC_CARR), or machine data of a five-axis transformation.
-
-    The transformation is the first of the channel, of the type 24, 40 or 56.
-    """
-    letters = [letter.strip().upper() for letter in axes.split(",")]
-    if len(letters) != 2:
-        raise UsageError.one("GX707", f"{axes!r} is not two axes", Location("--axes"))
-    _write(read_siemens(Path(file), (letters[0], letters[1])), file, output)
+def _option(doc: OptionDoc) -> click.Option:
+    """Return the option of a command for a field of a control."""
+    return click.Option(
+        [f"--{doc.name}"],
+        type=click.Choice(doc.choices) if doc.choices else None,
+        metavar=None if doc.choices else metavar_of(doc),
+        required=doc.mandatory,
+        help=help_of(doc),
+    )
 
 
 def _write(machine: Machine, file: str, output: str) -> None:

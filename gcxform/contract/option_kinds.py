@@ -25,8 +25,8 @@ from gcxform.errormodel import model_file as modelfile
 from gcxform.errormodel.formats import ErrorFormat
 from gcxform.errormodel.model import ErrorModel
 from gcxform.errormodel.model_text import fingerprint, to_toml
-from gcxform.machine.file import NONE, load_machine
-from gcxform.machine.kinds import Known
+from gcxform.machine.file import load_machine
+from gcxform.machine.formats import NONE, Known
 from gcxform.machine.machine import Machine
 from gcxform.system import inputs
 
@@ -85,9 +85,9 @@ class KinematicsFile:
     sha256: str
 
     @classmethod
-    def load(cls, path: Path, kinematics: Known = NONE) -> KinematicsFile:
+    def load(cls, path: Path, known: Known = NONE) -> KinematicsFile:
         """Return the machine of a file; raises UsageError as `load_machine` does."""
-        machine, data = _read_twice(path, partial(load_machine, kinematics=kinematics))
+        machine, data = _read_twice(path, partial(load_machine, known=known))
         return cls(path, machine, hashlib.sha256(data).hexdigest())
 
 
@@ -123,13 +123,13 @@ class RefusedError(Exception):
 class Around(NamedTuple):
     """What surrounds the values: the directory for relative paths, and what plugins know.
 
-    That is the formats of error models, and the kinds of kinematics. `where` is the place of the
+    That is the formats of error models, and what machine files name. `where` is the place of the
     option.
     """
 
     base: Path
     formats: tuple[type[ErrorFormat], ...] = ()
-    kinematics: Known = NONE
+    machines: Known = NONE
     where: Location | None = None
 
 
@@ -186,7 +186,7 @@ def _read_model(raw: object, around: Around) -> ModelFile:
 
 
 def _read_machine(raw: object, around: Around) -> KinematicsFile:
-    return KinematicsFile.load(_read_existing(raw, around), around.kinematics)
+    return KinematicsFile.load(_read_existing(raw, around), around.machines)
 
 
 def _read_quantity(quantity: Quantity, raw: object, around: Around) -> float:

@@ -48,8 +48,7 @@ from gcxform.contract.option_kinds import ParameterValues as ParameterValues
 from gcxform.contract.option_kinds import Vector as Vector
 from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.errormodel.formats import ErrorFormat
-from gcxform.machine.file import NONE
-from gcxform.machine.kinds import Known
+from gcxform.machine.formats import NONE, Known
 from gcxform.system.option_mark import Option as Option
 
 Built = TypeVar("Built")
@@ -66,6 +65,7 @@ class OptionDoc(NamedTuple):
     choices: tuple[str, ...]
     help: str
     range: str
+    example: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +110,7 @@ def build(
     formats: Iterable[type[ErrorFormat]],
     where: Where,
     owner: str = "",
-    kinematics: Known = NONE,
+    machines: Known = NONE,
 ) -> Built:
     """Return a pass, or any dataclass of options, from the keys of its table, without `use`.
 
@@ -118,7 +118,7 @@ def build(
     for "use"; `owner` is what messages call it. Raises UsageError with all that is wrong.
     """
     owner = owner or f"the pass {getattr(pass_class, 'name', '')!r}"
-    around = Around(base, tuple(formats), kinematics)
+    around = Around(base, tuple(formats), machines)
     specs = _specs(pass_class)
     known = [spec.key for spec in specs]
     found = [
@@ -193,6 +193,7 @@ def describe(target: type) -> list[OptionDoc]:
             choices=tuple(str(choice) for choice in spec.choices),
             help=spec.option.help,
             range=spec.option.range_text(spec.kind.unit),
+            example=spec.option.example,
         )
         for spec in _specs(target)
     ]

@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import msgspec
@@ -30,7 +29,7 @@ from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.errormodel.model_file import CODES, check_version
 from gcxform.machine import control
 from gcxform.machine import kinds as presets
-from gcxform.machine.controls.linuxcnc_tools import read_tools
+from gcxform.machine.formats import NONE, Known
 from gcxform.machine.machine import (
     MARK,
     Axis,
@@ -41,24 +40,23 @@ from gcxform.machine.machine import (
 )
 from gcxform.system.inputs import referred
 
-NONE: presets.Known = MappingProxyType({})
 EXAMPLES = {"axis": "X", "work-offset": "G54", "home": "G28", "tool": "1"}
 Keys = tuple[str | int, ...]
 _HOME = re.compile(r"G28|G30( P[0-9]+)?")
 _WORK_OFFSET = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?|G154 P[0-9]+")
 
 
-def load_machine(path: Path, kinematics: presets.Known = NONE) -> Machine:
-    """Return the machine of a TOML file, which may name one of some kinds of kinematics.
+def load_machine(path: Path, known: Known = NONE) -> Machine:
+    """Return the machine of a TOML file, which may name kinematics and controls that are known.
 
     Raises UsageError, with the place in the file, for all that is wrong with it.
     """
     document = read_toml(path, CODES)
     check_version(document, "machines")
     file = _converted(_without_units(document))
-    named = tuple(presets.findings(document, file, kinematics))
-    file = presets.filled(file, kinematics)
-    if found := named or tuple(_findings(document, file)):
+    named = tuple(presets.findings(document, file, known.kinematics))
+    file = presets.filled(file, known.kinematics)
+    if found := named or tuple(_findings(document, file, known)):
         raise UsageError(found)
     return Machine(
         file=path,
@@ -70,7 +68,7 @@ def load_machine(path: Path, kinematics: presets.Known = NONE) -> Machine:
         axes={letter: _normalised(axis) for letter, axis in file.axis.items()},
         work_offsets={code: _given(offset) for code, offset in file.work_offset.items()},
         homes={code: _given(place) for code, place in file.home.items()},
-        tools=_tools(document, file),
+        tools=_tools(document, file, known),
         control=control.settings_of(file.control),
         inert_m=control.inert_of(file.control),
     )
@@ -86,13 +84,13 @@ def _named(document: TomlText, key: str, name: str | None) -> Path | None:
     return referred(Path(document.file).parent, name, document.where(key))
 
 
-def _tools(document: TomlText, file: MachineFile) -> dict[int, Tool]:
+def _tools(document: TomlText, file: MachineFile, known: Known) -> dict[int, Tool]:
     """Return the tools of the file, and before them those of the table it names."""
     tools: dict[int, Tool] = {}
     place = _named(document, "tool-table", file.tool_table)
     if place is not None and file.tool_table_units is not None:
-        table = read_tools(place, file.tool_table_units)
-        tools = {number: Tool(**values) for number, values in table.items()}
+        reader = known.controls[file.tool_table_control]
+        tools |= reader.tools(place, file.tool_table_units)
     twice = [number for number in file.tool if int(number) in tools]
     if twice:
         message = f"the tool {twice[0]} stands in {file.tool_table} as well"
@@ -212,7 +210,7 @@ def _number(node: Any, quantity: Quantity | None) -> Any:
     return node
 
 
-def _findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
+def _findings(document: TomlText, file: MachineFile, known: Known) -> Iterator[Diagnostic]:
     """Yield what is wrong with a machine whose values have the right types."""
     for letter, axis in file.axis.items():
         if letter not in AXIS_LETTERS:
@@ -221,6 +219,7 @@ def _findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
         yield from _axis_findings(letter, axis, partial(document.where, "axis", letter))
     yield from _chain_findings(document, file)
     yield from _offset_findings(document, file)
+    yield from _table_findings(document, file, known)
     yield from _tool_findings(document, file)
     yield from control.findings(document, file.control)
 
@@ -299,14 +298,25 @@ def _strange_axes(
             yield from document.unknown_key((*keys, letter), known).diagnostics
 
 
-def _tool_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
-    if file.tool_table is not None and file.tool_table_units is None:
+def _table_findings(document: TomlText, file: MachineFile, known: Known) -> Iterator[Diagnostic]:
+    if file.tool_table is None:
+        return
+    name = file.tool_table_control
+    readers = [other for other, control in known.controls.items() if control.reads("tools")]
+    if name not in readers:
+        message = f"there is no control {name!r} whose tool tables are read"
+        where = document.where("tool-table-control")
+        yield Diagnostic(document.codes.wrong_value, message, where, did_you_mean(name, readers))
+    if file.tool_table_units is None:
         yield Diagnostic(
             document.codes.missing_key,
             "the unit of the tool table is missing: the table is in that of its machine",
             document.where("tool-table"),
             'add tool-table-units = "mm" or "in"',
         )
+
+
+def _tool_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
     numbers: set[int] = set()
     for number, tool in file.tool.items():
         where = document.where("tool", number)

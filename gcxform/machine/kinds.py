@@ -51,10 +51,10 @@ class Kinematics:
         return 1 if letter in cls.head else -1
 
 
-Known = Mapping[str, type[Kinematics]]
+Kinds = Mapping[str, type[Kinematics]]
 
 
-def findings(document: TomlText, file: MachineFile, known: Known) -> Iterator[Diagnostic]:
+def findings(document: TomlText, file: MachineFile, known: Kinds) -> Iterator[Diagnostic]:
     """Yield where a machine file contradicts the kinematics that it names."""
     if file.kinematics is None:
         if file.inclination is not None:
@@ -119,7 +119,7 @@ def _direction_findings(
         yield Diagnostic("GX451", message, document.where("axis", letter, "direction"), hint)
 
 
-def filled(file: MachineFile, known: Known) -> MachineFile:
+def filled(file: MachineFile, known: Kinds) -> MachineFile:
     """Return a machine file with all that its kinematics say and itself does not."""
     kind = known.get(file.kinematics or "")
     if kind is None:

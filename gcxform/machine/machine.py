@@ -78,6 +78,7 @@ class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
     tool: dict[str, Tool] = {}
     tool_table: str | None = None
     tool_table_units: Literal["mm", "in"] | None = None
+    tool_table_control: str = "linuxcnc"
     control: dict[str, str | float | list[int]] = {}
 
 

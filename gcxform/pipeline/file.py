@@ -261,5 +261,5 @@ def built(
     chosen: type[Step], options: Mapping[str, object], base: Path, registry: Registry, where: Any
 ) -> Step:
     """Return a pass with its options; `where` gives the place of a key. Raises UsageError."""
-    formats, kinds = registry.formats.values(), registry.kinematics
-    return build(chosen, options, base, formats, where, kinematics=kinds)
+    formats, machines = registry.formats.values(), registry.machines
+    return build(chosen, options, base, formats, where, machines=machines)

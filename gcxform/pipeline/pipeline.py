@@ -89,7 +89,7 @@ class Pipeline(Plan):
         numbers, decimals = _numbers(target, spec)
         file = machine or spec.machine
         with in_force(spec.limits):
-            loaded = load_machine(file, registry.kinematics) if file else None
+            loaded = load_machine(file, registry.machines) if file else None
         return cls(
             source,
             target,

@@ -18,6 +18,7 @@ import pluggy
 from gcxform.contract.passes import Pass, TextPass
 from gcxform.dialect.dialect import Dialect
 from gcxform.errormodel.formats import ErrorFormat
+from gcxform.machine.formats import ControlFiles
 from gcxform.machine.kinds import Kinematics
 from gcxform.toolpath.facts import Fact
 
@@ -43,6 +44,12 @@ def gcxform_passes() -> Iterable[type[Pass | TextPass]]:
 @hookspec
 def gcxform_kinematics() -> Iterable[type[Kinematics]]:
     """Return kinds of machines: subclasses of `Kinematics` with a name."""
+    raise NotImplementedError
+
+
+@hookspec
+def gcxform_control_files() -> Iterable[type[ControlFiles]]:
+    """Return controls whose files are read: subclasses of `ControlFiles` with a name."""
     raise NotImplementedError
 
 

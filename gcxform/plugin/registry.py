@@ -26,6 +26,7 @@ from gcxform.contract.passes import Pass, TextPass
 from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
 from gcxform.dialect.dialect import Dialect
 from gcxform.errormodel.formats import ErrorFormat
+from gcxform.machine.formats import ControlFiles, Known
 from gcxform.machine.kinds import Kinematics
 from gcxform.plugin import hookspecs
 from gcxform.toolpath.facts import FACTS, Fact
@@ -36,6 +37,7 @@ KINDS: Mapping[str, str] = MappingProxyType(
         "dialect": "gcxform_dialects",
         "pass": "gcxform_passes",
         "kinematics": "gcxform_kinematics",
+        "control": "gcxform_control_files",
         "fact": "gcxform_facts",
         "format": "gcxform_error_formats",
     }
@@ -53,6 +55,7 @@ class Registry:
     dialects: dict[str, type[Dialect]] = field(default_factory=dict)
     passes: dict[str, type[Pass] | type[TextPass]] = field(default_factory=dict)
     kinematics: dict[str, type[Kinematics]] = field(default_factory=dict)
+    controls: dict[str, type[ControlFiles]] = field(default_factory=dict)
     facts: dict[str, Fact] = field(default_factory=lambda: {fact.name: fact for fact in FACTS})
     formats: dict[str, type[ErrorFormat]] = field(default_factory=dict)
     diagnostics: list[Diagnostic] = field(default_factory=list)
@@ -90,6 +93,11 @@ class Registry:
     def pass_(self, name: str, where: Location | None = None) -> type[Pass] | type[TextPass]:
         """Return a pass; raises UsageError, at the place, if there is none of that name."""
         return self._find(self.passes, name, ("GX704", "pass"), where)
+
+    @property
+    def machines(self) -> Known:
+        """What machine files can name."""
+        return Known(self.kinematics, self.controls)
 
     def _find(
         self,
@@ -157,6 +165,7 @@ class Registry:
             "dialect": self.dialects,
             "pass": self.passes,
             "kinematics": self.kinematics,
+            "control": self.controls,
             "fact": self.facts,
             "format": self.formats,
         }
@@ -210,8 +219,9 @@ def _named(offer: Any, bases: tuple[type, ...]) -> str:
     return name
 
 
-def _pass_name(offer: Any) -> str:
-    name = _named(offer, (Pass, TextPass))
+def _options_name(offer: Any, bases: tuple[type, ...]) -> str:
+    """Return the name of a frozen dataclass on top of one of the bases, whose options are ours."""
+    name = _named(offer, bases)
     parameters = offer.__dict__.get("__dataclass_params__")
     if parameters is None or not parameters.frozen:
         raise TypeError(f"{offer.__name__} is not a frozen dataclass")
@@ -235,8 +245,9 @@ def _format_name(offer: Any) -> str:
 _CHECKS: Mapping[str, Callable[[Any], str]] = MappingProxyType(
     {
         "dialect": lambda offer: _named(offer, (Dialect,)),
-        "pass": _pass_name,
+        "pass": lambda offer: _options_name(offer, (Pass, TextPass)),
         "kinematics": lambda offer: _named(offer, (Kinematics,)),
+        "control": lambda offer: _options_name(offer, (ControlFiles,)),
         "fact": _fact_name,
         "format": _format_name,
     }

@@ -7,12 +7,16 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Option:
-    """What an option says beyond its type: help, and the range of its value in its base unit."""
+    """What an option says beyond its type: help, and the range of its value in its base unit.
+
+    `example` is a value as it is written, for the help of a command.
+    """
 
     help: str = ""
     above: float | None = None
     at_least: float | None = None
     at_most: float | None = None
+    example: str = ""
 
     def admits(self, value: float) -> bool:
         """Return whether a value is in the range."""

@@ -110,3 +110,13 @@ def gcxform_kinematics() -> list[type[gx.Kinematics]]:
         BTable,
         CTable,
     ]
+
+
+@gx.hookimpl
+def gcxform_control_files() -> list[type[gx.ControlFiles]]:
+    """Return the controls whose kinematics and tool tables are read."""
+    from gcxform_plugins.controls.fanuc import FanucFiles
+    from gcxform_plugins.controls.linuxcnc.control import LinuxCncFiles
+    from gcxform_plugins.controls.siemens import SiemensFiles
+
+    return [FanucFiles, LinuxCncFiles, SiemensFiles]

@@ -7,8 +7,8 @@ from faults.mutation import Mutation
 CHAIN = "gcxform/machine/chain.py"
 INVERSE = "gcxform/machine/inverse.py"
 KINDS = "gcxform/machine/kinds.py"
-HAL = "gcxform/machine/controls/linuxcnc_hal.py"
-FANUC = "gcxform/machine/controls/fanuc.py"
+HAL = "plugins/gcxform_plugins/controls/linuxcnc/hal.py"
+FANUC = "plugins/gcxform_plugins/controls/fanuc.py"
 JOG = "gcxform/machine/jog.py"
 TESTS = "tests/test_kinematics.py"
 MACHINES = "tests/test_machine_kinds.py"
@@ -241,14 +241,14 @@ MUTATIONS = (
     ),
     Mutation(
         "Siemens: the second axis of the table is measured from the machine",
-        "gcxform/machine/controls/siemens.py",
+        "plugins/gcxform_plugins/controls/siemens.py",
         """_sum(vectors["I2"], vectors["I3"]))""",
         """_sum(vectors["I3"]))""",
         SINUMERIK,
     ),
     Mutation(
         "Siemens: vectors of axes are turned around",
-        "gcxform/machine/controls/siemens.py",
+        "plugins/gcxform_plugins/controls/siemens.py",
         "point=point, sign=1)",
         "point=point, sign=-1)",
         SINUMERIK,

@@ -23,19 +23,21 @@ def options_of(target: type) -> Callable[[Command], Command]:
     def decorate(command: Command) -> Command:
         for doc in reversed(describe(target)):
             command = click.option(
-                f"--{doc.name}", metavar=_metavar(doc), required=doc.mandatory, help=_help(doc)
+                f"--{doc.name}", metavar=metavar_of(doc), required=doc.mandatory, help=help_of(doc)
             )(command)
         return command
 
     return decorate
 
 
-def _metavar(doc: OptionDoc) -> str:
+def metavar_of(doc: OptionDoc) -> str:
+    """Return how the value of an option is called."""
     words = {"error model": "FILE", "three lengths": "X,Y,Z", "whole number": "N"}
-    return words.get(doc.type, "|".join(doc.choices) or doc.type.upper())
+    return doc.example or words.get(doc.type, "|".join(doc.choices) or doc.type.upper())
 
 
-def _help(doc: OptionDoc) -> str:
+def help_of(doc: OptionDoc) -> str:
+    """Return the help of an option, with its default."""
     text = f"{doc.help[:1].upper()}{doc.help[1:]}."
     return f"{text}  [default: {doc.default}]" if doc.default else text
 

@@ -58,8 +58,8 @@ class Asked:
     @cached_property
     def loaded_machine(self) -> Machine | None:
         """The machine that is named, None if none is. Raises UsageError for what is wrong in it."""
-        kinds = default_registry().kinematics
-        return load_machine(Path(self.machine), kinds) if self.machine else None
+        known = default_registry().machines
+        return load_machine(Path(self.machine), known) if self.machine else None
 
     def build(self, registry: Registry | None = None) -> Pipeline:
         """Return the pipeline. Raises UsageError."""

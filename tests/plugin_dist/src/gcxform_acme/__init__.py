@@ -1,10 +1,13 @@
-"""A plugin for gcxform: the dialect `acme9000` and the pass `shift`."""
+"""A plugin for gcxform: the dialect `acme9000`, the pass `shift` and the files of the control."""
 
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
 
 import numpy as np
 
 import gcxform as gx
+from gcxform.vocabulary import Axis, Machine, Tool
 
 
 class Acme9000(gx.Dialect):
@@ -37,6 +40,28 @@ class Shift(gx.Pass):
         return path.replace(end=path.end + by, entry=path.entry + by, centre=centre)
 
 
+@dataclass(frozen=True)
+class AcmeFiles(gx.ControlFiles):
+    """Acme 9000: the pivot of its swivel head, and its tool list."""
+
+    name = "acme"
+    turns: Annotated[Literal["left", "right"], gx.Option("hand of the head, from its plate")]
+
+    def kinematics(self, path: Path) -> Machine:
+        """Take over the pivot of a swivel head B, such as PIVOT 250.0."""
+        (row,) = gx.text_rows(path)
+        if row.word(0) != "PIVOT":
+            raise row.refuse("GX454", "not a pivot", 0)
+        sign, point = (1 if self.turns == "right" else -1), (0.0, 0.0, row.number(1))
+        axis = Axis(direction=(0.0, 1.0, 0.0), point=point, sign=sign)
+        return Machine(file=path, name="acme", head=("B",), axes={"B": axis})
+
+    @staticmethod
+    def tools(path: Path, units: Literal["mm", "in"]) -> dict[int, Tool]:
+        lengths = {int(row.number(0)): row.number(1) for row in gx.text_rows(path, comment=";")}
+        return {n: Tool(length=z * {"mm": 1.0, "in": 25.4}[units]) for n, z in lengths.items()}
+
+
 @gx.hookimpl
 def gcxform_dialects() -> list[type[gx.Dialect]]:
     return [Acme9000]
@@ -45,3 +70,8 @@ def gcxform_dialects() -> list[type[gx.Dialect]]:
 @gx.hookimpl
 def gcxform_passes() -> list[type[gx.Pass]]:
     return [Shift]
+
+
+@gx.hookimpl
+def gcxform_control_files() -> list[type[gx.ControlFiles]]:
+    return [AcmeFiles]

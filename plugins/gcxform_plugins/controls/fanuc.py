@@ -27,11 +27,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
-from gcxform.diagnostics import Diagnostic, FileError, Location, UsageError
-from gcxform.machine.machine import Axis, Machine
-from gcxform.system import inputs
+import gcxform as gx
+from gcxform.vocabulary import Axis, Machine, control_lines
 
 TYPE, HOLDER = 19680, 19666
 TABLE, BETWEEN, TOOL, HEAD = 19700, 19703, 19709, 19712
@@ -48,31 +49,36 @@ _OTHER = re.compile(r"N\s*(\d+)\s*[QLASP].*")
 Triple = tuple[float, float, float]
 
 
-def read_fanuc(path: Path) -> Machine:
-    """Return the machine of a list of parameters, a line each: `N19700 P5.0` or `19700 = 5.0`.
+@dataclass(frozen=True)
+class FanucFiles(gx.ControlFiles):
+    """FANUC: the parameters of five-axis kinematics."""
 
-    Parameters of other numbers are passed over. Raises FileError, and UsageError with the line.
-    """
-    try:
-        lines = inputs.read(path).decode("latin-1").splitlines()
-    except OSError as error:
-        raise FileError.one("GX901", f"cannot read {path}: {error.strerror}") from None
+    name: ClassVar[str] = "fanuc"
+    file: ClassVar[str] = "PARAMETERS"
+
+    def kinematics(self, path: Path) -> Machine:
+        """Take over the parameters 19666 and 19680 to 19714, such as N19700 P5.0, a line each."""
+        values = _values(path)
+        whole = gx.Location(str(path))
+        if found := tuple(gx.Diagnostic("GX454", reason, whole) for reason in _problems(values)):
+            raise gx.UsageError(found)
+        return _machine(values, path)
+
+
+def _values(path: Path) -> dict[int, float]:
+    """Return the known parameters of a list, a line each: `N19700 P5.0` or `19700 = 5.0`."""
     values: dict[int, float] = {}
-    for number, line in enumerate(lines, 1):
-        text = line.partition("(")[0].strip()
+    for where in control_lines(path):
+        text = where.text.partition("(")[0].strip()
         match, other = _LINE.fullmatch(text), _OTHER.fullmatch(text)
         stated = match or other
         if text in ("", "%") or (stated and int(stated[1]) not in KNOWN):
             continue
         if match is None or (reason := _strange(match, values)):
             reason = reason if match else "not one parameter and its value"
-            where = Location(str(path), number, 1, line, max(1, len(line)))
-            raise UsageError.one("GX454", reason, where, "write N19700 P5.0")
+            raise gx.UsageError.one("GX454", reason, where, "write N19700 P5.0")
         values[int(match[1])] = float(match[2])
-    where = Location(str(path))
-    if found := tuple(Diagnostic("GX454", reason, where) for reason in _problems(values)):
-        raise UsageError(found)
-    return machine_of(values, path)
+    return values
 
 
 def _strange(match: re.Match[str], values: Collection[int]) -> str:
@@ -107,7 +113,7 @@ def _problems(values: Mapping[int, float]) -> Iterator[str]:
         yield "both axes turn about the same coordinate"
 
 
-def machine_of(values: Mapping[int, float], file: Path) -> Machine:
+def _machine(values: Mapping[int, float], file: Path) -> Machine:
     """Return the machine of parameters by number."""
     sides = SIDES[int(values[TYPE])]
     letters, axes = [], {}

@@ -25,12 +25,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated, ClassVar
 
-from gcxform.config.quantities import ROTARY_AXES
-from gcxform.diagnostics import Diagnostic, FileError, Location, UsageError
-from gcxform.machine.machine import Axis, Machine
-from gcxform.system import inputs
+import gcxform as gx
+from gcxform.vocabulary import Axis, Machine, control_lines
 
 Triple = tuple[float, float, float]
 Vectors = dict[str, list[float]]
@@ -56,23 +56,38 @@ _TYPE = re.compile(r"\$MC_TRAFO_TYPE_1\s*=\s*(\d+)")
 _DATA = re.compile(r"\$MC_TRAFO5_([A-Z0-9_]+?)_1\[([0-2])\]\s*=\s*([^\s]+)")
 
 
-def read_siemens(path: Path, letters: tuple[str, str]) -> Machine:
-    """Return the machine of a swivel data set or of machine data; `letters` are its two axes.
+@dataclass(frozen=True)
+class SiemensFiles(gx.ControlFiles):
+    """SINUMERIK: swivel data, and machine data of five-axis transformations."""
 
-    Raises FileError, and UsageError for what cannot be taken over.
-    """
-    where = Location(str(path))
-    try:
-        text = inputs.read(path).decode("latin-1").replace("\r\n", "\n")
-    except OSError as error:
-        raise FileError.one("GX901", f"cannot read {path}: {error.strerror}") from None
-    try:
-        kind, vectors = _carrier(text) if "$TC_CARR" in text else _machine_data(text)
-    except ValueError as error:
-        raise UsageError.one("GX454", str(error), where) from None
-    if found := tuple(Diagnostic("GX454", p, where) for p in _problems(kind, vectors, letters)):
-        raise UsageError(found)
-    return _machine(kind, vectors, letters, path)
+    axes: Annotated[str, gx.Option("first and second rotary axis of the data", example="C,A")]
+
+    name: ClassVar[str] = "siemens"
+    file: ClassVar[str] = "DATA"
+
+    def kinematics(self, path: Path) -> Machine:
+        """Take over a swivel data set ($TC_CARR), or machine data of a five-axis transformation.
+
+        The transformation is the first of the channel, of the type 24, 40 or 56.
+        """
+        letters = self._letters()
+        where = gx.Location(str(path))
+        text = "\n".join(line.text for line in control_lines(path))
+        try:
+            kind, vectors = _carrier(text) if "$TC_CARR" in text else _machine_data(text)
+        except ValueError as error:
+            raise gx.UsageError.one("GX454", str(error), where) from None
+        problems = _problems(kind, vectors, letters)
+        if found := tuple(gx.Diagnostic("GX454", problem, where) for problem in problems):
+            raise gx.UsageError(found)
+        return _machine(kind, vectors, letters, path)
+
+    def _letters(self) -> tuple[str, str]:
+        letters = [letter.strip().upper() for letter in self.axes.split(",")]
+        if len(letters) != 2:
+            where = gx.Location("--axes")
+            raise gx.UsageError.one("GX707", f"{self.axes!r} is not two axes", where)
+        return letters[0], letters[1]
 
 
 def _number(text: str, name: str) -> float:
@@ -124,7 +139,7 @@ def _problems(kind: str, vectors: Vectors, letters: tuple[str, str]) -> Iterator
     if kind not in NAMES:
         yield "no $TC_CARR23 of T, P or M, and no $MC_TRAFO_TYPE_1 of 24, 40 or 56"
         return
-    if letters[0] == letters[1] or not {*letters} <= {*ROTARY_AXES}:
+    if letters[0] == letters[1] or not {*letters} <= {*"ABC"}:
         yield f"{letters[0]} and {letters[1]} are not two of the axes A, B and C"
     nothing = [name for name in AXES.values() if not any(vectors[name])]
     yield from (f"the vector {name} of an axis is zero" for name in nothing)

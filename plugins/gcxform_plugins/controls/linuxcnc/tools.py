@@ -8,11 +8,11 @@ used; offsets of other axes than X, Y and Z are refused unless they are 0.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from pathlib import Path
 
-from gcxform.diagnostics import Diagnostic, FileError, Location, UsageError
-from gcxform.system import inputs
+import gcxform as gx
+from gcxform.vocabulary import Tool, control_lines
 
 UNITS = {"mm": 1.0, "in": 25.4}
 NUMBERS = {"T", "P"}
@@ -23,38 +23,34 @@ _TOOL = re.compile(r"[ \t]*T[0-9]+(?![^ \t;])", re.IGNORECASE)
 _WORD = re.compile(r"([A-Za-z])([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
 
 
-def read_tools(path: Path, unit: str) -> dict[int, dict[str, float]]:
+def read_tools(path: Path, unit: str) -> dict[int, Tool]:
     """Return the tools of a table by number: length, radius, x and y where given, in mm.
 
     `unit` is that of the table, "mm" or "in". Raises FileError, and UsageError for its lines.
     """
-    try:
-        lines = inputs.read(path).decode("latin-1").splitlines()
-    except OSError as error:
-        raise FileError.one("GX901", f"cannot read {path}: {error.strerror}") from None
-    tools: dict[int, dict[str, float]] = {}
+    tools: dict[int, Tool] = {}
     first = 0
-    found: list[Diagnostic] = []
-    for number, line in enumerate(lines, 1):
-        words = line.partition(";")[0].split()
+    found: list[gx.Diagnostic] = []
+    lines = control_lines(path)
+    for where in lines:
+        words = where.text.partition(";")[0].split()
         if not words:
             continue
         problems = [*_problems(words, tools)]
-        first = first or number
-        where = Location(str(path), number, 1, line, max(1, len(line)))
-        found += [Diagnostic("GX438", problem, where) for problem in problems]
+        first = first or where.line
+        found += [gx.Diagnostic("GX438", problem, where) for problem in problems]
         if not problems:
-            tool, values = _tool(words, UNITS[unit])
-            tools[tool] = values
-    if found and not any(_TOOL.match(line) for line in lines):  # whatever it is, it is not shown
+            number, tool = _tool(words, UNITS[unit])
+            tools[number] = tool
+    if found and not any(_TOOL.match(line.text) for line in lines):  # it is not shown: what is it?
         message = "no line of the file is one of a tool table, such as T1 P1 Z100"
-        raise UsageError.one("GX438", message, Location(str(path), first or 1))
+        raise gx.UsageError.one("GX438", message, gx.Location(str(path), first or 1))
     if found:
-        raise UsageError(tuple(found))
+        raise gx.UsageError(tuple(found))
     return tools
 
 
-def _problems(words: list[str], tools: dict[int, dict[str, float]]) -> Iterator[str]:
+def _problems(words: list[str], tools: Container[int]) -> Iterator[str]:
     """Yield what is wrong with a line."""
     seen: set[str] = set()
     for word in words:
@@ -80,9 +76,9 @@ def _problems(words: list[str], tools: dict[int, dict[str, float]]) -> Iterator[
         yield "the line has no T word"
 
 
-def _tool(words: list[str], unit: float) -> tuple[int, dict[str, float]]:
-    """Return number and values of the tool of a good line."""
+def _tool(words: list[str], unit: float) -> tuple[int, Tool]:
+    """Return the tool of a good line, and its number."""
     numbers = {word[0].upper(): float(word[1:]) for word in words}
     scale = {"D": unit / 2}
     values = {KEPT[a]: v * scale.get(a, unit) for a, v in numbers.items() if a in KEPT}
-    return int(numbers["T"]), values
+    return int(numbers["T"]), Tool(**values)

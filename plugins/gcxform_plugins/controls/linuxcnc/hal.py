@@ -18,14 +18,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from decimal import Decimal
 from pathlib import Path
 
-from gcxform.config.quantities import LENGTH
-from gcxform.diagnostics import Diagnostic, FileError, Location, UsageError
-from gcxform.machine.machine import Axis, Machine
-from gcxform.system import inputs
+import gcxform as gx
+from gcxform.vocabulary import Axis, Machine, control_lines
 
-UNITS = ("mm", "in")
+UNITS = {"mm": Decimal(1), "in": Decimal("25.4")}
 TOOL = "tool-offset"
 CONVENTIONAL = "conventional-directions"
 PIVOT = "pivot-length"
@@ -48,14 +47,9 @@ def read_hal(path: Path, unit: str) -> Machine:
     `unit` is that of the machine, mm or in. Raises FileError, and UsageError with the line for what
     cannot be taken over.
     """
-    try:
-        lines = inputs.read(path).decode("utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise FileError.one("GX901", f"cannot read {path}: {reason}") from None
     hal = _Hal(path)
-    for number, line in enumerate(lines, 1):
-        hal.take(line, Location(str(path), number, 1, line, max(1, len(line))))
+    for line in control_lines(path, "utf-8"):
+        hal.take(line)
     module, pins = hal.settings()
     return machine_of(module, pins, path, unit)
 
@@ -66,14 +60,14 @@ class _Hal:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.modules: set[str] = set()
-        self.values: dict[str, tuple[str, Location]] = {}
+        self.values: dict[str, tuple[str, gx.Location]] = {}
         self.signals: dict[str, str] = {}
-        self.nets: dict[str, tuple[str, Location]] = {}
-        self.findings: list[Diagnostic] = []
+        self.nets: dict[str, tuple[str, gx.Location]] = {}
+        self.findings: list[gx.Diagnostic] = []
 
-    def take(self, line: str, where: Location) -> None:
+    def take(self, where: gx.Location) -> None:
         """Take what a line says."""
-        words = _HALCMD.sub("", line).partition("#")[0].split()
+        words = _HALCMD.sub("", where.text).partition("#")[0].split()
         modules = {word: word.partition(".")[0] for word in words[1:]}
         self.modules |= set(modules.values()) & set(PINS)
         named = [word for word, module in modules.items() if module in PINS and "." in word]
@@ -98,11 +92,11 @@ class _Hal:
         if len(self.modules) != 1:
             some = " and ".join(sorted(self.modules)) or "none"
             message = f"a machine has one kind of kinematics, here is {some}"
-            self._find(message, Location(str(self.path)), f"known: {', '.join(PINS)}")
+            self._find(message, gx.Location(str(self.path)), f"known: {', '.join(PINS)}")
         for module in self.modules:
             self._check_pivot(module)
         if self.findings:
-            raise UsageError(tuple(self.findings))
+            raise gx.UsageError(tuple(self.findings))
         return self.modules.pop(), pins
 
     def _check_pivot(self, module: str) -> None:
@@ -110,23 +104,23 @@ class _Hal:
         pin = f"{module}.{PIVOT}"
         if PIVOT in PINS[module] and pin not in self.values and pin not in self.nets:
             message = f"{pin} is not set, and then {module} takes a length of its own"
-            self._find(message, Location(str(self.path)), f"write setp {pin} 250.0")
+            self._find(message, gx.Location(str(self.path)), f"write setp {pin} 250.0")
 
-    def _value(self, name: str, text: str, where: Location) -> float:
+    def _value(self, name: str, text: str, where: gx.Location) -> float:
         """Return the value of a pin; add a finding if it has none that can be taken over."""
         module, _, pin = name.partition(".")
         number = _NUMBER.fullmatch(text)
         value = float(text) if number else TRUTHS.get(text.lower(), math.nan)
         if pin not in PINS[module]:
             self._find(f"{name} is not a pin that is known", where)
-        elif math.isnan(value):
+        elif not math.isfinite(value):
             self._find(f"{text!r} is not a number: write the value here", where)
         elif pin == TOOL and value:
             self._find(f"{name} is the length of a tool", where, "give it as [tool.1]")
         return value
 
-    def _find(self, message: str, where: Location, hint: str = "") -> None:
-        self.findings.append(Diagnostic("GX454", message, where, hint))
+    def _find(self, message: str, where: gx.Location, hint: str = "") -> None:
+        self.findings.append(gx.Diagnostic("GX454", message, where, hint))
 
 
 # --- pins to axes ---
@@ -149,7 +143,7 @@ _CHAINS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 
 def _axes(module: str, pins: dict[str, float], unit: str) -> Iterator[tuple[str, Axis]]:
     """Yield the rotary axes by their letters."""
-    at = {pin: LENGTH.parse(f"{value!r} {unit}") for pin, value in pins.items()}
+    at = {pin: float(Decimal(repr(value)) * UNITS[unit]) for pin, value in pins.items()}
     if module in ("5axiskins", "maxkins"):
         yield "C", Axis(direction=Z, point=(0.0, 0.0, 0.0), sign=1 if module[0] == "5" else -1)
         yield "B", Axis(direction=Y, point=(0.0, 0.0, at[PIVOT]), sign=-1)

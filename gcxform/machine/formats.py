@@ -1,0 +1,65 @@
+"""Files of controls: the door through which plugins read what controls say of their machines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import ClassVar, Literal, NamedTuple
+
+from gcxform.diagnostics import FileError, Location
+from gcxform.machine.kinds import Kinds
+from gcxform.machine.machine import Machine, Tool
+from gcxform.system import inputs
+
+
+class ControlFiles:
+    """The files of a control; its docstring is what `gcxform list controls` shows.
+
+    A control has methods of its own for those of its files that are read. It is a frozen dataclass:
+    what its kinematics do not say of themselves are its fields, options as those of a pass, which
+    `gcxform machine import NAME` takes. `file` is how the help of that calls the file.
+    """
+
+    name: ClassVar[str]
+    file: ClassVar[str] = "FILE"
+
+    def kinematics(self, path: Path) -> Machine:
+        """Return the machine that a file describes, in mm; this docstring is the help.
+
+        Raises FileError, and UsageError GX454 with file and line for what is not taken over.
+        """
+        raise NotImplementedError
+
+    @staticmethod
+    def tools(path: Path, units: Literal["mm", "in"]) -> Mapping[int, Tool]:
+        """Return the tools of a table by number; `units` is what the machine file says of it.
+
+        Raises FileError, and UsageError GX438 with file and line.
+        """
+        raise NotImplementedError
+
+    @classmethod
+    def reads(cls, what: Literal["kinematics", "tools"]) -> bool:
+        """Return whether there is a method for some files of this control."""
+        return getattr(cls, what) is not getattr(ControlFiles, what)
+
+
+class Known(NamedTuple):
+    """What plugins know of machines: kinds of kinematics and files of controls, by name."""
+
+    kinematics: Kinds = MappingProxyType({})
+    controls: Mapping[str, type[ControlFiles]] = MappingProxyType({})
+
+
+NONE = Known()
+
+
+def control_lines(path: Path, encoding: str = "latin-1") -> list[Location]:
+    """Return the lines of a file, each as its place with its text. Raises FileError."""
+    try:
+        lines = inputs.read(path).decode(encoding).splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
+        raise FileError.one("GX901", f"cannot read {path}: {reason}") from None
+    return [Location(str(path), n, 1, line, max(1, len(line))) for n, line in enumerate(lines, 1)]

@@ -1,0 +1,1 @@
+"""LinuxCNC: its kinematics as HAL files set them up, and its tool tables."""
