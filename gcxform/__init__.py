@@ -47,6 +47,9 @@ if TYPE_CHECKING:
     from gcxform.dialect.move_rules import ArcRule as ArcRule
     from gcxform.dialect.move_rules import FeedRule as FeedRule
     from gcxform.dialect.move_rules import MotionRule as MotionRule
+    from gcxform.dialect.program_rules import BlockRule as BlockRule
+    from gcxform.dialect.program_rules import ProgramRule as ProgramRule
+    from gcxform.dialect.program_rules import TextRule as TextRule
     from gcxform.errormodel.converting import Fit as Fit
     from gcxform.errormodel.converting import to_functions as to_functions
     from gcxform.errormodel.converting import to_lattice as to_lattice
@@ -149,6 +152,7 @@ _HOMES = {
     "dialect.frame_rules": "OffsetRule ToolRule",
     "dialect.increments": "PointRule",
     "dialect.move_rules": "ArcRule FeedRule MotionRule",
+    "dialect.program_rules": "BlockRule ProgramRule TextRule",
     "flow.translation": "Item Translator",
     "guess": "Evidence Guess guess_dialect",
     "plugin.hookspecs": "hookimpl",

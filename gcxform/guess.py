@@ -172,13 +172,13 @@ def _evidence(dialect: type[Dialect], seen: _Seen) -> Iterator[Evidence]:
         words = " ".join(word for word, _ in seen.strange.most_common(SHOWN))
         what = f"{seen.foreign} of {seen.lines} lines it does not have: {words}"
         yield Evidence(what, -3.0 - 20.0 * seen.foreign / seen.lines)
-    if seen.small and not dialect.lower_case:
+    if seen.small and not dialect.text_rule.lower_case:
         yield Evidence("small letters", -4.0)
     yield from _points(dialect, seen)
     if seen.numbers and dialect.point_rule.required:
         yield Evidence("a program number", 1.5)
-    if dialect.program_number_digits in seen.numbers:
-        yield Evidence(f"a program number of {dialect.program_number_digits} digits", 1.0)
+    if dialect.program_rule.number_digits in seen.numbers:
+        yield Evidence(f"a program number of {dialect.program_rule.number_digits} digits", 1.0)
     if any(dialect.name in comment for comment in seen.comments):
         yield Evidence("its name in a comment", 3.0)
     for address, value, decimals in seen.dwells[:1]:

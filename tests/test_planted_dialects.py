@@ -68,8 +68,10 @@ def without_steps(number: int) -> Kind:
 
 def ended(**changes: str | None) -> Kind:
     """Return GRBL with another state behind M2."""
-    table = {**GRBL.resets_at_end, **{k.replace("_", "-"): c for k, c in changes.items()}}
-    return changed(GRBL, resets_at_end={k: c for k, c in table.items() if c is not None})
+    changed_modes = {k.replace("_", "-"): c for k, c in changes.items()}
+    table = {**GRBL.program_rule.resets_at_end, **changed_modes}
+    resets = {k: c for k, c in table.items() if c is not None}
+    return changed(GRBL, program_rule=replace(GRBL.program_rule, resets_at_end=resets))
 
 
 def starting(base: Kind, **changes: str) -> Kind:
@@ -88,6 +90,10 @@ def offsets(base: Kind, **changes: Any) -> Kind:
 
 def points(base: Kind, **changes: Any) -> Kind:
     return changed(base, point_rule=replace(base.point_rule, **changes))
+
+
+def letters(words: str) -> Kind:
+    return changed(GRBL, block_rule=replace(GRBL.block_rule, words=words))
 
 
 G41 = FANUC.codes["G41"]
@@ -265,7 +271,9 @@ PLANTED: dict[str, tuple[Callable[[], Kind], str]] = {
     "the end leaves no motion": (lambda: ended(motion=None), "in the group 'motion'"),
     "the end leaves the work offset": (lambda: ended(frame="G55"), "in the group 'frame'"),
     "resets that nobody sees": (
-        lambda: changed(NGC, resets_at_end=GRBL.resets_at_end),
+        lambda: changed(
+            NGC, program_rule=replace(GRBL.program_rule, stops_at_end=NGC.program_rule.stops_at_end)
+        ),
         "nobody sees",
     ),
     # M codes
@@ -294,7 +302,10 @@ PLANTED: dict[str, tuple[Callable[[], Kind], str]] = {
     ),
     "M98 a plain code": (lambda: ms(FANUC, {98: gx.MCode("stop", takes="PL")}), "calls a program"),
     "M6 without loss": (lambda: ms(FANUC, {6: gx.MCode("tool")}), "loses no position"),
-    "unknown M without loss": (lambda: changed(FANUC, unknown_m=gx.MCode("user")), "unknown_m"),
+    "unknown M without loss": (
+        lambda: changed(FANUC, block_rule=gx.BlockRule(unknown_m=gx.MCode("user"))),
+        "unknown_m",
+    ),
     "no M5": (lambda: ms(GRBL, {5: None}), "there is M3 and no M5"),
     "no M9": (lambda: ms(GRBL, {9: None}), "there is M7 and no M9"),
     "M61 without Q": (
@@ -326,9 +337,9 @@ PLANTED: dict[str, tuple[Callable[[], Kind], str]] = {
     "an axis that is no axis": (lambda: changed(GRBL, axes="XYZE"), "letters of"),
     "B before A": (lambda: changed(HAAS, axes="XYZBAC"), "in the order"),
     "an axis missing": (lambda: changed(NGC, axes="XYZABC"), "no words of the dialect"),
-    "an axis and a word": (lambda: changed(GRBL, words=GRBL.words + "X"), "an axis and a word"),
-    "a word twice": (lambda: changed(GRBL, words=GRBL.words + "F"), "stands twice"),
-    "no J": (lambda: changed(GRBL, words=GRBL.words.replace("J", "")), "want ['J']"),
+    "an axis and a word": (lambda: letters(GRBL.block_rule.words + "X"), "an axis and a word"),
+    "a word twice": (lambda: letters(GRBL.block_rule.words + "F"), "stands twice"),
+    "no J": (lambda: letters(GRBL.block_rule.words.replace("J", "")), "want ['J']"),
     # cycles
     "Q and P swapped in G83": (lambda: cycles(FANUC, "needs", _83="P"), "needs of G83"),
     "G82 needs no P": (lambda: cycles(FANUC, "needs", _82=""), "needs of G82"),

@@ -25,6 +25,7 @@ from gcxform.dialect.frame_rules import OffsetRule, ToolRule
 from gcxform.dialect.increments import PointRule
 from gcxform.dialect.language import Language
 from gcxform.dialect.move_rules import ArcRule, FeedRule, MotionRule
+from gcxform.dialect.program_rules import BlockRule, ProgramRule, TextRule
 from gcxform.machine.control import Setting, declare
 from gcxform.syntax.grammar import Grammar, load
 
@@ -64,15 +65,9 @@ class Dialect:
     axes: ClassVar[str] = "XYZABC"
     codes: ClassVar[Mapping[str, Code]] = ISO
     m_codes: ClassVar[Mapping[int, MCode]] = ISO_M
-    m_order_chosen: ClassVar[bool] = False
-    """Whether the machine decides when an M code beside a move acts, so that it is assumed."""
     chosen: ClassVar[Mapping[str, str]] = {}
     """What is taken for the meaning of a code, or of words of an axis, where a parameter decides:
     a sentence for the certificate."""
-    unknown_m: ClassVar[MCode | None] = None
-    """What an M code outside `m_codes` is; None: it is refused."""
-    m_first: ClassVar[bool] = False
-    """Whether M codes that may move axes do so before the motion of their block, for certain."""
     initial: ClassVar[Mapping[str, str]] = {
         "motion": "G80",
         "plane": "G17",
@@ -86,51 +81,8 @@ class Dialect:
     """The modal state a program is taken to start in; the certificate says what was taken."""
     settings: ClassVar[tuple[Setting, ...]] = ()
     """Settings in [control] of a machine file that the dialect asks for, beside the common ones."""
-    axis_words_once: ClassVar[bool] = False
-    """A motion code beside a code that takes the axis words for itself (G92, G28) is refused."""
-    g80_beside_motion: ClassVar[bool] = True
-    """G80 beside another motion code says nothing; otherwise the block is refused."""
-    last_code_wins: ClassVar[bool] = False
-    """Two codes of one group in a block: the last is taken; otherwise the block is refused."""
     cutter_comp: ClassVar[CutterComp] = CutterComp()
     """How G41 and G42 are read, where the dialect has them."""
-    lone_cr_is_blank: ClassVar[bool] = False
-    """A CR without LF is a blank inside a block, and no line end."""
-    resets_at_end: ClassVar[Mapping[str, str]] = {}
-    """Where M2 and M30 do not stop the control: the modes they leave behind."""
-    spindle_stands: ClassVar[bool] = False
-    """Whether the spindle stands still, as far as the control knows, when a program starts."""
-    block_delete: ClassVar[str] = ""
-    """What the control does with `/` blocks: "execute", "skip", or "" when a switch decides."""
-    needs_end: ClassVar[bool] = False
-    """A file without M2 or M30, and not between two percent signs, is refused by the control."""
-    stops_at_end: ClassVar[bool] = True
-    lower_case: ClassVar[bool] = True
-    """Whether words may be written in small letters."""
-    number_first: ClassVar[bool] = False
-    """A sequence number anywhere but at the head of its block is refused."""
-    largest_number: ClassVar[int] = 0
-    """The largest sequence number the control takes; 0: no limit."""
-    line_length: ClassVar[int] = 0
-    """The longest block the control takes, in characters; 0: no limit."""
-    length_without_blanks: ClassVar[bool] = False
-    """The limit counts neither blanks nor comments."""
-    comments: ClassVar[str] = "("
-    """How a comment may begin: any of "(" and ";"."""
-    active_comments: ClassVar[tuple[str, ...]] = ()
-    """How comments begin that the control executes, in capitals."""
-    acts_anywhere: ClassVar[str] = ""
-    """Characters on which the control acts as they come in, also in a comment."""
-    has_percent: ClassVar[bool] = True
-    has_program_number: ClassVar[bool] = True
-    program_number_digits: ClassVar[int] = 0
-    """How many digits a program number may have; 0: any number."""
-    most_m_words: ClassVar[int] = 0
-    """How many M words a block may have; 0: any number."""
-    spindle_words: ClassVar[frozenset[str]] = frozenset()
-    """Codes, and S, beside which a word `$` says which spindle is meant."""
-    words: ClassVar[str] = "DEFHIJKLNPQRST"
-    """Addresses the control knows, besides its axes and G, M, O."""
     arithmetic: ClassVar[Arithmetic | None] = None
     """How the control computes expressions; None: they are refused."""
     flow: ClassVar[str] = ""
@@ -154,6 +106,12 @@ class Dialect:
     """What codes of such blocks are called in the program: `M128` may be `TRAORI`."""
     calls_own_lines: ClassVar[bool] = False
     """M97 calls lines of the same program, up to M99."""
+    program_rule: ClassVar[ProgramRule] = ProgramRule()
+    """Where programs begin and end, and which of their blocks are executed."""
+    text_rule: ClassVar[TextRule] = TextRule()
+    """Characters, lines and comments."""
+    block_rule: ClassVar[BlockRule] = BlockRule()
+    """Which words a block may have, and in what order they act."""
     numbers: ClassVar[NumberFormat] = NumberFormat()
     point_rule: ClassVar[PointRule] = PointRule()
     """What numbers are worth, with a decimal point and without."""
@@ -188,7 +146,7 @@ class Dialect:
     @classmethod
     def executes(cls, comment: str) -> bool:
         """Whether the control does something when it reads a comment."""
-        return comment.lstrip("(; \t").upper().startswith(cls.active_comments)
+        return comment.lstrip("(; \t").upper().startswith(cls.text_rule.active_comments)
 
     @classmethod
     def load_grammar(cls) -> Grammar:

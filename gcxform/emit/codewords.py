@@ -92,9 +92,9 @@ class CodeWords:
         """Write an M word, in the piece in which it acts."""
         assert isinstance(word.value, Number)
         number = int(word.value.value)
-        code = self.source.m_codes.get(number, self.source.unknown_m)
+        code = self.source.m_codes.get(number, self.source.block_rule.unknown_m)
         if self.source is not self.target:
-            other = self.target.m_codes.get(number, self.target.unknown_m)
+            other = self.target.m_codes.get(number, self.target.block_rule.unknown_m)
             words = {word.address for word in self.shape.block.words}
             if other is None or code is None or not same_m(code, other, words):
                 self.draft.refuse(word, f"M{number}")

@@ -31,7 +31,7 @@ class Draft:
     def said(self, start: int, end: int) -> str:
         """Return a piece of a word, in capitals where the target knows nothing else."""
         text = self.text[start:end]
-        return text if self.target.lower_case else text.upper()
+        return text if self.target.text_rule.lower_case else text.upper()
 
     def gap_before(self, lead: bytes) -> bytes:
         """Return what stands before a word: its own `lead`, or the usual gap, if words precede."""

@@ -184,7 +184,7 @@ class _Job:
         """Refuse blocks behind an end at which the target stops, and the source does not."""
         task = self.task
         source, target = task.manner.source, task.manner.target
-        if source.stops_at_end or not target.stops_at_end:
+        if source.program_rule.stops_at_end or not target.program_rule.stops_at_end:
             return
         over = np.logical_or.accumulate(
             np.append(self.emitter.over, task.table.flag("ends", task.shape))
@@ -255,7 +255,7 @@ class _Job:
 
     def _leave_end(self, believed: Believed) -> None:
         """Leave the modes in which the end of a program leaves a control that goes on."""
-        resets = self.task.manner.target.resets_at_end
+        resets = self.task.manner.target.program_rule.resets_at_end
         if self.task.table.flag("ends", self.task.shape[-1:])[0] and resets:
             believed.motion = NUMBER[resets["motion"]]
             believed.incremental = NUMBER[resets["distance"]]

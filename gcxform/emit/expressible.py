@@ -99,8 +99,8 @@ def is_foreign(item: Item, target: type[Dialect]) -> bool:
     if not isinstance(item, Mark):
         return False
     if item.kind == "percent":
-        return not target.has_percent
-    return item.kind.startswith("program") and not target.has_program_number
+        return not target.program_rule.has_percent
+    return item.kind.startswith("program") and not target.program_rule.has_program_number
 
 
 def event_text(event: Event, target: type[Dialect], gap: bytes) -> bytes | None:
@@ -203,10 +203,10 @@ def same_m(code: MCode, other: MCode, words: set[str]) -> bool:
 
 def comment_in(target: type[Dialect], text: str) -> str:
     """Return a comment as a dialect writes it."""
-    if text[0] in target.comments:
+    if text[0] in target.text_rule.comments:
         return text
     inner = text[1:-1] if text[0] == "(" else text[1:]
-    if target.comments.startswith("("):
+    if target.text_rule.comments.startswith("("):
         return "(" + inner.replace("(", "[").replace(")", "]") + ")"
     return ";" + inner
 

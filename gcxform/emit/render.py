@@ -183,7 +183,7 @@ def _unreached(task: Task) -> Flags:
     shapes = task.window.shape[task.read.live :]
     if not task.manner.crossing:
         return np.ones(len(shapes), np.bool_)
-    percent = task.table.flag("percent", shapes) & task.manner.target.has_percent
+    percent = task.table.flag("percent", shapes) & task.manner.target.program_rule.has_percent
     blocks = [task.table.shapes.shapes[int(shape)].block for shape in shapes]
     blank = [not block.items and block.error is None for block in blocks]
     return np.asarray(percent | np.array(blank, np.bool_))

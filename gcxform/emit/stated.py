@@ -125,7 +125,7 @@ class _Needs:
 
     def _held(self, sets: Small, group: str, before: int) -> Small:
         """Return what holds before each piece, given what each sets (-1: nothing)."""
-        resets = self.task.manner.target.resets_at_end
+        resets = self.task.manner.target.program_rule.resets_at_end
         if group in resets:
             over = self.task.table.flag("ends", self.task.shape)
             ends = over[self.pieces.line] & self.pieces.ends

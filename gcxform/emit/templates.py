@@ -159,18 +159,18 @@ class TemplateWriter:
 
     def _comment(self, item: Comment) -> str:
         text = self.text[item.start : item.end]
-        executed = self.source.executes(text)
-        if executed and self.source is not self.target and not self.target.executes(text):
+        executed = self.source.text_rule.executes(text)
+        if executed and self.source is not self.target and not self.target.text_rule.executes(text):
             self.draft.raise_at(item, f"{self.target.name} does not execute this comment")
-        if not executed and self.target.executes(text):
+        if not executed and self.target.text_rule.executes(text):
             text = f"{text[0]}-{text[1:]}"
         if self.source is not self.target:
-            text = text.translate({ord(each): "-" for each in self.target.acts_anywhere})
+            text = text.translate({ord(each): "-" for each in self.target.text_rule.acts_anywhere})
         return comment_in(self.target, text)
 
     def _mark(self, item: Mark, lead: bytes) -> None:
         if item.kind == "block_delete":
-            if self.source.block_delete != self.target.block_delete:
+            if self.source.program_rule.block_delete != self.target.program_rule.block_delete:
                 self._check_same(item, "a block with a slash in the same way")
         elif self.key.role in (Role.MIDDLE, Role.LAST) or is_foreign(item, self.target):
             return
@@ -195,7 +195,7 @@ class TemplateWriter:
             return
         elif address == "F" and "F" in self.meaning.slots:
             self._feed(word, lead, slot)
-        elif address == "O" and not self.target.has_program_number:
+        elif address == "O" and not self.target.program_rule.has_program_number:
             return
         elif self.key.role not in (Role.MIDDLE, Role.LAST):
             self._copy(word, lead, slot)
@@ -228,7 +228,7 @@ class TemplateWriter:
 
     def _copy(self, word: Word, lead: bytes, slot: int) -> None:
         """Write a word as it stands in the source."""
-        if word.address not in self.target.words + self.target.axes + "GMO":
+        if word.address not in self.target.block_rule.words + self.target.axes + "GMO":
             self.draft.raise_at(word, f"{self.target.name} has no word {word.address}")
         if word.address == "O" and not program_number_fits(word, self.target):
             self.draft.refuse(word, "this program number")

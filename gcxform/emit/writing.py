@@ -272,10 +272,10 @@ class Writing:
 
     def _check_lengths(self, text: bytes, lengths: Ints, chosen: Ints) -> None:
         target = self.task.manner.target
-        limit = target.line_length
+        limit = target.text_rule.line_length
         if not limit or not len(lengths) or int(lengths.max()) <= limit:
             return
-        if target.length_without_blanks:
+        if target.text_rule.length_without_blanks:
             ends = np.cumsum(lengths)
             lines = [text[int(e - n) : int(e)] for e, n in zip(ends, lengths, strict=True)]
             lengths = np.array([without_blanks(line) for line in lines], np.int64)

@@ -66,10 +66,10 @@ def _cased(dialect: type[Dialect]) -> Iterator[tuple[bytes, bytes]]:
     for byte, pattern in SIGNS[dialect.flow]:
         yield byte, pattern
         small = re.sub(rb"[A-Z]+", lambda letters: letters[0].lower(), pattern)
-        if dialect.lower_case and small != pattern:
+        if dialect.text_rule.lower_case and small != pattern:
             yield byte.lower(), small
 
 
 def _without_comments(text: bytes, dialect: type[Dialect]) -> bytes:
     bare = COMMENT.sub(b"", text)
-    return TO_THE_END.sub(b"", bare) if ";" in dialect.comments else bare
+    return TO_THE_END.sub(b"", bare) if ";" in dialect.text_rule.comments else bare

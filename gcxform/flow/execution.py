@@ -76,7 +76,7 @@ class Execution(RunState):
 
     def _refuse_lone_cr(self) -> None:
         """Refuse a line that the control would take together with the next one."""
-        if self.dialect.lone_cr_is_blank and self.listing.line_end(self.line) == b"\r":
+        if self.dialect.text_rule.lone_cr_is_blank and self.listing.line_end(self.line) == b"\r":
             message = f"the line ends with CR alone, which {self.dialect.name} reads as a blank"
             hint = "convert the line ends of the file to LF or CRLF"
             raise self.listing.refusal(self.line, "GX102", message, hint)
@@ -88,7 +88,7 @@ class Execution(RunState):
         """Whether the control skips the line; a slash on one that decides something is refused."""
         if not has_slash(block):
             return False
-        policy = self.reading.block_delete or self.dialect.block_delete
+        policy = self.reading.block_delete or self.dialect.program_rule.block_delete
         if not policy:
             message = "a switch of the control decides whether this block is executed"
             hint = 'block-delete = "execute" in [input], or block-delete = "skip" in [input]'
@@ -217,7 +217,7 @@ class Execution(RunState):
         codes = [w.value.value for w in block.words if w.address == "M"]
         known = [self.dialect.m_codes.get(int(c)) for c in codes if c == c]  # nan: computed
         over = any(code is not None and code.ends for code in known)
-        return over and self.dialect.stops_at_end
+        return over and self.dialect.program_rule.stops_at_end
 
     def _write_changed(self, block: Block, edits: list[Edit]) -> None:
         """Write a block whose expressions have become numbers; one of which nothing is left not."""
@@ -232,7 +232,7 @@ class Execution(RunState):
         self.write_line(text.rstrip())
 
     def _executes(self, block: Block, comment: Comment) -> bool:
-        return self.dialect.executes(block.text[comment.start : comment.end])
+        return self.dialect.text_rule.executes(block.text[comment.start : comment.end])
 
 
 def _statements(block: Block) -> list[Statement]:

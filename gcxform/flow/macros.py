@@ -215,7 +215,7 @@ class MacroB(Execution):
 
     def _unpacked(self, number: int, times: int, block: Block) -> tuple[int, int]:
         """Return program and count of a P that may hold both."""
-        if self.dialect.program_number_digits > 4:
+        if self.dialect.program_rule.number_digits > 4:
             return number, times
         packed = number >= PACKED and number % PACKED in self.starts
         if packed and (number in self.starts or any(w.address == "L" for w in block.words)):

@@ -230,7 +230,7 @@ class Translator(ABC):
         slash = next((item for item in items if item.kind == BLOCK_DELETE), None)
         if slash is None:
             return False
-        policy = self.reading.block_delete or self.dialect.block_delete
+        policy = self.reading.block_delete or self.dialect.program_rule.block_delete
         if not policy:
             message = "a switch of the control decides whether this block is executed"
             hint = 'block-delete = "execute" in [input], or block-delete = "skip" in [input]'

@@ -34,12 +34,12 @@ def without_blanks(line: bytes) -> int:
 
 
 def _too_long(lines: Lines) -> None:
-    limit, window = lines.dialect.line_length, lines.window
+    limit, window = lines.dialect.text_rule.line_length, lines.window
     if not limit:
         return
     length = (window.end - window.start)[: lines.live]
     for line in np.flatnonzero(length > limit).tolist():
-        blanks = lines.dialect.length_without_blanks
+        blanks = lines.dialect.text_rule.length_without_blanks
         long = without_blanks(window.line(line)) if blanks else int(length[line])
         if long > limit:
             message = f"the block has {long} characters; {lines.dialect.name} takes {limit}"
@@ -81,7 +81,7 @@ def _other_spindle(lines: Lines, events: Iterable[Event]) -> None:
 
 def _number_too_large(lines: Lines) -> None:
     """Refuse sequence numbers that the control cannot count to."""
-    most = lines.dialect.largest_number
+    most = lines.dialect.text_rule.largest_number
     number = lines.word("N") if most else None
     if number is None:
         return

@@ -106,7 +106,7 @@ class Interpreter:
             control = self.reading.control
             state.cycles = Cycles(rule, *(_length(control, name) for name in PECKS))
         retract = int(rule is None or rule.initial_level)
-        spindle = 0 if self.dialect.spindle_stands else UNKNOWN_SPINDLE
+        spindle = 0 if self.dialect.program_rule.spindle_stands else UNKNOWN_SPINDLE
         state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": spindle, "behind": 0}
         state.memory["tool-length"] = NUMBER["G49"]
         return state
@@ -153,7 +153,7 @@ class Interpreter:
         self.state.feed = float(modes.feed[-1])
         self.state.feed_unit = float(modes.feed_unit[-1])
         if lines.flag("ends")[-1]:
-            for name, code in self.dialect.resets_at_end.items():
+            for name, code in self.dialect.program_rule.resets_at_end.items():
                 if name == "feed-mode" and self.state.groups[name] != NUMBER[code]:
                     self.state.feed = np.nan
                 self.state.groups[name] = NUMBER[code]

@@ -76,7 +76,7 @@ class Lines:
         self._used = table.slots[used].max(axis=0, initial=-1) >= 0
         self._stated = table.groups[used].max(axis=0, initial=-1) >= 0
         self._flagged = np.asarray(table.flags[used].any(axis=0))
-        for number in used.tolist() if dialect.chosen or dialect.m_order_chosen else ():
+        for number in used.tolist() if dialect.chosen or dialect.block_rule.m_order_chosen else ():
             state.assumed.update(dict.fromkeys(table.meanings[number].choices))
 
     def flag(self, name: str) -> Flags:
@@ -116,9 +116,9 @@ class Lines:
             return 0
         shape = self.window.shape
         ends = np.zeros(len(shape), np.bool_)
-        if self.dialect.stops_at_end:
+        if self.dialect.program_rule.stops_at_end:
             ends |= self.table.flag("ends", shape)
-            if (self.reading.block_delete or self.dialect.block_delete) != "execute":
+            if (self.reading.block_delete or self.dialect.program_rule.block_delete) != "execute":
                 ends &= ~self.table.flag("deleted", shape)
         percent = np.flatnonzero(self.table.flag("percent", shape))
         for line in percent[max(0, 1 - self.state.percents) :][:1]:
@@ -132,7 +132,7 @@ class Lines:
     def _deleted_blocks(self) -> None:
         """Execute or silence blocks with a slash, or refuse them."""
         deleted = np.flatnonzero(self.flag("deleted"))
-        policy = self.reading.block_delete or self.dialect.block_delete
+        policy = self.reading.block_delete or self.dialect.program_rule.block_delete
         if len(deleted) and self.reading.block_delete:
             done = {"execute": "executed", "skip": "skipped"}[self.reading.block_delete]
             self.state.assumed[f"blocks with a slash are {done}"] = None
@@ -153,7 +153,7 @@ class Lines:
     def _lone_line_ends(self) -> None:
         """Refuse lines that the control would take together."""
         window = self.window
-        if not self.dialect.lone_cr_is_blank or b"\r" not in window.text:
+        if not self.dialect.text_rule.lone_cr_is_blank or b"\r" not in window.text:
             return
         text = np.frombuffer(window.text + b"\n", np.uint8)
         stop = window.end[: self.live]
@@ -205,17 +205,17 @@ class Lines:
         """Return the number of the code in force of a group, on each line."""
         index = COLUMNS.index(name)
         before = self.state.memory[name] if name in MEMORY else self.state.groups[name]
-        if not self._stated[index] and name not in self.dialect.resets_at_end:
+        if not self._stated[index] and name not in self.dialect.program_rule.resets_at_end:
             return np.broadcast_to(np.int8(before), (self.live,))
         values = self.table.groups[self.shape, index]
         present = values >= 0
         if present.any():
             self.state.stated.add(name)
-        if name in self.dialect.resets_at_end:
+        if name in self.dialect.program_rule.resets_at_end:
             after = np.flatnonzero(self.flag("ends")) + 1
             after = after[after < self.live]
             after = after[~present[after]]
-            values[after] = NUMBER[self.dialect.resets_at_end[name]]
+            values[after] = NUMBER[self.dialect.program_rule.resets_at_end[name]]
             present[after] = True
         return fill(values, present, before)
 

@@ -53,7 +53,7 @@ def frame_for(
     written then ends there too, with a block that the other control may skip.
     Raises InputError where a percent sign in the middle would end it there.
     """
-    if dialect.name == target.name or not target.needs_end:
+    if dialect.name == target.name or not target.program_rule.needs_end:
         return Frame()
     ending, reader = Ending(target, source.name), WindowReader(dialect)
     for text in source.windows():
@@ -107,7 +107,7 @@ class Ending:
     def __init__(self, dialect: type[Dialect], file: str = "-") -> None:
         self.dialect = dialect
         self.file = file
-        self.ended = not dialect.needs_end
+        self.ended = not dialect.program_rule.needs_end
         self.framed = False
         self.blank = True
         self.lines = 0

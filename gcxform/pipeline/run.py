@@ -217,7 +217,7 @@ class Run:
                 if self.marks.changes:
                     self.others.refuse_moving(one.window, one.table, one.read.live)
                 emitted = self._emitted(one, first, last)
-                if self.dialect.needs_end:
+                if self.dialect.program_rule.needs_end:
                     self.ending.look(one.window, one.table)
                 self.books.add(one.window, one.table, one.read, len(one.path.given))
                 if proof.busy:

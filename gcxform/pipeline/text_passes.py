@@ -75,13 +75,13 @@ class TextRun:
 
     def _check_limits(self, step: TextPass, old: str, new: str, where: Location) -> None:
         """Refuse blocks and sequence numbers that have become larger than the control takes."""
-        size = without_blanks if self.dialect.length_without_blanks else len
-        long, limit = size(new.encode("latin-1")), self.dialect.line_length
+        size = without_blanks if self.dialect.text_rule.length_without_blanks else len
+        long, limit = size(new.encode("latin-1")), self.dialect.text_rule.line_length
         if limit and long > max(limit, size(old.encode("latin-1"))):
             message = f"{step.name}: the block would have {long} characters"
             message += f"; {self.dialect.name} takes {limit}"
             raise InputError.one("GX502", message, where)
-        most = self.dialect.largest_number
+        most = self.dialect.text_rule.largest_number
         for word in self.dialect.load_grammar().parse(new).words if most else ():
             number = word.value
             if word.address == "N" and isinstance(number, Number) and number.value > most:

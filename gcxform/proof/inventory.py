@@ -190,7 +190,7 @@ class Books:
         if self.crossing:
             account.rule("behind the end of the program", -self.behind.total)
             account.rule_of(f"no parameter of {target}", "assignments", -self.set_aside)
-            if not self.context.target.has_program_number:
+            if not self.context.target.program_rule.has_program_number:
                 named = -self.live.total
                 account.rule(f"no name of programs in {target}", named, ("definitions",))
         account.rule_of("done by a step instead of the control", "m_codes", -self.done)

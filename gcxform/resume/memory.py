@@ -108,7 +108,7 @@ class Memory:
                 return ""
             known = code.effect in (Effect.INERT, Effect.DWELL) and code.group in HANDLED
             return "" if known else f"{name} was in force, which is not restated"
-        m_code = self.dialect.m_codes.get(int(word.value.value), self.dialect.unknown_m)
+        m_code = self.dialect.m_codes.get(int(word.value.value), self.dialect.block_rule.unknown_m)
         known = m_code is None or m_code.group in HANDLED
         return "" if known else f"{name} switched something that is not restated"
 
@@ -141,7 +141,7 @@ class Memory:
         self.codes[key] = words_of(block, letters, event.what), inch
 
     def _m_code(self, event: Event, block: Block, inch: bool) -> None:
-        code = self.dialect.m_codes.get(int(event.what[1:]), self.dialect.unknown_m)
+        code = self.dialect.m_codes.get(int(event.what[1:]), self.dialect.block_rule.unknown_m)
         if code is None:
             return
         text = words_of(block, "".join(letter for letter, _ in event.values), event.what)

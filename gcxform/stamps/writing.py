@@ -38,7 +38,7 @@ def comment_line(dialect: type[Dialect], content: str) -> bytes:
     """
     for begin, end in (("(", ")"), (";", "")):
         line = begin + content + end
-        if begin not in dialect.comments or dialect.executes(line):
+        if begin not in dialect.text_rule.comments or dialect.text_rule.executes(line):
             continue
         block = dialect.load_grammar().parse(line)
         spans = [(item.start, item.end) for item in block.items if isinstance(item, Comment)]
@@ -82,7 +82,7 @@ class Heads:
     @property
     def line_end(self) -> bytes:
         """How lines end in this text."""
-        alone = self.end == b"\r" and self.dialect.lone_cr_is_blank
+        alone = self.end == b"\r" and self.dialect.text_rule.lone_cr_is_blank
         return b"\n" if alone or not self.end else self.end
 
     def _look_at(self, text: bytes) -> None:

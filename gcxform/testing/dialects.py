@@ -113,15 +113,16 @@ def _check_tables(dialect: type[Dialect]) -> None:
     axes = dialect.axes
     check(axes.startswith("XYZ"), f"axes are {axes!r}; X, Y and Z come first")
     check(len(set(axes)) == len(axes), f"an axis stands twice in {axes!r}")
-    check(not set(axes) & set(dialect.words), "a letter is an axis and a word")
+    check(not set(axes) & set(dialect.block_rule.words), "a letter is an axis and a word")
     for group in GROUPS:
         code = dialect.initial.get(group, "")
         check(code in NUMBER, f"initial[{group!r}] is {code!r}, which is no code of that group")
     planes = {plane.name for plane in Plane}
     cut = dialect.arc_rule.planes
     check(cut <= planes, f"arc_rule.planes are {set(cut)}, not {planes}")
-    check(set(dialect.comments) <= set("(;"), f"comments begin with {dialect.comments!r}")
-    check(dialect.block_delete in ("", "execute", "skip"), "block_delete is not one of its words")
+    begins, slashes = dialect.text_rule.comments, dialect.program_rule.block_delete
+    check(set(begins) <= set("(;"), f"comments begin with {begins!r}")
+    check(slashes in ("", "execute", "skip"), "block_delete is not one of its words")
     numbers = dialect.numbers
     for name in ("mm", "inch", "angle", "feed"):
         places = getattr(numbers, name)
@@ -142,7 +143,7 @@ def _check_code(dialect: type[Dialect], name: str) -> None:
     here = f"{dialect.name}: {name}"
     assert re.fullmatch(r"G[0-9]+(\.[1-9])?", name), f"{here} is not how codes are called: G5.1"
     code = dialect.codes[name]
-    unknown = set(code.takes) - set(dialect.words + dialect.axes + SET_ASIDE)
+    unknown = set(code.takes) - set(dialect.block_rule.words + dialect.axes + SET_ASIDE)
     assert not unknown, f"{here} takes {sorted(unknown)}, which are no words of the dialect"
     if code.effect is Effect.MODAL:
         assert code.group in COLUMNS, f"{here}: the core has no group {code.group!r}; use inert"
@@ -181,7 +182,7 @@ def program(dialect: type[Dialect]) -> str:
     has = dialect.codes
     modes = [code for code in ("G21", "G90", "G94", "G17") if code in has]
     lines = [" ".join(modes), "G0 X10. Y20. Z5."]
-    if 3 in dialect.m_codes and "S" in dialect.words:
+    if 3 in dialect.m_codes and "S" in dialect.block_rule.words:
         lines.append("S1000 M3")
     lines += ["G1 Z-1.5 F100.", "X30. Y25."]
     for plane, code in (("XY", "G17"), ("ZX", "G18"), ("YZ", "G19")):
@@ -216,13 +217,13 @@ def _lacking(dialect: type[Dialect]) -> Iterator[str]:
     """Yield blocks of what a dialect does not have."""
     yield from (f"{code} P1" for code in ISO if code not in dialect.codes)
     yield "G987"
-    if dialect.unknown_m is None:
+    if dialect.block_rule.unknown_m is None:
         yield from (f"M{n}" for n in (3, 6, 8, 987) if n not in dialect.m_codes)
-    known = dialect.axes + dialect.words + SET_ASIDE
+    known = dialect.axes + dialect.block_rule.words + SET_ASIDE
     yield from (f"{chr(c)}1." for c in range(65, 91) if chr(c) not in known)
-    if not dialect.has_program_number:
+    if not dialect.program_rule.has_program_number:
         yield "O1000"
-    if not dialect.has_percent:
+    if not dialect.program_rule.has_percent:
         yield "%"
 
 

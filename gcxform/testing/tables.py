@@ -12,6 +12,7 @@ from itertools import combinations
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.cycle_rule import CycleRule
 from gcxform.dialect.dialect import LINEAR, ROTARY, Dialect
+from gcxform.dialect.program_rules import ProgramRule
 from gcxform.modal.frames.acts import WORDS
 from gcxform.modal.meaning.meaning import ACT_ORDER
 from gcxform.modal.meaning.tables import FAMILIES as OF_GROUP
@@ -154,7 +155,7 @@ def _m_codes(dialect: type[Dialect]) -> Complaints:
         name = f"M{number}"
         for message in _m_code(number, code):
             yield name, f"{name} {message}"
-        unknown = set(code.takes) - set(dialect.words + dialect.axes)
+        unknown = set(code.takes) - set(dialect.block_rule.words + dialect.axes)
         if unknown:
             yield name, f"{name} takes {sorted(unknown)}, which are no words of the dialect"
         yield from _m_act(name, code)
@@ -176,9 +177,10 @@ def _m_code(number: int, code: MCode) -> Iterator[str]:
 
 
 def _other_m(dialect: type[Dialect]) -> Complaints:
-    user, change = dialect.unknown_m, dialect.m_codes.get(6)
+    user, change = dialect.block_rule.unknown_m, dialect.m_codes.get(6)
     if user is not None and not user.loses_position:
-        yield "unknown_m", "an M code that nobody knows may move axes; let unknown_m lose positions"
+        text = "an M code that nobody knows may move axes; let unknown_m lose positions"
+        yield "block_rule.unknown_m", text
     if user is not None and change is not None and not change.loses_position:
         yield "M6", "M6 runs a program of the machine here, as other M codes, and loses no position"
     if not canon.ENDS & set(dialect.m_codes):
@@ -216,17 +218,22 @@ def _starts(dialect: type[Dialect]) -> Complaints:
 
 def _ends(dialect: type[Dialect]) -> Complaints:
     """Check what the end of a program leaves behind."""
-    if dialect.stops_at_end:
-        if dialect.resets_at_end:
-            yield "resets_at_end", "the control stops at M2 and M30: nobody sees resets_at_end"
+    for text in _left_at_end(dialect, dialect.program_rule):
+        yield "program_rule.resets_at_end", text
+
+
+def _left_at_end(dialect: type[Dialect], rule: ProgramRule) -> Iterator[str]:
+    if rule.stops_at_end:
+        if rule.resets_at_end:
+            yield "the control stops at M2 and M30: nobody sees resets_at_end"
         return
     for group, code in canon.AT_END.items():
-        left = dialect.resets_at_end.get(group)
+        left = rule.resets_at_end.get(group)
         if left != code:
-            yield "resets_at_end", f"M2 and M30 leave {left} behind in the group {group!r}: {code}"
-    for group, code in dialect.resets_at_end.items():
+            yield f"M2 and M30 leave {left} behind in the group {group!r}: {code}"
+    for group, code in rule.resets_at_end.items():
         if group not in GROUPS or code not in dialect.codes or code not in NUMBER:
-            yield "resets_at_end", f"M2 and M30 leave {code} behind, which the dialect lacks"
+            yield f"M2 and M30 leave {code} behind, which the dialect lacks"
 
 
 def _dwell(dialect: type[Dialect]) -> Complaints:
@@ -241,7 +248,7 @@ def _dwell_words(dialect: type[Dialect], units: Mapping[str, float]) -> Iterator
     if "G4" in dialect.codes and _done(dialect.codes["G4"]) and not units:
         yield "there is G4 and no word for its time"
     for word, unit in units.items():
-        if word not in dialect.words + dialect.axes:
+        if word not in dialect.block_rule.words + dialect.axes:
             yield f"G4 takes {word}, which is no word of the dialect"
         if unit not in (SECONDS, MILLISECONDS):
             yield f"one unit of {word} in G4 is {unit:g} s; it is 1 s, or 0.001 s"
@@ -291,9 +298,9 @@ def _offsets(dialect: type[Dialect]) -> Complaints:
 
 
 def _letters(dialect: type[Dialect]) -> Complaints:
-    words, axes = dialect.words, dialect.axes
+    words, axes = dialect.block_rule.words, dialect.axes
     if len(set(words)) != len(words):
-        yield "words", f"a letter stands twice in words, {words!r}"
+        yield "block_rule.words", f"a letter stands twice in words, {words!r}"
     if set(axes) - set(LINEAR + ROTARY):
         yield "axes", f"axes are {axes!r}; they are letters of {LINEAR + ROTARY}"
     order = ROTARY + "UVW"
@@ -302,13 +309,14 @@ def _letters(dialect: type[Dialect]) -> Complaints:
     wanted = "F" + ("IJK" if {"G2", "G3"} <= set(dialect.codes) else "")
     wanted += "S" * (3 in dialect.m_codes) + "T" * (6 in dialect.m_codes)
     if lacks := sorted(set(wanted) - set(words)):
-        yield "words", f"there are codes that want {lacks}, and no such words"
+        yield "block_rule.words", f"there are codes that want {lacks}, and no such words"
     turns = dialect.arc_rule.turns
     if turns and (turns not in words or turns in "FIJKRSTN"):
         yield "arc_rule.turns", f"{turns!r} counts the turns of arcs, and is another word"
-    for text in dialect.active_comments:
-        if text != text.upper().strip():
-            yield "active_comments", f"{text!r} is compared with capitals, and never found"
+    for begin in dialect.text_rule.active_comments:
+        if begin != begin.upper().strip():
+            text = f"{begin!r} is compared with capitals, and never found"
+            yield "text_rule.active_comments", text
 
 
 def _numbers(dialect: type[Dialect]) -> Complaints:
@@ -361,7 +369,7 @@ def _cycle_words(dialect: type[Dialect], rule: CycleRule) -> Complaints:
     for number, taken in rule.takes.items():
         if set(rule.needs.get(number, "")) - set(taken):
             yield "cycle_rule", f"G{number} needs {rule.needs[number]} and does not take it"
-        if set(taken) - set(dialect.words):
+        if set(taken) - set(dialect.block_rule.words):
             yield "cycle_rule", f"G{number} takes {taken}, which are not all words of the dialect"
 
 

@@ -8,8 +8,8 @@ MUTATIONS = (
     Mutation(
         "comments: what acts at once is taken over",
         "gcxform/emit/templates.py",
-        "in self.target.acts_anywhere}",
-        "in self.source.acts_anywhere}",
+        "in self.target.text_rule.acts_anywhere}",
+        "in self.source.text_rule.acts_anywhere}",
         "tests/test_corpus.py::test_case[dialects/across/comment-of-real-time]",
     ),
     Mutation(

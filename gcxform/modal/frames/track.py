@@ -152,7 +152,8 @@ class Track:
     def reset_work(self, line: int) -> None:
         """Enter the work offset that the end of a program leaves, before a line."""
         old = self.frame
-        self.state.frames = self.state.frames.in_work(self.dialect.resets_at_end["frame"])
+        work = self.dialect.program_rule.resets_at_end["frame"]
+        self.state.frames = self.state.frames.in_work(work)
         self._enter(line, old)
 
     def _enter(self, line: int, old: Frame) -> None:
@@ -268,7 +269,7 @@ class Track:
         placed = present & ~incremental
         if lost is not None:
             value = np.where(lost & ~present, np.nan, value)
-            nowhere = incremental & lost & (not self.dialect.m_first)
+            nowhere = incremental & lost & (not self.dialect.block_rule.m_first)
             self._refuse_steps(nowhere, axis, here.start)
             placed = placed | (lost & ~incremental)
         if not incremental.any():

@@ -14,7 +14,7 @@ from gcxform.syntax.tree import Number
 
 def choices_of(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> tuple[str, ...]:
     """Return what was chosen for the blocks of a shape, nothing where all is certain."""
-    if not (dialect.chosen or dialect.m_order_chosen):
+    if not (dialect.chosen or dialect.block_rule.m_order_chosen):
         return ()
     found = []
     for word in shape.block.words:
@@ -25,7 +25,7 @@ def choices_of(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> tuple[
             found.append(dialect.chosen[name])
         if (
             word.address == "M"
-            and dialect.m_order_chosen
+            and dialect.block_rule.m_order_chosen
             and any(axis in meaning.slots for axis in dialect.axes)
         ):
             found += _order(name, dialect)

@@ -84,9 +84,9 @@ def _comment(
 ) -> Iterator[Refusal]:
     """Turn a comment that is executed into an event."""
     text = shape.block.text[item.start : item.end]
-    if text[0] not in dialect.comments:
+    if text[0] not in dialect.text_rule.comments:
         yield Refusal("GX101", item.start, 1, f"{dialect.name} has no such comments")
-    if dialect.executes(text):
+    if dialect.text_rule.executes(text):
         inner = text[1:].removesuffix(")") if text[0] == "(" else text[1:]
         meaning.events.append(EventShape(COMMENT, f"({inner})"))
 
@@ -143,13 +143,13 @@ def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         if code is None:
             yield Refusal("GX201", word.start, width, f"{dialect.name} has no code {name}")
             continue
-        if not dialect.g80_beside_motion:
+        if not dialect.block_rule.g80_beside_motion:
             pass
         elif "G80" in (name, meaning.groups.get(code.group)) and name != "G80":
             owners.pop(code.group, None)  # beside another motion code G80 says nothing
         elif name == "G80" and code.group in owners and meaning.groups[code.group] != "G80":
             continue
-        if code.group in owners and not dialect.last_code_wins:
+        if code.group in owners and not dialect.block_rule.last_code_wins:
             yield Refusal(
                 "GX202",
                 word.start,
@@ -206,7 +206,8 @@ def _g_act(
     if code.act == "no-length" and dialect.tool_rule.g49_takes_axes and moves:
         message = f"{name} takes the axis words here, and has no use for them"
         yield Refusal("GX202", word.start, width, message, "move in a block of its own")
-    if code.act in TAKES_MOTION and dialect.axis_words_once and "motion" in meaning.groups:
+    once = dialect.block_rule.axis_words_once
+    if once and code.act in TAKES_MOTION and "motion" in meaning.groups:
         message = f"{name} and {meaning.groups['motion']} both want the axis words"
         yield Refusal("GX202", word.start, width, message)
 
@@ -234,11 +235,11 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         if word.address != "M" or not isinstance(word.value, Number):
             continue
         name, width = _code_of(word), word.end - word.start
-        code = dialect.m_codes.get(int(word.value.value), dialect.unknown_m)
+        code = dialect.m_codes.get(int(word.value.value), dialect.block_rule.unknown_m)
         if code is None or word.value.value % 1:
             yield Refusal("GX201", word.start, width, f"{dialect.name} has no code {name}")
             continue
-        if code.group in groups and not dialect.last_code_wins:
+        if code.group in groups and not dialect.block_rule.last_code_wins:
             message = f"{name} and {groups[code.group]} are of one modal group"
             yield Refusal("GX202", word.start, width, message)
         groups[code.group] = name
@@ -252,7 +253,7 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
             meaning.loses_position = True
             own = code.group == "user"  # of the other codes nobody can say that they move nothing
             meaning.lost_by.add(int(word.value.value) if own else -1)
-        meaning.runs_macro |= code is dialect.unknown_m
+        meaning.runs_macro |= code is dialect.block_rule.unknown_m
         meaning.changes_tool |= code.group == "tool"
         order = {"tool": 30, "spindle": 40, "coolant": 41, "override": 42}.get(code.group, 43)
         taken = _take(name, code, dialect, meaning)
@@ -263,7 +264,7 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
 
 def _too_many(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
     """Refuse more M words than the control takes in a block."""
-    most = dialect.most_m_words
+    most = dialect.block_rule.most_m_words
     for word in [word for word in shape.block.words if word.address == "M"][most:][:1]:
         if most:
             message = f"{dialect.name} takes {most} M words in a block"
@@ -272,11 +273,11 @@ def _too_many(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
 
 def _spindle_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> None:
     """Turn a word `$` into an event beside what turns a spindle; elsewhere it is left over."""
-    if "$" not in meaning.slots or not dialect.spindle_words:
+    if "$" not in meaning.slots or not dialect.block_rule.spindle_words:
         return
     coded = [w for w in shape.block.words if w.address in CODES and isinstance(w.value, Number)]
     codes = {_code_of(word) for word in coded}
-    if dialect.spindle_words & {*codes, *meaning.slots}:
+    if dialect.block_rule.spindle_words & {*codes, *meaning.slots}:
         meaning.events.append(EventShape(9, "$", (("$", meaning.slots.pop("$")),)))
 
 
@@ -293,18 +294,18 @@ def only_for_cycles(name: str, source: type[Dialect], target: type[Dialect]) -> 
 
 def program_number_fits(word: Word, dialect: type[Dialect]) -> bool:
     """Whether the control can hold a program number."""
-    digits = dialect.program_number_digits
+    digits = dialect.program_rule.number_digits
     return not digits or not isinstance(word.value, Number) or word.value.value < 10**digits
 
 
 def _lacking(word: Word, dialect: type[Dialect]) -> Refusal | None:
     """Return why the control does not have a word, None if it does."""
     address, width = word.address, word.end - word.start
-    known = address in dialect.axes or address in dialect.words or address in CODES
-    if not known or (address == "O" and not dialect.has_program_number):
+    known = address in dialect.axes or address in dialect.block_rule.words or address in CODES
+    if not known or (address == "O" and not dialect.program_rule.has_program_number):
         return Refusal("GX201", word.start, width, f"{dialect.name} has no word {address}")
     if address == "O" and not program_number_fits(word, dialect):
-        digits = dialect.program_number_digits
+        digits = dialect.program_rule.number_digits
         message = f"{dialect.name} has program numbers of at most {digits} digits"
         return Refusal("GX201", word.start, width, message)
     return None
@@ -315,7 +316,7 @@ def _bars_comp(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> tuple[
     sorted_codes = [(name, group) for group, name in meaning.groups.items()]
     for word in shape.block.words:
         if word.address == "M" and isinstance(word.value, Number):
-            code = dialect.m_codes.get(int(word.value.value), dialect.unknown_m)
+            code = dialect.m_codes.get(int(word.value.value), dialect.block_rule.unknown_m)
             sorted_codes += [(_code_of(word), code.group)] if code else []
     rule = dialect.cutter_comp
     before = [name for name, group in sorted_codes if group in rule.before]
@@ -327,7 +328,7 @@ def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
     """Refuse a sequence number behind something else where the control wants it first."""
     items = [item for item in shape.block.items if not isinstance(item, Mark)]
     for item in items[1:]:
-        if isinstance(item, Word) and item.address == "N" and dialect.number_first:
+        if isinstance(item, Word) and item.address == "N" and dialect.block_rule.number_first:
             message = f"{dialect.name} takes a sequence number only at the head of a block"
             yield Refusal("GX203", item.start, item.end - item.start, message)
 
@@ -369,5 +370,5 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
         elif address in slots and address not in motion:
             message = f"{address} belongs to no code of this block"
             yield Refusal("GX203", word.start, word.end - word.start, message)
-    if meaning.percent and not dialect.has_percent:
+    if meaning.percent and not dialect.program_rule.has_percent:
         yield Refusal("GX201", 0, 1, f"{dialect.name} has no % sign")

@@ -90,7 +90,7 @@ class Moves:
         Where an M code may act after the move of its block, what it loses is lost behind it as
         well. A canned cycle beside one is refused.
         """
-        if self.dialect.m_first or not lost.any():
+        if self.dialect.block_rule.m_first or not lost.any():
             return set()
         for line in np.flatnonzero(lost & self.drilling.calls).tolist():
             message = "a canned cycle beside an M code that may move axes"
@@ -208,7 +208,7 @@ class Moves:
     def _after_end(self) -> Flags:
         """Return the lines before which a control that goes on has reset the work offset."""
         after = np.zeros(self.lines.live, np.bool_)
-        if "frame" in self.dialect.resets_at_end:
+        if "frame" in self.dialect.program_rule.resets_at_end:
             after[1:] = self.lines.flag("ends")[:-1]
         return after
 

@@ -157,18 +157,20 @@ class Fanuc(gx.Dialect):
         **{code: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL") for code in (98, 198)},
         99: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL"),
     }
-    m_order_chosen = True
     chosen: ClassVar[Mapping[str, str]] = {
         "G43": "a tool length is along Z (parameter 5001)",
         "G44": "a tool length is along Z (parameter 5001)",
         "M29": "M29 makes the next tap rigid and moves nothing (parameter 5210)",
     }
-    unknown_m = gx.MCode("user", loses_position=True)
     tool_rule = gx.ToolRule(length_may_move=True)
     motion_rule = gx.MotionRule(g53_is_rapid=True)
-    last_code_wins = True
+    block_rule = gx.BlockRule(
+        last_code_wins=True,
+        m_order_chosen=True,
+        unknown_m=gx.MCode("user", loses_position=True),
+    )
     cutter_comp = gx.CutterComp(stored=True)
-    lower_case = False
+    text_rule = gx.TextRule(lower_case=False)
     point_rule = gx.PointRule(required=True, dwell={"X": 1.0, "U": 1.0, "P": 0.001})
     feed_rule = gx.FeedRule(change_clears=True)
     arc_rule = gx.ArcRule(absolute=0.01)

@@ -53,9 +53,27 @@ class Grbl(gx.Dialect):
         if code not in (6,)  # M6 is error 20
     }
     initial: ClassVar[Mapping[str, str]] = {**gx.Dialect.initial, "motion": "G0"}
-    acts_anywhere = "!?~\x18" + "".join(map(chr, range(0x80, 0x100)))
-    axis_words_once = True
-    g80_beside_motion = False
+    program_rule = gx.ProgramRule(
+        has_percent=False,
+        has_program_number=False,
+        block_delete="execute",
+        stops_at_end=False,
+        resets_at_end={
+            "motion": "G1",
+            "plane": "G17",
+            "distance": "G90",
+            "feed-mode": "G94",
+            "frame": "G54",
+        },
+    )
+    text_rule = gx.TextRule(
+        line_length=79,
+        length_without_blanks=True,
+        largest_number=10_000_000,
+        comments="(;",
+        acts_anywhere="!?~\x18" + "".join(map(chr, range(0x80, 0x100))),
+    )
+    block_rule = gx.BlockRule(words="FIJKLNPRST", axis_words_once=True, g80_beside_motion=False)
     motion_rule = gx.MotionRule(g28_without_axes=True, g53_in_g91="absolute")
     offset_rule = gx.OffsetRule(
         known_at_start=True,
@@ -65,21 +83,5 @@ class Grbl(gx.Dialect):
         g10_ignores_g91=True,
     )
     tool_rule = gx.ToolRule(length_axes="Z", g49_takes_axes=True)
-    block_delete = "execute"
-    stops_at_end = False
-    resets_at_end: ClassVar[Mapping[str, str]] = {
-        "motion": "G1",
-        "plane": "G17",
-        "distance": "G90",
-        "feed-mode": "G94",
-        "frame": "G54",
-    }
-    largest_number = 10_000_000
-    line_length = 79
-    length_without_blanks = True
-    comments = "(;"
-    has_percent = False
-    has_program_number = False
-    words = "FIJKLNPRST"
     feed_rule = gx.FeedRule(arcs_in_time=False)
     arc_rule = gx.ArcRule(absolute=0.005, relative=0.001, largest=0.5, circle_needs_axis_word=True)

@@ -116,8 +116,9 @@ class Haas(Fanuc):
         g52_known=False,
         mirrors_at_zero=True,
     )
-    words = Fanuc.words + "UVW"
-    lower_case = True
+    block_rule = replace(Fanuc.block_rule, words=Fanuc.block_rule.words + "UVW")
+    text_rule = replace(Fanuc.text_rule, lower_case=True, line_length=256)
+    program_rule = replace(Fanuc.program_rule, number_digits=5)
     chosen: ClassVar[Mapping[str, str]] = {"M16": "M16 is M6"}
     point_rule = replace(
         Fanuc.point_rule,
@@ -127,5 +128,3 @@ class Haas(Fanuc):
         dwell={"P": 0.001},
         dwell_in_seconds=True,
     )
-    program_number_digits = 5
-    line_length = 256

@@ -179,9 +179,18 @@ class LinuxCNC(gx.Dialect):
     chosen: ClassVar[Mapping[str, str]] = {
         "M6": "a tool change leaves the axes where they are (no TOOL_CHANGE_POSITION)"
     }
-    m_first = True
-    axis_words_once = True
-    spindle_stands = True
+    program_rule = gx.ProgramRule(spindle_stands=True, needs_end=True)
+    text_rule = gx.TextRule(
+        lone_cr_is_blank=True, line_length=252, comments="(;", active_comments=ACTIVE
+    )
+    block_rule = gx.BlockRule(
+        words="DEFHIJKLNPQRST@^$",
+        number_first=True,
+        axis_words_once=True,
+        most_m_words=4,
+        m_first=True,
+        spindle_words=frozenset({"S", "M3", "M4", "M5", "M19", "M51", "G95", "G96", "G97"}),
+    )
     motion_rule = gx.MotionRule(
         lone_codes_count=True, g28_without_axes=True, rounds_corners=True, cycles_stop=True
     )
@@ -207,16 +216,7 @@ class LinuxCNC(gx.Dialect):
         before=frozenset({"tool", "override", "output"}),
         after=frozenset({"non-modal", "tool-length", "frame", "path", "retract"}),
     )
-    lone_cr_is_blank = True
-    number_first = True
-    needs_end = True
-    most_m_words = 4
-    spindle_words = frozenset({"S", "M3", "M4", "M5", "M19", "M51", "G95", "G96", "G97"})
     cycle_rule = CYCLE_RULE
-    line_length = 252
-    comments = "(;"
-    active_comments = ACTIVE
-    words = "DEFHIJKLNPQRST@^$"
     arithmetic = v.RS274
     flow = "o-words"
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)

@@ -41,4 +41,4 @@ class Strip(gx.TextPass):
 def _is_active(comment: str, block: gx.Block) -> bool:
     """Whether a control does something with a comment: an alarm shows the one in its block."""
     beside = (item for item in block.items if not isinstance(item, gx.Word | gx.Comment))
-    return LinuxCNC.executes(comment) or any(hasattr(item, "tree") for item in beside)
+    return LinuxCNC.text_rule.executes(comment) or any(hasattr(item, "tree") for item in beside)

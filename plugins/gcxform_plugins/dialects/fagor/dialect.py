@@ -88,15 +88,13 @@ class Fagor(gx.Dialect):
         129: gx.MCode("tip"),
     }
     translator = Blocks
-    m_order_chosen = True
+    block_rule = gx.BlockRule(words="DFHIJKNPQRST", m_order_chosen=True)
     chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
         "ABC", "rotary axes go where they are told, whichever way is shorter"
     )
     tip_switches: ClassVar[Mapping[str, str]] = {"tip-on": "M128", "tip-off": "M129"}
     spelled: ClassVar[Mapping[str, str]] = {"M128": "#RTCP ON", "M129": "#RTCP OFF"}
-    has_percent = False
-    has_program_number = False
+    program_rule = gx.ProgramRule(has_percent=False, has_program_number=False)
     feed_rule = gx.FeedRule(change_clears=True)
     arc_rule = gx.ArcRule(absolute=0.01)
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
-    words = "DFHIJKNPQRST"

@@ -93,7 +93,7 @@ class Siemens(gx.Dialect):
         129: gx.MCode("tip"),
     }
     translator = Blocks
-    m_order_chosen = True
+    block_rule = gx.BlockRule(m_order_chosen=True)
     chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
         "ABC", "rotary axes go where they are told, whichever way is shorter (MD30455)"
     )

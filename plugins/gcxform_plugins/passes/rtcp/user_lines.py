@@ -97,12 +97,12 @@ def _read(lines: gx.Lines | None, dialect: type[gx.Dialect], inert: Codes) -> tu
 def _line(text: str, dialect: type[gx.Dialect], inert: Codes) -> Line:
     """Return what a line does. Raises _WrongError."""
     for comment in COMMENT.findall(text):
-        if comment[0] not in dialect.comments:
+        if comment[0] not in dialect.text_rule.comments:
             raise _WrongError(f"{dialect.name} has no such comments")
-        if dialect.executes(comment):
+        if dialect.text_rule.executes(comment):
             raise _WrongError("the control executes this comment")
     words = _words(COMMENT.sub(" ", text))
-    if dialect.lower_case:
+    if dialect.text_rule.lower_case:
         words = [(letter.upper(), value) for letter, value in words]
     codes = [f"G{float(value):g}" for letter, value in words if letter == "G"]
     rest = "".join(letter for letter, _ in words if letter != "G")

@@ -16,8 +16,7 @@ class Acme9000(gx.Dialect):
     name = "acme9000"
     axes = "XYZA"
     arc_rule = gx.ArcRule(planes=frozenset({"XY"}))
-    has_percent = False
-    has_program_number = False
+    program_rule = gx.ProgramRule(has_percent=False, has_program_number=False)
     numbers = gx.NumberFormat(mm=4, angle=2, zeros=True)
 
 

@@ -1,0 +1,89 @@
+"""What a program may look like to a control: as a whole, as text, and block by block."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from gcxform.dialect.codes import MCode
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramRule:
+    """Where programs begin and end, and which of their blocks are executed.
+
+    has_percent        a percent sign may stand around a program
+    has_program_number an O number may stand at its head
+    number_digits      how many digits such a number may have; 0: any number
+    spindle_stands     the spindle stands still, as far as the control knows, when a program starts
+    block_delete       what is done with `/` blocks: "execute", "skip", or "": a switch decides
+    needs_end          a file without M2 or M30, and not between two percent signs, is refused
+    stops_at_end       M2 and M30 stop the control
+    resets_at_end      where they do not: the modes they leave behind
+    """
+
+    has_percent: bool = True
+    has_program_number: bool = True
+    number_digits: int = 0
+    spindle_stands: bool = False
+    block_delete: str = ""
+    needs_end: bool = False
+    stops_at_end: bool = True
+    resets_at_end: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class TextRule:
+    """Characters, lines and comments.
+
+    lower_case            words may be written in small letters
+    lone_cr_is_blank      a CR without LF is a blank inside a block, and no line end
+    line_length           the longest block the control takes, in characters; 0: no limit
+    length_without_blanks that limit counts neither blanks nor comments
+    largest_number        the largest sequence number the control takes; 0: no limit
+    comments              how a comment may begin: any of "(" and ";"
+    active_comments       how comments begin that the control executes, in capitals
+    acts_anywhere         characters on which it acts as they come in, also in a comment
+    """
+
+    lower_case: bool = True
+    lone_cr_is_blank: bool = False
+    line_length: int = 0
+    length_without_blanks: bool = False
+    largest_number: int = 0
+    comments: str = "("
+    active_comments: tuple[str, ...] = ()
+    acts_anywhere: str = ""
+
+    def executes(self, comment: str) -> bool:
+        """Whether the control does something when it reads a comment."""
+        return comment.lstrip("(; \t").upper().startswith(self.active_comments)
+
+
+@dataclass(frozen=True, slots=True)
+class BlockRule:
+    """Which words a block may have, and in what order they act.
+
+    words             addresses the control knows, besides its axes and G, M, O
+    number_first      a sequence number anywhere but at the head of its block is refused
+    last_code_wins    of two codes of one group the last is taken; otherwise the block is refused
+    axis_words_once   a motion code beside a code that takes the axis words for itself (G92, G28)
+                      is refused
+    g80_beside_motion G80 beside another motion code says nothing; otherwise the block is refused
+    most_m_words      how many M words a block may have; 0: any number
+    unknown_m         what an M code outside `m_codes` is; None: it is refused
+    m_first           M codes that may move axes do so before the motion of their block, for certain
+    m_order_chosen    the machine decides when an M code beside a move acts, so that it is assumed
+    spindle_words     codes, and S, beside which a word `$` says which spindle is meant
+    """
+
+    words: str = "DEFHIJKLNPQRST"
+    number_first: bool = False
+    last_code_wins: bool = False
+    axis_words_once: bool = False
+    g80_beside_motion: bool = True
+    most_m_words: int = 0
+    unknown_m: MCode | None = None
+    m_first: bool = False
+    m_order_chosen: bool = False
+    spindle_words: frozenset[str] = frozenset()
