@@ -111,6 +111,7 @@ if TYPE_CHECKING:
     from gcxform.toolpath.circles import points_on_arcs as points_on_arcs
     from gcxform.toolpath.circles import radius_and_angle as radius_and_angle
     from gcxform.toolpath.circles import swept_anew as swept_anew
+    from gcxform.toolpath.columns import column_major as column_major
     from gcxform.toolpath.crossings import line_crossings as line_crossings
     from gcxform.toolpath.facts import ABSOLUTE as ABSOLUTE
     from gcxform.toolpath.facts import AXIS_POSITIONS as AXIS_POSITIONS
@@ -137,7 +138,6 @@ if TYPE_CHECKING:
     from gcxform.toolpath.path import Kind as Kind
     from gcxform.toolpath.path import Plane as Plane
     from gcxform.toolpath.path import Toolpath as Toolpath
-    from gcxform.toolpath.path import column_major as column_major
     from gcxform.toolpath.splines import points_on_splines as points_on_splines
     from gcxform.toolpath.splines import spline_chords as spline_chords
     from gcxform.toolpath.splines import splines_as_lines as splines_as_lines
@@ -179,6 +179,7 @@ _HOMES = {
     "pipeline.pipeline": "Pipeline Result",
     "plugin.registry": "Registry",
     "syntax.tree": "Block Comment Number Word",
+    "toolpath.columns": "column_major",
     "toolpath.circles": "arc_cuts arc_extremes circle_through points_on_arcs radius_and_angle "
     "swept_anew",
     "toolpath.crossings": "line_crossings",
@@ -187,8 +188,7 @@ _HOMES = {
     "NO_CUTTER_COMP NO_CYCLES NOMINAL TIP_POSITIONS WORKPIECE_FRAME XY_ARCS Fact "
     "inseparable_cycles",
     "toolpath.frames": "Frame",
-    "toolpath.path": "Blocks Event FREE FeedMode Form Given Kind OWN_DISTANCES Plane Toolpath "
-    "column_major",
+    "toolpath.path": "Blocks Event FREE FeedMode Form Given Kind OWN_DISTANCES Plane Toolpath",
     "toolpath.splines": "points_on_splines spline_chords splines_as_lines",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}

@@ -21,11 +21,8 @@ from gcxform.pipeline.pipeline import Result
 from gcxform.plugin.registry import dialect_of
 from gcxform.syntax.source import Source, program_of
 from gcxform.system.files import write_atomically
-from gcxform.toolpath.path import (
-    BLOCK_MODES,
-    COLUMNS,
-    Toolpath,
-)
+from gcxform.toolpath.columns import COLUMNS
+from gcxform.toolpath.path import BLOCK_MODES, Toolpath
 
 
 def write(result: Result | bytes, path: str | Path) -> None:

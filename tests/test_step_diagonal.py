@@ -23,14 +23,8 @@ from gcxform_plugins.formats.lddm import Lddm
 
 from gcxform.calibrate.diagonal.readings import step_diagonals
 from gcxform.calibrate.diagonal.reframe import reframed
-from gcxform.calibrate.diagonal.step_diagonal import (
-    Assumed,
-    identify,
-    misalignment_gain,
-    solved,
-    together,
-    worded,
-)
+from gcxform.calibrate.diagonal.slopes import together, worded
+from gcxform.calibrate.diagonal.step_diagonal import Assumed, identify, misalignment_gain, solved
 from gcxform.calibrate.solution import plausible
 from gcxform.diagnostics import InputError, UsageError
 from gcxform.errormodel.functions import AxisFunctions

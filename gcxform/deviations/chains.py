@@ -18,7 +18,8 @@ from gcxform.deviations.deviation import deviation
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.circles import points_on_arcs, radius_and_angle
-from gcxform.toolpath.path import Kind, Plane, Toolpath, constant
+from gcxform.toolpath.columns import constant
+from gcxform.toolpath.path import Kind, Plane, Toolpath
 
 ROOM = 20_000  # rows compared at once
 STEPS = 60  # how far, in rows, a joint is looked for from where lengths say it is

@@ -8,9 +8,10 @@ from gcxform.dialect.dialect import LINEAR
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.numbers import quantise
 from gcxform.modal.columns import fill
-from gcxform.modal.moves.moves import SAME_PLACE, turns_only
 from gcxform.system.arrays import Flags, Floats, Ints, Small
-from gcxform.toolpath.path import Form, Kind, Toolpath, column_major
+from gcxform.toolpath.columns import column_major
+from gcxform.toolpath.path import Form, Kind, Toolpath
+from gcxform.toolpath.still_axes import SAME_PLACE, turns_only
 
 
 class Positions:

@@ -13,9 +13,9 @@ from gcxform.emit.manner import Believed, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.modal.columns import fill
 from gcxform.modal.meaning.tables import GROUPS, NUMBER, TAP, THREAD
-from gcxform.modal.moves.moves import turns_only
 from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.toolpath.path import FeedMode, Form, Kind
+from gcxform.toolpath.still_axes import turns_only
 
 NOTHING = np.int8(-1)
 

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from gcxform.toolpath.path import COLUMNS, Event, Plane, Toolpath
+from gcxform.toolpath.columns import COLUMNS
+from gcxform.toolpath.path import Event, Plane, Toolpath
 
 
 class Stretches:

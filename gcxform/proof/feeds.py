@@ -11,11 +11,11 @@ import numpy as np
 from gcxform.deviations.runs import SAME_FEED
 from gcxform.dialect.dialect import LINEAR
 from gcxform.modal.interpreter import Interpreted
-from gcxform.modal.moves.moves import moves_linear, turns_only
 from gcxform.proof.trace import Trace
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import FeedMode, Kind
+from gcxform.toolpath.still_axes import moves_linear, turns_only
 from gcxform.toolpath.travel import Lengths, lengths
 
 TIME_ERROR = 1e-3  # relative: what the rounding of the feeds of pieces may change

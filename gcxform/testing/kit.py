@@ -36,8 +36,9 @@ from gcxform.testing.paths import (
     paths,
 )
 from gcxform.toolpath.circles import radius_and_angle
+from gcxform.toolpath.columns import COLUMNS
 from gcxform.toolpath.facts import Fact
-from gcxform.toolpath.path import COLUMNS, FeedMode, Kind, Toolpath
+from gcxform.toolpath.path import FeedMode, Kind, Toolpath
 from gcxform.toolpath.travel import lengths
 
 SLACK = 1e-7  # mm and degrees; what arithmetic may add to a promise

@@ -13,7 +13,8 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.dialect.move_rules import ArcRule
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
-from gcxform.toolpath.path import BLOCK_MODES, COLUMNS, Kind, Toolpath
+from gcxform.toolpath.columns import COLUMNS
+from gcxform.toolpath.path import BLOCK_MODES, Kind, Toolpath
 
 HEAD = "G21 G90 G94 G17\n"
 

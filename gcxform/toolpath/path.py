@@ -7,7 +7,7 @@ return new paths made with `replace`, `take` and `with_rows`, which carry `sourc
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from dataclasses import replace as dataclass_replace
 from enum import IntEnum
@@ -15,12 +15,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.system.distinct import distinct
 from gcxform.system.limits import how_to_raise, limits
+from gcxform.toolpath.columns import COLUMNS, TYPES, picked, typed
 from gcxform.toolpath.frames import Frame, by_frame
 
 
@@ -149,46 +149,6 @@ class Given:
     moves: bool = False
 
 
-COLUMNS = (
-    "kind",
-    "end",
-    "centre",
-    "sweep",
-    "plane",
-    "feed",
-    "feed_mode",
-    "frame",
-    "source",
-    "nth",
-    "form",
-    "side",
-    "radius",
-    "lost",
-    "control",
-    "tool",
-)
-
-
-TYPES: Mapping[str, np.dtype[Any]] = {
-    **dict.fromkeys((*COLUMNS, "entry"), np.dtype(np.float64)),
-    **dict.fromkeys(("frame", "source", "nth", "lost"), np.dtype(np.int64)),
-    **dict.fromkeys(("kind", "plane", "feed_mode", "form", "side"), np.dtype(np.int8)),
-}
-"""What each column holds: a position that is kept in whole numbers would be cut off."""
-
-
-def _as(name: str, column: object, kind: np.dtype[Any]) -> NDArray[Any]:
-    """Return a column in its type; whole numbers become any other, nothing becomes whole."""
-    found = np.asarray(column)
-    whole = found.dtype.kind in "biu"
-    if not whole and not (kind.kind == "f" and found.dtype.kind == "f"):
-        raise TypeError(f"{name} of a toolpath holds {kind}, which {found.dtype} does not become")
-    column = found.astype(kind)
-    if (column != found).any() and whole:
-        raise TypeError(f"{name} of a toolpath has numbers that {kind} does not hold")
-    return column
-
-
 @dataclass(frozen=True)
 class Toolpath:
     """Rows of canonical moves.
@@ -267,7 +227,7 @@ class Toolpath:
         for name, kind in TYPES.items():
             column = getattr(self, name)
             if getattr(column, "dtype", None) != kind:
-                column = _as(name, column, kind)
+                column = typed(name, column, kind)
                 object.__setattr__(self, name, column)
             column.flags.writeable = False
 
@@ -383,7 +343,7 @@ class Toolpath:
 
     def take(self, rows: Ints | Flags) -> Toolpath:
         """Return the path of some rows, in the order given; events and entry stay."""
-        return self.replace(**{name: _picked(getattr(self, name), rows) for name in COLUMNS})
+        return self.replace(**{name: picked(getattr(self, name), rows) for name in COLUMNS})
 
     def check_rows(self, counts: Ints) -> Ints:
         """Return how often each row is to stand, if that is no more than a window may become."""
@@ -403,28 +363,7 @@ class Toolpath:
         events = tuple(event.at(begin[event.row]) for event in self.events)
         given = tuple(dataclass_replace(g, row=begin[g.row]) for g in self.given)
         row = np.repeat(np.arange(len(self)), counts)
-        kept = {n: _picked(getattr(self, n), row) for n in COLUMNS if n not in columns}
+        kept = {n: picked(getattr(self, n), row) for n in COLUMNS if n not in columns}
         if kept["lost"].any():
             kept["lost"] = np.where(np.arange(len(row)) == first[row], kept["lost"], 0)
         return self.replace(**kept, **columns, events=events, given=given)
-
-
-def _picked(column: NDArray[Any], rows: Ints | Flags) -> NDArray[Any]:
-    """Return a column at rows; a column that holds one value keeps taking no memory."""
-    if any(column.strides) or not len(column):
-        return column[rows]
-    count = int(np.count_nonzero(rows)) if rows.dtype == np.bool_ else len(rows)
-    return np.broadcast_to(column[0], (count, *column.shape[1:]))
-
-
-def column_major(rows: int, columns: int) -> Floats:
-    """Return an empty (rows, columns) array whose columns are contiguous."""
-    return np.empty((columns, rows)).T
-
-
-def constant(value: float, rows: int, dtype: type = np.float64) -> NDArray[Any]:
-    """Return a read-only column that holds one value and takes no memory."""
-    one: NDArray[Any] = np.array(value, dtype)
-    column: NDArray[Any] = np.ndarray((rows,), one.dtype, one, 0, (0,))  # broadcast_to is slow
-    column.flags.writeable = False
-    return column

@@ -20,7 +20,7 @@ from seeds_kit import shares
 
 import gcxform as gx
 from gcxform.plugin.registry import default_registry
-from gcxform.toolpath.path import COLUMNS
+from gcxform.toolpath.columns import COLUMNS
 
 COUNT = settings.default.max_examples
 WORD = re.compile(

@@ -16,7 +16,8 @@ from gcxform.calibrate.diagonal.angles import Angles
 from gcxform.calibrate.diagonal.plain_diagonal import ANGLES, BLIND, Squareness, spread
 from gcxform.calibrate.diagonal.readings import Diagonals, Volume, name_of
 from gcxform.calibrate.diagonal.reframe import FRAME
-from gcxform.calibrate.diagonal.step_diagonal import REJECTED, Identified, together, worded
+from gcxform.calibrate.diagonal.slopes import together, worded
+from gcxform.calibrate.diagonal.step_diagonal import REJECTED, Identified
 from gcxform.errormodel.model import AXES
 from gcxform.system.arrays import Floats
 from gcxform.version import VERSION

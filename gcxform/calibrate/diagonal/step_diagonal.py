@@ -30,6 +30,7 @@ from gcxform.calibrate.diagonal.equations import (
 )
 from gcxform.calibrate.diagonal.readings import Diagonals, LinearTest, beam, sideways
 from gcxform.calibrate.diagonal.reframe import slopes_of, turn_of
+from gcxform.calibrate.diagonal.slopes import SLOPES_AT, together
 from gcxform.calibrate.solution import Scatter, Solution, plausible, reduced_rows, solve
 from gcxform.diagnostics import InputError
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
@@ -38,8 +39,6 @@ from gcxform.system.arrays import Flags, Floats
 
 NOISE: Final = 0.001  # mm, of one step
 REJECTED: Final = 3.0  # times the stated noise
-SLOPES: Final = ("scale X", "scale Y", "scale Z", "EXY slope", "EXZ slope", "EYZ slope")
-_SLOPES_AT: Final = ((0, 0), (1, 1), (2, 2), (1, 0), (2, 0), (2, 1))  # axis, direction
 _NOTHING: Final = 1e-7  # of a unit vector: below it an output does not depend on what is free
 
 
@@ -131,7 +130,7 @@ class Identified:
     def _slope_rows(self) -> Floats:
         """The six slopes of `SLOPES` from the outputs (6, outputs)."""
         rows = np.zeros((6, len(self._framing)))
-        for k, (axis, direction) in enumerate(_SLOPES_AT):
+        for k, (axis, direction) in enumerate(SLOPES_AT):
             last = (3 * axis + direction + 1) * self.layout.steps - 1
             rows[k, last] = 1.0 / self.diagonals.volume.travel[axis]
         return rows
@@ -380,23 +379,6 @@ def misalignment_gain(found: Identified) -> tuple[float, float]:
     freed = solved(found.diagonals, found.linear, replace(found.assumed, free_beams=True))
     gained = found.solution.redundancy - freed.solution.redundancy
     return found.solution.chi_square - freed.solution.chi_square, plausible(max(gained, 1))
-
-
-def worded(row: Floats) -> str:
-    """Return a combination of `SLOPES` in words, such as `scale X + 2.12 scale Y`."""
-    text = ""
-    for factor, name in zip(row.tolist(), SLOPES, strict=True):
-        if abs(factor) > 1e-6:
-            size = "" if abs(abs(factor) - 1.0) < 1e-9 else f"{abs(factor):.4g} "
-            sign = ("- " if factor < 0 else "+ ") if text else ("-" if factor < 0 else "")
-            text += f"{' ' if text else ''}{sign}{size}{name}"
-    return text
-
-
-def together(row: Floats) -> str:
-    """Return a direction among `SLOPES` in words, such as `scale X +1 with scale Z -1.14`."""
-    pairs = zip(row.tolist(), SLOPES, strict=True)
-    return " with ".join(f"{name} {factor:+.4g}" for factor, name in pairs if abs(factor) > 1e-6)
 
 
 def _um(value: float) -> str:

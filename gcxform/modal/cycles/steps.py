@@ -11,7 +11,8 @@ import numpy as np
 from gcxform.dialect.cycle_rule import DWELL, RESUME, TAPPING, CycleRule, Level
 from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.system.distinct import distinct
-from gcxform.toolpath.path import Event, Kind, column_major
+from gcxform.toolpath.columns import column_major
+from gcxform.toolpath.path import Event, Kind
 
 CODES = 100  # canned cycles have numbers below
 SAME_DEPTH = 1e-9  # part of a peck

@@ -16,7 +16,8 @@ import numpy as np
 from gcxform.dialect.cycle_rule import CycleRule
 from gcxform.modal.columns import fill
 from gcxform.system.arrays import Flags, Floats, Ints
-from gcxform.toolpath.path import Plane, constant
+from gcxform.toolpath.columns import constant
+from gcxform.toolpath.path import Plane
 
 STICKY = ("r", "normal", "p", "q", "i", "j", "k")
 SCALARS = ("position", "plane", "unit")

@@ -11,7 +11,7 @@ import numpy as np
 
 from gcxform.modal.frames.track import Track
 from gcxform.system.arrays import Flags, Floats, Ints
-from gcxform.toolpath.path import column_major
+from gcxform.toolpath.columns import column_major
 
 
 class Shifted:

@@ -23,8 +23,9 @@ from gcxform.modal.meaning.meaning import Act
 from gcxform.modal.state import Modes
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
+from gcxform.toolpath.columns import constant
 from gcxform.toolpath.frames import Frame
-from gcxform.toolpath.path import Plane, constant
+from gcxform.toolpath.path import Plane
 
 ALONG_Z = "tools whose lengths are not known have them along Z alone: there is no tool table"
 LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar", "no-polar"})

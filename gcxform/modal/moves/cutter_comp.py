@@ -17,7 +17,8 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.lines import Lines
 from gcxform.modal.state import CYCLE_OFF, Modes
 from gcxform.system.arrays import Flags, Floats, Ints, Small
-from gcxform.toolpath.path import Kind, Plane, constant
+from gcxform.toolpath.columns import constant
+from gcxform.toolpath.path import Kind, Plane
 
 GIVEN = 3  # the number of G41.1: from here on D is the diameter itself
 SIDES = np.array([0, 1, -1, 1, -1], np.int8)  # by the number of the code: G40 G41 G42 G41.1 G42.1

@@ -20,7 +20,8 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.frames.track import Track
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Flags, Floats, Ints
-from gcxform.toolpath.path import Plane, constant
+from gcxform.toolpath.columns import constant
+from gcxform.toolpath.path import Plane
 
 SPINDLE = np.array([0, 1, -1, UNKNOWN])
 """How the spindle turns, by the number of its mode: stopped, M3, M4, not known."""

@@ -9,12 +9,10 @@ row; G28 and G53 move in a way of their own (`gcxform/modal/moves/home.py`), and
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gcxform.dialect.dialect import INCH, LINEAR
+from gcxform.dialect.dialect import INCH
 from gcxform.modal.events import events_of
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames.shifted import Shifted
@@ -32,9 +30,9 @@ from gcxform.modal.moves.tool_vectors import Pointing
 from gcxform.modal.state import CYCLE_OFF, Modes
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
-from gcxform.toolpath.path import Blocks, Kind, Toolpath, constant
-
-SAME_PLACE = 1e-7  # mm, deg; an axis that moves by less stands still
+from gcxform.toolpath.columns import constant, picked
+from gcxform.toolpath.path import Blocks, Kind, Toolpath
+from gcxform.toolpath.still_axes import turns_only
 
 
 class Moves:
@@ -305,8 +303,8 @@ class Moves:
             line + self.lines.window.first_line,
             rows.nth,
             rows.form,
-            _at(self.side, line),
-            _at(self.radius, line),
+            picked(self.side, line),
+            picked(self.radius, line),
             self._lost_before(line, rows.nth),
             np.broadcast_to(np.nan, (count, 2, 3)),
             self._tools(line),
@@ -388,33 +386,3 @@ class Moves:
             self.modes.absolute_centre[lines],
             self.modes.inch[lines],
         )
-
-
-def turns_only(path: Toolpath) -> Flags:
-    """Return the moves (n,) in which no linear axis moves and a rotary one does."""
-    rotary = [k for k, axis in enumerate(path.axes) if axis not in LINEAR]
-    if not rotary or not len(path):
-        return np.zeros(len(path), np.bool_)
-    return np.asarray(~moves_linear(path) & ~_still(path)[:, rotary].all(axis=1))
-
-
-def moves_linear(path: Toolpath) -> Flags:
-    """Return the moves (n,) in which a linear axis moves."""
-    linear = [k for k, axis in enumerate(path.axes) if axis in LINEAR]
-    return np.asarray(~_still(path)[:, linear].all(axis=1))
-
-
-def _still(path: Toolpath) -> Flags:
-    """Return which axes (n, axes) stay where they are."""
-    start, ends = path.start, path.end
-    still = (start == ends) | (np.isnan(start) & np.isnan(ends))
-    with np.errstate(invalid="ignore"):  # an axis that was left where it is (inf) stays there
-        still |= np.abs(start - ends) < SAME_PLACE
-    return np.asarray(still)
-
-
-def _at(column: NDArray[Any], rows: Ints) -> NDArray[Any]:
-    """Return a column of the lines at rows; one that holds one value keeps taking no memory."""
-    if column.strides != (0,) or not len(column):
-        return column[rows]
-    return np.broadcast_to(column[0], (len(rows),))

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from gcxform.system.arrays import Floats, Ints, Small
-from gcxform.toolpath.path import Form, column_major, constant
+from gcxform.toolpath.columns import column_major, constant
+from gcxform.toolpath.path import Form
 
 
 @dataclass(frozen=True, slots=True)
