@@ -238,6 +238,14 @@ def test_importing_the_registry_imports_no_plugin() -> None:
     assert done.stdout.strip() == "False"
 
 
+def test_only_the_kinds_that_are_needed_are_imported() -> None:
+    load = "controls = Registry.load('control').controls"
+    shown = "print(sorted(controls), 'gcxform_plugins.passes' in sys.modules)"
+    code = f"import sys; from gcxform.plugin.registry import Registry; {load}; {shown}"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "['fanuc', 'linuxcnc', 'siemens'] False"
+
+
 def test_every_kind_has_an_origin(install: Install) -> None:
     kind = "type('Hexapod', (gx.Kinematics,), {'name': 'hexapod'})"
     source = HEAD + f"def gcxform_kinematics(): return [{kind}]"

@@ -94,9 +94,8 @@ class _Controls(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of the controls."""
-        controls = default_registry().controls.values() if not self.commands else ()
-        for control in controls:
-            if control.reads("kinematics"):
+        for control in default_registry("control").controls.values():
+            if control.reads("kinematics") and control.name not in self.commands:
                 self.add_command(_import_command(control))
         equip(self)
         return super().list_commands(ctx)
@@ -104,7 +103,7 @@ class _Controls(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Return the command of a control; where there is none a plugin may have failed."""
         if cmd_name not in self.list_commands(ctx):
-            warn(default_registry().diagnostics)
+            warn(default_registry("control").diagnostics)
         return super().get_command(ctx, cmd_name)
 
 

@@ -62,8 +62,8 @@ class Registry:
     _origins: dict[tuple[str, str], EntryPoint] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def load(cls) -> Registry:
-        """Return the registry of the plugins which are installed.
+    def load(cls, *kinds: str) -> Registry:
+        """Return the registry of the plugins which are installed; of some kinds, or of all.
 
         Raises UsageError if two of them offer the same name.
         """
@@ -75,8 +75,8 @@ class Registry:
             name = f"{point.name} of {_origin(point)}"
             if registry._register(manager, name, point):
                 points[name] = point
-        for kind, hook in KINDS.items():
-            for implementation in getattr(manager.hook, hook).get_hookimpls():
+        for kind in kinds or KINDS:
+            for implementation in getattr(manager.hook, KINDS[kind]).get_hookimpls():
                 point = points[implementation.plugin_name]
                 registry._take(kind, implementation, point)
         return registry
@@ -177,9 +177,12 @@ class Registry:
 
 
 @cache
-def default_registry() -> Registry:
-    """Return the registry of the installed plugins, loaded at the first call."""
-    return Registry.load()
+def default_registry(*kinds: str) -> Registry:
+    """Return the registry of the installed plugins, loaded at the first call.
+
+    Who needs few kinds only says which, and does not wait for the others.
+    """
+    return Registry.load(*kinds)
 
 
 def dialect_of(given: object) -> type[Dialect]:
