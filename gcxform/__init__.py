@@ -42,12 +42,14 @@ if TYPE_CHECKING:
     from gcxform.dialect.dialect import Dialect as Dialect
     from gcxform.dialect.dialect import NumberFormat as NumberFormat
     from gcxform.dialect.frame_rules import OffsetRule as OffsetRule
+    from gcxform.dialect.frame_rules import TipRule as TipRule
     from gcxform.dialect.frame_rules import ToolRule as ToolRule
     from gcxform.dialect.increments import PointRule as PointRule
     from gcxform.dialect.move_rules import ArcRule as ArcRule
     from gcxform.dialect.move_rules import FeedRule as FeedRule
     from gcxform.dialect.move_rules import MotionRule as MotionRule
     from gcxform.dialect.program_rules import BlockRule as BlockRule
+    from gcxform.dialect.program_rules import FlowRule as FlowRule
     from gcxform.dialect.program_rules import ProgramRule as ProgramRule
     from gcxform.dialect.program_rules import TextRule as TextRule
     from gcxform.errormodel.converting import Fit as Fit
@@ -149,10 +151,10 @@ _HOMES = {
     "diagnostics": "Diagnostic FileError GcxformError InputError Location UsageError "
     "VerificationError",
     "dialect.dialect": "Dialect NumberFormat",
-    "dialect.frame_rules": "OffsetRule ToolRule",
+    "dialect.frame_rules": "OffsetRule TipRule ToolRule",
     "dialect.increments": "PointRule",
     "dialect.move_rules": "ArcRule FeedRule MotionRule",
-    "dialect.program_rules": "BlockRule ProgramRule TextRule",
+    "dialect.program_rules": "BlockRule FlowRule ProgramRule TextRule",
     "flow.translation": "Item Translator",
     "guess": "Evidence Guess guess_dialect",
     "plugin.hookspecs": "hookimpl",

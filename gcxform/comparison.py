@@ -349,8 +349,8 @@ def _told(side: Side, other: type[Dialect]) -> list[Event]:
     silent = {
         code for code, what in other.codes.items() if what.effect is Effect.MODAL and not what.takes
     }
-    if own.tip_switches != other.tip_switches:
-        silent |= {code for act, code in own.tip_switches.items() if act == "tip-off"}
+    if own.tip_rule.switches != other.tip_rule.switches:
+        silent |= {code for act, code in own.tip_rule.switches.items() if act == "tip-off"}
     if plainly:
         silent |= {code for code, what in own.codes.items() if what.act in FRAMING}
     return [event for event in path.events if event.what not in silent]

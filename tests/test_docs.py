@@ -112,7 +112,7 @@ def codes_table():
             file = f"{name}/dialect.py"
             place = f"plugins/gcxform_plugins/dialects/{file}"
             lines.append(f"| | read | what the table at the top of [{file}]({place}) says |")
-            codes = [dialect.spelled.get(c, c) for c in dialect.tip_switches.values()]
+            codes = [dialect.tip_rule.spelled.get(c, c) for c in dialect.tip_rule.switches.values()]
             lines.append(f"| | for `tip-codes` | {', '.join(codes)} |")
             continue
         codes = sorted(dialect.codes.items(), key=lambda item: float(item[0][1:]))
@@ -130,9 +130,8 @@ def codes_table():
                 found += [f"M{m}" for m, code in rest if bool(code.barrier) == refused]
             lines.append(f"| | {word} | {_runs(found)} |")
         if numbers := executed(dialect):
-            lines.append(
-                f"| | executed | {' '.join(f'M{m}' for m in numbers)} {FLOW[dialect.flow]} |"
-            )
+            words = FLOW[dialect.flow_rule.language]
+            lines.append(f"| | executed | {' '.join(f'M{m}' for m in numbers)} {words} |")
     return lines
 
 
@@ -141,7 +140,7 @@ FLOW = {"o-words": "and O-words", "macro-b": "and IF, GOTO, WHILE"}
 
 def executed(dialect):
     """Return the M codes that are executed while a program is read."""
-    return [m for m in EXECUTED.get(dialect.flow, ()) if m in dialect.m_codes]
+    return [m for m in EXECUTED.get(dialect.flow_rule.language, ()) if m in dialect.m_codes]
 
 
 def _runs(codes):

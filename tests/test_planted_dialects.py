@@ -96,6 +96,10 @@ def letters(words: str) -> Kind:
     return changed(GRBL, block_rule=replace(GRBL.block_rule, words=words))
 
 
+def tips(base: Kind, **changes: Any) -> Kind:
+    return changed(base, tip_rule=replace(base.tip_rule, **changes))
+
+
 G41 = FANUC.codes["G41"]
 
 # name: the dialect with the fault, and a part of what is said of it
@@ -363,11 +367,11 @@ PLANTED: dict[str, tuple[Callable[[], Kind], str]] = {
     "a cycle without steps": (lambda: without_steps(81), "G81 has no steps"),
     # tips
     "M128 and M129 swapped": (
-        lambda: changed(FAGOR, tip_switches={"tip-on": "M129", "tip-off": "M128"}),
+        lambda: tips(FAGOR, switches={"tip-on": "M129", "tip-off": "M128"}),
         "M129 is tip-on",
     ),
     "G43.4 for a code that sets no length": (
-        lambda: changed(FANUC, tip_codes={"G43.4": "G49"}),
+        lambda: tips(FANUC, codes={"G43.4": "G49"}),
         "takes no tool length",
     ),
 }

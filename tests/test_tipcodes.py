@@ -53,12 +53,12 @@ def test_nothing_is_corrected_twice(tmp_path, direction):
 )
 def test_other_codes_stay(text):
     source = Source.of_bytes(text)
-    assert without_tip_codes(source, FANUC.tip_codes) is source
+    assert without_tip_codes(source, FANUC.tip_rule.codes) is source
 
 
 def test_windows_of_any_size_are_alike():
     text = b"(G43.4 here)\r\nG43.4 H1 Z5.\r\nG1 X1.\r\n(again) G43.4 H2\r\n"
-    source = without_tip_codes(Source.of_bytes(text), FANUC.tip_codes)
+    source = without_tip_codes(Source.of_bytes(text), FANUC.tip_rule.codes)
     wanted = b"(G43.4 here)\r\nG43 H1 Z5.\r\nG1 X1.\r\n(again) G43 H2\r\n"
     for size in (1, 5, 17, 1000):
         assert b"".join(source.windows(size)) == wanted
@@ -67,7 +67,7 @@ def test_windows_of_any_size_are_alike():
 @pytest.mark.parametrize("size", [3, 1000])
 def test_a_program_with_both_is_refused_at_the_plain_one(size):
     source = without_tip_codes(
-        Source.of_bytes(b"G43.4 H1\n(G43)\nG1 X1.\nG43H2\n"), FANUC.tip_codes
+        Source.of_bytes(b"G43.4 H1\n(G43)\nG1 X1.\nG43H2\n"), FANUC.tip_rule.codes
     )
     with pytest.raises(gx.InputError) as error:
         b"".join(source.windows(size))

@@ -91,7 +91,8 @@ def _foreign(
     found |= {name: said[name] for name in ("comments", "codes", "letters")}
     found |= _meaning(Tolerant(dialect, blocks, reading), said["codes"], speeds)
     for part in ("codes", "events"):
-        found[part] = {dialect.spelled.get(name, name): n for name, n in found[part].items()}
+        spelled = dialect.tip_rule.spelled
+        found[part] = {spelled.get(name, name): n for name, n in found[part].items()}
     for diagnostic in error.diagnostics if error else ():
         line = str(diagnostic.where.line if diagnostic.where else 0)
         found["refused"] += 1

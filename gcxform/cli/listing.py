@@ -108,9 +108,11 @@ def _dialect(thing: type[Dialect]) -> list[str]:
     codes = sorted(thing.codes, key=lambda code: float(code[1:]))
     numbers = thing.numbers
     if thing.translator is not None:
+        tips = thing.tip_rule
+        switches = (tips.spelled.get(code, code) for code in tips.switches.values())
         return [
             f"axes      {' '.join(thing.axes)}",
-            f"tip       {', '.join(thing.spelled.get(c, c) for c in thing.tip_switches.values())}",
+            f"tip       {', '.join(switches)}",
             "written   no: name another dialect in [output]",
         ]
     return [

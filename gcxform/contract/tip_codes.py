@@ -72,7 +72,7 @@ def switches_of(dialect: type[Dialect], control: Mapping[str, str | float]) -> d
 
     They are those of the dialect, and those that the machine file gives.
     """
-    said = (dialect.tip_switches, control)
+    said = (dialect.tip_rule.switches, control)
     return {str(given[act]): act for given in said for act in SWITCHES if act in given}
 
 
@@ -105,7 +105,8 @@ def with_refusal(dialect: type[Dialect], control: Mapping[str, str | float]) -> 
 
 def with_vectors(dialect: type[Dialect]) -> type[Dialect]:
     """Return the dialect in which what is left of codes for tool vectors is read as what it was."""
-    begins, codes = {*dialect.vector_codes.values()}, dict(dialect.codes)
+    begins, codes = {*dialect.tip_rule.vector_codes.values()}, dict(dialect.codes)
+    rule = replace(dialect.tip_rule, takes_vectors=True)
     for name, code in dialect.codes.items():
         if name in begins:
             codes[name] = replace(code, act="vectors")
@@ -113,7 +114,7 @@ def with_vectors(dialect: type[Dialect]) -> type[Dialect]:
             codes[name] = replace(code, act="no-vectors")
         elif code.group == "tool-length":
             codes[name] = barrier(code.group, OTHERWISE, code.takes)
-    return type(dialect.__name__, (dialect,), {"codes": codes, "takes_vectors": True})
+    return type(dialect.__name__, (dialect,), {"codes": codes, "tip_rule": rule})
 
 
 def without_tip_codes(source: Source, codes: Mapping[str, str]) -> Source:

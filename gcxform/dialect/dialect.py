@@ -18,14 +18,13 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from gcxform.config import arguments
-from gcxform.dialect.arithmetic import Arithmetic
 from gcxform.dialect.codes import ISO, ISO_M, Code, CutterComp, MCode
 from gcxform.dialect.cycle_rule import CycleRule
-from gcxform.dialect.frame_rules import OffsetRule, ToolRule
+from gcxform.dialect.frame_rules import OffsetRule, TipRule, ToolRule
 from gcxform.dialect.increments import PointRule
 from gcxform.dialect.language import Language
 from gcxform.dialect.move_rules import ArcRule, FeedRule, MotionRule
-from gcxform.dialect.program_rules import BlockRule, ProgramRule, TextRule
+from gcxform.dialect.program_rules import BlockRule, FlowRule, ProgramRule, TextRule
 from gcxform.machine.control import Setting, declare
 from gcxform.syntax.grammar import Grammar, load
 
@@ -83,35 +82,17 @@ class Dialect:
     """Settings in [control] of a machine file that the dialect asks for, beside the common ones."""
     cutter_comp: ClassVar[CutterComp] = CutterComp()
     """How G41 and G42 are read, where the dialect has them."""
-    arithmetic: ClassVar[Arithmetic | None] = None
-    """How the control computes expressions; None: they are refused."""
-    flow: ClassVar[str] = ""
-    """How subprograms and loops are written: "o-words", "macro-b", or "": the control has none."""
-    tip_codes: ClassVar[Mapping[str, str]] = {}
-    """Codes from which on the control follows the tip, each with the one that only takes the tool
-    length into account."""
-    vector_codes: ClassVar[Mapping[str, str]] = {}
-    """The same of codes with which I, J and K of lines are the tool axis, from tip to holder."""
-    takes_vectors: ClassVar[bool] = False
-    """Whether what is left of such codes is in the program: see `gcxform/contract/tip_codes.py`."""
-    tip_switches: ClassVar[Mapping[str, str]] = {}
-    """M codes that follow the tip, and leave it, on every machine with this control: "tip-on" and
-    "tip-off", as in the machine file."""
-    follows_at_start: ClassVar[bool | None] = None
-    """Whether the control follows the tip when a program starts; None where that is not known."""
     translator: ClassVar[type[Language] | None] = None
     """What turns programs that are not written in words into blocks that are, which is what all
     else here is about. Such a dialect is only read: see `gcxform/flow/translation.py`."""
-    spelled: ClassVar[Mapping[str, str]] = {}
-    """What codes of such blocks are called in the program: `M128` may be `TRAORI`."""
-    calls_own_lines: ClassVar[bool] = False
-    """M97 calls lines of the same program, up to M99."""
     program_rule: ClassVar[ProgramRule] = ProgramRule()
     """Where programs begin and end, and which of their blocks are executed."""
     text_rule: ClassVar[TextRule] = TextRule()
     """Characters, lines and comments."""
     block_rule: ClassVar[BlockRule] = BlockRule()
     """Which words a block may have, and in what order they act."""
+    flow_rule: ClassVar[FlowRule] = FlowRule()
+    """How programs compute, call and repeat."""
     numbers: ClassVar[NumberFormat] = NumberFormat()
     point_rule: ClassVar[PointRule] = PointRule()
     """What numbers are worth, with a decimal point and without."""
@@ -125,6 +106,8 @@ class Dialect:
     """Work offsets, and what shifts them."""
     tool_rule: ClassVar[ToolRule] = ToolRule()
     """Tools and their lengths."""
+    tip_rule: ClassVar[TipRule] = TipRule()
+    """How the control is told to follow the tip of the tool itself."""
     cycle_rule: ClassVar[CycleRule | None] = None
     """What the control makes of canned cycles; None: it has none, or they are not known."""
 

@@ -1,4 +1,4 @@
-"""How codes change what words count from: work offsets, shifts, tool lengths."""
+"""How codes change what words count from: work offsets, shifts, tool lengths, the tip."""
 
 from __future__ import annotations
 
@@ -58,3 +58,28 @@ class ToolRule:
     g49_takes_axes: bool = False
     length_may_move: bool = False
     units_spoil_length: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class TipRule:
+    """How the control is told to follow the tip of the tool itself.
+
+    codes            codes from which on it does, each with the one that only takes the tool length
+                     into account
+    vector_codes     the same of codes with which I, J and K of lines are the tool axis, from tip to
+                     holder
+    takes_vectors    what is left of such codes is in the program: see
+                     `gcxform/contract/tip_codes.py`
+    switches         M codes that follow the tip, and leave it, on every machine with this control:
+                     "tip-on" and "tip-off", as in the machine file
+    spelled          what these are called where programs are not written in words: `M128` may be
+                     `TRAORI`
+    follows_at_start whether it follows the tip when a program starts; None where that is not known
+    """
+
+    codes: Mapping[str, str] = field(default_factory=dict)
+    vector_codes: Mapping[str, str] = field(default_factory=dict)
+    takes_vectors: bool = False
+    switches: Mapping[str, str] = field(default_factory=dict)
+    spelled: Mapping[str, str] = field(default_factory=dict)
+    follows_at_start: bool | None = None

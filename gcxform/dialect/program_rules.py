@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from gcxform.dialect.arithmetic import Arithmetic
 from gcxform.dialect.codes import MCode
 
 
@@ -87,3 +88,18 @@ class BlockRule:
     m_first: bool = False
     m_order_chosen: bool = False
     spindle_words: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class FlowRule:
+    """How programs compute, call and repeat.
+
+    language        how subprograms and loops are written: "o-words", "macro-b", or "": there are
+                    none
+    arithmetic      how the control computes expressions; None: they are refused
+    calls_own_lines M97 calls lines of the same program, up to M99
+    """
+
+    language: str = ""
+    arithmetic: Arithmetic | None = None
+    calls_own_lines: bool = False

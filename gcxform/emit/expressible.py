@@ -70,7 +70,7 @@ def gaps_between(text: str, words: list[Word]) -> Iterator[bool]:
 
 def lasts_in(statement: Statement, target: type[Dialect]) -> bool:
     """Whether a control takes an assignment, of a number, to a parameter that outlives programs."""
-    key, known = key_set(statement), target.arithmetic
+    key, known = key_set(statement), target.flow_rule.arithmetic
     return known is not None and sets_number(statement) and key is not None and known.can_say(key)
 
 
@@ -80,8 +80,9 @@ def needs_assignment(statement: Statement, source: type[Dialect], target: type[D
     Nothing is lost where parameters end with the program, and on a control that has none: nobody
     there could read them. Which they are is known by now, but for dialects without flow words.
     """
-    key, known = key_set(statement), source.arithmetic
-    if target.arithmetic is None or known is None or (key is None and source.flow):
+    key, known = key_set(statement), source.flow_rule.arithmetic
+    flows = key is None and source.flow_rule.language
+    if target.flow_rule.arithmetic is None or known is None or flows:
         return ""
     if key is not None and not known.outlives(key):
         return ""

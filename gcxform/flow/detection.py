@@ -51,19 +51,19 @@ PROOFS = {
 
 def has_flow(source: Source, dialect: type[Dialect]) -> bool:
     """Whether a program may have calls, loops or codes that are computed."""
-    if dialect.flow not in SIGNS:
+    if dialect.flow_rule.language not in SIGNS:
         return False
     signs = [(byte, re.compile(pattern)) for byte, pattern in _cased(dialect)]
     return any(
         any(byte in text and pattern.search(text) for byte, pattern in signs)
-        and PROOFS[dialect.flow].search(_without_comments(text, dialect))
+        and PROOFS[dialect.flow_rule.language].search(_without_comments(text, dialect))
         for text in source.windows()
     )
 
 
 def _cased(dialect: type[Dialect]) -> Iterator[tuple[bytes, bytes]]:
     """Yield the signs, in small letters too where the control takes these."""
-    for byte, pattern in SIGNS[dialect.flow]:
+    for byte, pattern in SIGNS[dialect.flow_rule.language]:
         yield byte, pattern
         small = re.sub(rb"[A-Z]+", lambda letters: letters[0].lower(), pattern)
         if dialect.text_rule.lower_case and small != pattern:

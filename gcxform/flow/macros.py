@@ -151,7 +151,7 @@ class MacroB(Execution):
             return True
         items = bare(block)
         codes = {whole_number(i) for i in items if isinstance(i, Word) and i.address == "M"}
-        if 98 in codes or (97 in codes and self.dialect.calls_own_lines):
+        if 98 in codes or (97 in codes and self.dialect.flow_rule.calls_own_lines):
             self._call(block, items, own=97 in codes)
             return True
         if 99 in codes and self.calls:

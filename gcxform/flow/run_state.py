@@ -56,10 +56,10 @@ class RunState:
     """
 
     def __init__(self, listing: Listing, reading: Reading, keeps: bool) -> None:
-        assert listing.dialect.arithmetic is not None
+        assert listing.dialect.flow_rule.arithmetic is not None
         self.listing = listing
         self.dialect = listing.dialect
-        self.arithmetic: Arithmetic = listing.dialect.arithmetic
+        self.arithmetic: Arithmetic = listing.dialect.flow_rule.arithmetic
         self.reading = reading
         self.keeps = keeps
         given = {parameter_key(name): v for name, v in reading.parameters.items()}

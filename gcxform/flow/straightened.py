@@ -76,7 +76,8 @@ def _account(run: Execution) -> Executed:
 
 def _assigns_for(source: Source, dialect: type[Dialect], target: type[Dialect]) -> bool:
     """Whether assignments of a program are to be written for another control."""
-    if dialect.name == target.name or not dialect.flow or target.arithmetic is None:
+    rule = dialect.flow_rule
+    if dialect.name == target.name or not rule.language or target.flow_rule.arithmetic is None:
         return False
     return any(b"#" in text and b"=" in text for text in source.windows())
 
@@ -91,7 +92,7 @@ def _executed(
     from gcxform.flow.owords import OWords
     from gcxform.flow.uncalled_subprograms import kept
 
-    kind: type[Execution] = OWords if dialect.flow == "o-words" else MacroB
+    kind: type[Execution] = OWords if dialect.flow_rule.language == "o-words" else MacroB
     run = kind(Listing(text, dialect, file), reading, keeps)
     run.run()
     run.close(kept(run))

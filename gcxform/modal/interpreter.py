@@ -98,7 +98,7 @@ class Interpreter:
             self.reading.work_offsets,
             self.reading.homes,
         )
-        following = self.reading.follows_at_start(self.dialect.follows_at_start)
+        following = self.reading.follows_at_start(self.dialect.tip_rule.follows_at_start)
         frames = replace(frames, following=following)
         state = State(groups, position, feed, unit, frames, parameters=self._given())
         rule = self.dialect.cycle_rule
@@ -113,7 +113,7 @@ class Interpreter:
 
     def _given(self) -> dict[Key, float]:
         """Return the parameters whose values are given, but for those the control changes."""
-        arithmetic = self.dialect.arithmetic
+        arithmetic = self.dialect.flow_rule.arithmetic
         given = {_key_of(name): value for name, value in self.reading.parameters.items()}
         return {k: v for k, v in given.items() if arithmetic is not None and arithmetic.owns(k)}
 

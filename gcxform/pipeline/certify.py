@@ -161,7 +161,7 @@ def assumptions(
             if group == "units" and reading.units:
                 code = {"mm": "G21", "in": "G20"}[reading.units]
             found.append(f"{group} {code}, which the program does not state")
-    following = reading.follows_at_start(dialect.follows_at_start)
+    following = reading.follows_at_start(dialect.tip_rule.follows_at_start)
     if following is not None:
         what = "follows" if following else "does not follow"
         found.append(f"the control {what} the tip before the first block")

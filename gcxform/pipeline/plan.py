@@ -166,10 +166,10 @@ class Plan:
         """Return a program without what a pass does instead of the control, and its dialect."""
         dialect = self.read_as
         if any(step.reads_vectors for step in self.path_passes):
-            plain = without_tip_codes(source, self.source.vector_codes)
+            plain = without_tip_codes(source, self.source.tip_rule.vector_codes)
             return plain, dialect if plain is source else with_vectors(dialect)
         if any(step.reads_tip_codes for step in self.path_passes):
-            source = without_tip_codes(source, self.source.tip_codes)
+            source = without_tip_codes(source, self.source.tip_rule.codes)
         return source, dialect
 
     @property

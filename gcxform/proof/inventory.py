@@ -34,7 +34,7 @@ def assignments_differ(
     control takes.
     """
     old = tuple(each for each in old if _lasts(each.key, context))
-    known = context.target.arithmetic
+    known = context.target.flow_rule.arithmetic
     near = 10.0 ** (1 - known.digits) if known is not None else 0.0
     for before, after in zip(old, new, strict=False):
         line = trace.line_of(after.line)
@@ -51,7 +51,7 @@ def assignments_differ(
 
 def _lasts(key: Key, context: PassContext) -> bool:
     """Whether an assignment of the source has to stand in the output."""
-    known = context.target.arithmetic
+    known = context.target.flow_rule.arithmetic
     return context.source is context.target or (known is not None and known.can_say(key))
 
 
@@ -127,7 +127,7 @@ class Others:
     """
 
     def __init__(self, dialect: type[Dialect], file: str) -> None:
-        self.looks = dialect.flow == "macro-b"
+        self.looks = dialect.flow_rule.language == "macro-b"
         self.file = file
         self.tally = Tally()
         self.begins = -1

@@ -265,12 +265,13 @@ def _dwell_words(dialect: type[Dialect], units: Mapping[str, float]) -> Iterator
 
 def _of_macros(dialect: type[Dialect]) -> bool:
     """Whether the control is a relative of Fanuc's, by its language and its words."""
-    return dialect.flow == "macro-b" or bool({"X", "U"} & set(dialect.point_rule.dwell))
+    times = {"X", "U"} & set(dialect.point_rule.dwell)
+    return dialect.flow_rule.language == "macro-b" or bool(times)
 
 
 def _of_ngc(dialect: type[Dialect]) -> bool:
     """Whether the control is a relative of NIST's interpreter."""
-    return dialect.flow == "o-words" or "G38.2" in dialect.codes
+    return dialect.flow_rule.language == "o-words" or "G38.2" in dialect.codes
 
 
 def _offsets(dialect: type[Dialect]) -> Complaints:
@@ -377,19 +378,22 @@ HOLES = tuple(int(code[1:]) for code in canon.CYCLES)
 
 
 def _tips(dialect: type[Dialect]) -> Complaints:
-    for table in ("tip_codes", "vector_codes"):
-        for code, plain in getattr(dialect, table).items():
+    rule = dialect.tip_rule
+    tables = (("tip_rule.codes", rule.codes), ("tip_rule.vector_codes", rule.vector_codes))
+    for table, codes in tables:
+        for code, plain in codes.items():
             if code not in dialect.codes or _done(dialect.codes[code]):
                 yield table, f"{code} follows the tip, and is no barrier of the dialect"
             if plain not in dialect.codes or dialect.codes[plain].act != "length":
                 yield table, f"{plain} stands for {code}, and takes no tool length"
-    switches = {kind: int(code[1:]) for kind, code in dialect.tip_switches.items()}
+    switches = {kind: int(code[1:]) for kind, code in rule.switches.items()}
     if switches and set(switches) != {"tip-on", "tip-off"}:
-        yield "tip_switches", "there are two switches, tip-on and tip-off"
+        yield "tip_rule.switches", "there are two switches, tip-on and tip-off"
     for kind, number in switches.items():
         code_of = dialect.m_codes.get(number)
         if code_of is None or bool(code_of.barrier) != (kind == "tip-on"):
-            yield "tip_switches", f"M{number} is {kind}: M codes must have it, tip-on as a barrier"
+            text = f"M{number} is {kind}: M codes must have it, tip-on as a barrier"
+            yield "tip_rule.switches", text
 
 
 CHECKS = (

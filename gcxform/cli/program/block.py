@@ -78,7 +78,7 @@ def _foreign(source: Source, line: int, kind: type[Dialect], reading: Reading) -
     lines += [] if own else ["  it stands for no block"]
     earlier = sorted(number for number in refused if number < line)
     axes = tolerant.interpreter.axes
-    return [*lines, *_told(before, axes, earlier, refused.get(line), path, kind.spelled)]
+    return [*lines, *_told(before, axes, earlier, refused.get(line), path, kind.tip_rule.spelled)]
 
 
 def _run_of(line: int, origin: Ints) -> tuple[int, int]:

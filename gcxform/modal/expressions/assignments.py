@@ -27,7 +27,7 @@ def compute(lines: Lines) -> None:
     Raises InputError for what has no value, or none that is known.
     """
     having = np.flatnonzero(lines.flag("computes"))
-    if not len(having) or lines.dialect.arithmetic is None:
+    if not len(having) or lines.dialect.flow_rule.arithmetic is None:
         return
     value = lines.window.value.copy()
     for line in having.tolist():
@@ -42,11 +42,11 @@ class _Block:
     """One block that computes something; `value` are the number columns of its window."""
 
     def __init__(self, lines: Lines, line: int, value: Floats) -> None:
-        assert lines.dialect.arithmetic is not None
+        assert lines.dialect.flow_rule.arithmetic is not None
         self.lines = lines
         self.line = line
         self.value = value
-        self.arithmetic = lines.dialect.arithmetic
+        self.arithmetic = lines.dialect.flow_rule.arithmetic
         self.meaning = lines.table.meanings[int(lines.shape[line])]
 
     def execute(self) -> None:

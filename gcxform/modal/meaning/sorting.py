@@ -93,7 +93,7 @@ def _comment(
 
 def _expression(word: Word, dialect: type[Dialect]) -> Iterator[Refusal]:
     """Refuse a word whose value cannot be computed."""
-    if dialect.arithmetic is None:
+    if dialect.flow_rule.arithmetic is None:
         message = f"the value of {word.address} is an expression, which is not computed"
     elif word.address in CODES or word.address == "N":
         message = f"{word.address} is followed by an expression: which one it is must be written"
@@ -105,7 +105,7 @@ def _expression(word: Word, dialect: type[Dialect]) -> Iterator[Refusal]:
 
 def _statement(item: Statement, shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
     """Refuse what is not an assignment, and one that takes effect at an uncertain time."""
-    arithmetic, message = dialect.arithmetic, ""
+    arithmetic, message = dialect.flow_rule.arithmetic, ""
     if arithmetic is None or item.kind != "assignment":
         message = f"{item.kind.replace('_', ' ')} is code that would have to be run"
     elif not arithmetic.beside_words and not _stands_alone(item, shape):
@@ -246,7 +246,7 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         if code.group == "spindle":
             meaning.groups["spindle"] = name
         if code.barrier:
-            called = dialect.spelled.get(name, name)
+            called = dialect.tip_rule.spelled.get(name, name)
             yield Refusal("GX210", word.start, width, f"{called} is not resolved: {code.barrier}")
         meaning.ends |= code.ends
         if code.loses_position:

@@ -50,7 +50,8 @@ class Moves:
         self.tied = Tied(self.track)
         self.shifted: Shifted | None = None
         self.side, self.radius = compensation(lines, modes)
-        self.pointing = Pointing(lines, modes, axes) if self.dialect.takes_vectors else None
+        vectors = self.dialect.tip_rule.takes_vectors
+        self.pointing = Pointing(lines, modes, axes) if vectors else None
         self.splines = of_splines(modes.motion)
         self.bends = bool(self.splines.any())
         self._new_units: list[int] = []  # lines that change it, where that spoils tool lengths

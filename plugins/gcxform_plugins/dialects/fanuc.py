@@ -175,7 +175,5 @@ class Fanuc(gx.Dialect):
     feed_rule = gx.FeedRule(change_clears=True)
     arc_rule = gx.ArcRule(absolute=0.01)
     cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE
-    arithmetic = v.MACRO_B
-    flow = "macro-b"
-    tip_codes: ClassVar[Mapping[str, str]] = {"G43.4": "G43"}
-    vector_codes: ClassVar[Mapping[str, str]] = {"G43.5": "G43"}
+    flow_rule = gx.FlowRule("macro-b", v.MACRO_B)
+    tip_rule = gx.TipRule(codes={"G43.4": "G43"}, vector_codes={"G43.5": "G43"})

@@ -64,9 +64,8 @@ class Haas(Fanuc):
     """Haas mill, NGC."""
 
     name = "haas"
-    calls_own_lines = True
-    tip_codes: ClassVar[Mapping[str, str]] = {"G234": "G43"}
-    vector_codes: ClassVar[Mapping[str, str]] = {}
+    flow_rule = replace(Fanuc.flow_rule, calls_own_lines=True)
+    tip_rule = replace(Fanuc.tip_rule, codes={"G234": "G43"}, vector_codes={})
     axes = "XYZABC"
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{name: code for name, code in Fanuc.codes.items() if name not in NOT_HERE},

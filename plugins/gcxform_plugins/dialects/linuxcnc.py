@@ -217,8 +217,7 @@ class LinuxCNC(gx.Dialect):
         after=frozenset({"non-modal", "tool-length", "frame", "path", "retract"}),
     )
     cycle_rule = CYCLE_RULE
-    arithmetic = v.RS274
-    flow = "o-words"
+    flow_rule = gx.FlowRule("o-words", v.RS274)
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     feed_rule = gx.FeedRule(
         mode_clears=True,

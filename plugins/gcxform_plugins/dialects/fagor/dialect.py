@@ -92,8 +92,10 @@ class Fagor(gx.Dialect):
     chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
         "ABC", "rotary axes go where they are told, whichever way is shorter"
     )
-    tip_switches: ClassVar[Mapping[str, str]] = {"tip-on": "M128", "tip-off": "M129"}
-    spelled: ClassVar[Mapping[str, str]] = {"M128": "#RTCP ON", "M129": "#RTCP OFF"}
+    tip_rule = gx.TipRule(
+        switches={"tip-on": "M128", "tip-off": "M129"},
+        spelled={"M128": "#RTCP ON", "M129": "#RTCP OFF"},
+    )
     program_rule = gx.ProgramRule(has_percent=False, has_program_number=False)
     feed_rule = gx.FeedRule(change_clears=True)
     arc_rule = gx.ArcRule(absolute=0.01)

@@ -76,6 +76,8 @@ class Heidenhain(gx.Dialect):
         129: gx.MCode("tip"),
     }
     translator = Klartext
-    follows_at_start = False  # a new program resets M128: TNC 410/426/430, ISO, p. 169
-    tip_switches: ClassVar[Mapping[str, str]] = {"tip-on": "M128", "tip-off": "M129"}
+    tip_rule = gx.TipRule(
+        switches={"tip-on": "M128", "tip-off": "M129"},
+        follows_at_start=False,  # a new program resets M128: TNC 410/426/430, ISO, p. 169
+    )
     arc_rule = gx.ArcRule(absolute=0.016, turns="P")

@@ -101,7 +101,9 @@ class Siemens(gx.Dialect):
         gx.Setting("edge-after-tool-change", "siemens: D behind M6 (MD20270)", (0, 1)),
         gx.Setting("orientation-path", "siemens: how angles change in TRAORI", ("angles",)),
     )
-    tip_switches: ClassVar[Mapping[str, str]] = {"tip-on": "M128", "tip-off": "M129"}
-    spelled: ClassVar[Mapping[str, str]] = {"M128": "TRAORI", "M129": "TRAFOOF"}
+    tip_rule = gx.TipRule(
+        switches={"tip-on": "M128", "tip-off": "M129"},
+        spelled={"M128": "TRAORI", "M129": "TRAFOOF"},
+    )
     arc_rule = gx.ArcRule(turns="P")
     feed_rule = gx.FeedRule(change_clears=True)

@@ -222,8 +222,8 @@ class Rtcp(gx.Pass):
             switches.refuse(self.turns_anew)
         if not len(path) or self._nothing_to_correct(context):
             return path.replace(blocks=self.timed(path.blocks))
-        if switches is not None and (context.source.tip_codes or not switches.codes):
-            self._place(path, context).refuse_followed_late(bool(context.source.tip_codes))
+        if switches is not None and (context.source.tip_rule.codes or not switches.codes):
+            self._place(path, context).refuse_followed_late(bool(context.source.tip_rule.codes))
         if self.turns_anew:
             source, target = self._machines(path, context)
             path, _ = self._moving(self._options(context), path, context, source, target).run()
@@ -263,7 +263,7 @@ class Rtcp(gx.Pass):
 
     def _place(self, path: gx.Toolpath, context: gx.PassContext) -> Place:
         """Return the place of the machine file; a length that follows the tip does so at once."""
-        switched = bool(context.switches) or not context.source.tip_codes
+        switched = bool(context.switches) or not context.source.tip_rule.codes
         return Place(path, context, switched=self.reads_tip_codes and switched)
 
     def _machines(self, path: gx.Toolpath, context: gx.PassContext) -> tuple[Place, Place]:
@@ -447,7 +447,7 @@ def _check_retract(step: Rtcp) -> None:
 def _check_machines(step: Rtcp, context: gx.PassContext) -> None:
     """Raise UsageError for machines of options, or a control, with which a step cannot work."""
     assert context.machine is not None
-    if step.reads_vectors and not context.source.vector_codes:
+    if step.reads_vectors and not context.source.tip_rule.vector_codes:
         message = f"{context.source.name} has no code for tool vectors"
         raise gx.UsageError.one("GX746", message, hint='leave tip-codes out, or say "read"')
     _check_calibrated(step, gx.chain_of(context.machine))

@@ -32,7 +32,7 @@ class Switches:
         assert context.machine is not None
         self.path = path
         self.codes = {*context.switches}
-        self.spelled = context.source.spelled
+        self.spelled = context.source.tip_rule.spelled
         last = path.end[-1:] if len(path) else path.entry[None, :]
         self.angles = self._angles(np.vstack([path.start, last]), gx.chain_of(context.machine))
         of_frame = np.array([self._state(frame) for frame in path.frames])
