@@ -320,3 +320,7 @@ def test_places_with_passes_as_inline_tables():
     text = 'pass = [ { use = "a" },\n  { use = "b", chord-error = 2 } ]'
     assert locate_key(text, ("pass", 1, "chord-error")) == (2, 16)
     assert locate_key(text, ("pass", 1)) == (2, 3)
+
+
+def test_places_behind_a_blank_before_a_comma():
+    assert locate_key("a = {b = [0.0] , c = 2}", ("a", "c")) == (1, 18)

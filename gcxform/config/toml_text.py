@@ -149,7 +149,8 @@ class _Scan:
         self.at += 1
 
     def _separator(self) -> None:
-        self.at += self.text[self._skip(_BLANK)] == ","
+        self._skip(_BLANK)
+        self.at += self.text[self.at] == ","
 
 
 class Codes(NamedTuple):

@@ -320,15 +320,15 @@ MUTATIONS = (
     Mutation(
         "rotary: old comments stay",
         "gcxform/machine/axis_text.py",
-        "(?:{re.escape(MARK)}|",
-        "(?:",
+        "while old and lines",
+        "while not old and lines",
         FILES,
     ),
     Mutation(
         "rotary: what was written is not looked at",
         "gcxform/machine/axis_text.py",
-        "if _read(written) == _wanted(text, letter, axis):",
-        "if _read(written) != 0:",
-        FILES,
+        "if tomllib.loads(written) != wanted:",
+        "if tomllib.loads(written) == 0:",
+        "tests/test_axis_text.py",
     ),
 )
