@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from gcxform.comparison import compare as compare
     from gcxform.config.toml_text import did_you_mean as did_you_mean
     from gcxform.config.toml_text import read_text as read_text
+    from gcxform.contract.demands import Demands as Demands
     from gcxform.contract.options import Angle as Angle
     from gcxform.contract.options import KinematicsFile as KinematicsFile
     from gcxform.contract.options import Length as Length
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from gcxform.contract.options import ModelFile as ModelFile
     from gcxform.contract.options import Option as Option
     from gcxform.contract.options import Vector as Vector
+    from gcxform.contract.passes import CompensationPass as CompensationPass
     from gcxform.contract.passes import Pass as Pass
     from gcxform.contract.passes import PassContext as PassContext
     from gcxform.contract.passes import TextPass as TextPass
@@ -147,7 +149,8 @@ if TYPE_CHECKING:
 _HOMES = {
     "api": "Program read write",
     "comparison": "Comparison Difference compare",
-    "contract.passes": "Pass PassContext TextPass",
+    "contract.demands": "Demands",
+    "contract.passes": "CompensationPass Pass PassContext TextPass",
     "diagnostics": "Diagnostic FileError GcxformError InputError Location UsageError "
     "VerificationError",
     "dialect.dialect": "Dialect NumberFormat",

@@ -157,7 +157,10 @@ class _Left:
     @classmethod
     def of(cls, told: Toolpath, actual: Toolpath, through: Pass) -> _Left:
         """Return what the machine does with a path that the control is told."""
-        mine, rows = np.flatnonzero(through.spares(told)), through.spares(actual)
+        spares = through.demands.spares
+        if spares is None:
+            return cls(actual, actual, np.zeros(len(actual), np.bool_))
+        mine, rows = np.flatnonzero(spares(told)), spares(actual)
         if len(mine) != np.count_nonzero(rows):
             return cls(actual, actual, np.zeros(len(actual), np.bool_))
         end = actual.end.copy(order="F")

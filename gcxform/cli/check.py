@@ -70,7 +70,7 @@ def chain(pipeline: Pipeline) -> list[str]:
             if facts := getattr(step, name):
                 lines.append(f"       {name:8} {_names(facts)}")
         lines.append(f"       then     {_names(facts_after(pipeline.path_passes, done))}")
-        proved = ", proved by itself" if step.resolves else ""
+        proved = ", proved by itself" if step.demands.resolves else ""
         lines.append(f"       promise  {_length(step.promise)}{proved}")
     return [*lines, f"write  {pipeline.target.name}", *_budget(pipeline)]
 
@@ -168,7 +168,7 @@ def reading_findings(
     interpreter = Interpreter(dialect, pipeline.machine_reading, axes, source.name)
     ending = Ending(pipeline.source, source.name)
     centres = CentreProof(pipeline.context, source.name)
-    stays = not any(step.resolves for step in pipeline.path_passes)
+    stays = not any(step.demands.resolves for step in pipeline.path_passes)
     refused = False
     for window, reader in windows_of(source, dialect):
         try:

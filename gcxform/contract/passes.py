@@ -8,30 +8,26 @@ output. The law, in the tests and on every run, is
 
 along every move. `undo` uses the forward model and shares no code with the search it checks.
 
-A pass that `resolves` gives the program another path on purpose, as the control would do it: the
-centre of the tool in place of the contour. `prove` checks that path against the program as read,
-and what comes after it is compared with that path.
+A pass that resolves (`Demands.resolves`) gives the program another path on purpose, as the control
+would do it: the centre of the tool in place of the contour. `prove` checks that path against the
+program as read, and what comes after it is compared with that path.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
-import numpy as np
-
+from gcxform.contract.demands import Demands
 from gcxform.contract.tip_codes import switches_of
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import Dialect, NumberFormat
 from gcxform.syntax.tree import Block
-from gcxform.system.arrays import Flags
 from gcxform.toolpath.facts import Fact
-from gcxform.toolpath.path import FeedMode, Toolpath
+from gcxform.toolpath.path import Toolpath
 
 if TYPE_CHECKING:
-    from gcxform.contract.option_kinds import KinematicsFile
     from gcxform.machine.machine import Machine
 
 
@@ -62,63 +58,25 @@ class PassContext:
 class Pass:
     """The base of the passes that change toolpaths.
 
-    `name` is what a pipeline calls it; its docstring is its documentation. Override `promise`
-    when the pass may deviate, and `undo` when the machine turns its output into something else.
+    `name` is what a pipeline calls it; its docstring is its documentation. `name` and
+    `apply` are enough for a pass that is exact. Override `promise` when it may deviate, `undo` when
+    the machine turns its output into something else, `demands` when a run has to know more of it.
     """
 
     name: ClassVar[str] = ""
     requires: ClassVar[frozenset[Fact]] = frozenset()
     ensures: ClassVar[frozenset[Fact]] = frozenset()
     clears: ClassVar[frozenset[Fact]] = frozenset()
-    keeps_rows: ClassVar[bool] = True
-    """Whether a pass that moves nothing has the rows of its input in its output, one for one."""
-    joins: ClassVar[bool] = False
-    """Whether a row may come to stand for several that follow one another: it is the first one's
-    line that it keeps. Where a window ends decides then what can be joined."""
-    folds: ClassVar[bool] = False
-    """Whether the codes that shift coordinates are folded into the words of moves."""
-    resolves: ClassVar[bool] = False
-    """Whether its output is what the rest of the run is compared with; then it has to `prove` it.
-    No window ends where cutter compensation is in force for such a pass."""
-    reads_tip_codes: ClassVar[bool] = False
-    """It does what codes for following the tip ask for, so they are read as plain tool lengths."""
-    reads_vectors: ClassVar[bool] = False
-    """It makes angles of the tool vectors that such codes announce."""
-    deviates: ClassVar[Mapping[str, str]] = MappingProxyType({})
-    """By "deviation" (mm) and "angle" (degrees) the name of what it measures of the same kind: what
-    its promise bounds, and what no comparison of what it wrote with its own path can show."""
-    whole_cuts: ClassVar[bool] = False
-    """Whether it has to see every cut as a whole: a window then ends where a rapid follows one."""
 
     @property
-    def letters(self) -> str:
-        """The letters of axes that its output may have, whether the program names them or not."""
-        return ""
-
-    @property
-    def written_for(self) -> KinematicsFile | None:
-        """The machine that its output is for, if it is not the one of the pipeline."""
-        return None
+    def demands(self) -> Demands:
+        """What it asks of a run besides."""
+        return Demands()
 
     @property
     def promise(self) -> float:
         """How far the path may deviate (mm); inf where nothing is promised."""
         return 0.0
-
-    @property
-    def promise_angle(self) -> float:
-        """How far (deg) rotary axes may be from where they should be at a point of the path."""
-        return 0.0
-
-    @property
-    def feed_mode(self) -> FeedMode | None:
-        """The feed mode that the pass turns those of others into; None: it keeps them."""
-        return None
-
-    @property
-    def slows(self) -> bool:
-        """Whether its moves may take longer than their feeds say, where axes are at full speed."""
-        return False
 
     def begin(self, context: PassContext) -> None:
         """Look at the context before any input is read; raise UsageError if it does not fit."""
@@ -130,14 +88,6 @@ class Pass:
     def undo(self, path: Toolpath, context: PassContext) -> Toolpath:
         """Return what the machine does with a path that came from this pass."""
         return path
-
-    def spares(self, path: Toolpath) -> Flags:
-        """Return which rapids (n,) of a path are left to go where the machine takes them.
-
-        Of these the proof asks that the control is told what the program says, and the certificate
-        says how far off the machine is there.
-        """
-        return np.zeros(len(path), np.bool_)
 
     def measure(
         self, before: Toolpath, after: Toolpath, context: PassContext
@@ -152,8 +102,20 @@ class Pass:
         """Return how many things of a window the source does not have, by name, if any may be."""
         return {}
 
+    def prove(self, before: Toolpath, after: Toolpath, context: PassContext) -> None:
+        """Check what a pass that resolves has made of the path as read; VerificationError if wrong.
+
+        It shares no code with `apply`.
+        """
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class CompensationPass(Pass):
+    """The base of a pass that resolves cutter compensation, which controls do in several ways."""
+
     @classmethod
-    def ways(cls, dialect: type[Dialect]) -> tuple[Pass, ...]:
+    def ways(cls, dialect: type[Dialect]) -> tuple[CompensationPass, ...]:
         """Return the passes that, together, resolve in all ways in which such controls may do it.
 
         Where a parameter of the machine decides there is one for each of its settings.
@@ -166,13 +128,6 @@ class Pass:
         Only what is certain counts.
         """
         return None
-
-    def prove(self, before: Toolpath, after: Toolpath, context: PassContext) -> None:
-        """Check what a pass that resolves has made of the path as read; VerificationError if wrong.
-
-        It shares no code with `apply`.
-        """
-        raise NotImplementedError
 
 
 @dataclass(frozen=True)
@@ -201,4 +156,4 @@ class TextPass:
 
 def resolved(passes: Sequence[Pass]) -> int:
     """Return after how many steps the path is the one that the rest of the run is compared with."""
-    return max((n for n, step in enumerate(passes, 1) if step.resolves), default=0)
+    return max((n for n, step in enumerate(passes, 1) if step.demands.resolves), default=0)

@@ -98,7 +98,7 @@ def _add_promised(run: Run, largest: dict[str, Any]) -> None:
     of one thing.
     """
     for number, step in enumerate(run.steps):
-        for key, name in step.deviates.items():
+        for key, name in step.demands.deviates.items():
             off = run.measured.get(name, 0.0)
             proved = number < resolved(run.steps)
             largest[key] = largest[key] + off if proved else max(largest[key], off)

@@ -50,12 +50,13 @@ def check_chain(passes: Sequence[Pass]) -> None:
 def _check_resolved(passes: Sequence[Pass]) -> None:
     """Raise UsageError for a step that changes the path before one that resolves it."""
     for number, step in enumerate(passes):
-        if not step.resolves:
+        if not step.demands.resolves:
             continue
         for other in passes[:number]:
-            exact = other.promise == 0 and other.promise_angle == 0
-            exact &= other.feed_mode is None and other.keeps_rows
-            if not exact or type(other).undo is not Pass.undo or other.resolves:
+            asked = other.demands
+            exact = other.promise == 0 and asked.promise_angle == 0
+            exact &= asked.feed_mode is None and asked.keeps_rows
+            if not exact or type(other).undo is not Pass.undo or asked.resolves:
                 message = f"{other.name} changes the path that {step.name} is proved against"
                 raise UsageError.one("GX741", message, hint=f"put {step.name} before it")
 

@@ -158,17 +158,17 @@ class Plan:
     @property
     def read_as(self) -> type[Dialect]:
         """The dialect in which programs are read: with what a pass does instead of the control."""
-        reads = any(step.reads_tip_codes for step in self.path_passes)
+        reads = any(step.demands.reads_tip_codes for step in self.path_passes)
         read = with_switches if reads else with_refusal
         return read(self.source, self.machine_reading.control)
 
     def without_tip_codes(self, source: Source) -> tuple[Source, type[Dialect]]:
         """Return a program without what a pass does instead of the control, and its dialect."""
         dialect = self.read_as
-        if any(step.reads_vectors for step in self.path_passes):
+        if any(step.demands.reads_vectors for step in self.path_passes):
             plain = without_tip_codes(source, self.source.tip_rule.vector_codes)
             return plain, dialect if plain is source else with_vectors(dialect)
-        if any(step.reads_tip_codes for step in self.path_passes):
+        if any(step.demands.reads_tip_codes for step in self.path_passes):
             source = without_tip_codes(source, self.source.tip_rule.codes)
         return source, dialect
 
@@ -258,7 +258,7 @@ class Plan:
         `written`: beside the path that passes have proved.
         """
         steps = self.path_passes[resolved(self.path_passes) if written else 0 :]
-        promised = sum(step.promise_angle for step in steps)
+        promised = sum(step.demands.promise_angle for step in steps)
         return {a: promised + 1.01 * self.manner.step(a, False) for a in ROTARY}
 
     def marks(self, source: Source) -> Marks:

@@ -100,7 +100,7 @@ class Run:
     def _prepare(self) -> None:
         plan = self.plan
         axes = self.source.axes(plan.source.axes)
-        written = set(axes).union(*(step.letters for step in self.steps))
+        written = set(axes).union(*(step.demands.letters for step in self.steps))
         axes = "".join(axis for axis in plan.source.axes if axis in written)
         reading = plan.reading_at_start(axes)
         self.axes = axes
@@ -120,7 +120,7 @@ class Run:
                 plan.limit_of_written,
                 plan.angle_limits(written=True),
                 self.source.name,
-                any(step.folds for step in self.steps),
+                any(step.demands.folds for step in self.steps),
                 self._switches(),
                 plan.bounded,
             )
@@ -135,7 +135,7 @@ class Run:
 
     def _reading_of_output(self, reading: Reading) -> Reading:
         """Return what is known of the text written, which may be for another machine."""
-        for file in filter(None, (step.written_for for step in self.steps)):
+        for file in filter(None, (step.demands.written_for for step in self.steps)):
             offsets, homes = file.machine.work_offsets, file.machine.homes
             reading = replace(reading, work_offsets=offsets, homes=homes)
         return replace(reading, units=self.plan.first_units)
@@ -173,11 +173,11 @@ class Run:
                 self._copy(text, out)
                 progress(len(text))
             return
-        if any(step.resolves for step in self.steps):
+        if any(step.demands.resolves for step in self.steps):
             texts = whole_stretches(texts)
-        if any(step.reads_vectors for step in self.steps):
+        if any(step.demands.reads_vectors for step in self.steps):
             texts = whole_sections(texts)
-        elif any(step.whole_cuts for step in self.steps):
+        elif any(step.demands.whole_cuts for step in self.steps):
             texts = whole_cuts(texts)
         read = WindowReader(self.dialect).read_apart
         long = self.source.is_long(size)
@@ -229,7 +229,7 @@ class Run:
                 progress(len(one.window.text))
                 del apart, one, emitted  # or they would last until the next one is there
                 heap.give_back()
-            if any(step.feed_mode is not None for step in self.steps):
+            if any(step.demands.feed_mode is not None for step in self.steps):
                 self._check_end()
         finally:
             if proof.busy and not isinstance(sys.exception(), KeyboardInterrupt):
@@ -307,7 +307,7 @@ class Run:
             path = self._apply(step, self._held(number, path), window)
             if len(path):
                 self.held[number] = path.end[-1].copy()
-            if step.resolves:
+            if step.demands.resolves:
                 self._prove(step, meant, path, window)
                 meant = path
         with self._placing(window):
@@ -337,7 +337,7 @@ class Run:
     def _apply(self, step: Pass, path: Toolpath, window: Window) -> Toolpath:
         with self._placing(window):
             after = step.apply(path, self.plan.context)
-            if not step.resolves:
+            if not step.demands.resolves:
                 check_compensated(step, path, after)
         for what, size in step.measure(path, after, self.plan.context).items():
             self.measured[what] = max(size, self.measured.get(what, size))

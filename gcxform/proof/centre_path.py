@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gcxform.contract.passes import Pass, PassContext
+from gcxform.contract.passes import CompensationPass, PassContext
 from gcxform.deviations.matching import match
 from gcxform.deviations.paired_pieces import measure
 from gcxform.diagnostics import Diagnostic, InputError, Location
@@ -24,7 +24,6 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.plugin.registry import default_registry
 from gcxform.proof.compensated_stretches import Stretches
 from gcxform.system.arrays import Ints
-from gcxform.toolpath.facts import NO_CUTTER_COMP
 from gcxform.toolpath.path import Toolpath
 
 REACH = 1.0  # mm; what is farther off is not measured
@@ -43,10 +42,10 @@ class Off:
     output_line: int
 
 
-def ways_of(dialect: type[Dialect]) -> tuple[Pass, ...]:
+def ways_of(dialect: type[Dialect]) -> tuple[CompensationPass, ...]:
     """Return passes that resolve compensation in each way in which such controls may do it."""
     for step in default_registry().passes.values():
-        if issubclass(step, Pass) and step.resolves and NO_CUTTER_COMP in step.ensures:
+        if issubclass(step, CompensationPass):
             return step.ways(dialect)
     return ()
 
@@ -118,13 +117,13 @@ class CentreProof:
         offs = [self._off(centre, way, one, other, budget) for way, centre in centres]
         return max(offs, key=lambda off: off.distance)
 
-    def _resolved(self, path: Toolpath) -> list[tuple[Pass, Toolpath]]:
+    def _resolved(self, path: Toolpath) -> list[tuple[CompensationPass, Toolpath]]:
         """Return the centre paths of a stretch, each with the pass that it comes from.
 
         There is none where something is not known. Raises InputError if no setting of the control
         lets the tool follow.
         """
-        done: list[tuple[Pass, Toolpath]] = []
+        done: list[tuple[CompensationPass, Toolpath]] = []
         refusals: list[InputError] = []
         for way in self.ways:
             try:
@@ -136,7 +135,7 @@ class CentreProof:
         return done
 
     def _off(
-        self, centre: Toolpath, way: Pass, one: Toolpath, other: Toolpath, budget: float
+        self, centre: Toolpath, way: CompensationPass, one: Toolpath, other: Toolpath, budget: float
     ) -> Off:
         """Return how far the centre path of the output is off. Raises InputError if too far."""
         try:
@@ -192,7 +191,9 @@ def _row_beside(one: Toolpath, other: Toolpath, error: InputError) -> Ints:
     return np.array([min(row, len(one) - 1)])
 
 
-def _stop(ways: Sequence[Pass], path: Toolpath, context: PassContext) -> InputError | None:
+def _stop(
+    ways: Sequence[CompensationPass], path: Toolpath, context: PassContext
+) -> InputError | None:
     """Return why the control stops at a stretch, if it is known how it compensates."""
     known = len(ways) == 1 and not np.isnan(path.radius[0])
     return ways[0].stops(path, context) if known else None

@@ -23,15 +23,15 @@ def spared_rows(passes: Sequence[Pass], path: Toolpath) -> Flags:
     """Return which rows (n,) of a path as read some pass spares: rapids alone."""
     spared = np.zeros(len(path), np.bool_)
     for step in passes:
-        if type(step).spares is not Pass.spares:
-            spared |= step.spares(path)
+        if step.demands.spares is not None:
+            spared |= step.demands.spares(path)
     return np.asarray(spared & (path.kind == Kind.RAPID))
 
 
 def told(passes: Sequence[Pass], path: Toolpath, context: PassContext) -> Toolpath:
     """Return what the control is told by a path that was written: passes that spare not undone."""
     for step in reversed(passes):
-        if type(step).spares is Pass.spares:
+        if step.demands.spares is None:
             path = step.undo(path, context)
     return path
 

@@ -109,8 +109,8 @@ class Verifier:
         self.limit = limit
         self.centres = CentreProof(context, file)
         self.path_modes = PathModes(context)
-        self.feed_modes = [step.feed_mode for step in passes if step.feed_mode is not None]
-        self.speeds = _speeds(context) if any(step.slows for step in passes) else {}
+        self.feed_modes = [mode for step in passes if (mode := step.demands.feed_mode) is not None]
+        self.speeds = _speeds(context) if any(step.demands.slows for step in passes) else {}
         self.angle_budgets = angle_budgets
         self.angle_budget = max(angle_budgets.values())
         self.file = file

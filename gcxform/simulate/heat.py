@@ -51,7 +51,7 @@ def before_and_after(program: Program, pipeline: Pipeline) -> tuple[Heat, Heat, 
 
     The last step of the pipeline is the one that compensates. Raises GcxformError.
     """
-    if any(step.joins for step in pipeline.path_passes):
+    if any(step.demands.joins for step in pipeline.path_passes):
         message = "moves that were joined cannot be compared one by one"
         raise UsageError.one("GX713", message, hint="leave out the pass that joins moves")
     nominal, context = program.path, pipeline.context

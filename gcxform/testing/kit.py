@@ -232,8 +232,8 @@ class _PathCheck:
         ordered = bool((np.diff(path.source) >= 0).all())
         self._assert(ordered, trial, "loses the order of `source`")
         runs = runs_of(trial.before, np.searchsorted(before, path.source))
-        joined = len(runs.joined) == 0 or self.step.joins
-        self._assert(joined, trial, "leaves a move out, and does not say `joins = True`")
+        joined = len(runs.joined) == 0 or self.step.demands.joins
+        self._assert(joined, trial, "leaves a move out, and does not say `joins` in its demands")
         start, end = trial.before.start[runs.left], trial.before.end[runs.left]
         way = np.where(np.isnan(start) & np.isnan(end), 0.0, np.nan_to_num(end - start, nan=np.inf))
         short = np.sqrt((way**2).sum(axis=1)) <= self.step.promise + SLACK
@@ -248,8 +248,9 @@ class _PathCheck:
         same = bool((rapid == (after.kind == Kind.RAPID)).all())
         self._assert(same, trial, "makes a rapid of a feed move, or the reverse")
         other = before.feed_mode[owner] != after.feed_mode
-        meant = self.step.feed_mode is not None
-        mode = not other.any() or (meant and (after.feed_mode[other] == self.step.feed_mode).all())
+        wanted = self.step.demands.feed_mode
+        meant = wanted is not None
+        mode = not other.any() or (meant and (after.feed_mode[other] == wanted).all())
         self._assert(bool(mode), trial, "changes the feed mode")
         self._converted(trial, owner, other & ~rapid)
         rapid = rapid | other
@@ -336,7 +337,7 @@ class _PathCheck:
         if len(trial.before) < 2:
             return
         lines = trial.before.source
-        if self.step.joins:
+        if self.step.demands.joins:
             self._parts(trial, int(lines[len(lines) // 2]))
             return
         for line in (int(lines[1]), int(lines[len(lines) // 2])):

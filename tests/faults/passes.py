@@ -372,7 +372,7 @@ MUTATIONS = (
     Mutation(
         "a program without end leaves its feed mode behind",
         "gcxform/pipeline/run.py",
-        "if any(step.feed_mode is not None for step in self.steps):",
+        "if any(step.demands.feed_mode is not None for step in self.steps):",
         "if False:",
         f"{CORPUS}[bad/gx321-no-end]",
     ),

@@ -26,7 +26,7 @@ class ExpandCycles(gx.Pass):
 
     name = "cycles"
     ensures = frozenset({gx.NO_CYCLES})
-    keeps_rows = False
+    demands = gx.Demands(keeps_rows=False)
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path with the rows of cycles as plain rows."""

@@ -35,6 +35,11 @@ class FeedPass(gx.Pass):
     ]
 
     @property
+    def demands(self) -> gx.Demands:
+        """Feeds are converted."""
+        return gx.Demands(feed_mode=self.feed_mode)
+
+    @property
     def feed_mode(self) -> gx.FeedMode:
         """The mode that feeds are converted to."""
         if self.mode == "inverse-time":

@@ -21,7 +21,7 @@ class Offsets(gx.Pass):
 
     name = "offsets"
     ensures = frozenset({gx.WORKPIECE_FRAME})
-    folds = True
+    demands = gx.Demands(folds=True)
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path with every row in the work offset in which the program starts."""

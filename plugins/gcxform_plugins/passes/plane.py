@@ -16,6 +16,7 @@ class PlanePass(gx.Pass):
     """Make lines of the arcs in planes in which the target control has no arcs."""
 
     name = "plane"
+    demands = gx.Demands(promise_angle=ANGLE_ERROR)
     chord_error: Annotated[
         gx.Length, gx.Option("largest distance of a line from the arc it replaces", above=0.0)
     ] = 0.002
@@ -24,11 +25,6 @@ class PlanePass(gx.Pass):
     def promise(self) -> float:
         """The chord error."""
         return self.chord_error
-
-    @property
-    def promise_angle(self) -> float:
-        """What the chords of arcs with rotary words are held to."""
-        return ANGLE_ERROR
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path with arcs in the target's planes only."""

@@ -32,7 +32,6 @@ class Segment(gx.Pass):
 
     name = "segment"
     ensures = frozenset({gx.LINEAR_ONLY})
-    keeps_rows = False
     chord_error: Annotated[
         gx.Length | None, gx.Option("largest distance of a chord from its arc", above=0.0)
     ] = None
@@ -57,11 +56,12 @@ class Segment(gx.Pass):
         return self.chord_error if self.chord_error is not None else float("inf")
 
     @property
-    def promise_angle(self) -> float:
-        """What the chords of arcs with rotary words are held to."""
+    def demands(self) -> gx.Demands:
+        """Rows are cut; chords of arcs with rotary words are held to an angle."""
         if self.arcs == "split":
-            return 0.0
-        return ANGLE_ERROR if self.chord_error is not None else float("inf")
+            return gx.Demands(keeps_rows=False)
+        angle = ANGLE_ERROR if self.chord_error is not None else float("inf")
+        return gx.Demands(keeps_rows=False, promise_angle=angle)
 
     def begin(self, context: gx.PassContext) -> None:
         """Refuse options that say nothing."""

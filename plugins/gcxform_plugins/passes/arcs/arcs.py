@@ -38,7 +38,7 @@ class Arcs(gx.Pass):
 
     name = "arcs"
     clears = frozenset({gx.LINEAR_ONLY, gx.XY_ARCS})
-    joins = True
+    demands = gx.Demands(joins=True)
 
     tolerance: Annotated[
         gx.Length,

@@ -27,7 +27,7 @@ STRAIGHT = 1e-4  # rad; smaller turns are none, on controls of which nothing els
 
 
 @dataclass(frozen=True)
-class CutterComp(gx.Pass):
+class CutterComp(gx.CompensationPass):
     """Compute the path of the tool's centre, and leave cutter compensation to no control.
 
     Inside corners end where the offset moves meet, outside corners are joined by an arc about the
@@ -38,7 +38,7 @@ class CutterComp(gx.Pass):
 
     name = "cutter-comp"
     ensures = frozenset({gx.NO_CUTTER_COMP})
-    resolves = True
+    demands = gx.Demands(resolves=True)
     corners: Annotated[
         Corners | None, gx.Option("what joins two moves outside: an arc, or lines that meet")
     ] = None

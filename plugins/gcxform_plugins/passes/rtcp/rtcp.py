@@ -14,7 +14,6 @@ are apart by a rotation and an arm that the angles alone fix. So one bound serve
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
@@ -133,8 +132,6 @@ class Rtcp(gx.Pass):
             object.__setattr__(self, "clears", frozenset())
         if self.turns_anew:
             object.__setattr__(self, "requires", self.requires - {gx.LINEAR_ONLY})
-            object.__setattr__(self, "resolves", True)
-            object.__setattr__(self, "whole_cuts", self.direction == "retarget")
         if self.direction == "retarget":  # its axes are those of another machine than [machine]
             object.__setattr__(self, "ensures", frozenset())
             object.__setattr__(self, "clears", frozenset({gx.AXIS_POSITIONS}))
@@ -154,56 +151,43 @@ class Rtcp(gx.Pass):
         )
 
     @property
-    def reads_tip_codes(self) -> bool:  # type: ignore[override]
-        """Whether it does what the control was asked for."""
-        return self.tip_codes == "read"
-
-    @property
-    def written_for(self) -> gx.KinematicsFile | None:
-        """The machine of the target."""
-        return self.target
-
-    @property
-    def reads_vectors(self) -> bool:  # type: ignore[override]
-        """Whether it makes angles of tool vectors."""
-        return self.tip_codes == "vectors"
-
-    @property
-    def letters(self) -> str:
-        """The rotary axes of the target."""
-        return "" if self.target is None else "".join(gx.chain_of(self.target.machine).letters)
-
-    @property
     def promise(self) -> float:
         """The tolerance: of the tip, also where it is proved before anything is written."""
         return self.tolerance
 
     @property
-    def promise_angle(self) -> float:
-        """How far (deg) the tool axis may lean, where other angles are written."""
+    def demands(self) -> gx.Demands:
+        """A path of its own where it turns anew; inverse time, in which any feed can be said."""
         lean = self._leans()[0]
-        return lean if self.turns_anew and np.isfinite(lean) else 0.0
+        lean = lean if self.turns_anew and np.isfinite(lean) else 0.0
+        tip = {} if self.to_axes and not self.turns_anew else {"deviation": TIP_OFF}
+        return gx.Demands(
+            resolves=self.turns_anew,
+            whole_cuts=self.direction == "retarget",
+            reads_tip_codes=self.tip_codes == "read",
+            reads_vectors=self.reads_vectors,
+            letters=self._letters,
+            written_for=self.target,
+            promise_angle=lean,
+            feed_mode=gx.FeedMode.INVERSE_TIME if self.to_axes else None,
+            slows=self.to_axes,
+            deviates=tip | ({"angle": AXIS_OFF} if lean else {}),
+        )
 
     @property
-    def deviates(self) -> Mapping[str, str]:  # type: ignore[override]
-        """What the tip is off, and the tool axis, where that is bounded."""
-        tip = {} if self.follows_undo else {"deviation": TIP_OFF}
-        return tip | ({"angle": AXIS_OFF} if self.promise_angle else {})
-
-    @property
-    def follows_undo(self) -> bool:
-        """Whether tips are what the undo leads to, so that comparing paths compares them."""
-        return self.direction == "to-machine" and not self.turns_anew
-
-    @property
-    def feed_mode(self) -> gx.FeedMode | None:
-        """Inverse time, in which the feed of the tip can be said whatever the axes do."""
-        return gx.FeedMode.INVERSE_TIME if self.direction == "to-machine" else None
-
-    @property
-    def slows(self) -> bool:
-        """Whether moves may be slower, where axes would be too fast."""
+    def to_axes(self) -> bool:
+        """Whether tips are read, and axes written."""
         return self.direction == "to-machine"
+
+    @property
+    def reads_vectors(self) -> bool:
+        """Whether it makes angles of tool vectors."""
+        return self.tip_codes == "vectors"
+
+    @property
+    def _letters(self) -> str:
+        """The rotary axes of the target."""
+        return "" if self.target is None else "".join(gx.chain_of(self.target.machine).letters)
 
     def begin(self, context: gx.PassContext) -> None:
         """Refuse a run without a machine that turns."""
@@ -217,7 +201,7 @@ class Rtcp(gx.Pass):
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path of the axes for one of tips; if asked the reverse, or one corrected."""
-        switches = Switches(path, context) if self.reads_tip_codes else None
+        switches = Switches(path, context) if (self.tip_codes == "read") else None
         if switches is not None:
             switches.refuse(self.turns_anew)
         if not len(path) or self._nothing_to_correct(context):
@@ -264,7 +248,7 @@ class Rtcp(gx.Pass):
     def _place(self, path: gx.Toolpath, context: gx.PassContext) -> Place:
         """Return the place of the machine file; a length that follows the tip does so at once."""
         switched = bool(context.switches) or not context.source.tip_rule.codes
-        return Place(path, context, switched=self.reads_tip_codes and switched)
+        return Place(path, context, switched=(self.tip_codes == "read") and switched)
 
     def _machines(self, path: gx.Toolpath, context: gx.PassContext) -> tuple[Place, Place]:
         """Return the places of the machine posted for, and of the one that is written for.
@@ -278,7 +262,7 @@ class Rtcp(gx.Pass):
             return place, Place(path, context, gx.chain_of(self.calibrated.machine))
         assert context.machine is not None
         there = replace(context, machine=self.target.machine)
-        source = Place(path, context, others=self.letters)
+        source = Place(path, context, others=self._letters)
         return source, Place(path, there, others="".join(source.chain.letters))
 
     def _options(self, context: gx.PassContext) -> Options:
@@ -288,7 +272,7 @@ class Rtcp(gx.Pass):
             axis_tolerance=self.axis_tolerance,
             to_axes=self.direction == "to-machine",
             rapids_turn=self.rapids == "ends",
-            tip_codes=self.reads_tip_codes,
+            tip_codes=(self.tip_codes == "read"),
             great_circles=self.orientation_path == "great-circle",
             corrects=self.direction == "repost",
             largest_turn=self.largest_turn,
@@ -356,7 +340,7 @@ class Rtcp(gx.Pass):
         if not len(after):
             return {}
         found = self._turned(before, after, context)
-        if self.slows:
+        if self.to_axes:
             before = without_left(before)
             found |= slowed(before, after, self._place(before, context))
         elif not self.turns_anew and not self._nothing_to_correct(context):
@@ -396,9 +380,9 @@ class Rtcp(gx.Pass):
 
         What runs after a block that leaves the program finds the feed mode of the source.
         """
-        if self.feed_mode is None:
+        if not self.to_axes:
             return blocks
-        mode = np.where(blocks.leaves, blocks.feed_mode, np.int8(self.feed_mode))
+        mode = np.where(blocks.leaves, blocks.feed_mode, np.int8(gx.FeedMode.INVERSE_TIME))
         return replace(blocks, feed_mode=mode)
 
     def undo(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:

@@ -105,7 +105,12 @@ class Volumetric(VolumetricOptions, gx.Pass):
         undoing = Commands if self.inverse else Machine
         return undoing(self, path, self._place(path, context)).run() if len(path) else path
 
-    def spares(self, path: gx.Toolpath) -> Flags:
+    @property
+    def demands(self) -> gx.Demands:
+        """Some rapids are left to the machine."""
+        return gx.Demands(spares=self._spares)
+
+    def _spares(self, path: gx.Toolpath) -> Flags:
         """Return the rapids to points of the machine, to unknown places, or all if so asked."""
         return left_to_machine(path, self.rapids == "skip")
 
