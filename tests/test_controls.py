@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
+import click
 import numpy as np
 import pytest
 from cli_kit import call
@@ -12,11 +14,14 @@ from gcxform_plugins.controls.linuxcnc.hal import machine_of, read_hal
 from gcxform_plugins.controls.siemens import SiemensFiles
 from oracles.linuxcnc_kins import kinematics
 
+import gcxform as gx
+from gcxform.cli import machine as verb
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.machine.chain import chain_of
 from gcxform.machine.file import load_machine
 from gcxform.machine.machine import Axis, Machine, Tool
 from gcxform.machine.text import to_toml
+from gcxform.plugin.registry import Registry
 
 COUNT = 1000
 TRT = {
@@ -305,6 +310,22 @@ def test_fanuc_parameters_that_are_refused(tmp_path, old, new, line, message):
 
 
 # --- the command line ---
+
+
+@dataclass(frozen=True)
+class Lists(gx.ControlFiles):
+    name = "lists"
+
+    @staticmethod
+    def tools(path, units):
+        return {1: Tool(length=5.0)}
+
+
+def test_a_control_that_has_tools_alone_is_not_offered(monkeypatch):
+    known = Registry(controls={"lists": Lists, "fanuc": FanucFiles})
+    monkeypatch.setattr(verb, "default_registry", lambda *kinds: known)
+    assert (Lists.reads("kinematics"), Lists.reads("tools")) == (False, True)
+    assert verb.Controls("import").list_commands(click.Context(verb.command)) == ["fanuc"]
 
 
 def test_import_on_the_command_line(tmp_path, monkeypatch):

@@ -89,7 +89,7 @@ def _chain(asked: Asked, number: int | None) -> tuple[Chain, Machine]:
 # --- from controls ---
 
 
-class _Controls(click.Group):
+class Controls(click.Group):
     """The controls whose kinematics plugins read, each with a command made of its options."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -107,7 +107,7 @@ class _Controls(click.Group):
         return super().get_command(ctx, cmd_name)
 
 
-@command.group("import", cls=_Controls)
+@command.group("import", cls=Controls)
 def taken_over() -> None:
     """Turn the kinematics of a control into a machine file."""
 
