@@ -52,18 +52,13 @@ def swapped(base: Kind, one: str, two: str) -> Kind:
 
 
 def cycles(base: Kind, name: str, **changes: Any) -> Kind:
-    """Return a dialect with changes in a table of its cycles, by number: `_83="P"`."""
+    """Return a dialect with changes in what is said of its cycles, by number: `_83="P"`."""
     rule = base.cycle_rule
     assert rule is not None
-    table = {**getattr(rule, name), **{int(key[1:]): value for key, value in changes.items()}}
-    return changed(base, cycle_rule=replace(rule, **{name: table}))
-
-
-def without_steps(number: int) -> Kind:
-    """Return Fanuc without the steps of a cycle."""
-    rule = FANUC.cycle_rule
-    steps = {n: steps for n, steps in rule.steps.items() if n != number}
-    return changed(FANUC, cycle_rule=replace(rule, steps=steps))
+    table = dict(rule.cycles)
+    for key, value in changes.items():
+        table[int(key[1:])] = replace(table[int(key[1:])], **{name: value})
+    return changed(base, cycle_rule=replace(rule, cycles=table))
 
 
 def ended(**changes: str | None) -> Kind:
@@ -352,10 +347,10 @@ PLANTED: dict[str, tuple[Callable[[], Kind], str]] = {
         lambda: cycles(NGC, "pecks", _73="clear", _83="break"),
         "pecks of G73",
     ),
-    "G81 is G85": (lambda: cycles(FANUC, "steps", _81=FANUC.cycle_rule.steps[85]), "of G81"),
+    "G81 is G85": (lambda: cycles(FANUC, "steps", _81=FANUC.cycle_rule.cycles[85].steps), "of G81"),
     "G82 does not wait": (lambda: cycles(FANUC, "steps", _82=v.DRILL), "steps of G82"),
     "G84 turns as G74": (
-        lambda: cycles(FANUC, "steps", _84=FANUC.cycle_rule.steps[74]),
+        lambda: cycles(FANUC, "steps", _84=FANUC.cycle_rule.cycles[74].steps),
         "steps of G84",
     ),
     "G84 wants M4": (lambda: cycles(NGC, "spindle", _84=(-1,)), "turn the other way"),
@@ -364,7 +359,7 @@ PLANTED: dict[str, tuple[Callable[[], Kind], str]] = {
         lambda: changed(FANUC, cycle_rule=replace(FANUC.cycle_rule, repeats="P")),
         "counts the holes",
     ),
-    "a cycle without steps": (lambda: without_steps(81), "G81 has no steps"),
+    "a cycle without steps": (lambda: cycles(FANUC, "steps", _81=()), "G81 has no steps"),
     # tips
     "M128 and M129 swapped": (
         lambda: tips(FAGOR, switches={"tip-on": "M129", "tip-off": "M128"}),

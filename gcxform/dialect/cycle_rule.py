@@ -9,7 +9,7 @@ each dialect has a `CycleRule` of its own, or that of its relative with changes 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import IntEnum
 
 DWELL = "DWELL"
@@ -69,20 +69,37 @@ BORE_STOP = (feed(Level.BOTTOM, STOP), rapid(Level.RETRACT, RESUME))
 TAPPING = frozenset({74, 84})
 
 
+@dataclass(frozen=True, slots=True)
+class Cycle:
+    """One canned cycle.
+
+    steps       what it does, without pecking
+    pecks       whether its first step is done in pecks, and where the tool goes between them:
+                "clear" up to R and back down, "break" a little up
+    needs       the words of P Q I J K that must have been given when it runs
+    takes       the words of P Q I J K, and the one that counts repeats, that it may have; any other
+                is refused
+    spindle     how the spindle must turn: +1 (M3), -1 (M4); an empty tuple: it does not matter
+    open_words  words that leave its moves open when they are in force
+    refused     why it is not expanded
+    xy_only     why it is not expanded outside G17
+    """
+
+    steps: tuple[Step, ...] = ()
+    pecks: str = ""
+    needs: str = ""
+    takes: str = ""
+    spindle: tuple[int, ...] = ()
+    open_words: str = ""
+    refused: str = ""
+    xy_only: str = ""
+
+
 @dataclass(frozen=True)
 class CycleRule:
-    """The canned cycles of a control. Codes are whole numbers: 81 is G81.
+    """The canned cycles of a control.
 
-    steps           the steps of each cycle, without pecking
-    pecks           the step of a cycle (its first) that is done in pecks, and where the tool goes
-                    between them: "clear" up to R and back down, "break" a little up
-    needs           the words of P Q I J K that must have been given when a cycle runs
-    takes           the words of P Q I J K, and the one that counts repeats, that a cycle may have;
-                    any other is refused
-    spindle         how the spindle must turn: +1 (M3), -1 (M4); an empty tuple: it does not matter
-    open_words      words that leave the moves of a cycle open when they are in force
-    refused         cycles that are not expanded, and why
-    xy_only         cycles that are not expanded outside G17, and why
+    cycles          by number: 81 is G81
     peck_return     mm; how far the tool goes up between the pecks of "break"; None: not known
     peck_clearance  mm; how far above the last depth a peck of "clear" begins; None: not known
     rises_first     from below R the tool rises to R before it goes to the hole; the initial level
@@ -100,14 +117,7 @@ class CycleRule:
     initial_level   whether a program starts in G98
     """
 
-    steps: Mapping[int, tuple[Step, ...]]
-    pecks: Mapping[int, str] = field(default_factory=dict)
-    needs: Mapping[int, str] = field(default_factory=dict)
-    takes: Mapping[int, str] = field(default_factory=dict)
-    spindle: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
-    open_words: Mapping[int, str] = field(default_factory=dict)
-    refused: Mapping[int, str] = field(default_factory=dict)
-    xy_only: Mapping[int, str] = field(default_factory=dict)
+    cycles: Mapping[int, Cycle]
     peck_return: float | None = None
     peck_clearance: float | None = None
     rises_first: bool = False

@@ -8,6 +8,10 @@ A new dialect inherits its nearest relative and overrides what differs:
         axes = "XYZ"
         arc_rule = gx.ArcRule(planes=frozenset({"XY"}))
 
+Its facts are in rules, each with its defaults and a table of what they mean: those of a class on
+top of `gx.Dialect` are new (`gx.FeedRule(change_clears=True)`), those of one on top of a relative
+are the relative's with changes (`replace(Fanuc.feed_rule, before_units=True)`).
+
 Everything is data; the reader, the emitter and the verifier ask here and nowhere else.
 """
 
@@ -62,11 +66,11 @@ class Dialect:
     name: ClassVar[str] = ""
     grammar: ClassVar[tuple[str, str]] = ("gcxform_grammars", "iso")
     axes: ClassVar[str] = "XYZABC"
+    translator: ClassVar[type[Language] | None] = None
+    """What turns programs that are not written in words into blocks that are, which is what all
+    else here is about. Such a dialect is only read: see `gcxform/flow/translation.py`."""
     codes: ClassVar[Mapping[str, Code]] = ISO
     m_codes: ClassVar[Mapping[int, MCode]] = ISO_M
-    chosen: ClassVar[Mapping[str, str]] = {}
-    """What is taken for the meaning of a code, or of words of an axis, where a parameter decides:
-    a sentence for the certificate."""
     initial: ClassVar[Mapping[str, str]] = {
         "motion": "G80",
         "plane": "G17",
@@ -78,42 +82,39 @@ class Dialect:
         "cutter-comp": "G40",
     }
     """The modal state a program is taken to start in; the certificate says what was taken."""
+    chosen: ClassVar[Mapping[str, str]] = {}
+    """What is taken for the meaning of a code, or of words of an axis, where a parameter decides:
+    a sentence for the certificate."""
     settings: ClassVar[tuple[Setting, ...]] = ()
     """Settings in [control] of a machine file that the dialect asks for, beside the common ones."""
-    cutter_comp: ClassVar[CutterComp] = CutterComp()
-    """How G41 and G42 are read, where the dialect has them."""
-    translator: ClassVar[type[Language] | None] = None
-    """What turns programs that are not written in words into blocks that are, which is what all
-    else here is about. Such a dialect is only read: see `gcxform/flow/translation.py`."""
+
+    # --- programs ---
     program_rule: ClassVar[ProgramRule] = ProgramRule()
-    """Where programs begin and end, and which of their blocks are executed."""
     text_rule: ClassVar[TextRule] = TextRule()
-    """Characters, lines and comments."""
     block_rule: ClassVar[BlockRule] = BlockRule()
-    """Which words a block may have, and in what order they act."""
     flow_rule: ClassVar[FlowRule] = FlowRule()
-    """How programs compute, call and repeat."""
+
+    # --- numbers ---
     numbers: ClassVar[NumberFormat] = NumberFormat()
     point_rule: ClassVar[PointRule] = PointRule()
-    """What numbers are worth, with a decimal point and without."""
-    arc_rule: ClassVar[ArcRule] = ArcRule()
-    """Which arcs the control cuts."""
-    motion_rule: ClassVar[MotionRule] = MotionRule()
-    """What motion codes and path modes do where words alone do not say it."""
+
+    # --- moves ---
     feed_rule: ClassVar[FeedRule] = FeedRule()
-    """What a feed is about, and when it is lost."""
+    motion_rule: ClassVar[MotionRule] = MotionRule()
+    arc_rule: ClassVar[ArcRule] = ArcRule()
+    cutter_comp: ClassVar[CutterComp] = CutterComp()
+
+    # --- what words count from ---
     offset_rule: ClassVar[OffsetRule] = OffsetRule()
-    """Work offsets, and what shifts them."""
     tool_rule: ClassVar[ToolRule] = ToolRule()
-    """Tools and their lengths."""
     tip_rule: ClassVar[TipRule] = TipRule()
-    """How the control is told to follow the tip of the tool itself."""
+
     cycle_rule: ClassVar[CycleRule | None] = None
     """What the control makes of canned cycles; None: it has none, or they are not known."""
-
     differs: ClassVar[Mapping[str, str]] = {}
-    """What is otherwise here than on controls that agree, on purpose: a code or the name of one of
-    these attributes, and from where that is known. The conformance kit asks for it."""
+    """What is otherwise here than on controls that agree, on purpose: a code, the name of one of
+    these attributes or a fact of a rule (`arc_rule.turns`), and from where that is known. The
+    conformance kit asks for it."""
 
     def __init_subclass__(cls) -> None:
         """Let machine files have the settings that the dialect asks for.
@@ -125,11 +126,6 @@ class Dialect:
             if not (name.startswith("_") or hasattr(Dialect, name)):
                 raise TypeError(f"{cls.__name__}.{name}: gcxform.Dialect has no {name}")
         declare(cls.settings)
-
-    @classmethod
-    def executes(cls, comment: str) -> bool:
-        """Whether the control does something when it reads a comment."""
-        return comment.lstrip("(; \t").upper().startswith(cls.text_rule.active_comments)
 
     @classmethod
     def load_grammar(cls) -> Grammar:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from itertools import combinations
 
 from gcxform.dialect.codes import Code, Effect, MCode
-from gcxform.dialect.cycle_rule import CycleRule
+from gcxform.dialect.cycle_rule import Cycle
 from gcxform.dialect.dialect import LINEAR, ROTARY, Dialect
 from gcxform.dialect.program_rules import ProgramRule
 from gcxform.modal.frames.acts import WORDS
@@ -20,6 +20,7 @@ from gcxform.modal.meaning.tables import GROUPS, NUMBER
 from gcxform.testing import canon
 
 SECONDS, MILLISECONDS = 1.0, 0.001
+NO_CYCLE = Cycle()
 Complaints = Iterator[tuple[str, str]]
 """What a table is blamed for: the code or attribute, by which `differs` excuses it, and a text."""
 
@@ -343,38 +344,31 @@ def _cycles(dialect: type[Dialect]) -> Complaints:
     rule = dialect.cycle_rule
     if rule is None:
         return
-    for number in [n for n in HOLES if f"G{n}" in dialect.codes]:
-        code = dialect.codes[f"G{number}"]
-        if _done(code) and number not in rule.steps and number not in rule.refused:
-            yield "cycle_rule", f"G{number} has no steps and is not refused"
-    yield from _cycle_words(dialect, rule)
-    for number, wanted in canon.TURNING.items():
-        if number in rule.steps and rule.spindle.get(number, wanted) != wanted:
-            yield "cycle_rule", f"G{number} wants the spindle to turn the other way"
-    for number in rule.steps:
-        if not canon.STEPS.get(number, bool)(rule.steps[number]):
-            yield "cycle_rule", f"the steps of G{number} are those of another cycle"
-
-
-def _cycle_words(dialect: type[Dialect], rule: CycleRule) -> Complaints:
-    said_and_known = (("pecks", rule.pecks, canon.PECKS), ("needs", rule.needs, canon.CYCLE_NEEDS))
-    for name, said, known in said_and_known:
-        for number in known:
-            if number in rule.steps and said.get(number) != known[number]:
-                yield (
-                    "cycle_rule",
-                    f"{name} of G{number} is {said.get(number)!r}, not {known[number]!r}",
-                )
+    for name, code in dialect.codes.items():
+        cycle = rule.cycles.get(int(float(name[1:])), NO_CYCLE)
+        if name in canon.CYCLES and _done(code) and not (cycle.steps or cycle.refused):
+            yield "cycle_rule", f"{name} has no steps and is not refused"
     if rule.repeats not in ("K", "L"):
         yield "cycle_rule", f"{rule.repeats!r} counts the holes of a cycle: K or L"
-    for number, taken in rule.takes.items():
-        if set(rule.needs.get(number, "")) - set(taken):
-            yield "cycle_rule", f"G{number} needs {rule.needs[number]} and does not take it"
-        if set(taken) - set(dialect.block_rule.words):
-            yield "cycle_rule", f"G{number} takes {taken}, which are not all words of the dialect"
+    for number, cycle in rule.cycles.items():
+        for text in _cycle(number, cycle, dialect.block_rule.words):
+            yield "cycle_rule", text
 
 
-HOLES = tuple(int(code[1:]) for code in canon.CYCLES)
+def _cycle(number: int, cycle: Cycle, words: str) -> Iterator[str]:
+    """Yield what speaks against what is said of one cycle."""
+    for name, known in (("pecks", canon.PECKS), ("needs", canon.CYCLE_NEEDS)):
+        said = getattr(cycle, name)
+        if cycle.steps and said != known.get(number, said):
+            yield f"{name} of G{number} is {said!r}, not {known[number]!r}"
+    if set(cycle.needs) - set(cycle.takes):
+        yield f"G{number} needs {cycle.needs} and does not take it"
+    if set(cycle.takes) - set(words):
+        yield f"G{number} takes {cycle.takes}, which are not all words of the dialect"
+    if cycle.spindle and cycle.spindle != canon.TURNING.get(number, cycle.spindle):
+        yield f"G{number} wants the spindle to turn the other way"
+    if cycle.steps and not canon.STEPS.get(number, bool)(cycle.steps):
+        yield f"the steps of G{number} are those of another cycle"
 
 
 def _tips(dialect: type[Dialect]) -> Complaints:

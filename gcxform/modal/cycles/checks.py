@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from gcxform.dialect.cycle_rule import RESUME, CycleRule
+from gcxform.dialect.cycle_rule import RESUME, Cycle, CycleRule
 from gcxform.modal.cycles.stretch import Stretch
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
@@ -32,7 +32,7 @@ class Checks:
     """Looks at the columns of stretches; `pecks` (n,): in how many pecks holes are drilled."""
 
     def __init__(self, stretch: Stretch, rule: CycleRule, pecks: Ints) -> None:
-        self.stretch, self.rule, self.pecks = stretch, rule, pecks
+        self.stretch, self.rule, self.pecks, self.cycles = stretch, rule, pecks, rule.cycles
         self.calls, self.drilled, self.words = stretch.calls, stretch.drilled, stretch.words
         self.codes = set(distinct(self.calls.code).tolist())
 
@@ -60,17 +60,18 @@ class Checks:
             return np.zeros(len(self.calls), np.bool_)
         return np.asarray(np.isin(self.calls.code, list(here)))
 
-    def _listed(self, words: Mapping[int, str], letter: str) -> Flags:
-        """Return the calls whose cycle has a letter in a table of words."""
-        return self._with_code([code for code, letters in words.items() if letter in letters])
+    def _listed(self, of: Callable[[Cycle], str], word: str) -> Flags:
+        """Return the calls whose cycle has a word in what is said of it."""
+        return self._with_code([code for code, one in self.cycles.items() if word in of(one)])
 
     def _about_codes(self) -> Iterator[tuple[Flags, str, str]]:
-        for code, reason in self.rule.refused.items():
+        refused = {code: one.refused for code, one in self.cycles.items() if one.refused}
+        for code, reason in refused.items():
             yield self._with_code([code]), f"{{code}} is not expanded: {reason}", ""
-        known = self._with_code(list(self.rule.steps))
+        known = self._with_code([code for code, one in self.cycles.items() if one.steps])
         yield ~known, "{code} is not a cycle of this control", ""
         if self.calls.plane != Plane.XY:
-            for code, reason in self.rule.xy_only.items():
+            for code, reason in {n: c.xy_only for n, c in self.cycles.items() if c.xy_only}.items():
                 yield self._with_code([code]), f"{{code}} outside G17: {reason}", ""
 
     def _about_modes(self) -> Iterator[tuple[Flags, str, str]]:
@@ -98,20 +99,23 @@ class Checks:
         yield placed, message, "give the place in a block of its own"
         yield repeats != np.floor(repeats), f"{{code}} with a fraction in {count}", ""
         yield repeats < 0, f"{{code}} with a negative {count}", ""
-        yield ~np.isnan(calls.repeats) & ~self._listed(rule.takes, count), *_takes_no(count)
+        taken = self._listed(lambda one: one.takes, count)
+        yield ~np.isnan(calls.repeats) & ~taken, *_takes_no(count)
         for letter in "PQIJK":
             name = letter.lower()
             given = ~np.isnan(getattr(calls, name))
             if letter != count:
-                yield given & ~self._listed(rule.takes, letter), *_takes_no(letter)
+                yield given & ~self._listed(lambda one: one.takes, letter), *_takes_no(letter)
             unset = np.isnan(self.words[name])
             open_ = f"{{code}} with {letter} in force: what it does is not known"
-            yield ~unset & self._listed(rule.open_words, letter), open_, "write G80 before it"
-            missing = self.drilled & unset & self._listed(rule.needs, letter)
+            left_open = self._listed(lambda one: one.open_words, letter)
+            yield ~unset & left_open, open_, "write G80 before it"
+            missing = self.drilled & unset & self._listed(lambda one: one.needs, letter)
             yield missing, f"{{code}} without {letter}", "give it in this block"
         yield calls.p < 0, "{code} with a negative P", ""
-        pecks = self._with_code(list(rule.pecks)) & self.drilled
-        yield pecks & (self.words["q"] <= 0), "{code} with a Q that is not above zero", ""
+        pecks = self._with_code([code for code, one in self.cycles.items() if one.pecks])
+        pecks &= self.drilled & (self.words["q"] <= 0)
+        yield pecks, "{code} with a Q that is not above zero", ""
 
     def _about_levels(self) -> Iterator[tuple[Flags, str, str]]:
         calls, drilled, stretch = self.calls, self.drilled, self.stretch
@@ -146,21 +150,22 @@ class Checks:
 
     def _about_spindle(self) -> Iterator[tuple[Flags, str, str]]:
         calls, rule = self.calls, self.rule
-        for code, ways in rule.spindle.items():
-            here = self._with_code([code]) & self.drilled
+        turning = {code: one for code, one in self.cycles.items() if one.spindle}
+        for code, cycle in turning.items():
+            ways, here = cycle.spindle, self._with_code([code]) & self.drilled
             hint = " or ".join("M3" if way > 0 else "M4" for way in ways) + " before it"
             yield here & (calls.spindle == 0), "{code} with the spindle stopped", hint
             other = ~np.isin(calls.spindle, [*ways, 0, UNKNOWN])
             yield here & other, "{code} with the spindle turning the wrong way", hint
-            if any(RESUME in step.then for step in rule.steps[code]):
+            if any(RESUME in step.then for step in cycle.steps):
                 message = "{code} starts the spindle again, but how it turned is not known"
                 yield here & (calls.spindle == UNKNOWN), message, hint
         for way, name, needed in (
             ("break", "peck_return", rule.peck_return),
             ("clear", "peck_clearance", rule.peck_clearance),
         ):
-            codes = [code for code, pecks in rule.pecks.items() if pecks == way]
-            deep = self.drilled & self._with_code(codes) & (self.pecks > 1)
+            here = self._listed(lambda one: one.pecks, way)
+            deep = self.drilled & here & (self.pecks > 1)
             key = name.replace("_", "-")
             hint = f'{key} = "0.5 mm" in [control] of the machine file, as the machine has it'
             message = "{code}: how far it goes back between pecks is a parameter of the control"

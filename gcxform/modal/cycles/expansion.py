@@ -99,7 +99,7 @@ def _pecks(stretch: Stretch, rule: CycleRule) -> Ints:
         """Return lengths in mm as the numbers of the program that they were."""
         return lengths if calls.unit == 1.0 else np.asarray(np.round(lengths / calls.unit, DIGITS))
 
-    pecking = np.isin(calls.code, list(rule.pecks))
+    pecking = np.isin(calls.code, [code for code, cycle in rule.cycles.items() if cycle.pecks])
     if not pecking.any():
         return pecks
     quantity = programmed(stretch.words["q"])

@@ -77,19 +77,19 @@ class _Table:
     """The steps of all cycles as arrays: by code, and by number of the step."""
 
     def __init__(self, rule: CycleRule) -> None:
-        longest = max(len(steps) for steps in rule.steps.values())
+        longest = max(len(cycle.steps) for cycle in rule.cycles.values())
         self.count = np.zeros(CODES, np.int64)
         self.feeds = np.zeros((CODES, longest), np.bool_)
         self.level = np.zeros((CODES, longest), np.int64)
         self.shifted = np.zeros((CODES, longest), np.bool_)
         self.between = np.zeros(CODES, np.int64)  # moves of a peck but the last
-        for code, steps in rule.steps.items():
+        for code, cycle in rule.cycles.items():
+            steps = cycle.steps
             self.count[code] = len(steps)
             self.feeds[code, : len(steps)] = [step.feeds for step in steps]
             self.level[code, : len(steps)] = [step.level for step in steps]
             self.shifted[code, : len(steps)] = [step.shifted for step in steps]
-        for code, way in rule.pecks.items():
-            self.between[code] = 3 if way == "clear" else 2
+            self.between[code] = {"": 0, "break": 2, "clear": 3}[cycle.pecks]
 
 
 def rows_of(holes: Holes, rule: CycleRule) -> Rows:
@@ -170,7 +170,7 @@ def _events(holes: Holes, rule: CycleRule, first: Ints) -> Iterator[Event]:
         chosen = np.flatnonzero(holes.code == code)
         values = (first, holes.dwell, holes.spindle, holes.line)
         columns = [column[chosen].tolist() for column in values]
-        for number, step in enumerate(rule.steps[code]):
+        for number, step in enumerate(rule.cycles[code].steps):
             for row, dwell, spindle, line in zip(*columns, strict=True) if step.then else ():
                 for what in step.then:
                     timed = (("seconds", dwell),) if what == DWELL else ()

@@ -167,7 +167,8 @@ class Moves:
                 wanted += "IJKR" + ("PQ" if self.splines[line] else self.dialect.arc_rule.turns)
             rule = self.dialect.cycle_rule
             if rule is not None and self.modes.cycle[line] != CYCLE_OFF:
-                wanted += "R" + rule.repeats + rule.takes.get(int(self.modes.cycle[line]), "")
+                cycle = rule.cycles.get(int(self.modes.cycle[line]))
+                wanted += "R" + rule.repeats + (cycle.takes if cycle is not None else "")
             for address in sorted(meaning.lent.keys() & {*wanted})[:1]:
                 message = f"{address} belongs to {meaning.lent[address]}, and the move takes it too"
                 self.findings.add(line, "GX203", message, hint="write two blocks")

@@ -57,30 +57,27 @@ from gcxform import vocabulary as v
 
 BOTTOM, _, CLEARANCE, RETRACT = v.Level
 
-CYCLES = ("G73", "G74", "G76", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89")
 SHIFTS = "the direction in which its tool is shifted is a parameter of the machine"
-CYCLE_RULE = v.CycleRule(
-    steps={
-        73: v.DRILL,
-        74: (*v.tap(v.REVERSE, v.FORWARD, CLEARANCE), v.rapid(RETRACT)),
-        81: v.DRILL,
-        82: v.DRILL_DWELL,
-        83: v.DRILL,
-        84: (*v.tap(v.FORWARD, v.REVERSE, CLEARANCE), v.rapid(RETRACT)),
-        85: (v.feed(BOTTOM), v.feed(CLEARANCE), v.rapid(RETRACT)),
-        86: v.BORE_STOP,
-        89: (v.feed(BOTTOM, v.DWELL), v.feed(CLEARANCE), v.rapid(RETRACT)),
-    },
-    pecks={73: "break", 83: "clear"},
-    needs={73: "Q", 82: "P", 83: "Q", 89: "P"},
-    takes={int(code[1:]): "PQK" for code in CYCLES},
-    spindle={86: (1, -1)},
-    open_words={74: "Q", 84: "Q"},
-    refused={76: SHIFTS, 87: SHIFTS, 88: "the operator takes the tool out of the hole by hand"},
-    keeps_words=True,
-    stores=True,
-    repeats="K",
-)
+BY_HAND = "the operator takes the tool out of the hole by hand"
+TAP = (*v.tap(v.FORWARD, v.REVERSE, CLEARANCE), v.rapid(RETRACT))
+TAP_LEFT = (*v.tap(v.REVERSE, v.FORWARD, CLEARANCE), v.rapid(RETRACT))
+BORE = (v.feed(BOTTOM), v.feed(CLEARANCE), v.rapid(RETRACT))
+BORE_DWELL = (v.feed(BOTTOM, v.DWELL), v.feed(CLEARANCE), v.rapid(RETRACT))
+CYCLES = {
+    73: v.Cycle(v.DRILL, pecks="break", needs="Q", takes="PQK"),
+    74: v.Cycle(TAP_LEFT, takes="PQK", open_words="Q"),
+    76: v.Cycle(takes="PQK", refused=SHIFTS),
+    81: v.Cycle(v.DRILL, takes="PQK"),
+    82: v.Cycle(v.DRILL_DWELL, needs="P", takes="PQK"),
+    83: v.Cycle(v.DRILL, pecks="clear", needs="Q", takes="PQK"),
+    84: v.Cycle(TAP, takes="PQK", open_words="Q"),
+    85: v.Cycle(BORE, takes="PQK"),
+    86: v.Cycle(v.BORE_STOP, takes="PQK", spindle=(1, -1)),
+    87: v.Cycle(takes="PQK", refused=SHIFTS),
+    88: v.Cycle(takes="PQK", refused=BY_HAND),
+    89: v.Cycle(BORE_DWELL, needs="P", takes="PQK"),
+}
+CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, stores=True, repeats="K")
 
 
 class Fanuc(gx.Dialect):
@@ -135,7 +132,7 @@ class Fanuc(gx.Dialect):
             code: v.barrier("transform", v.TRANSFORM, "PRIJKQ")
             for code in ("G7.1", "G12.1", "G107", "G112")
         },
-        **{code: gx.Code("cycle") for code in CYCLES},
+        **{f"G{number}": gx.Code("cycle") for number in CYCLES},
         **{code: v.barrier("motion", v.SYNCHRONISED, "PQR") for code in ("G33", "G34")},
         **{code: v.barrier("motion", "it cuts a spline", "PRK") for code in ("G6.2",)},
         **{code: v.barrier("motion", "it cuts a spiral", "IJKRLPQ") for code in ("G2.2", "G3.2")},
@@ -162,18 +159,18 @@ class Fanuc(gx.Dialect):
         "G44": "a tool length is along Z (parameter 5001)",
         "M29": "M29 makes the next tap rigid and moves nothing (parameter 5210)",
     }
-    tool_rule = gx.ToolRule(length_may_move=True)
-    motion_rule = gx.MotionRule(g53_is_rapid=True)
+    text_rule = gx.TextRule(lower_case=False)
     block_rule = gx.BlockRule(
         last_code_wins=True,
         m_order_chosen=True,
         unknown_m=gx.MCode("user", loses_position=True),
     )
-    cutter_comp = gx.CutterComp(stored=True)
-    text_rule = gx.TextRule(lower_case=False)
+    flow_rule = gx.FlowRule("macro-b", v.MACRO_B)
     point_rule = gx.PointRule(required=True, dwell={"X": 1.0, "U": 1.0, "P": 0.001})
     feed_rule = gx.FeedRule(change_clears=True)
+    motion_rule = gx.MotionRule(g53_is_rapid=True)
     arc_rule = gx.ArcRule(absolute=0.01)
-    cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE
-    flow_rule = gx.FlowRule("macro-b", v.MACRO_B)
+    cutter_comp = gx.CutterComp(stored=True)
+    tool_rule = gx.ToolRule(length_may_move=True)
     tip_rule = gx.TipRule(codes={"G43.4": "G43"}, vector_codes={"G43.5": "G43"})
+    cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE

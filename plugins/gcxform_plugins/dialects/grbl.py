@@ -74,7 +74,9 @@ class Grbl(gx.Dialect):
         acts_anywhere="!?~\x18" + "".join(map(chr, range(0x80, 0x100))),
     )
     block_rule = gx.BlockRule(words="FIJKLNPRST", axis_words_once=True, g80_beside_motion=False)
+    feed_rule = gx.FeedRule(arcs_in_time=False)
     motion_rule = gx.MotionRule(g28_without_axes=True, g53_in_g91="absolute")
+    arc_rule = gx.ArcRule(absolute=0.005, relative=0.001, largest=0.5, circle_needs_axis_word=True)
     offset_rule = gx.OffsetRule(
         known_at_start=True,
         g10_p0_is_active=True,
@@ -83,5 +85,3 @@ class Grbl(gx.Dialect):
         g10_ignores_g91=True,
     )
     tool_rule = gx.ToolRule(length_axes="Z", g49_takes_axes=True)
-    feed_rule = gx.FeedRule(arcs_in_time=False)
-    arc_rule = gx.ArcRule(absolute=0.005, relative=0.001, largest=0.5, circle_needs_axis_word=True)

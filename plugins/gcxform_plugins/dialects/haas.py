@@ -56,6 +56,8 @@ NOT_HERE = frozenset((
 """Codes of Fanuc's table that a Haas mill does not have."""
 NOT_HERE_M = frozenset((29, 48, 49))
 MORE_OFFSETS = tuple(f"G{number}" for number in range(110, 130) if number not in (112, 113))
+CYCLES = {number: replace(one, takes="PQL") for number, one in Fanuc.cycle_rule.cycles.items()}
+CYCLES |= {number: replace(CYCLES[number], takes="QL", open_words="P") for number in (73, 83)}
 POCKETS = ("G12", "G13", "G70", "G71", "G72", "G150")
 FIVE_AXIS_CYCLES = ("G153", "G155", *(f"G{n}" for n in (161, 162, 163, 164, 165, 166, 169)))
 
@@ -64,8 +66,6 @@ class Haas(Fanuc):
     """Haas mill, NGC."""
 
     name = "haas"
-    flow_rule = replace(Fanuc.flow_rule, calls_own_lines=True)
-    tip_rule = replace(Fanuc.tip_rule, codes={"G234": "G43"}, vector_codes={})
     axes = "XYZABC"
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{name: code for name, code in Fanuc.codes.items() if name not in NOT_HERE},
@@ -101,24 +101,12 @@ class Haas(Fanuc):
         **{number: gx.MCode("stop", after=True, barrier=v.CALL, takes="PQ") for number in (46, 96)},
         97: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL"),
     }
-    cycle_rule = replace(
-        Fanuc.cycle_rule,
-        takes={**dict.fromkeys(Fanuc.cycle_rule.takes, "PQL"), 73: "QL", 83: "QL"},
-        open_words={**Fanuc.cycle_rule.open_words, 73: "P", 83: "P"},
-        repeats="L",
-        alone="cycle-without-place",
-    )
-    settings = (gx.Setting("cycle-without-place", "haas: Setting 28", ("drills",)),)
-    offset_rule = replace(
-        Fanuc.offset_rule,
-        names={code: f"G154 P{int(code[1:]) - 109}" for code in MORE_OFFSETS},
-        g52_known=False,
-        mirrors_at_zero=True,
-    )
-    block_rule = replace(Fanuc.block_rule, words=Fanuc.block_rule.words + "UVW")
-    text_rule = replace(Fanuc.text_rule, lower_case=True, line_length=256)
-    program_rule = replace(Fanuc.program_rule, number_digits=5)
     chosen: ClassVar[Mapping[str, str]] = {"M16": "M16 is M6"}
+    settings = (gx.Setting("cycle-without-place", "haas: Setting 28", ("drills",)),)
+    program_rule = replace(Fanuc.program_rule, number_digits=5)
+    text_rule = replace(Fanuc.text_rule, lower_case=True, line_length=256)
+    block_rule = replace(Fanuc.block_rule, words=Fanuc.block_rule.words + "UVW")
+    flow_rule = replace(Fanuc.flow_rule, calls_own_lines=True)
     point_rule = replace(
         Fanuc.point_rule,
         feed_required=True,
@@ -126,4 +114,17 @@ class Haas(Fanuc):
         calculator_words="XYZABCEFIJKUW",
         dwell={"P": 0.001},
         dwell_in_seconds=True,
+    )
+    offset_rule = replace(
+        Fanuc.offset_rule,
+        names={code: f"G154 P{int(code[1:]) - 109}" for code in MORE_OFFSETS},
+        g52_known=False,
+        mirrors_at_zero=True,
+    )
+    tip_rule = replace(Fanuc.tip_rule, codes={"G234": "G43"}, vector_codes={})
+    cycle_rule = replace(
+        Fanuc.cycle_rule,
+        cycles=CYCLES,
+        repeats="L",
+        alone="cycle-without-place",
     )

@@ -63,40 +63,38 @@ from gcxform import vocabulary as v
 
 BOTTOM, MIDDLE, CLEARANCE, RETRACT = v.Level
 
-CYCLES = ("G73", "G74", "G76", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89")
 MIXED_UP = "LinuxCNC 2.9 mixes the axes up and feeds to another point"
+BORE = (v.feed(BOTTOM), v.feed(CLEARANCE), v.rapid(RETRACT))
+BORE_STOP = (v.feed(BOTTOM, v.DWELL, v.STOP), v.rapid(RETRACT, v.RESUME))
+BORE_BACK = (
+    v.rapid(CLEARANCE, v.STOP, v.ORIENT, shifted=True),
+    v.rapid(BOTTOM, shifted=True),
+    v.rapid(BOTTOM, v.RESUME),
+    v.feed(MIDDLE),
+    v.feed(BOTTOM, v.STOP, v.ORIENT),
+    v.rapid(BOTTOM, shifted=True),
+    v.rapid(RETRACT, shifted=True),
+    v.rapid(RETRACT, v.RESUME),
+)
+BORE_HALT = (v.feed(BOTTOM, v.DWELL, v.STOP, v.HALT, v.RESUME),)
+BORE_DWELL = (v.feed(BOTTOM, v.DWELL), v.feed(RETRACT))
+TAP, TAP_LEFT = v.tap(v.FORWARD, v.REVERSE), v.tap(v.REVERSE, v.FORWARD)
+CYCLES = {
+    73: v.Cycle(v.DRILL, pecks="break", needs="Q", takes="QL"),
+    74: v.Cycle(TAP_LEFT, takes="P", spindle=(-1,), xy_only=MIXED_UP),
+    76: v.Cycle(refused="its motion is tied to the spindle"),
+    81: v.Cycle(v.DRILL, takes="L"),
+    82: v.Cycle(v.DRILL_DWELL, needs="P", takes="PL"),
+    83: v.Cycle(v.DRILL, pecks="clear", needs="Q", takes="QL"),
+    84: v.Cycle(TAP, takes="PL", spindle=(1,), xy_only=MIXED_UP),
+    85: v.Cycle(BORE, takes="L"),
+    86: v.Cycle(BORE_STOP, needs="P", takes="PL", spindle=(1, -1)),
+    87: v.Cycle(BORE_BACK, needs="IJK", takes="IJKL", spindle=(1, -1)),
+    88: v.Cycle(BORE_HALT, needs="P", takes="PL", spindle=(1, -1)),
+    89: v.Cycle(BORE_DWELL, needs="P", takes="PL"),
+}
 CYCLE_RULE = v.CycleRule(
-    steps={
-        73: v.DRILL,
-        74: v.tap(v.REVERSE, v.FORWARD),
-        81: v.DRILL,
-        82: v.DRILL_DWELL,
-        83: v.DRILL,
-        84: v.tap(v.FORWARD, v.REVERSE),
-        85: (v.feed(BOTTOM), v.feed(CLEARANCE), v.rapid(RETRACT)),
-        86: (v.feed(BOTTOM, v.DWELL, v.STOP), v.rapid(RETRACT, v.RESUME)),
-        87: (
-            v.rapid(CLEARANCE, v.STOP, v.ORIENT, shifted=True),
-            v.rapid(BOTTOM, shifted=True),
-            v.rapid(BOTTOM, v.RESUME),
-            v.feed(MIDDLE),
-            v.feed(BOTTOM, v.STOP, v.ORIENT),
-            v.rapid(BOTTOM, shifted=True),
-            v.rapid(RETRACT, shifted=True),
-            v.rapid(RETRACT, v.RESUME),
-        ),
-        88: (v.feed(BOTTOM, v.DWELL, v.STOP, v.HALT, v.RESUME),),
-        89: (v.feed(BOTTOM, v.DWELL), v.feed(RETRACT)),
-    },
-    pecks={73: "break", 83: "clear"},
-    needs={73: "Q", 82: "P", 83: "Q", 86: "P", 87: "IJK", 88: "P", 89: "P"},
-    takes={
-        **{73: "QL", 74: "P", 81: "L", 82: "PL", 83: "QL", 84: "PL", 85: "L", 86: "PL"},
-        **{87: "IJKL", 88: "PL", 89: "PL"},
-    },
-    spindle={74: (-1,), 84: (1,), 86: (1, -1), 87: (1, -1), 88: (1, -1)},
-    refused={76: "its motion is tied to the spindle"},
-    xy_only={74: MIXED_UP, 84: MIXED_UP},
+    CYCLES,
     peck_return=0.254,
     peck_clearance=0.254,
     rises_first=True,
@@ -145,7 +143,7 @@ class LinuxCNC(gx.Dialect):
         "G43.1": v.frame("tool-length", "length-vector", v.AXES),
         "G43.2": v.frame("tool-length", "length-add", "H"),
         **{code: gx.Code("motion") for code in ("G5", "G5.1")},
-        **{code: gx.Code("motion") for code in CYCLES if code != "G76"},
+        **{f"G{number}": gx.Code("motion") for number in CYCLES if number != 76},
         "G76": v.barrier("motion", v.SYNCHRONISED, "EHIJKLPQR"),
         **{
             code: v.barrier("motion", "it cuts a spline of NURBS", "IJKPQL")
@@ -191,8 +189,36 @@ class LinuxCNC(gx.Dialect):
         m_first=True,
         spindle_words=frozenset({"S", "M3", "M4", "M5", "M19", "M51", "G95", "G96", "G97"}),
     )
+    flow_rule = gx.FlowRule("o-words", v.RS274)
+    numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
+    feed_rule = gx.FeedRule(
+        mode_clears=True,
+        before_units=True,
+        of_linear_axes=True,
+        along_lines=True,
+        least_inverse_rate=0.1,
+    )
     motion_rule = gx.MotionRule(
         lone_codes_count=True, g28_without_axes=True, rounds_corners=True, cycles_stop=True
+    )
+    arc_rule = gx.ArcRule(
+        absolute=0.0282843,
+        relative=0.001,
+        largest=2.82843,
+        smallest=0.00127,
+        r_short=0.00127,
+        in_inch=2.54,
+        turns="P",
+    )
+    cutter_comp = gx.CutterComp(
+        planes=frozenset({"XY", "ZX"}),
+        changes=False,
+        arc_entry=True,
+        corners="arc",
+        entry="own",
+        straight=0.05,
+        before=frozenset({"tool", "override", "output"}),
+        after=frozenset({"non-modal", "tool-length", "frame", "path", "retract"}),
     )
     offset_rule = gx.OffsetRule(
         known_at_start=True,
@@ -206,32 +232,4 @@ class LinuxCNC(gx.Dialect):
     tool_rule = gx.ToolRule(
         in_table=True, lengths_aside=True, g43_takes_spindle_tool=True, units_spoil_length=True
     )
-    cutter_comp = gx.CutterComp(
-        planes=frozenset({"XY", "ZX"}),
-        changes=False,
-        arc_entry=True,
-        corners="arc",
-        entry="own",
-        straight=0.05,
-        before=frozenset({"tool", "override", "output"}),
-        after=frozenset({"non-modal", "tool-length", "frame", "path", "retract"}),
-    )
     cycle_rule = CYCLE_RULE
-    flow_rule = gx.FlowRule("o-words", v.RS274)
-    numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
-    feed_rule = gx.FeedRule(
-        mode_clears=True,
-        before_units=True,
-        of_linear_axes=True,
-        along_lines=True,
-        least_inverse_rate=0.1,
-    )
-    arc_rule = gx.ArcRule(
-        absolute=0.0282843,
-        relative=0.001,
-        largest=2.82843,
-        smallest=0.00127,
-        r_short=0.00127,
-        in_inch=2.54,
-        turns="P",
-    )

@@ -73,6 +73,7 @@ class Fagor(gx.Dialect):
 
     name = "fagor"
     axes = "XYZABCUVW"
+    translator = Blocks
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
         "G95": gx.Code("feed-mode"),
@@ -87,16 +88,15 @@ class Fagor(gx.Dialect):
         128: gx.MCode("tip", barrier=v.FOLLOWING),
         129: gx.MCode("tip"),
     }
-    translator = Blocks
-    block_rule = gx.BlockRule(words="DFHIJKNPQRST", m_order_chosen=True)
     chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
         "ABC", "rotary axes go where they are told, whichever way is shorter"
     )
+    program_rule = gx.ProgramRule(has_percent=False, has_program_number=False)
+    block_rule = gx.BlockRule(words="DFHIJKNPQRST", m_order_chosen=True)
+    numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
+    feed_rule = gx.FeedRule(change_clears=True)
+    arc_rule = gx.ArcRule(absolute=0.01)
     tip_rule = gx.TipRule(
         switches={"tip-on": "M128", "tip-off": "M129"},
         spelled={"M128": "#RTCP ON", "M129": "#RTCP OFF"},
     )
-    program_rule = gx.ProgramRule(has_percent=False, has_program_number=False)
-    feed_rule = gx.FeedRule(change_clears=True)
-    arc_rule = gx.ArcRule(absolute=0.01)
-    numbers = gx.NumberFormat(mm=4, inch=5, angle=4)

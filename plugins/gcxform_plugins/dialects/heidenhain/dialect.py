@@ -62,6 +62,7 @@ class Heidenhain(gx.Dialect):
 
     name = "heidenhain"
     axes = "XYZABCUVW"
+    translator = Klartext
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
         **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
@@ -75,9 +76,8 @@ class Heidenhain(gx.Dialect):
         128: gx.MCode("tip", barrier=v.FOLLOWING),
         129: gx.MCode("tip"),
     }
-    translator = Klartext
+    arc_rule = gx.ArcRule(absolute=0.016, turns="P")
     tip_rule = gx.TipRule(
         switches={"tip-on": "M128", "tip-off": "M129"},
         follows_at_start=False,  # a new program resets M128: TNC 410/426/430, ISO, p. 169
     )
-    arc_rule = gx.ArcRule(absolute=0.016, turns="P")

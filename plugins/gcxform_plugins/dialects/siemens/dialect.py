@@ -77,6 +77,7 @@ class Siemens(gx.Dialect):
     """SINUMERIK 840D sl and ONE, milling, in its own language: read only."""
 
     name = "siemens"
+    translator = Blocks
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
         "G95": gx.Code("feed-mode"),
@@ -92,8 +93,6 @@ class Siemens(gx.Dialect):
         128: gx.MCode("tip", barrier=v.FOLLOWING),
         129: gx.MCode("tip"),
     }
-    translator = Blocks
-    block_rule = gx.BlockRule(m_order_chosen=True)
     chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
         "ABC", "rotary axes go where they are told, whichever way is shorter (MD30455)"
     )
@@ -101,9 +100,10 @@ class Siemens(gx.Dialect):
         gx.Setting("edge-after-tool-change", "siemens: D behind M6 (MD20270)", (0, 1)),
         gx.Setting("orientation-path", "siemens: how angles change in TRAORI", ("angles",)),
     )
+    block_rule = gx.BlockRule(m_order_chosen=True)
+    feed_rule = gx.FeedRule(change_clears=True)
+    arc_rule = gx.ArcRule(turns="P")
     tip_rule = gx.TipRule(
         switches={"tip-on": "M128", "tip-off": "M129"},
         spelled={"M128": "TRAORI", "M129": "TRAFOOF"},
     )
-    arc_rule = gx.ArcRule(turns="P")
-    feed_rule = gx.FeedRule(change_clears=True)
