@@ -261,10 +261,15 @@ TAMPERED = {
     "a corner is missing": without(4),
     "a corner is a point": pointed,
     "the last move ends aside": moved(12, 0, 0.01),
+    "the last move ends short": moved(12, 1, -5.0),
+    "the last move is overrun": moved(12, 1, 0.01),
     "a corner goes the wrong way": column("kind", 4, 3),
     "a corner has another centre": column("centre", 4, (0.0, 20.01, -1.0)),
     "a corner is cut": column("kind", 4, 1),
     "a corner sweeps another angle": column("sweep", 4, 3.0),
+    "a corner is a rapid": column("kind", 4, 0),
+    "a corner has another feed": column("feed", 4, 100.0),
+    "a corner has another feed mode": column("feed_mode", 4, 1),
     "a corner rises": moved(4, 2, 0.1),
     "a still move goes aside": moved(3, 1, 0.1),
     "another depth": moved(2, 2, 0.1),
@@ -301,6 +306,37 @@ def test_a_still_move_along_the_contour_is_seen() -> None:
     after = step.apply(before, context)
     with pytest.raises(gx.VerificationError, match="aside"):
         step.prove(before, moved(2, 0, 0.1)(after), context)
+
+
+@pytest.mark.parametrize(
+    ("contour", "row", "axis", "entry"),
+    [
+        *(("X20.\nX30.", row, 0, entry) for row in range(3) for entry in ("own", "next")),
+        ("Y20.\nX20.", 0, 1, "next"),
+    ],
+)
+def test_an_end_that_slides_along_the_contour_is_seen(
+    contour: str, row: int, axis: int, entry: str
+) -> None:
+    """Both curves of a straight joint are at the tool's radius wherever it is."""
+    kind = default_registry().dialect("fanuc")
+    step = pipeline(f"cutter-comp corners=arc entry={entry}", "fanuc").path_passes[0]
+    context = PassContext(kind, kind, kind.numbers)
+    before = path_of(f"G94 F100\nG41 D1 G1 X10. Y0.\n{contour}\nG40 X40.\nM30\n", "fanuc")
+    after = step.apply(before, context)
+    step.prove(before, after, context)
+    with pytest.raises(gx.VerificationError, match="along the contour"):
+        step.prove(before, moved(row, axis, 0.01)(after), context)
+
+
+@pytest.mark.parametrize("row", [2, 3, 4])
+def test_another_speed_in_inverse_time_is_seen(row: int) -> None:
+    step, context = proving()
+    before = path_of(HEAD + "G41 D1 G93 G1 Y0 F2\nX10 F2\nG2 X20 I5 F3\nG40 G1 X30 F1\nM2\n")
+    after = step.apply(before, context)
+    step.prove(before, after, context)
+    with pytest.raises(gx.VerificationError, match="feed"):
+        step.prove(before, column("feed", row, after.feed[row] * 1.01)(after), context)
 
 
 def test_a_line_that_goes_backwards_is_seen() -> None:

@@ -329,7 +329,6 @@ STILL_LATE: dict[str, int] = {
     "gcxform.testing.kit._PathCheck": 1,
     "gcxform_plugins.dialects.heidenhain.moves.Moves": 1,
     "gcxform_plugins.passes.arcs.fit._Runs": 5,
-    "gcxform_plugins.passes.cutter_comp.proof._Proof": 20,
 }
 """Classes, and how many attributes they are still given late."""
 

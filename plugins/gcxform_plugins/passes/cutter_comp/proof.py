@@ -1,13 +1,34 @@
 """Whether the centre of a tool is beside a contour: the proof of `cutter-comp`.
 
-It shares no code with the search for the centre path. Each move of the contour has one move of the
-centre, and an outside corner has one before it. At both ends the centre has to be at the tool's
-radius from its own contour, on its side; lines are then right all along, and arcs by their centre.
+It shares no code with the search for the centre path. All is in the plane of the arcs, in mm, row k
+of n being a move under compensation that moves in its plane:
+
+    p, q, c    (n, 2)  start, end and centre of circle of the contour as programmed
+    a, b, d    (n, 2)  the same of the centre path
+    side s     (n,)    +1: the tool is left, -1: right      radius r  (n,)  of the tool
+    sense o    (n,)    +1 counter-clockwise, -1 clockwise, 0 line
+    first, last (n, 2) unit tangents of the contour at p and q
+    turn       (n,)    rad; s times the angle from `last` of the move before to `first`: inside > 0
+
+How far a point x is beside the contour: h(x) = s first x (x - p) for a line (cross product), and
+h(x) = s o (|p - c| - |x - c|) for an arc. Claimed, with CLOSE for the arithmetic:
+
+    |h(x) - r| <= e + u   for every x of the centre path of move k but the first of a stretch,
+
+u = ||p - c| - |q - c||, by which a programmed arc misses its own circle, and e = r (1 - cos turn),
+on the inside of an arc R / (R - r) of that, where a turn of at most `straight` is taken for none,
+else 0. Derived here: h is linear along a line; an arc with d = c keeps |x - c|, or goes from one to
+the other; so it is enough that both ends hold it. Where two curves meet in a corner, that fixes the
+joint but for the second crossing of a circle, which turns outwards (`_check_meetings`). Where they
+are tangents, and at the end of a stretch, it does not: there (b - q) . last = 0 is asked for
+(`_check_slides`). Around an outside corner the centre keeps r from p: an arc about p, or lines that
+nowhere come nearer. All of this is of the path as computed, before it is rounded.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -15,9 +36,10 @@ import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
 
 CLOSE = 1e-6  # mm
+SLIP = 1e-9  # relative, of feeds
 ANGLE = 1e-6  # rad
 GAINED = 0.026  # rad; what an arc may gain where a turn below `straight` begins it
-SAME = ("kind", "plane", "feed_mode", "frame", "source", "form", "lost")
+SAME = ("plane", "feed_mode", "frame", "source", "form", "lost")
 
 
 def prove_beside(
@@ -34,7 +56,8 @@ def prove_beside(
     on = np.flatnonzero(before.side != 0)
     on = on[before.radius[on] > 0]
     if len(on):
-        _Proof(before, after, main, corner, straight, linear, beside_next).check(on)
+        moving = _moving(before, after, main, on)
+        _Proof.of(before, after, main, corner, moving, straight, linear, beside_next).check()
 
 
 def _paired(before: gx.Toolpath, after: gx.Toolpath) -> tuple[Ints, Ints]:
@@ -52,9 +75,11 @@ def _paired(before: gx.Toolpath, after: gx.Toolpath) -> tuple[Ints, Ints]:
 
 def _check_same(before: gx.Toolpath, after: gx.Toolpath, main: Ints, corner: Ints) -> None:
     """Check all that compensation does not change."""
+    _fail_if(before, after.kind[main] != before.kind, "kind has changed")
+    owner = np.repeat(np.arange(len(before)), 1 + (corner >= 0))
     for name in SAME:
-        wrong = getattr(after, name)[main] != getattr(before, name)
-        _fail_if(before, wrong, f"{name} has changed")
+        wrong = getattr(after, name) != getattr(before, name)[owner]
+        _fail_if(before, owner[wrong], f"{name} has changed")
     free = (before.side == 0) | ~(before.radius > 0)
     kept = (after.end[main] == before.end) | np.isnan(before.end)
     _fail_if(before, free & (~kept.all(axis=1) | (corner >= 0)), "a free move has changed")
@@ -64,9 +89,29 @@ def _check_same(before: gx.Toolpath, after: gx.Toolpath, main: Ints, corner: Int
         same = (old == new) | (np.isnan(old) & np.isnan(new))
         arcs |= ~(same if same.ndim == 1 else same.all(axis=1))
     _fail_if(before, free & arcs, "a free arc has changed")
-    mode = before.feed_mode != gx.FeedMode.INVERSE_TIME
-    feed = (after.feed[main] == before.feed) | np.isnan(before.feed)
-    _fail_if(before, mode & ~feed, "the feed has changed")
+    _check_feeds(before, after, owner)
+
+
+def _check_feeds(before: gx.Toolpath, after: gx.Toolpath, owner: Ints) -> None:
+    """Check the feeds; in inverse time the speed is the contour's: F of l mm is F l / m of m mm."""
+    timed = (before.feed_mode == gx.FeedMode.INVERSE_TIME) & (before.side != 0)
+    timed &= before.kind != gx.Kind.RAPID
+    feed, programmed, made = before.feed[owner], _lengths(before)[owner], _lengths(after)
+    goes = timed[owner] & (np.minimum(programmed, made) > CLOSE)
+    same = (after.feed == feed) | np.isnan(feed) | (timed[owner] & ~goes)
+    same |= goes & (np.abs(after.feed * made - feed * programmed) <= SLIP * feed * programmed)
+    _fail_if(before, owner[~same], "the feed has changed")
+
+
+def _lengths(path: gx.Toolpath) -> Floats:
+    """Return the lengths (n,) of moves along X, Y and Z; what is not known stands still."""
+    way = np.nan_to_num(path.end[:, :3] - path.start[:, :3])
+    arc = path.is_arc
+    out = np.where(arc[:, None], path.start[:, :3] - path.centre, 0.0)
+    normal = np.array([gx.Plane(p).axes[2] for p in range(3)])[path.plane][:, None]
+    rise = np.take_along_axis(way, normal, axis=1)[:, 0]
+    np.put_along_axis(out, normal, 0.0, axis=1)
+    return np.where(arc, np.hypot(_size(out) * path.sweep, rise), _size(way))
 
 
 def _check_events(before: gx.Toolpath, after: gx.Toolpath, first: Ints) -> None:
@@ -78,9 +123,40 @@ def _check_events(before: gx.Toolpath, after: gx.Toolpath, first: Ints) -> None:
         _fail(before, 0, "an event is missing, or stands elsewhere")
 
 
-@dataclass
+def _plane_axes(path: gx.Toolpath, rows: Ints) -> Ints:
+    """Return the two axes of the plane of each row, and the third (n, 3)."""
+    axes: Ints = np.array([gx.Plane(p).axes for p in range(3)])[path.plane[rows]]
+    return axes
+
+
+def _in_plane(points: Floats, axes: Ints) -> Floats:
+    """Return points in the coordinates of their planes (n, 2)."""
+    return np.asarray(np.take_along_axis(points[:, :3], axes[:, :2], axis=1))
+
+
+def _moving(before: gx.Toolpath, after: gx.Toolpath, main: Ints, on: Ints) -> Ints:
+    """Check the axes that are not in the plane; return the rows that move in it.
+
+    Of the others the centre has to stand still.
+    """
+    axes = _plane_axes(before, on)
+    same = (after.end[main[on]] == before.end[on]) | np.isnan(before.end[on])
+    np.put_along_axis(same, axes[:, :2], True, axis=1)
+    _fail_if(before, on[~same.all(axis=1)], "an axis that is not in the plane moves")
+    p, q = _in_plane(before.start[on], axes), _in_plane(before.end[on], axes)
+    a, b = _in_plane(after.start[main[on]], axes), _in_plane(after.end[main[on]], axes)
+    moves = before.is_arc[on] | (np.abs(p - q).sum(axis=1) > 1e-9)
+    _fail_if(before, on[~moves & (np.abs(a - b).sum(axis=1) > CLOSE)], "it moves aside")
+    return np.asarray(on[moves])
+
+
+@dataclass(frozen=True)
 class _Proof:
-    """The rows of one path under compensation, seen in their planes."""
+    """The moves of one path under compensation, in their planes; symbols as in the module's head.
+
+    row (n,): of `before`; axes (n, 3): of its plane, and the third; entry (n,): whether it is the
+    first of a stretch.
+    """
 
     before: gx.Toolpath
     after: gx.Toolpath
@@ -89,48 +165,83 @@ class _Proof:
     straight: float
     linear: bool
     beside_next: bool
+    row: Ints
+    axes: Ints
+    p: Floats
+    q: Floats
+    c: Floats
+    a: Floats
+    b: Floats
+    d: Floats
+    side: Floats
+    radius: Floats
+    sense: Floats
+    entry: Flags
 
-    def check(self, on: Ints) -> None:
-        """Check the rows that are under compensation."""
-        self._look(on)
-        self._check_axes()
+    @classmethod
+    def of(
+        cls,
+        before: gx.Toolpath,
+        after: gx.Toolpath,
+        main: Ints,
+        corner: Ints,
+        row: Ints,
+        straight: float,
+        linear: bool,
+        beside_next: bool,
+    ) -> _Proof:
+        """Look at rows in their planes."""
+        axes, made = _plane_axes(before, row), main[row]
+        programmed = (before.start, before.end, before.centre)
+        p, q, c = (_in_plane(points[row], axes) for points in programmed)
+        a, b, d = (
+            _in_plane(points[made], axes) for points in (after.start, after.end, after.centre)
+        )
+        side, radius, sense = before.side[row].astype(float), before.radius[row], before.sense[row]
+        entry = np.append(True, before.side[:-1] == 0)[: len(before)][row]
+        given = before, after, main, corner, straight, linear, beside_next
+        return cls(*given, row, axes, p, q, c, a, b, d, side, radius, sense, entry)
+
+    @cached_property
+    def arc(self) -> Flags:
+        """Whether a move (n,) is an arc."""
+        return np.asarray(self.sense != 0)
+
+    @cached_property
+    def first(self) -> Floats:
+        """Unit tangents (n, 2) where moves begin."""
+        return self._tangents(self.p)
+
+    @cached_property
+    def last(self) -> Floats:
+        """Unit tangents (n, 2) where moves end."""
+        return self._tangents(self.q)
+
+    @cached_property
+    def turn(self) -> Floats:
+        """By how much (n,) the contour turns before a move, rad."""
+        before_it = np.roll(self.last, 1, axis=0)
+        angle = np.arctan2(_cross(before_it, self.first), _dot(before_it, self.first))
+        return np.asarray(self.side * angle)
+
+    @cached_property
+    def none(self) -> Flags:
+        """Whether the turn before a move (n,) is taken for none."""
+        return np.asarray((np.abs(self.turn) <= self.straight) & ~self.entry)
+
+    @cached_property
+    def valley(self) -> Flags:
+        """Whether the tool comes to rest on both sides of the corner before a move (n,)."""
+        leaves = self.arc & (self.side * self.sense < 0)
+        return np.asarray(leaves & (np.abs(self.turn) > np.pi - ANGLE))
+
+    def check(self) -> None:
+        """Check all moves."""
         self._check_ends()
+        self._check_slides()
         self._check_order()
         self._check_corners()
         self._check_meetings()
-
-    def _look(self, on: Ints) -> None:
-        """Keep the rows that move in the plane, in the coordinates of the plane."""
-        before, after = self.before, self.after
-        plane = before.plane[on]
-        axes = np.array([gx.Plane(p).axes for p in range(3)])[plane]
-        self.all, self.all_axes = on, axes
-
-        def seen(points: Floats, rows: Ints) -> Floats:
-            return np.asarray(np.take_along_axis(points[rows][:, :3], axes[:, :2], axis=1))
-
-        p, q = seen(before.start, on), seen(before.end, on)
-        a, b = seen(after.start, self.main[on]), seen(after.end, self.main[on])
-        moves = before.is_arc[on] | (np.abs(p - q).sum(axis=1) > 1e-9)
-        _fail_if(before, on[~moves & (np.abs(a - b).sum(axis=1) > CLOSE)], "it moves aside")
-        c = seen(before.centre, on)
-        d = seen(after.centre, self.main[on])
-        self.row, self.axes = on[moves], axes[moves]
-        self.p, self.q, self.a, self.b = p[moves], q[moves], a[moves], b[moves]
-        self.c, self.d = c[moves], d[moves]
-        self.side = before.side[self.row].astype(np.float64)
-        self.radius, self.sense = before.radius[self.row], before.sense[self.row]
-        self.arc = self.sense != 0
-        off = np.append(True, before.side[:-1] == 0)[: len(before)]
-        self.entry = off[self.row]
-        self.first, self.last = self._tangents(self.p), self._tangents(self.q)
-        before_it = np.roll(self.last, 1, axis=0)
-        self.turn = self.side * np.arctan2(
-            _cross(before_it, self.first), _dot(before_it, self.first)
-        )
-        leaves = self.arc & (self.side * self.sense < 0)
-        self.valley = leaves & (np.abs(self.turn) > np.pi - ANGLE)
-        self.none = (np.abs(self.turn) <= self.straight) & ~self.entry
 
     def _tangents(self, at: Floats) -> Floats:
         """Return the unit tangents (n, 2) of the contour at points of it."""
@@ -140,20 +251,11 @@ class _Proof:
         way = np.where(self.arc[:, None], turned, way)
         return np.asarray(way / np.sqrt((way**2).sum(axis=1))[:, None])
 
-    def _offset(self, at: Floats, size: Floats) -> Floats:
-        """Return how far (n,) points are from their contours, to its side; `size` of arcs."""
-        line = self.side * _cross(self.first, at - self.p)
-        out = at - self.c
-        arc = self.side * self.sense * (size - np.sqrt((out**2).sum(axis=1)))
+    def _offset(self, x: Floats, size: Floats) -> Floats:
+        """Return h (n,) of points; `size`: the radius of arcs there."""
+        line = self.side * _cross(self.first, x - self.p)
+        arc = self.side * self.sense * (size - _size(x - self.c))
         return np.asarray(np.where(self.arc, arc, line))
-
-    def _check_axes(self) -> None:
-        """Check the axes that are not in the plane."""
-        rows = self.all
-        end, old = self.after.end[self.main[rows]], self.before.end[rows]
-        same = (end == old) | np.isnan(old)
-        np.put_along_axis(same, self.all_axes[:, :2], True, axis=1)
-        _fail_if(self.before, rows[~same.all(axis=1)], "an axis that is not in the plane moves")
 
     def _check_ends(self) -> None:
         """Check that the centre is beside the contour where each move begins and ends."""
@@ -171,6 +273,20 @@ class _Proof:
             wrong &= ~(self.entry & np.append(~self.entry[1:], False))
         self._fail(wrong, "the centre is not at the tool's radius where it ends")
         self._fail(self.entry & (_size(self.a - self.p) > CLOSE), "it begins elsewhere")
+
+    def _check_slides(self) -> None:
+        """Check that moves end at right angles beside the contour where no corner fixes their end.
+
+        That is the end of the move; with `beside_next`, of an entry, the beginning of the next.
+        """
+        ends = np.append(self.entry[1:], True)
+        along, free = self.last, ends | np.append(self.none[1:], False)
+        if self.beside_next:
+            enters = self.entry & ~ends
+            free |= enters
+            along = np.where(enters[:, None], np.roll(self.first, -1, axis=0), along)
+        slid = np.abs(_dot(self.b - self.q, along)) > CLOSE
+        self._fail(free & slid, "the centre ends before or behind, along the contour")
 
     def _check_order(self) -> None:
         """Check that the centre moves as the contour does."""
@@ -202,13 +318,15 @@ class _Proof:
         """Check the moves that lead around corners, before moves by index."""
         rows = self.corner[self.row[k]]
         kind = self.after.kind[rows]
-        begin = np.take_along_axis(self.after.start[rows][:, :3], self.axes[k, :2], axis=1)
+        begin = _in_plane(self.after.start[rows], self.axes[k])
         u, v = begin - self.p[k], self.a[k] - self.p[k]
         _fail_if(
             self.before, self.row[k][kind == self._wrong_way(k)], "a corner goes the wrong way"
         )
+        rapid = (kind == gx.Kind.RAPID) != (self.before.kind[self.row[k]] == gx.Kind.RAPID)
+        _fail_if(self.before, self.row[k][rapid], "a corner is a rapid, or its move is")
         round_it = kind >= gx.Kind.ARC_CW
-        middle = np.take_along_axis(self.after.centre[rows], self.axes[k, :2], axis=1)
+        middle = _in_plane(self.after.centre[rows], self.axes[k])
         far = np.maximum(np.abs(_size(u) - self.radius[k]), np.abs(_size(v) - self.radius[k]))
         far = np.maximum(far, np.nan_to_num(_size(middle - self.p[k]), nan=np.inf))
         angle = np.abs(np.arctan2(_cross(u, v), _dot(u, v)))
