@@ -25,6 +25,7 @@ from gcxform.flow.straightened import EXECUTED
 from gcxform.machine.chain import chain_of
 from gcxform.machine.file import load_machine
 from gcxform.pipeline.file import KEYS, SECTIONS
+from gcxform.plugin.registry import KINDS as HOOKS
 from gcxform.plugin.registry import default_registry
 from gcxform.testing import check_dialect, check_pass
 from gcxform.version import VERSION
@@ -44,6 +45,11 @@ def blocks(language):
 
 
 # --- names ---
+
+
+@pytest.mark.parametrize("hook", HOOKS.values())
+def test_every_hook_is_explained(hook):
+    assert f"`{hook}`" in (ROOT / "CONTRIBUTING.md").read_text("utf-8")
 
 
 @pytest.mark.parametrize("verb", VERBS)
