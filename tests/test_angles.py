@@ -14,10 +14,9 @@ import numpy as np
 import pytest
 from cli_kit import call
 from scipy.stats import f as ratios
-from scipy.stats import norm
 from test_loop import LOW, TRAVEL, truth
 
-from gcxform.calibrate.diagonal.angles import Angles, Field, Pattern, fields, normal_of_ratio
+from gcxform.calibrate.diagonal.angles import Angles, Field, Pattern, fields
 from gcxform.calibrate.diagonal.file import diagonals_csv, linear_csv
 from gcxform.calibrate.diagonal.plain_diagonal import squareness
 from gcxform.calibrate.diagonal.readings import Diagonals, LinearTest, step_diagonals
@@ -227,12 +226,11 @@ def test_too_few_steps_are_said() -> None:
     assert "too few steps" in one.words
 
 
-@pytest.mark.parametrize(("above", "below"), [*product((1, 3, 8), (4, 20, 60))])
-def test_the_normal_deviate_of_a_ratio(above, below) -> None:
-    for rate in (0.2, 0.01, 0.005):
-        ratio = ratios.isf(rate, above, below)
-        beyond = normal_of_ratio(ratio, above, below) - norm.isf(rate)
-        assert -0.15 <= beyond <= 0.05  # rather too few alarms than too many
+@pytest.mark.parametrize(("gained", "left"), [*product((1, 3, 8), (4, 20, 60))])
+def test_one_in_two_hundred_is_more_than_chance(gained, left) -> None:
+    ratio = ratios.isf(0.005, gained, left)
+    rare, common = (Pattern(1, k * ratio * gained, gained, 0.0, left, 0.0) for k in (1.001, 0.999))
+    assert (rare.significant, common.significant) == (True, False)
 
 
 def test_a_pattern_is_held_against_the_noise_that_is_left() -> None:

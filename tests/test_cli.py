@@ -52,11 +52,33 @@ def test_help_is_quick() -> None:
     assert usual("-m", "gcxform.cli", "--help") < wanted
 
 
+def test_a_run_waits_for_no_library_of_other_verbs(tmp_path) -> None:
+    (tmp_path / "in.nc").write_text("G21 G90\nG1 X1. F100.\nM30\n")
+    words = [
+        "run",
+        str(tmp_path / "in.nc"),
+        "-o",
+        str(tmp_path / "out.nc"),
+        "-x",
+        "metric",
+        "-f",
+        "linuxcnc",
+    ]
+    code = (
+        "import sys\nfrom gcxform.cli import verbs\n"
+        f"try: verbs.main({words})\nexcept SystemExit as end: code = end.code\n"
+        "sys.exit(code or len({'scipy', 'tomlkit', 'matplotlib'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
+    assert (done.returncode, (tmp_path / "out.nc").exists()) == (0, True), done.stderr
+
+
 def test_help_waits_for_click_alone() -> None:
     code = (
         "import sys\nfrom gcxform.cli import verbs\n"
         "try: verbs.main(['--help'])\nexcept SystemExit: pass\n"
-        "heavy = {'numpy', 'lark', 'msgspec', 'pluggy', 'gcxform.pipeline.pipeline'}\n"
+        "heavy = {'scipy', 'tomlkit', 'matplotlib'}\n"
+        "heavy |= {'numpy', 'lark', 'msgspec', 'pluggy', 'gcxform.pipeline.pipeline'}\n"
         "sys.exit(len(heavy & set(sys.modules)))"
     )
     assert (

@@ -94,7 +94,7 @@ def test_without_redundancy_the_stated_noise_holds() -> None:
 
 @pytest.mark.parametrize("degrees", [1, 2, 5, 17, 60, 300])
 def test_what_is_plausible_is_the_table_of_chi_square(degrees) -> None:
-    assert plausible(degrees) == pytest.approx(chi2.ppf(0.999, degrees), rel=0.04)
+    assert plausible(degrees) == pytest.approx(chi2.ppf(0.999, degrees), rel=1e-9)
 
 
 def test_outliers_are_told_from_readings_that_are_all_worse() -> None:

@@ -191,7 +191,7 @@ def test_aligned_beams_are_not_flagged_by_noise():
 
 @pytest.mark.parametrize(("degrees", "quantile"), [(1, 10.828), (3, 16.266), (10, 29.588)])
 def test_what_chi_square_exceeds_once_in_a_thousand(degrees, quantile):
-    assert plausible(degrees) == pytest.approx(quantile, rel=0.031)
+    assert plausible(degrees) == pytest.approx(quantile, rel=1e-4)
 
 
 # --- V9: the frame ---

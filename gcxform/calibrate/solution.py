@@ -15,6 +15,7 @@ import numpy as np
 from gcxform.system.arrays import Flags, Floats
 
 FEW: Final = 8  # one in so many may be an outlier
+SELDOM: Final = 1e-3  # how often noise alone is more than what is plausible
 RANK: Final = 1e-9  # of the largest singular value: below it a direction is not determined
 
 
@@ -144,12 +145,10 @@ def belonging(standardised: Floats, outlying: float) -> Flags:
 
 
 def plausible(degrees: int) -> float:
-    """Return what chi square with some degrees of freedom exceeds once in a thousand times.
+    """Return what chi square with some degrees of freedom exceeds once in a thousand times."""
+    from scipy.special import chdtri
 
-    By Wilson and Hilferty (Proc. Nat. Acad. Sci. 17 (1931) 684); within 4 % of the tables.
-    """
-    part = 2.0 / (9.0 * degrees)
-    return degrees * (1.0 - part + 3.0902 * math.sqrt(part)) ** 3
+    return float(chdtri(degrees, SELDOM))
 
 
 def reduced_rows(rows: Floats) -> Floats:

@@ -17,30 +17,22 @@ from functools import cached_property
 
 import numpy as np
 
+from gcxform.calibrate.rotary.circle import circles_in_plane
 from gcxform.system.arrays import Floats
-
-STEPS = 20
-CONVERGED = 1e-12  # mm
 
 
 def least_squares_circle(points: Floats) -> tuple[Floats, float]:
     """Return the centre (2,) and radius in mm of the circle nearest to points (n, 2) in mm.
 
-    The sum of squares of the radial distances is least: Gauss and Newton's method, from the mean of
-    the points. Raises ValueError if the points are not around a centre.
+    The sum of squares of the radial distances is least. Raises ValueError if the points are not
+    around a centre.
     """
-    centre = points.mean(axis=0)
-    for _ in range(STEPS):
-        away = points - centre
-        distance = np.hypot(away[:, 0], away[:, 1])
-        if not distance.min() > 0.0:
-            break
-        matrix = np.column_stack([away / distance[:, None], np.ones(len(points))])
-        step, *_ = np.linalg.lstsq(matrix, distance, rcond=None)
-        centre = centre + step[:2]
-        if np.abs(step[:2]).max() < CONVERGED * max(1.0, float(step[2])):
-            return centre, float(step[2])
-    raise ValueError("the points do not lie around a centre")
+    mean = points.mean(axis=0)
+    with np.errstate(all="ignore"):
+        centre, radius, converged = circles_in_plane(points - mean)
+    if not converged:
+        raise ValueError("the points do not lie around a centre")
+    return mean + centre, float(radius)
 
 
 @dataclass(frozen=True, eq=False)

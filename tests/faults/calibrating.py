@@ -98,8 +98,8 @@ MUTATIONS = (
     _calibrate(
         "gcxform/calibrate/solution.py",
         "chi square may be what it is on average",
-        "3.0902 * math.sqrt(part)",
-        "0.0 * math.sqrt(part)",
+        "SELDOM: Final = 1e-3",
+        "SELDOM: Final = 0.5",
     ),
     # the frame
     _calibrate(
@@ -302,7 +302,7 @@ MUTATIONS = (
         "(told * size[strong]) @",
     ),
     _angles("the linear tests stand in the middle", "= place ** (power + 1)", "= 0.0"),
-    _angles("alarms are ten times as many", "_QUANTILE: Final = 2.5758", "_QUANTILE: Final = 1.6"),
+    _angles("alarms are ten times as many", "RATE / len(DEGREES)", "10 * RATE / len(DEGREES)"),
     _calibrate(
         "gcxform/calibrate/diagonal/step_diagonal.py",
         "deviations are those of the stated noise",

@@ -84,8 +84,8 @@ MUTATIONS = (
     Mutation(
         "circles: G about the mean of the points",
         "gcxform/simulate/circles.py",
-        "centre = centre + step[:2]",
-        "centre = centre + 0.5 * step[:2]",
+        "return mean + centre,",
+        "return mean,",
         FIGURES,
     ),
     Mutation(

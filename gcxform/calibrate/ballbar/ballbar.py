@@ -250,11 +250,10 @@ def readings(
 
 def _whitening(tests: Sequence[Eccentricity]) -> Floats:
     """Return the matrix (2 n, 2 n) that makes the noise of all eccentricities 1."""
-    whole = np.zeros((2 * len(tests), 2 * len(tests)))
-    for k, test in enumerate(tests):
-        one = np.linalg.inv(np.linalg.cholesky(test.covariance))
-        whole[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = one
-    return whole
+    from scipy.linalg import block_diag
+
+    roots = (np.linalg.cholesky(test.covariance) for test in tests)
+    return np.asarray(block_diag(*(np.linalg.inv(root) for root in roots)))
 
 
 def _check(chain: Chain, tests: Sequence[Eccentricity], solution: Solution) -> None:

@@ -9,9 +9,8 @@ with d the direction of the error, and not B, for a turn moves nothing along its
 fields are read along the diagonals as the errors of the axes are, step by step, and joined to the
 unknowns: once f linear (nine fields, for a b is the same of either axis), once with f of Legendre
 up to the third degree. What chi square gains is held against what is left, by the distribution of
-their ratio (F, after E. Paulson, Ann. Math. Stat. 13 (1942) 233). So a noise that was stated too
-small alarms no more often. Where linear tests stood is not known: each axis that was tested may
-have a polynomial of its own there.
+their ratio (F). So a noise that was stated too small alarms no more often. Where linear tests stood
+is not known: each axis that was tested may have a polynomial of its own there.
 
 A step of an axis is read four times and has three errors, so that of all that angles do only one
 number of each step shows, and with linear tests a little more. What is fitted is the least field
@@ -20,7 +19,6 @@ that explains the residuals: the machine may have more.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -38,7 +36,6 @@ from gcxform.system.arrays import Floats
 
 DEGREES: Final = (1, 3)  # of f: each is a test
 RATE: Final = 0.01  # of false alarms, of all tests together
-_QUANTILE: Final = 2.5758  # of the normal distribution, exceeded by RATE / len(DEGREES)
 _LEAST: Final = 4  # degrees of freedom that have to be left: with fewer nothing is told
 _WEAK: Final = 0.25  # of what the residuals tell best: what they tell worse is mostly noise
 _UNSEEN: Final = 0.1  # of the readings of a field: less of it is left in the residuals
@@ -103,17 +100,10 @@ class Pattern:
     @property
     def significant(self) -> bool:
         """Whether it is more than chance."""
-        return self.testable and normal_of_ratio(self.times, self.gained, self.freedom) > _QUANTILE
+        from scipy.special import fdtrc
 
-
-def normal_of_ratio(ratio: float, above: int, below: int) -> float:
-    """Return the normal deviate that is exceeded as often as a ratio of variances (Paulson).
-
-    `above` and `below` are their degrees of freedom.
-    """
-    root = math.cbrt(ratio)
-    one, other = 2.0 / (9.0 * above), 2.0 / (9.0 * below)
-    return ((1.0 - other) * root - (1.0 - one)) / math.sqrt(other * root**2 + one)
+        chance = fdtrc(self.gained, self.freedom, self.times) if self.testable else 1.0
+        return bool(chance < RATE / len(DEGREES))
 
 
 @dataclass(frozen=True, eq=False)

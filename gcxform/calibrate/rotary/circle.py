@@ -46,7 +46,7 @@ def fit_circles(points: Floats) -> Circles:
     _, singular, axes = np.linalg.svd(points - mean, full_matrices=False)
     flat = (points - mean) @ np.swapaxes(axes[..., :2, :], -1, -2)
     with np.errstate(all="ignore"):
-        inside, radius, converged = _in_plane(flat)
+        inside, radius, converged = circles_in_plane(flat)
     centre = mean[..., 0, :] + np.einsum("...k,...ki->...i", inside, axes[..., :2, :])
     return Circles(upright(axes[..., 2, :]), centre, radius, singular, converged)
 
@@ -78,8 +78,8 @@ def upright(vectors: Floats) -> Floats:
     return np.asarray(np.where(largest < 0.0, -vectors, vectors) + 0.0)
 
 
-def _in_plane(flat: Floats) -> tuple[Floats, Floats, Flags]:
-    """Return centres (..., 2) and radii (...) of circles through points (..., n, 2)."""
+def circles_in_plane(flat: Floats) -> tuple[Floats, Floats, Flags]:
+    """Return centres (..., 2), radii (...) and convergence of circles of points (..., n, 2), mm."""
     ones = np.ones((*flat.shape[:-1], 1))
     start = _solve(np.concatenate([2.0 * flat, ones], axis=-1), (flat**2).sum(axis=-1))
     centre, radius = start[..., :2], np.sqrt(start[..., 2] + (start[..., :2] ** 2).sum(axis=-1))
