@@ -9,9 +9,10 @@ import numpy as np
 from gcxform.diagnostics import Diagnostic, InputError
 from gcxform.dialect.dialect import Dialect
 from gcxform.emit.arcs import ArcEnds, centre_words
-from gcxform.emit.copying import EXACT, Copying
+from gcxform.emit.copying import Copying
 from gcxform.emit.manner import Task
 from gcxform.emit.positions import Positions
+from gcxform.emit.same_rows import EXACT
 from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath

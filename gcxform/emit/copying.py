@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import LINEAR
@@ -13,18 +10,17 @@ from gcxform.emit.converting import convertible
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, as_written
+from gcxform.emit.same_rows import EXACT, SameRows
 from gcxform.emit.stated import Stated
 from gcxform.emit.tapping import Taps
 from gcxform.modal.columns import fill
 from gcxform.modal.meaning.meaning import FRAMING
 from gcxform.modal.meaning.tables import GROUPS
-from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.system.arrays import Flags, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.angles import TURN
-from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Form
 
-EXACT = 1e-9  # mm; closer values are the same number
 WHAT = {
     Form.CYCLE: "a canned cycle",
     Form.HOME: "a return to reference",
@@ -66,7 +62,7 @@ class Copying:
         self.believed_exact = believed.exact
         self.believed_said = believed.said
         self.believed_position = believed.position
-        self._polar = np.array([frame.polar for frame in self.path.frames], np.bool_)
+        self.same = SameRows(self.path, self.original, positions)
         self.lines = (old_count == 0) & (pieces.count == 0) & ~pieces.expanded_line
         self.converted = np.zeros(live, np.bool_)
         stands = self._standing(old_count, pieces, stated)
@@ -76,7 +72,7 @@ class Copying:
         if task.manner.crossing:
             self.lines &= self._nothing_to_say()
         else:
-            self.lines &= self._same_modes()
+            self.lines &= self.same.modes()
             self.lines |= stands & ~self.converted
         if self.path.folded:
             self.lines[self.task.table.flag("framing", self.task.shape)] = False
@@ -98,7 +94,7 @@ class Copying:
         wrong = distinct(pieces.line[pieces.special & ~stands[pieces.line]])
         threads = distinct(self.path.block[self.path.form == Form.THREAD])
         if len(threads):
-            other = (pieces.count[threads] != 1) | ~self._same_units()[threads]
+            other = (pieces.count[threads] != 1) | ~self.same.units()[threads]
             wrong = np.union1d(wrong, threads[other])
         if not len(wrong):
             return
@@ -123,9 +119,9 @@ class Copying:
 
     def _refuse_polar(self) -> None:
         """Refuse blocks that have to be written anew while words are radius and angle."""
-        if not self._polar.any():
+        if not self.same.polar.any():
             return
-        words = self.positions.write[:, :3].any(axis=1) & self._polar[self.path.frame]
+        words = self.positions.write[:, :3].any(axis=1) & self.same.polar[self.path.frame]
         rows = np.flatnonzero(words & ~self.lines[self.path.block])
         if len(rows):
             message = "the block would be written anew, in radius and angle (G16)"
@@ -217,17 +213,6 @@ class Copying:
             pointed &= self.task.table.flag("has_centre", self.task.shape)
         return pointed
 
-    def _same_units(self) -> Flags:
-        return np.asarray(self.path.blocks.inch == self.original.blocks.inch)
-
-    def _same_modes(self) -> Flags:
-        now, old = self.path.blocks, self.original.blocks
-        return np.asarray(
-            self._same_units()
-            & (now.incremental == old.incremental)
-            & (now.absolute_centre == old.absolute_centre)
-        )
-
     def _standing(self, old_count: Ints, pieces: Pieces, stated: Stated) -> Flags:
         """Return the lines whose rows are those of the source and need no other words."""
         stands = np.zeros(len(old_count), np.bool_)
@@ -239,7 +224,7 @@ class Copying:
         if not len(rows):
             return stands
         lines = self.path.block[rows]
-        alike = self._same_modes() | self._without_lengths(special)
+        alike = self.same.modes() | self._without_lengths(special)
         self.converted = ~alike & convertible(self.task, pieces, self.positions)
         good = (alike | self.converted)[lines]
         if not self.task.manner.crossing:
@@ -250,20 +235,20 @@ class Copying:
         good &= self.path.kind[rows] == self.original.kind[others]
         good &= stated.kind[rows] == as_written(self.original, self.original.kind)[others]
         plain = self.path.is_free[rows]
-        good &= ~plain | self._same_ends(rows, others)
+        good &= ~plain | self.same.ends(rows, others)
         own = np.flatnonzero(~plain)
         if len(own):
-            good[own] &= self._same_words(rows[own], others[own])
+            good[own] &= self.same.words(rows[own], others[own])
         turned = plain | (self.path.form[rows] == Form.SPLINE)
-        good &= ~turned | self._same_frames(rows, others)
+        good &= ~turned | self.same.frames(rows, others)
         starts_exact = self._track_exactness(rows, others, good & ~self.converted[lines])
         incremental = self.path.blocks.incremental[self.path.block[rows]]
         doubtful = np.flatnonzero(good & plain & incremental & ~starts_exact)
         if len(doubtful):
-            good[doubtful] &= self._starts_alike(rows[doubtful], others[doubtful])
+            good[doubtful] &= self.same.starts(rows[doubtful], others[doubtful])
         arcs = np.flatnonzero(good & self.path.is_arc[rows])
         if len(arcs):
-            good[arcs] &= self._same_arcs(rows[arcs], others[arcs], starts_exact[arcs])
+            good[arcs] &= self.same.arcs(rows[arcs], others[arcs], starts_exact[arcs])
         stands[self.path.block[rows]] = True
         stands[self.path.block[rows[~good]]] = False
         return stands
@@ -280,103 +265,6 @@ class Copying:
             first = int(window.first_number[line])
             free[line] = not any(window.value[first + slots[a]] for a in LINEAR if a in slots)
         return free
-
-    def _same_diameters(self, rows: Ints, others: Ints) -> Flags:
-        """Return which rows name no X, or are in frames that agree on what X is."""
-        now = np.array([frame.diameter for frame in self.path.frames], np.bool_)
-        was = np.array([frame.diameter for frame in self.original.frames], np.bool_)
-        same = now[self.path.frame[rows]] == was[self.original.frame[others]]
-        return np.asarray(same | ~self.positions.programmed[rows, 0])
-
-    def _same_polar(self, rows: Ints, others: Ints) -> Flags:
-        """Return which rows are in frames that agree on whether words are radius and angle."""
-        was = np.array([frame.polar for frame in self.original.frames], np.bool_)
-        return np.asarray(self._polar[self.path.frame[rows]] == was[self.original.frame[others]])
-
-    def _same_ends(self, rows: Ints, others: Ints) -> Flags:
-        """Return which rows end where their source ends and need no word it does not have."""
-        good = np.ones(len(rows), np.bool_)
-        words, original = self.positions.end, self._old_words(rows, others)
-        polar = self._polar[_take(self.path.frame, rows)]
-        for k in range(len(self.path.axes)):
-            end, old = _take(words[:, k], rows), original[:, k]
-            held = _take(self.positions.held[:, k], rows)
-            programmed = _take(self.positions.programmed[:, k], rows)
-            same = (np.abs(held - old) <= EXACT) | (end == old)
-            left = ~_take(self.positions.write[:, k], rows)
-            left |= polar & (end == old)  # one word moves two axes: it says both
-            good &= np.where(programmed, same, left)
-            if not good.any():
-                break
-        return good
-
-    def _same_words(self, rows: Ints, others: Ints) -> Flags:
-        """Return which rows of blocks that move in their own way need no other words.
-
-        They end where those of the source end, or go as far where distances are programmed; an axis
-        that stands still may stand elsewhere.
-        """
-        end, start = self.path.end[rows], self.path.start[rows]
-        old = _where_left(self.original.end[others], end)
-        way, old_way = end - start, old - _where_left(self.original.start[others], start)
-        unknown = np.isnan(end) & np.isnan(old)
-        same = (np.abs(end - old) <= EXACT) | unknown
-        incremental = self.path.blocks.incremental[self.path.block[rows]][:, None]
-        still = np.abs(old_way) <= EXACT
-        cycle = np.isin(self.path.form[rows], (Form.CYCLE, Form.SPLINE))[:, None]
-        as_far = (np.abs(way - old_way) <= EXACT) & (incremental | (still & ~cycle))
-        good = (same | as_far | self._other_axes(rows, others)).all(axis=1)
-        if self.path.frames == self.original.frames:
-            return np.asarray(good)
-        good &= self._same_diameters(rows, others) & self._same_polar(rows, others)
-        words, before = self.positions.end[rows], self.original.words[others]
-        alike = (np.abs(words - before) <= EXACT) | (np.isnan(words) & np.isnan(before))
-        one_move = np.isin(self.path.form[rows], (Form.PROBE, Form.SYNCHRONISED))
-        alike |= one_move[:, None] & ~self.positions.programmed[rows]
-        framed = (self.path.form[rows] == Form.HOME) & (self.path.nth[rows] == 0)
-        framed |= one_move | cycle[:, 0]
-        as_far = incremental[:, 0] & self._same_frames(rows, others)
-        return np.asarray(good & (alike.all(axis=1) | as_far | ~framed))
-
-    def _other_axes(self, rows: Ints, others: Ints) -> Flags | bool:
-        """Return which axes of rows are those of another machine, and neither named nor moved."""
-        if not self.path.left_out:
-            return False
-        left = np.array([axis in self.path.left_out for axis in self.path.axes])
-        way = self.path.end[rows] - self.path.start[rows]
-        before = self.original.start[others], self.original.end[others]
-        new = np.isnan(before[0]) & np.isnan(before[1]) & (np.abs(way) <= EXACT)
-        return np.asarray((left & ~self.positions.programmed[rows]) | new)
-
-    def _same_frames(self, rows: Ints, others: Ints) -> Flags | bool:
-        """Return which rows are in frames that turn words as those of the source did."""
-        if self.path.frames == self.original.frames:
-            return np.asarray(self.path.frame[rows] == self.original.frame[others])
-        turns: dict[object, int] = {}
-        now, before = (
-            np.array([turns.setdefault((f.matrix, f.diameter, f.polar), len(turns)) for f in some])
-            for some in (self.path.frames, self.original.frames)
-        )
-        return np.asarray(now[self.path.frame[rows]] == before[self.original.frame[others]])
-
-    def _starts_alike(self, rows: Ints, others: Ints) -> Flags:
-        """Return which rows begin where their source begins, in the axes that the block names."""
-        start = self._in_frames(self.original.start, rows, others)
-        same = np.abs(self.positions.before[rows] - start) <= EXACT
-        return np.asarray((same | ~self.positions.programmed[rows]).all(axis=1))
-
-    def _old_words(self, rows: Ints, others: Ints) -> Floats:
-        """Return the ends of source rows as programmed; distances count in any frame."""
-        words = _take(self.original.words, others)
-        distance = self.path.blocks.incremental[self.path.block[rows]]
-        if self.path.frames == self.original.frames or not distance.any():
-            return words
-        return np.where(distance[:, None], self._in_frames(self.original.end, rows, others), words)
-
-    def _in_frames(self, positions: Floats, rows: Ints, others: Ints) -> Floats:
-        """Return positions of source rows in the frames of the rows that stand for them."""
-        frame = _take(self.path.frame, rows)
-        return by_frame(Frame.words, self.path.frames, frame, _take(positions, others), -1.0)
 
     def _track_exactness(self, rows: Ints, others: Ints, good: Flags) -> Flags:
         """Follow how far everything is exactly as in the source; return where rows start so."""
@@ -411,29 +299,3 @@ class Copying:
             exact = copied & plain & by_axis
             found[:, axis] = fill(exact, named, bool(believed[axis]))
         return found | self.exact[:, None]
-
-    def _same_arcs(self, rows: Ints, others: Ints, starts_exact: Flags) -> Flags:
-        """Return which arcs have centre and sweep of their source, seen from where they start."""
-        alike = starts_exact.copy()
-        off = np.flatnonzero(~starts_exact)
-        if len(off):
-            start = self._in_frames(self.original.start, rows[off], others[off])
-            on_grid = np.abs(self.positions.before[rows[off]] - start) <= EXACT
-            alike[off] = (on_grid | np.isnan(start)).all(axis=1)
-        centre, old = self.path.centre[rows], self.original.centre[others]
-        if self.path.blocks.absolute_centre.any():
-            centre = self.path.local(self.path.centre)[rows]
-            old = self.original.local(self.original.centre)[others]
-        same_centre = ((centre == old) | np.isnan(old)).all(axis=1)
-        same_sweep = self.path.sweep[rows] == self.original.sweep[others]
-        return np.asarray(alike & same_centre & same_sweep)
-
-
-def _where_left(old: Floats, now: Floats) -> Floats:
-    """Return positions of the source; those that only a pass knows (inf) are as it has them."""
-    return np.where(np.isinf(old), now, old)
-
-
-def _take(column: NDArray[Any], rows: Ints) -> NDArray[Any]:
-    """Return a column at rows; all of it if the rows are all."""
-    return column if len(rows) == len(column) else column[rows]

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gcxform.contract.passes import PassContext
 from gcxform.deviations.runs import SAME_FEED
 from gcxform.dialect.dialect import LINEAR
 from gcxform.modal.interpreter import Interpreted
@@ -268,3 +269,13 @@ class FeedProof:
         """Return what is wrong in a row of what the machine does."""
         output = int(self.trace.after.source[row])
         return Wrong(message, self.trace.line_of(output), output)
+
+
+def speeds_of(context: PassContext) -> dict[str, tuple[float, float]]:
+    """Return the top speeds that the machine file has, by axis, and the last decimals written."""
+    numbers, found = context.numbers, {}
+    for letter, axis in context.machine.axes.items() if context.machine else ():
+        if axis.max_speed is not None:
+            known = context.decimals.get(letter, numbers.mm if letter in LINEAR else numbers.angle)
+            found[letter] = axis.max_speed, 10.0**-known
+    return found

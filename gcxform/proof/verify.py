@@ -22,24 +22,22 @@ from gcxform.diagnostics import (
     Location,
     VerificationError,
 )
-from gcxform.dialect.dialect import LINEAR
 from gcxform.modal.interpreter import Interpreted, Interpreter
-from gcxform.modal.meaning.meaning import FRAMING
-from gcxform.modal.meaning.sorting import only_for_cycles
 from gcxform.modal.meaning.tables import PROBES
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.proof.centre_path import CentreProof
-from gcxform.proof.feeds import FeedProof
+from gcxform.proof.events import EventProof
+from gcxform.proof.feeds import FeedProof, speeds_of
 from gcxform.proof.inventory import Whole, Written, assignments_differ, not_taken
-from gcxform.proof.known_positions import as_known, in_mm, lost_in_target
+from gcxform.proof.known_positions import as_known, lost_in_target
 from gcxform.proof.path_modes import PathModes
 from gcxform.proof.spared_rapids import led_elsewhere, spared_rows, told
 from gcxform.proof.trace import Trace
 from gcxform.syntax.scan import Window
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.facts import IN_AIR, between_taps
-from gcxform.toolpath.path import WHOLE, Event, Kind, Toolpath
+from gcxform.toolpath.path import WHOLE, Kind, Toolpath
 from gcxform.toolpath.travel import ways
 
 
@@ -99,7 +97,6 @@ class Verifier:
         bounded: bool = True,
     ) -> None:
         self.passes = passes
-        self.folded = folded
         self.switches = switches
         self.bounded = bounded
         self.context = context
@@ -109,8 +106,9 @@ class Verifier:
         self.limit = limit
         self.centres = CentreProof(context, file)
         self.path_modes = PathModes(context)
+        self.events = EventProof(context, folded, switches)
         self.feed_modes = [mode for step in passes if (mode := step.demands.feed_mode) is not None]
-        self.speeds = _speeds(context) if any(step.demands.slows for step in passes) else {}
+        self.speeds = speeds_of(context) if any(step.demands.slows for step in passes) else {}
         self.angle_budgets = angle_budgets
         self.angle_budget = max(angle_budgets.values())
         self.file = file
@@ -153,12 +151,14 @@ class Verifier:
         if self.feed_modes:
             for wrong in self._proof(trace).left_behind(read, back):
                 self._raise(*wrong)
-        old = self._without_switches(read.path)
-        new, moded = self.path_modes.check(old, self._told(back.path), trace, read, self.budget)
+        old, new = self.events.of_source(read.path), self.events.told(back.path)
+        new, moded = self.path_modes.check(old, new, trace, read, self.budget)
         if moded is not None:
             self._raise(*moded)
         self.findings.path_modes = self.path_modes.added
-        self._events(old, new, trace)
+        self.findings.events += len(old)
+        for wrong in self.events.wrong(old, new, trace, self.budget):
+            self._raise(*wrong)
         lost = assignments_differ(read.assigned, back.assigned, trace, self.context)
         if lost is not None:
             self._raise(*lost)
@@ -359,38 +359,6 @@ class Verifier:
                 found.source_line, found.output_line = off.source_line + 1, off.output_line + 1
         found.contours, found.contour_only = self.centres.compared, self.centres.unknown
 
-    def _without_switches(self, path: Toolpath) -> tuple[Event, ...]:
-        """Return the events of the source without those that a pass has taken over."""
-        return tuple(event for event in self._told(path) if event.what not in self.switches)
-
-    def _told(self, path: Toolpath) -> tuple[Event, ...]:
-        """Return the events that have to be in the output too: not those that are folded away."""
-        source, target = self.context.source, self.context.target
-        events = tuple(
-            in_mm(event, path)
-            for event in path.events
-            if not only_for_cycles(event.what, source, target)
-        )
-        if not self.folded:
-            return events
-        codes = self.context.source.codes
-        return tuple(e for e in events if e.what not in codes or codes[e.what].act not in FRAMING)
-
-    def _events(self, old: tuple[Event, ...], new: tuple[Event, ...], trace: Trace) -> None:
-        """Check that events are the same, in order, at the same place between the moves."""
-        self.findings.events += len(old)
-        budget = self.budget
-        for before, after in zip(old, new, strict=False):
-            line = trace.line_of(after.line)
-            same = (before.what, before.values, before.line) == (after.what, after.values, line)
-            if not same or not trace.stands_before(after.row, before.row, budget):
-                message = f"{before.what} of the source became {after.what}, or moved"
-                self._raise(message, before.line, after.line)
-        if len(old) != len(new):
-            rest = old[len(new) :] or new[len(old) :]
-            line = rest[0].line if len(old) > len(new) else trace.line_of(rest[0].line)
-            self._raise(f"{rest[0].what} is missing or too many", line, 0)
-
     def _given(self, path: Toolpath, text: Window, source: Ints) -> None:
         """Check that the blocks that the user gives stand in the text, once each and in order."""
         for line in sorted({given.line for given in path.given}):
@@ -411,13 +379,3 @@ class Verifier:
             message += f" (output line {output_line + 1})"
         hint = "nothing was written; if the pipeline is right this is a bug of gcxform or a plugin"
         raise VerificationError((Diagnostic("GX601", message, where, hint),))
-
-
-def _speeds(context: PassContext) -> dict[str, tuple[float, float]]:
-    """Return the top speeds that the machine file has, by axis, and the last decimals written."""
-    numbers, found = context.numbers, {}
-    for letter, axis in context.machine.axes.items() if context.machine else ():
-        if axis.max_speed is not None:
-            known = context.decimals.get(letter, numbers.mm if letter in LINEAR else numbers.angle)
-            found[letter] = axis.max_speed, 10.0**-known
-    return found

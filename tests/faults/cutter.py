@@ -51,15 +51,15 @@ MUTATIONS = (
     ),
     Mutation(
         "copying: a probe stays as it is in other coordinates",
-        "gcxform/emit/copying.py",
+        "gcxform/emit/same_rows.py",
         "framed |= one_move | cycle[:, 0]",
         "framed |= cycle[:, 0]",
         "tests/test_corpus.py::test_case",
     ),
     Mutation(
         "copying: distances stay as they are where a turn is folded away",
-        "gcxform/emit/copying.py",
-        "incremental[:, 0] & self._same_frames(rows, others)",
+        "gcxform/emit/same_rows.py",
+        "incremental[:, 0] & self.frames(rows, others)",
         "incremental[:, 0]",
         "tests/test_corpus.py::test_case",
     ),

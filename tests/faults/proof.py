@@ -32,14 +32,17 @@ MUTATIONS = (
     _feeds("times are ignored", "if len(wrong):"),
     _verifier(
         "events are ignored",
-        "self._events(old, new, trace)\n        lost",
-        "lost",
+        "for wrong in self.events.wrong(old, new, trace, self.budget):",
+        "for wrong in ():",
     ),
-    _verifier("missing events are ignored", "if len(old) != len(new):"),
+    _verifier(
+        "missing events are ignored", "if len(old) != len(new):", file="gcxform/proof/events.py"
+    ),
     _verifier(
         "the place of events is ignored",
         "or not trace.stands_before(after.row, before.row, budget)",
         "",
+        "gcxform/proof/events.py",
     ),
     _verifier("missing moves are ignored", "self._missing(trace, runs)\n        if not", "if not"),
     _verifier("moves of nobody are ignored", "if len(trace.owner) and int(trace.owner.min()) < 0:"),

@@ -92,14 +92,14 @@ MUTATIONS = (
     Mutation(
         "writing: words of radius and angle are X and Y",
         "gcxform/emit/copying.py",
-        "        if not self._polar.any():\n            return",
-        "        if len(self._polar):\n            return",
+        "        if not self.same.polar.any():\n            return",
+        "        if len(self.same.polar):\n            return",
         CORPUS,
     ),
     Mutation(
         "writing: a cycle does not mind whether words are radius and angle",
-        "gcxform/emit/copying.py",
-        " & self._same_polar(rows, others)\n",
+        "gcxform/emit/same_rows.py",
+        " & self._polar_alike(rows, others)\n",
         "\n",
         CORPUS,
     ),

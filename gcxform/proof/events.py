@@ -1,0 +1,59 @@
+"""The proof of events: what is done between the moves is that of the source, in its order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from gcxform.contract.passes import PassContext
+from gcxform.modal.meaning.meaning import FRAMING
+from gcxform.modal.meaning.sorting import only_for_cycles
+from gcxform.proof.feeds import Wrong
+from gcxform.proof.known_positions import in_mm
+from gcxform.proof.trace import Trace
+from gcxform.toolpath.path import Event, Toolpath
+
+
+@dataclass(frozen=True)
+class EventProof:
+    """What of the events has to be in the output too.
+
+    folded    codes that set frames are not written
+    switches  the M codes that a pass takes over from the control
+    """
+
+    context: PassContext
+    folded: bool
+    switches: frozenset[str]
+
+    def of_source(self, path: Toolpath) -> tuple[Event, ...]:
+        """Return the events of the source without those that a pass has taken over."""
+        return tuple(event for event in self.told(path) if event.what not in self.switches)
+
+    def told(self, path: Toolpath) -> tuple[Event, ...]:
+        """Return the events of a path that the control is told: not those that are folded away."""
+        source, target = self.context.source, self.context.target
+        events = tuple(
+            in_mm(event, path)
+            for event in path.events
+            if not only_for_cycles(event.what, source, target)
+        )
+        if not self.folded:
+            return events
+        codes = self.context.source.codes
+        return tuple(e for e in events if e.what not in codes or codes[e.what].act not in FRAMING)
+
+    def wrong(
+        self, old: tuple[Event, ...], new: tuple[Event, ...], trace: Trace, budget: float
+    ) -> Iterator[Wrong]:
+        """Yield where events are not the same, in order, at the same place between the moves."""
+        for before, after in zip(old, new, strict=False):
+            line = trace.line_of(after.line)
+            same = (before.what, before.values, before.line) == (after.what, after.values, line)
+            if not same or not trace.stands_before(after.row, before.row, budget):
+                message = f"{before.what} of the source became {after.what}, or moved"
+                yield Wrong(message, before.line, after.line)
+        if len(old) != len(new):
+            rest = old[len(new) :] or new[len(old) :]
+            line = rest[0].line if len(old) > len(new) else trace.line_of(rest[0].line)
+            yield Wrong(f"{rest[0].what} is missing or too many", line)
