@@ -17,10 +17,10 @@ def _offsetting(name: str, old: str, new: str) -> Mutation:
     )
 
 
-def _beside(name: str, old: str, new: str) -> Mutation:
+def _beside(name: str, old: str, new: str, file: str = "proof") -> Mutation:
     return Mutation(
         f"beside: {name} not looked at",
-        "plugins/gcxform_plugins/passes/cutter_comp/proof.py",
+        f"plugins/gcxform_plugins/passes/cutter_comp/{file}.py",
         old,
         new,
         CUTTER,
@@ -186,11 +186,16 @@ MUTATIONS = (
     _beside("other axes", "on[~same.all(axis=1)]", "on[:0]"),
     _beside("still moves", "on[~moves & (np.abs(a - b).sum(axis=1) > CLOSE)]", "on[:0]"),
     _beside("rising corners", "self.row[k][rises]", "self.row[k][:0]"),
-    _beside("feeds", "owner[~same]", "owner[:0]"),
-    _beside("speeds in inverse time", "(timed[owner] & ~goes)", "timed[owner]"),
+    _beside("feeds", "owner[~same]", "owner[:0]", "unchanged"),
+    _beside("speeds in inverse time", "(timed[owner] & ~goes)", "timed[owner]", "unchanged"),
     _beside("sliding ends", "free & slid", "free & False"),
     _beside("sliding joints", "free |= enters", "free |= enters & False"),
     _beside("sliding turns", "np.append(self.none[1:], False)", "ends"),
     _beside("rapid corners", "self.row[k][rapid]", "self.row[k][:0]"),
-    _beside("modes of corners", "!= getattr(before, name)[owner]\n", "!= getattr(after, name)\n"),
+    _beside(
+        "modes of corners",
+        "!= getattr(before, name)[owner]\n",
+        "!= getattr(after, name)\n",
+        "unchanged",
+    ),
 )

@@ -34,12 +34,16 @@ import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
+from gcxform_plugins.passes.cutter_comp.unchanged import (
+    CLOSE,
+    check_events,
+    check_same,
+    fail_if,
+    paired_rows,
+)
 
-CLOSE = 1e-6  # mm
-SLIP = 1e-9  # relative, of feeds
 ANGLE = 1e-6  # rad
 GAINED = 0.026  # rad; what an arc may gain where a turn below `straight` begins it
-SAME = ("plane", "feed_mode", "frame", "source", "form", "lost")
 
 
 def prove_beside(
@@ -50,77 +54,14 @@ def prove_beside(
     `straight` (rad): turns up to this may be taken for none. `linear`: moves may meet outside.
     `beside_next`: the move that begins compensation ends beside the next one.
     """
-    main, corner = _paired(before, after)
-    _check_same(before, after, main, corner)
-    _check_events(before, after, np.where(corner >= 0, corner, main))
+    main, corner = paired_rows(before, after)
+    check_same(before, after, main, corner)
+    check_events(before, after, np.where(corner >= 0, corner, main))
     on = np.flatnonzero(before.side != 0)
     on = on[before.radius[on] > 0]
     if len(on):
         moving = _moving(before, after, main, on)
         _Proof.of(before, after, main, corner, moving, straight, linear, beside_next).check()
-
-
-def _paired(before: gx.Toolpath, after: gx.Toolpath) -> tuple[Ints, Ints]:
-    """Return, for each row, its row of the centre path and the row of its corner, or -1."""
-    counts = np.ones(len(before), np.int64)
-    lines, first, old = np.unique(before.source, return_index=True, return_counts=True)
-    new = np.bincount(np.searchsorted(lines, after.source), minlength=len(lines))
-    more = new - old
-    if len(new) != len(lines) or ((more != 0) & ((more != 1) | (old != 1))).any():
-        _fail(before, 0, "moves are missing or too many")
-    counts[first[more == 1]] = 2
-    main = np.cumsum(counts) - 1
-    return main, np.where(counts == 2, main - 1, -1)
-
-
-def _check_same(before: gx.Toolpath, after: gx.Toolpath, main: Ints, corner: Ints) -> None:
-    """Check all that compensation does not change."""
-    _fail_if(before, after.kind[main] != before.kind, "kind has changed")
-    owner = np.repeat(np.arange(len(before)), 1 + (corner >= 0))
-    for name in SAME:
-        wrong = getattr(after, name) != getattr(before, name)[owner]
-        _fail_if(before, owner[wrong], f"{name} has changed")
-    free = (before.side == 0) | ~(before.radius > 0)
-    kept = (after.end[main] == before.end) | np.isnan(before.end)
-    _fail_if(before, free & (~kept.all(axis=1) | (corner >= 0)), "a free move has changed")
-    arcs = np.zeros(len(before), np.bool_)
-    for name in ("centre", "sweep"):
-        old, new = getattr(before, name), getattr(after, name)[main]
-        same = (old == new) | (np.isnan(old) & np.isnan(new))
-        arcs |= ~(same if same.ndim == 1 else same.all(axis=1))
-    _fail_if(before, free & arcs, "a free arc has changed")
-    _check_feeds(before, after, owner)
-
-
-def _check_feeds(before: gx.Toolpath, after: gx.Toolpath, owner: Ints) -> None:
-    """Check the feeds; in inverse time the speed is the contour's: F of l mm is F l / m of m mm."""
-    timed = (before.feed_mode == gx.FeedMode.INVERSE_TIME) & (before.side != 0)
-    timed &= before.kind != gx.Kind.RAPID
-    feed, programmed, made = before.feed[owner], _lengths(before)[owner], _lengths(after)
-    goes = timed[owner] & (np.minimum(programmed, made) > CLOSE)
-    same = (after.feed == feed) | np.isnan(feed) | (timed[owner] & ~goes)
-    same |= goes & (np.abs(after.feed * made - feed * programmed) <= SLIP * feed * programmed)
-    _fail_if(before, owner[~same], "the feed has changed")
-
-
-def _lengths(path: gx.Toolpath) -> Floats:
-    """Return the lengths (n,) of moves along X, Y and Z; what is not known stands still."""
-    way = np.nan_to_num(path.end[:, :3] - path.start[:, :3])
-    arc = path.is_arc
-    out = np.where(arc[:, None], path.start[:, :3] - path.centre, 0.0)
-    normal = np.array([gx.Plane(p).axes[2] for p in range(3)])[path.plane][:, None]
-    rise = np.take_along_axis(way, normal, axis=1)[:, 0]
-    np.put_along_axis(out, normal, 0.0, axis=1)
-    return np.where(arc, np.hypot(_size(out) * path.sweep, rise), _size(way))
-
-
-def _check_events(before: gx.Toolpath, after: gx.Toolpath, first: Ints) -> None:
-    """Check that all events but those of compensation stand before the moves they stood before."""
-    first = np.append(first, len(after))
-    kept = [e for e in before.events if not e.what.startswith(("G41", "G42"))]
-    wanted = [(e.what, e.values, e.line, int(first[e.row])) for e in kept]
-    if wanted != [(e.what, e.values, e.line, e.row) for e in after.events]:
-        _fail(before, 0, "an event is missing, or stands elsewhere")
 
 
 def _plane_axes(path: gx.Toolpath, rows: Ints) -> Ints:
@@ -142,11 +83,11 @@ def _moving(before: gx.Toolpath, after: gx.Toolpath, main: Ints, on: Ints) -> In
     axes = _plane_axes(before, on)
     same = (after.end[main[on]] == before.end[on]) | np.isnan(before.end[on])
     np.put_along_axis(same, axes[:, :2], True, axis=1)
-    _fail_if(before, on[~same.all(axis=1)], "an axis that is not in the plane moves")
+    fail_if(before, on[~same.all(axis=1)], "an axis that is not in the plane moves")
     p, q = _in_plane(before.start[on], axes), _in_plane(before.end[on], axes)
     a, b = _in_plane(after.start[main[on]], axes), _in_plane(after.end[main[on]], axes)
     moves = before.is_arc[on] | (np.abs(p - q).sum(axis=1) > 1e-9)
-    _fail_if(before, on[~moves & (np.abs(a - b).sum(axis=1) > CLOSE)], "it moves aside")
+    fail_if(before, on[~moves & (np.abs(a - b).sum(axis=1) > CLOSE)], "it moves aside")
     return np.asarray(on[moves])
 
 
@@ -320,11 +261,9 @@ class _Proof:
         kind = self.after.kind[rows]
         begin = _in_plane(self.after.start[rows], self.axes[k])
         u, v = begin - self.p[k], self.a[k] - self.p[k]
-        _fail_if(
-            self.before, self.row[k][kind == self._wrong_way(k)], "a corner goes the wrong way"
-        )
+        fail_if(self.before, self.row[k][kind == self._wrong_way(k)], "a corner goes the wrong way")
         rapid = (kind == gx.Kind.RAPID) != (self.before.kind[self.row[k]] == gx.Kind.RAPID)
-        _fail_if(self.before, self.row[k][rapid], "a corner is a rapid, or its move is")
+        fail_if(self.before, self.row[k][rapid], "a corner is a rapid, or its move is")
         round_it = kind >= gx.Kind.ARC_CW
         middle = _in_plane(self.after.centre[rows], self.axes[k])
         far = np.maximum(np.abs(_size(u) - self.radius[k]), np.abs(_size(v) - self.radius[k]))
@@ -332,14 +271,14 @@ class _Proof:
         angle = np.abs(np.arctan2(_cross(u, v), _dot(u, v)))
         slack = ANGLE + CLOSE / self.radius[k]
         wrong = (far > CLOSE) | (np.abs(angle - self.after.sweep[rows]) > slack)
-        _fail_if(self.before, self.row[k][round_it & wrong], "a corner is not round")
+        fail_if(self.before, self.row[k][round_it & wrong], "a corner is not round")
         near = _distance_to_line(self.p[k], begin, self.a[k]) < self.radius[k] - CLOSE
         near &= kind == gx.Kind.LINE
         near |= (kind == gx.Kind.LINE) & (not self.linear)
-        _fail_if(self.before, self.row[k][near], "a corner is cut")
+        fail_if(self.before, self.row[k][near], "a corner is cut")
         normal = self.axes[k, 2]
         rises = np.abs(self.after.end[rows, normal] - self.after.start[rows, normal]) > 0
-        _fail_if(self.before, self.row[k][rises], "an axis moves at a corner")
+        fail_if(self.before, self.row[k][rises], "an axis moves at a corner")
 
     def _wrong_way(self, k: Ints) -> Ints:
         """Return the kind that the arc about a corner must not have."""
@@ -356,7 +295,7 @@ class _Proof:
         k = k[~self.entry[k - 1] | (not self.beside_next)]
         u, v = self._heading(k - 1, self.b[k - 1]), self._heading(k, self.a[k])
         back = self.side[k] * _cross(u, v) < -ANGLE
-        _fail_if(self.before, self.row[k][back], "an inside corner is not where the moves meet")
+        fail_if(self.before, self.row[k][back], "an inside corner is not where the moves meet")
 
     def _heading(self, k: Ints, at: Floats) -> Floats:
         """Return the direction (n, 2) of centre moves at points of them."""
@@ -366,23 +305,7 @@ class _Proof:
         return np.asarray(way / _size(way)[:, None])
 
     def _fail(self, wrong: Flags, message: str) -> None:
-        _fail_if(self.before, self.row[wrong], message)
-
-
-def _fail_if(path: gx.Toolpath, wrong: Flags | Ints, message: str) -> None:
-    rows = np.flatnonzero(wrong) if wrong.dtype == np.bool_ else wrong
-    if len(rows):
-        _fail(path, int(rows[0]), message)
-
-
-def _fail(path: gx.Toolpath, row: int, message: str) -> None:
-    line = int(path.source[row]) + 1 if len(path) else 0
-    raise gx.VerificationError.one(
-        "GX604",
-        f"the centre path is not beside the contour: {message}",
-        gx.Location("", line),
-        "nothing was written; this is a bug of gcxform or of a plugin",
-    )
+        fail_if(self.before, self.row[wrong], message)
 
 
 def _cross(u: Floats, v: Floats) -> Floats:
