@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from console_kit import check_block
+from gcxform_plugins.passes.volumetric.forward import lines
 
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
@@ -214,12 +215,12 @@ def test_figures_of_accuracy(row, tmp_path):
     assert [cell.strip() for cell in line.split("|")[2:5]] == wanted
 
 
-def test_architecture_gives_the_same_figures():
-    page = " ".join((ROOT / "ARCHITECTURE.md").read_text("utf-8").split())
+def test_the_head_of_cutting_gives_the_same_figures():
+    head = " ".join((lines.__doc__ or "").split())
     for row in ("`tolerance` absent", '`tolerance = "1e-9 mm"`'):
         line = next(line for line in TEXT.splitlines() if line.startswith(f"| {row}"))
         moves, before = (cell.strip() for cell in line.split("|")[2:4])
-        assert re.search(rf"\b{moves}\b[^.]* {re.escape(before)}", page)
+        assert re.search(rf"\b{moves}\b[^.]* {re.escape(before)}", head)
 
 
 # --- snippets ---
@@ -318,6 +319,56 @@ def test_linuxcnc_reads_the_bracket(tmp_path):
         subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, timeout=30)
         moves = re.findall(r"STRAIGHT_|ARC_FEED", (tmp_path / "out.txt").read_text())
         assert len(moves) == len(gx.read(text, "linuxcnc").path)
+
+
+# --- the page of the packages ---
+
+ARCHITECTURE = (ROOT / "ARCHITECTURE.md").read_text("utf-8")
+MOST_LINES = 345
+PACKAGES = [
+    folder.relative_to(ROOT).as_posix()
+    for top in ("gcxform", "plugins/gcxform_plugins")
+    for folder in sorted((ROOT / top).iterdir())
+    if (folder / "__init__.py").exists()
+]
+
+
+def test_the_architecture_is_a_page_of_an_hour():
+    assert len(ARCHITECTURE.splitlines()) < MOST_LINES
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_each_package_has_its_paragraph(package):
+    assert f"\n\n**`{package}/`**" in ARCHITECTURE
+
+
+def modules(package):
+    """Return the modules and packages that a paragraph about a package may name."""
+    return {path.relative_to(ROOT / package).as_posix() for path in (ROOT / package).rglob("*")}
+
+
+def missing(text):
+    """Return the modules and packages of a page that are not there, by the paragraph they are in.
+
+    A name without a path is that of a module of the package whose paragraph it stands in.
+    """
+    found = []
+    for part in re.split(r"\n\n(?=\*\*`)|\n(?=#)", text):
+        package = re.match(r"\*\*`([\w/]+)/`\*\*", part)
+        for name in re.findall(r"`([\w/]+(?:\.py|/))`", part):
+            inside = package and name.rstrip("/") in modules(package.group(1))
+            if not (inside or (ROOT / name).exists()):
+                found.append(name)
+    return found
+
+
+def test_the_architecture_names_no_module_that_does_not_exist():
+    assert not missing(ARCHITECTURE)
+    assert missing("\n\n**`gcxform/emit/`**: text (`copying.py`, `verify.py`)") == ["verify.py"]
+    assert missing("`gcxform/emit/verify.py` and `gcxform/emited/`") == [
+        "gcxform/emit/verify.py",
+        "gcxform/emited/",
+    ]
 
 
 # --- files ---

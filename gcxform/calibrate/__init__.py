@@ -7,6 +7,7 @@
     solution.py                 weighted least squares that knows what it cannot tell
     diagonal/step_diagonal.py   sequential step diagonal: the nine functions
     diagonal/angles.py          whether its residuals show angular errors
+    diagonal/slopes.py          the six slopes of the end-point frame, in words
     diagonal/plain_diagonal.py  four lengths: the squareness
     diagonal/reframe.py         the reference frame of nine functions: end points
     diagonal/report.py          reports and comments for a person
@@ -19,6 +20,7 @@
     bundle/bundle.py            balls at any poses: all rotary axes, and squareness
     rotary/predicted_check.py   the check with RTCP on, from a covariance
     bundle/report.py            its report and comments
+    bundle/clearance.py         where a probe gets to, and how high it has to be to turn
     bundle/plan.py              poses for a bundle: inside the limits, well conditioned
     bundle/touching.py          the program that probes them, and its centres
     ballbar/ballbar.py          circular tests with RTCP on: the axes of the table

@@ -11,6 +11,8 @@ along every move. `undo` uses the forward model and shares no code with the sear
 A pass that resolves (`Demands.resolves`) gives the program another path on purpose, as the control
 would do it: the centre of the tool in place of the contour. `prove` checks that path against the
 program as read, and what comes after it is compared with that path.
+
+What a pass promises is called `promise`, because `tolerance` is the name that options have.
 """
 
 from __future__ import annotations

@@ -9,6 +9,9 @@ other, until both are rows that belong together one by one:
 
 Any such pairing gives an upper bound of the distance of the paths, so that a choice that is not the
 best can only make it larger. What does not fit anywhere within `reach` is where the paths part.
+
+Where nothing fits, the path that stays nearer goes on alone while it is within reach. Where one
+program alone says where an axis is, the rest is compared, and they are not the same.
 """
 
 from __future__ import annotations

@@ -7,6 +7,12 @@ Every tap gets words of its own, because those in force may be other ones now. H
 between taps has no word: that is settled by the move before the first of them.
 
 A tap of one move (G33.1) is written anew like a thread: its end has words.
+
+Half of what top and bottom are apart in the plane has to be within what the passes promise. The
+taps behind one that has moved get words as well, down to repeats in G91. The proof lets the level
+between taps be off by up to 0.1 mm (`between_taps`), the certificate says by how much, and no feed
+move may begin there. A tap always has its move down to R, also where it leads nowhere, so that with
+R a little elsewhere it has as many.
 """
 
 from __future__ import annotations

@@ -1,4 +1,9 @@
-"""The mean of both directions of travel: what a program can compensate of a model with backlash."""
+"""The mean of both directions of travel: what a program can compensate of a model with backlash.
+
+Backlash itself is refused: which way an axis moves is decided by the commands, whose small
+corrections turn axes round that stand still in the program, and so the machine is not a function of
+the position any more.
+"""
 
 from __future__ import annotations
 

@@ -3,6 +3,8 @@
 A rod at rest at one point, theta(s) warmer at its place s than when the geometry was measured,
 grows by u(s) = integral of alpha theta. With sensors along it and a temperature that is linear
 between them, u is quadratic between them.
+
+The state that the axes are in is part of the model, of its fingerprint and of the certificate.
 """
 
 from __future__ import annotations

@@ -2,6 +2,9 @@
 
 The temperatures count from the state in which the geometry was measured, so that a table of the
 geometry and this model can be added: what that state did to the axes is in the table already.
+
+Readings are looked up when a model is loaded, or when a pass asks for another time
+(`ErrorModel.at_time`). What is missing, out of range or above the limit is refused.
 """
 
 from __future__ import annotations

@@ -5,8 +5,10 @@ items, and a `Translator` says which blocks of words the items stand for, in ord
 with the tables of the dialect, as any program is. So such a dialect is only read: what is written
 is a program of another one.
 
-lark parses one line of each shape, as it does for words (ARCHITECTURE, "Reading: shapes"): two
-lines that differ only in their numbers have the same items.
+lark parses one line of each shape, as it does for words (`gcxform/syntax/scan.py`): two lines that
+differ only in their numbers have the same items. A line of plain words is a template that is filled
+in with its numbers, and the translator does not see it; a line with numbers in a comment is a shape
+of its own. Numbers stay text, so no digit changes.
 """
 
 from __future__ import annotations

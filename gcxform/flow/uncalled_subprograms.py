@@ -2,6 +2,8 @@
 
 With them stay those that they call, and those that a skipped block would call: it is copied, and
 with the switch off the control executes it.
+
+There the control does not read them in this run, so they are not transformed.
 """
 
 from __future__ import annotations

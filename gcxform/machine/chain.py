@@ -4,6 +4,15 @@ The linear axes carry the head along, and each rotary axis turns what follows it
 the base to the workpiece or to the spindle. With all rotary axes at 0 workpiece and machine are one
 frame. Any machine whose linear axes come before its rotary ones is such a chain, with axes that
 point and lie anywhere (screws by their directions and points; reference: product of exponentials).
+
+With M_T and M_H what table and head do at angles q, R_T and R_H the turns in them, and j the
+position of X, Y and Z:
+
+    tip = M_T(q)^-1 (j + M_H(q) tip0)        tool axis = R_T(q)^-1 R_H(q) (0, 0, 1)
+    j = M_T(q) tip - M_H(q) tip0
+
+The oracles are `tests/quaternions.py`, which shares no code and not even numpy, matrices of scipy,
+and LinuxCNC's own modules (`tests/oracles/linuxcnc_kins.py`).
 """
 
 from __future__ import annotations

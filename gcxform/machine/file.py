@@ -2,6 +2,9 @@
 
 Lengths are mm and angles degrees; a file may write them as strings with a unit (`"5 um"`,
 `"80 urad"`).
+
+A direction and its opposite are the same axis if the sign goes with it: every direction is turned
+so that its largest component is positive.
 """
 
 from __future__ import annotations

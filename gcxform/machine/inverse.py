@@ -13,6 +13,10 @@ forms of particular machines each is this one with its a and b: a = b = 90 degre
 trunnions and forks, a = b = nu gives sin(psi/2) = sin(t/2)/sin(nu) for nutating axes; and
 calibrated axes, square to nothing, need no other. Outside of the triangle the products are
 negative; psi is then 0 or 180 degrees, which is the attitude nearest to what was asked.
+
+A result is reached, at the pole (one angle is free), at the border (both attitudes are one), or
+unreachable (then `miss` is how far the nearest attitude is). `inverse` adds the turns within
+limits, and X, Y and Z with theirs.
 """
 
 from __future__ import annotations

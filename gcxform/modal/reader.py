@@ -1,4 +1,8 @@
-"""Texts of whole lines become windows, with the shapes and the meanings that they need."""
+"""Texts of whole lines become windows, with the shapes and the meanings that they need.
+
+A table of shapes that has grown large is begun anew, so that a program of comments does not fill
+the memory.
+"""
 
 from __future__ import annotations
 

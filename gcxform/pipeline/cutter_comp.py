@@ -2,6 +2,10 @@
 
 While G41 or G42 is in force the blocks are a contour, and the control makes a path of it by looking
 at the blocks that follow.
+
+So a pass must keep such rows, and those that begin and end compensation, one for one and as they
+are. Whatever else a pass declares or returns is refused here, for every pass at once; so are pieces
+of an arc, which have corners when they are rounded.
 """
 
 from __future__ import annotations

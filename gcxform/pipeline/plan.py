@@ -2,6 +2,19 @@
 
 A `Plan` is checked when it is made, before any program is read: options, facts, budget. A run takes
 one and cannot change it.
+
+The budget of a run, where the pipeline file gives none, is
+
+    sum of promises + rounding (+ 2 last decimals if there are arcs)
+
+Rounding to d decimals moves a point by at most half a decimal in each of three axes: with three
+decimals 0.866 um. It counts twice if blocks may stay incremental. An arc turns the rounding of its
+ends and centre into more along its way, hence the last term; a program without arcs has the smaller
+budget. A pass that resolves counts with its promise as any other, and what is written beside its
+path has the rest. A budget in the file takes the place of the sum: if promises and the least
+rounding do not fit into it the pipeline is refused, and a pass without a bound needs one. `largest`
+in the certificate is the largest of everything that was promised, so a pass names
+(`Demands.deviates`) which of its figures no comparison of paths shows.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Figures and files: the style of all pictures, and bytes that are the same on every run."""
+"""Figures and files: the style of all pictures, and bytes that are the same on every run.
+
+SVG files have no date, and names that come from a fixed salt.
+"""
 
 from __future__ import annotations
 

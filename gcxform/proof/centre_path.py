@@ -7,6 +7,14 @@ computed, by the installed pass that resolves compensation, and these are compar
 
 A stretch that is the same to the last bit leads the centre the same way. Of such a one, as of every
 other, is asked whether the control stops at it, where that is known.
+
+Where a parameter of the machine decides about corners and entry, `CompensationPass.ways` has a pass
+for each setting, and all are compared that can take the source. Too far off, or no longer possible,
+is GX351: a refusal, because nothing is wrong but the decimals. Without a budget of the user 3 um
+are allowed, for no number of decimals bounds what a corner makes of them. Where the radius is not
+known, or what the control does, the certificate counts the moves of which only the contour was
+compared. Where the control itself stops (`CompensationPass.stops`: a first move no longer than the
+radius, an inside corner without room), the program is refused, changed or not.
 """
 
 from __future__ import annotations

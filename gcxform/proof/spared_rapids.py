@@ -4,6 +4,10 @@ A rapid to a point of the machine (G28, G53) is said in the machine's own positi
 compensates writes it as it stands. The tool is then off by the machine's error, on purpose. It must
 be a rapid, and the control must be told what the program says; no feed move may begin there, which
 the proof sees by where the machine is.
+
+The certificate says in `not_checked` how many there are, and how far off the machine is there.
+`compare --model` and `simulate` go by the same undo; `compare` holds spared rapids against what the
+control is told, and where feed moves begin behind them against where the tool is.
 """
 
 from __future__ import annotations

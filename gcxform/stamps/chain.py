@@ -3,6 +3,11 @@
 A pass that ensures or clears a fact of `AT_READING` turns positions into other positions, so its
 runs are stamped. What a stamp says is then what a program is taken for when it is read: a chain
 that takes it for something else is refused before anything is written.
+
+Each pair of facts is what the newest stamp says of it, and steps that correct axes must be told of
+the axes that it is about. Options that are as by default are not in the digest of a pipeline, nor
+is where files are. The output is searched for its stamps: one that is not written, or one that was
+not read, fails the run.
 """
 
 from __future__ import annotations

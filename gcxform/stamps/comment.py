@@ -13,6 +13,8 @@ characters, because every control takes those.
 
 Other tools indent comments, number them, change their case, drop their blanks or give them another
 bracket; a stamp is known all the same. A comment that only talks about gcxform is none.
+
+They are read from the bytes of a program, before anything else is.
 """
 
 from __future__ import annotations

@@ -3,6 +3,11 @@
 The head goes behind percent signs, program numbers and comments, in front of the first line that
 holds anything else. The seal is the last line, but for a percent sign that closes the program.
 Stamps that the text has already are taken out where they stand, and written with the new one.
+
+Stamps are put in before the proof reads the window; passes that change text never see them. The
+seal comes last, when all text is known: it is the hash of the output, which is made anyway, unless
+lines end in CR. It is the one line that the verifier does not read; that it is a comment is asked
+of the grammar of the target.
 """
 
 from __future__ import annotations

@@ -8,6 +8,8 @@ operations and decides nothing about the language: a line that is not made of le
 blanks alone, or whose numbers are not plain, goes to lark by itself.
 
     N10 G1 X1.5 Y-2.      shape  N# G1 X# Y#      numbers  10  1.5  -2.
+
+Numbers are read as integer mantissas with decimals, and every number that is taken is exact.
 """
 
 from __future__ import annotations

@@ -3,6 +3,9 @@
 A shape is what a line looks like when its numbers are taken out (see `scan`). Its tree has slots
 in place of the numbers: the k-th number word that is not a code is slot k. A line that lark read by
 itself is a shape of its own, whose numbers come from the tree.
+
+A number that is a code stays in the shape: `M6` and `M8` are different lines to the table of
+meanings, as they are to the control.
 """
 
 from __future__ import annotations

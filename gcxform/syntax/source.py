@@ -1,4 +1,8 @@
-"""A program as bytes, cut into windows of whole lines: memory does not grow with the file."""
+"""A program as bytes, cut into windows of whole lines: memory does not grow with the file.
+
+A source is a copy, in memory or in a temporary file without a name. So every reading is of the same
+bytes, and a file that is written to meanwhile is refused (GX904).
+"""
 
 from __future__ import annotations
 

@@ -3,6 +3,9 @@
 What is counted is counted where it comes in, once: lines and programs in `source`, files in
 `inputs`, expressions in `syntax`, moves in `toolpath`, executed lines in `flow`, the parts of an
 error model in `machine`. A limit that is reached is a diagnostic, and says how to raise it.
+
+A pass gives its counts to `Toolpath.check_rows` before it makes points of them. Trees of lark are
+no deeper than `nesting`, and therefore code that follows them may call itself.
 """
 
 from __future__ import annotations

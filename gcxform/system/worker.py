@@ -5,6 +5,9 @@ processes do not. A process begins as a copy of this one, so nothing has to be s
 it is given later goes through memory that both can see. Where a process cannot be copied safely
 (another system than Linux, other threads, a process of a pool) the work is done here, when its
 result is needed.
+
+While a window is transformed and written, one process reads the next and another proves the one
+before. A worker ends with its parent.
 """
 
 from __future__ import annotations

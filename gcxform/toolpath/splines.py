@@ -2,6 +2,11 @@
 
 A spline is a cubic Bezier curve B(t), 0 <= t <= 1, with the control points P0 to P3: P0 is where
 the row starts, P3 where it ends. Formulas: G. Farin, Curves and Surfaces for CAGD, chapters 4, 5.
+
+A spline is a row of the form `SPLINE` whose kind is `LINE`, because it cuts. Rows of any form but
+`PLAIN` are written as the block they came from, or refused; so a pass that knows nothing of splines
+cannot take one for a line and write it. The lines for one are equal in the parameter, and as many
+as the second differences of the control points ask for.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""CSV files of circular tests while RTCP is on; see `csvtext` for their common form.
+"""CSV files of circular tests while RTCP is on.
+
+Their common form is that of `gcxform/calibrate/csv_text.py`.
 
     axis, bar, X [mm], Y [mm], Z [mm], angle [deg], reading [um]
     A,    Z,   65,     -32,    25,     -90,         12.3

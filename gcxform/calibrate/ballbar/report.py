@@ -1,7 +1,8 @@
 """What circular tests found of rotary axes: lines for a person, comments, and a report.
 
-As in `rotarywords`. The check afterwards turns one axis with RTCP on, the ball of the first test of
-the axis at rest on the table and the spindle's dial on it, as in `rotarycheck`.
+As in `gcxform/calibrate/rotary/report.py`. The check afterwards turns one axis with RTCP on, the
+ball of the first test of the axis at rest on the table and the spindle's dial on it, as in
+`gcxform/calibrate/rotary/check.py`.
 """
 
 from __future__ import annotations

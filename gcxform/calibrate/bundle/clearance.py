@@ -8,6 +8,8 @@ below them. While the axes turn, each in its own time, the tip stands above all 
 angles there are on the way.
 
 Angles (n, m) are degrees, places of balls are those of the workpiece, and lengths are mm.
+
+All of this is decided by bounds, and not by samples alone.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""What a bundle found: lines for a person, comments, and a report. As in `rotarywords`."""
+"""What a bundle found: lines for a person, comments, and a report.
+
+As in `gcxform/calibrate/rotary/report.py`.
+"""
 
 from __future__ import annotations
 

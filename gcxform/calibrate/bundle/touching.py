@@ -8,6 +8,9 @@ is upright that is from above; a head that turns takes all of it along. Position
 axes: no tool length, and a work offset of 0, so that nothing has to be known to read the touches.
 Where no probe is named they are those of the tip, and the work offset has to make them so. A probe
 that is turned does not move while it touches, so X, Y and Z move as its tip does.
+
+Nothing in the program is computed by the control, because what a probe finds could not be read
+again.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""CSV files of diagonal measurements and of linear tests; see `csvtext` for their common form.
+"""CSV files of diagonal measurements and of linear tests.
+
+Their common form is that of `gcxform/calibrate/csv_text.py`.
 
 Diagonals: a row for each stop, in the order of the measurement.
 

@@ -13,6 +13,8 @@ equation, and the axis is where the tip was at 0, plus a.
 A robust fit (Cauchy) finds readings that do not belong to the rest; the result is the least-squares
 fit of the rest, and those left out are named. The covariance is that of the noise that the
 residuals show, or of the stated one if that is more.
+
+The weights of the robust fit alone would make the covariance a guess.
 """
 
 from __future__ import annotations

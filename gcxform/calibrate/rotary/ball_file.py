@@ -1,4 +1,4 @@
-"""CSV files of ball centres; see `csvtext` for their common form.
+"""CSV files of ball centres; see `gcxform/calibrate/csv_text.py` for their common form.
 
     angle [deg], X [mm],   Y [mm],   Z [mm]
     0,           363.5312, 51.2288,  128.9411

@@ -1,7 +1,8 @@
 """The check of a rotary axis with RTCP on and the ball at rest, predicted from a covariance.
 
-One axis turns, the others stand at 0, the spindle's dial stays on the ball. As in `rotarycheck`,
-but for unknowns as a bundle has them: two shifts and two tilts across the axis.
+One axis turns, the others stand at 0, the spindle's dial stays on the ball. As in
+`gcxform/calibrate/rotary/check.py`, but for unknowns as a bundle has them: two shifts and two tilts
+across the axis.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 A stretch is a run of blocks in cycle mode between which nothing else moves, all in one plane and
 one unit. `Cycles` fills in the words that stay in force, finds the levels of every hole and what
-speaks against it, and hands the holes to `cyclesteps`. Levels do not depend on the hole before, so
+speaks against it, and hands the holes to `steps.py`. Levels do not depend on the hole before, so
 that all of this is done on whole columns. What stays in force is carried to the next stretch.
 """
 

@@ -2,6 +2,11 @@
 
 This is done line by line, in the order of execution, for the lines that compute something and for
 no others; the rest of the interpreter then finds numbers where the program has expressions.
+
+All or nothing: a value that is not known is refused, and none is guessed. Assignments leave their
+parameters to the next window. The writer copies words with expressions where they say what is
+meant, and writes numbers where not; assignments stay, once, in the first piece of their block,
+unless the dialect changes. The proof computes all of it again from the output.
 """
 
 from __future__ import annotations

@@ -2,6 +2,11 @@
 
 A stretch is a run of lines in one frame. Within it every axis is one column, filled forward; the
 block that begins a stretch may act on the frame first.
+
+A program that never shifts coordinates is one stretch. Those in G90 whose frames only shift are
+filled together (`gcxform/modal/frames/shifted.py`), the others one by one. Where M codes switch
+whether the control follows the tip, X, Y and Z are let go of if one comes while axes are turned:
+nothing can go wrong before the program says them again.
 """
 
 from __future__ import annotations

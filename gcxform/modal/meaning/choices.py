@@ -2,6 +2,8 @@
 
 A manual says what most blocks do for certain; what hangs on a parameter of the machine, or on its
 builder, is taken as custom has it. The sentences are made once for each shape.
+
+They go into `State.assumed`, once, and from there into the certificate.
 """
 
 from __future__ import annotations

@@ -4,6 +4,11 @@ What is read is what two manuals of Fanuc say (A-79348E, B-63323EN): of I, J and
 left out are 0; where all are, the tool keeps its direction; the length of a vector does not count;
 words of rotary axes have no place beside them, and in G91 X, Y and Z are how far the tip goes. As
 long as the program has said no vector, the tool stands as it stood before. All else is refused.
+
+They are a column of their own, `tool` of the path. Rotary axes of such rows stand where G43.5
+began, at 0. After G49 they are where the control's own choice has left them: their position is
+`LEFT` (`gcxform/modal/frames/track.py`), inf, which no word can have, and the pass puts in what it
+knows.
 """
 
 from __future__ import annotations

@@ -3,6 +3,11 @@
 In G93 a feed is the inverse of the minutes that its block takes, so one is the other times the
 length of the move as the control measures it: along X Y Z, round the arc and up the helix, or in
 degrees where only a rotary axis turns. What controls measure in ways of their own is refused.
+
+The proof then goes by the clock: at the old feed the time of a line's moves is that of its way, as
+programmed or as written (`gcxform/toolpath/travel.py`, which is not used here). In G93 a motion
+code without axis words, or F without a move, would be an error or mean something else, so both wait
+for the next move. A program that changes its feed mode and has no end is refused.
 """
 
 from __future__ import annotations

@@ -1,4 +1,9 @@
-"""`offsets`: shifted, turned and mirrored coordinates become plain ones."""
+"""`offsets`: shifted, turned and mirrored coordinates become plain ones.
+
+It moves nothing. The frames of the rows are replaced by ones in which only the tool length is left,
+and the path is `folded`: the writer then leaves out the codes that shifted or turned coordinates,
+and computes the words anew. The proof reads the output, without these codes, to the same positions.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""`plane`: arcs in planes that the target lacks become lines."""
+"""`plane`: arcs in planes that the target lacks become lines.
+
+The chords are those of `segment`, so there is one way to make lines of arcs.
+"""
 
 from __future__ import annotations
 

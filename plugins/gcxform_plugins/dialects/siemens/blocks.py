@@ -1,7 +1,7 @@
 """Programs for a SINUMERIK 840D, line by line, as blocks of words.
 
-A line is put in order (`siemens_reading.py`), then its blocks are made: what the control does
-before the move, here, the move itself (`siemens_moves.py`), and what a modal cycle does behind it.
+A line is put in order (`reading.py`), then its blocks are made: what the control does
+before the move, here, the move itself (`moves.py`), and what a modal cycle does behind it.
 """
 
 from __future__ import annotations

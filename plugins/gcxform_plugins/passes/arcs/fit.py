@@ -9,6 +9,9 @@ The proof pairs the points of arc and lines that have the same angle at the cent
 along both, so the pairs follow one another, and the largest distance of a pair bounds the distance
 in both directions. In the plane it is largest at a corner or where a line is nearest to the centre;
 along the axis of a helix, at a corner, and by what a line turns unevenly between two.
+
+A line that points elsewhere than its arc by more than 5 degrees and what the rounding explains is a
+corner, and an arc that is within the tolerance of its chord is a line.
 """
 
 from __future__ import annotations

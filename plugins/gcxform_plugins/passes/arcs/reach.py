@@ -6,6 +6,8 @@ there are many to be walked, and arcs that meet at a cut are joined again.
 
 A block of the program may have become many rows. An arc that goes on into another block goes on to
 the end of one, so that a block is either gone as a whole or still has its beginning.
+
+What the lines before a better arc have been taken for is then given back to it.
 """
 
 from __future__ import annotations

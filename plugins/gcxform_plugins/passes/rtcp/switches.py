@@ -4,6 +4,10 @@ A program that switches with codes of the control is one of tips while they are 
 while they are off. With all rotary axes at 0 tip and axes are at one position. With an axis turned
 the same numbers are another place after a switch: X, Y and Z are then known again where a rapid has
 named them.
+
+Rows that are off are positions of axes already, and stay. No code in the output says which these
+are, so the verifier tells by the lines of the source that they came from; and of what the source
+does not know it only takes that it rests (`gcxform/proof/known_positions.py`).
 """
 
 from __future__ import annotations

@@ -3,6 +3,13 @@
 They are read in the dialect that is written, one by one, and only what can be proved is let in: a
 comment, a dwell, coolant, codes that the machine file calls inert, and rapids of X, Y and Z to
 places of the machine. The spindle has to turn when the tool goes in again, so it is not switched.
+
+Each is read from two places of the machine, so that only axes that end at one place are named by
+it. What they do is in rows of the form MACHINE and in events `within` the block; `given` of the
+path has their text, which the emitter puts between the pieces and the verifier looks for, once each
+and in order. As G53 counts from the machine, the output is read with the work offsets of the
+machine that it is written for; a program's own moves to such places are refused where two machines
+have them elsewhere. A macro would need a reader and a bound of its own.
 """
 
 from __future__ import annotations

@@ -3,6 +3,11 @@
 Angular errors act on the way from the gauge point to the tip, and the head turns that way. It is a
 function of the angles alone, which go in proportion along a move; so it goes along arcs, and the
 error between two points of a line is no longer what the error model alone makes of it.
+
+Where no head is turned in a window there is no lever, and nothing of this is computed. Refused are
+arcs along which the head turns, cuts without a tool length, angles that are not known, and feeds
+per minute where the linear axes move by little more than the correction: the control would measure
+the feed along that.
 """
 
 from __future__ import annotations

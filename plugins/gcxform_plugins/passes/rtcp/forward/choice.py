@@ -9,6 +9,11 @@ near each other only a change of attitude does. At the pole the angle of one axi
 Where the tool may be drawn back, axes may leap at a point; as this is dearer than any turn, there
 are as few such points as can be, and none where there is a way without. At the pole it is the free
 axis that may turn then.
+
+It begins with axes at 0, so a cut does not depend on the one before, and a window needs only whole
+cuts. Two points between which no axis may leap are at most 5 degrees of the source apart. Four
+codes say why there is no way: out of reach, the pole, the border of reach, or limits that force a
+flip. What is chosen is the angle near which the exact one is taken, for every piece.
 """
 
 from __future__ import annotations

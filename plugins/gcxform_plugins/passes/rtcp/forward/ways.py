@@ -1,4 +1,10 @@
-"""From what to what `rtcp` converts positions, and how far that is from being linear."""
+"""From what to what `rtcp` converts positions, and how far that is from being linear.
+
+Between two machines both agree where all rotary axes are at 0, where the work offset is taken. The
+correction is then nearly constant, so only long turns are cut (`correction_bound.py`). The tool
+axis stays off by what the axes lean: nothing at the tip, and the certificate tells how much at a
+tool's length.
+"""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 It has the forward models of both machines, and no search. A move of the source is followed from
 end to end beside the moves that it became, which share it evenly; at so many places that between
 them each tip is within a tenth of the tolerance of its chord. There both tools are compared. Moves
-that draw the tool back are taken out before (`rtcp_retracted.py`): the rest has to be the source.
+that draw the tool back are taken out before (`retracted.py`): the rest has to be the source.
 """
 
 from __future__ import annotations

@@ -2,6 +2,14 @@
 
 For the inverse the same is done with the machine's error in place of its correction: a *target* is
 then a command, and a *command* where the machine goes with it.
+
+A machine errs everywhere: also at the points that G53 and G28 lead to, and where it stands before
+the program. Rapids to points of the machine, and to places where some axis is not known yet, are
+written as they stand (the pass spares them). No feed move may begin or end at such a place, or at a
+given `start`, unless the error there is within the promise (GX317): it would be cut slanting. What
+decides is where the axes have been left, by what the pass has written before or by the start, and
+not the name of the block. With `rapids = "skip"` all rapids are spared, and how far off feed moves
+begin is measured against the explicit budget.
 """
 
 from __future__ import annotations

@@ -4,6 +4,9 @@ The search for them is done here once more, and shares nothing with the writing 
 the error is linear between its nodes, the commands for a straight way whose two ends have their
 commands in one cell of the table are a straight way as well: a cell is convex, and the machine goes
 straight along straight commands in it. So ways are cut until that is so of every piece.
+
+The facts of the pass are turned round: a program of commands is taken for COMPENSATED when it is
+read.
 """
 
 from __future__ import annotations

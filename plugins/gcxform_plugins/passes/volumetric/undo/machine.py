@@ -1,6 +1,10 @@
 """How `volumetric` is undone: from what is commanded to where the machine goes.
 
 The forward model alone: nothing here is shared with the search for commands.
+
+A tip at most r from axes that turn by T goes T r and bends by T^2 r (`Arm`). Pieces are straight
+within their slack, so nothing is sampled. Nodes are found as the search finds them
+(`gcxform/toolpath/crossings.py`), which has tests of its own.
 """
 
 from __future__ import annotations
