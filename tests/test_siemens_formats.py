@@ -111,7 +111,7 @@ def test_eec_there_and_back(tmp_path_factory, seed, units):
 
 
 @pytest.mark.parametrize("way", ["plus", "minus"])
-@settings(max_examples=10)
+@settings(max_examples=settings.default.max_examples // 25)
 @given(seed=st.integers(0, 10_000), units=st.sampled_from(["mm", "in"]))
 def test_cec_there_and_back(tmp_path_factory, seed, units, way):
     form = SiemensCec(units, AXES, way, points=500, tables=9)

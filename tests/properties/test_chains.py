@@ -33,7 +33,7 @@ judged = pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is n
 
 
 @judged
-@shares(COUNT, 100)
+@shares(COUNT, 50)
 def test_a_chain_that_is_accepted_is_proved_and_right_or_refuses(seeds: range) -> None:
     total = chains.Figures()
     for figures in chains.campaign(seeds):

@@ -104,7 +104,7 @@ def test_the_same_is_read() -> None:
     assert changed > 0.9 * COUNT
 
 
-@shares(COUNT, 50)
+@shares(COUNT, 25)
 def test_the_same_is_made_of_it(seeds: range) -> None:
     """Random chains: each output is proved by itself, and the two are the same path."""
     done = 0
@@ -165,3 +165,18 @@ def test_linuxcnc_reads_the_same() -> None:
     for text, answer in zip(outputs, rs274.run_many(outputs), strict=True):
         assert isinstance(answer, CanonProgram), f"{answer}\n{text.decode()}"
     assert len(outputs) > len(few) / 2
+
+
+def test_few_arcs_are_cut_as_many_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of few arcs several halvings are looked at together: what is written is the same."""
+    cut = 0
+    for seed in range(COUNT // 4):
+        plain, steps = pair(seed)[0], chain(random.Random(seed))[0]
+        together = outcome(steps, plain)
+        with monkeypatch.context() as many:
+            many.setattr("gcxform_plugins.passes.volumetric.forward.arcs.FEW", -1)
+            each = outcome(steps, plain)
+        texts = [one if isinstance(one, str) else one.text for one in (together, each)]
+        assert texts[0] == texts[1], plain.decode()
+        cut += b"G2" in plain and "volumetric" in [step.name for step in steps.passes]
+    assert cut > COUNT // 40

@@ -309,8 +309,8 @@ def across(axis: Rotary) -> Floats:
     along = np.array(axis.direction)
     near = np.eye(3)[(int(np.abs(along).argmax()) + 1) % 3]
     first = near - (near @ along) * along
-    first /= np.linalg.norm(first)
-    return np.array([first, np.cross(along, first)])
+    (x, y, z), (u, v, w) = axis.direction, (first / np.linalg.norm(first)).tolist()
+    return np.array([[u, v, w], [y * w - z * v, z * u - x * w, x * v - y * u]])
 
 
 def _lengths(design: Floats) -> Floats:

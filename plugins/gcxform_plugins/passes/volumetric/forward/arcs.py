@@ -12,6 +12,10 @@ FEWEST, MOST = 8, 256  # points at which a piece is looked at
 AT_ONCE = 200_000  # points looked at together
 HALVINGS = 24
 REFINEMENTS = 6  # a piece is a sixty-fourth shorter than it could be, at most
+FEW, AHEAD = (
+    64,
+    3,
+)  # of so few arcs, so many halvings are looked at together: it takes as long as one
 EVEN_TRIES = 8  # numbers of equal pieces that are tried, where others would be too short
 FLAT = 0.1  # mm; with less between arc and chord, three points say little about the centre
 NO_CHORD = 1e-6  # mm
@@ -100,21 +104,32 @@ class ArcFitter:
 
     def _reach(self, row: Ints, at: Floats, most: Floats) -> Floats:
         """Return how far (part of the arc) pieces that begin at `at` reach, at most `most`."""
+        ahead = AHEAD if len(row) <= FEW else 1
         reach = most.copy()
         far = np.arange(len(row))
-        for _ in range(HALVINGS):
-            far = far[self._too_far(row[far], at[far], self._stop(at[far], reach[far]))]
+        for _ in range(0, HALVINGS, ahead):
+            sizes = reach[far][:, None] / 2.0 ** np.arange(ahead)
+            holds = self._hold(row[far], at[far], sizes)
+            found = holds.any(axis=1)
+            reach[far] /= 2.0 ** np.where(found, holds.argmax(axis=1), ahead)
+            far = far[~found]
             if not len(far):
                 break
-            reach[far] /= 2
         step = np.where(reach < most, reach / 2, 0.0)
-        for _ in range(REFINEMENTS):
+        for _ in range(0, REFINEMENTS, ahead):
             more = np.flatnonzero(step > 0.0)
-            longer = reach[more] + step[more]
-            holds = ~self._too_far(row[more], at[more], self._stop(at[more], longer))
-            reach[more[holds]] = longer[holds]
-            step /= 2
+            longer = _longer(reach[more], step[more], ahead)
+            holds = self._hold(row[more], at[more], longer[:, 1:])
+            reach[more] = longer[np.arange(len(more)), _halved(holds, ahead)]
+            step /= 2**ahead
         return np.where(self._stop(at, reach) == 1.0, 1.0 - at, reach)
+
+    def _hold(self, row: Ints, at: Floats, sizes: Floats) -> Flags:
+        """Return which of some pieces (n, k) that begin at `at` (n,) an arc can stand for."""
+        count = sizes.shape[1]
+        low = np.repeat(at, count)
+        far = self._too_far(np.repeat(row, count), low, self._stop(low, sizes.ravel()))
+        return np.asarray(~far.reshape(-1, count))
 
     def _stop(self, at: Floats, reach: Floats) -> Floats:
         """Return where pieces end: at the end of the arc if that is where rounding puts them."""
@@ -237,6 +252,26 @@ class ArcFitter:
         sweep[1::2] *= high - low
         path = path.replace(end=end, sweep=sweep, centre=np.repeat(centre, 2, axis=0))
         return path.replace(sweep=gx.swept_anew(path))
+
+
+def _longer(reach: Floats, step: Floats, halvings: int) -> Floats:
+    """Return lengths (n, 2**halvings) with every choice of a step, its half, its quarter and so on.
+
+    Added one after the other, so that they are the lengths that are found one at a time.
+    """
+    choice = np.arange(2**halvings)
+    longer = np.repeat(reach[:, None], len(choice), axis=1)
+    for nth in range(halvings):
+        longer += (choice >> (halvings - 1 - nth) & 1) * step[:, None] / 2**nth
+    return longer
+
+
+def _halved(holds: Flags, halvings: int) -> Ints:
+    """Return to which choice (n,) halving leads; `holds` (n, k) are those with any step at all."""
+    found = np.zeros(len(holds), np.int64)
+    for bit in 2 ** np.arange(halvings)[::-1]:
+        found += bit * holds[np.arange(len(holds)), found + bit - 1]
+    return found
 
 
 def _as_far(centre: Floats, start: Floats, end: Floats) -> Floats:
