@@ -88,7 +88,7 @@ def program(code: str, frame: str, distance: str, unit: str) -> bytes:
 def transformed(source: bytes, chain: str) -> bytes | str:
     """Return the output, or the code of the refusal."""
     kind = gx.Pipeline.parse(chain, "linuxcnc")
-    numbers = kind.target.number_format(mm=5, inch=6)
+    numbers = replace(kind.target.numbers, mm=5, inch=6)
     made = replace(kind, machine=MACHINE, numbers=numbers)
     try:
         return made.run(source).text

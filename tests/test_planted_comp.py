@@ -57,7 +57,7 @@ def planted(change: Change) -> gx.Pass:
 def run(program: str, dialect: str, change: Change, budget: float | None = None) -> gx.Result:
     kind = default_registry().dialect(dialect)
     machine = Machine(file=Path("mill.toml"), tools=TOOLS)
-    numbers = kind.number_format(mm=4, inch=5, feed=3)
+    numbers = replace(kind.numbers, mm=4, inch=5, feed=3)
     steps = (planted(change),)
     made = gx.Pipeline(kind, kind, steps, machine=machine, numbers=numbers, budget=budget)
     return made.run(program.encode())

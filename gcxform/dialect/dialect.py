@@ -18,7 +18,7 @@ Everything is data; the reader, the emitter and the verifier ask here and nowher
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 from gcxform.config import arguments
@@ -131,8 +131,3 @@ class Dialect:
     def load_grammar(cls) -> Grammar:
         """Return the dialect's grammar, built once."""
         return load(*cls.grammar)
-
-    @classmethod
-    def number_format(cls, **changes: object) -> NumberFormat:
-        """Return the number format with changes."""
-        return replace(cls.numbers, **changes)  # type: ignore[arg-type]

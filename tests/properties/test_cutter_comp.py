@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -33,7 +34,7 @@ def pipeline(chain: str = "cutter-comp") -> gx.Pipeline:
     tools = {number: Tool(radius=number / 2) for number in range(1, 100)}
     machine = Machine(file=Path("mill.toml"), tools=tools)
     passes = gx.Pipeline.parse(chain, "linuxcnc").passes
-    numbers = kind.number_format(mm=6, feed=6)
+    numbers = replace(kind.numbers, mm=6, feed=6)
     return gx.Pipeline(kind, kind, passes, machine=machine, numbers=numbers)
 
 

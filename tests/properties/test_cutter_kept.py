@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import random
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -51,7 +52,7 @@ def drawn(seed: int) -> tuple[bytes, gx.Pipeline]:
     tools = {number: Tool(radius=number / 2) for number in range(1, 100)}
     passes = gx.Pipeline.parse(choose.choice(STEPS), "linuxcnc").passes
     decimals = choose.choice((2, 3, 4))
-    numbers = kind.number_format(mm=decimals, inch=decimals + 1, feed=6)
+    numbers = replace(kind.numbers, mm=decimals, inch=decimals + 1, feed=6)
     budget = choose.choice((None, None, 0.05))
     machine = Machine(file=Path("mill.toml"), tools=tools)
     return source, gx.Pipeline(
