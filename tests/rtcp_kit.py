@@ -37,14 +37,14 @@ def machine_text(name, chain):
 SEGMENT = '[[pass]]\nuse = "segment"\nchord-error = 0.001\n'
 
 
-def pipeline(folder, machine, decimals=3, before=SEGMENT, after="", **options):
-    """Return the pipeline of `rtcp` with options, for the text of a machine file."""
+def pipeline(folder, machine, decimals=3, before=SEGMENT, after="", use="rtcp", **options):
+    """Return the pipeline of a pass with options, for the text of a machine file."""
     (folder / "machine.toml").write_text(machine)
     said = "\n".join(f"{key.replace('_', '-')} = {value!r}" for key, value in options.items())
     (folder / "p.toml").write_text(
         'format = 1\n[input]\ndialect = "fanuc"\n[machine]\nfile = "machine.toml"\n'
         f'[[pass]]\nuse = "absolute"\n{before}'
-        f'[[pass]]\nuse = "rtcp"\n{said}\n{after}[output]\nstamp = false\ndecimals = {decimals}\n'
+        f'[[pass]]\nuse = "{use}"\n{said}\n{after}[output]\nstamp = false\ndecimals = {decimals}\n'
     )
     return gx.Pipeline.load(folder / "p.toml")
 

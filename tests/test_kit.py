@@ -20,6 +20,7 @@ from gcxform.testing.paths import paths
 
 MODEL = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"
 HERE = (0.0, 0.0, 0.0)
+TURNING_PASSES = {"rtcp", "to-tip", "repost", "retarget"}
 TURNING = """\
 format = 1
 kinematics = "ac-trunnion"
@@ -75,19 +76,19 @@ def instances(name: str) -> list[gx.Pass | gx.TextPass]:
     return [made()]
 
 
-@pytest.mark.parametrize("name", sorted({*passes()} - {"rtcp"}))
+@pytest.mark.parametrize("name", sorted({*passes()} - TURNING_PASSES))
 def test_registered_passes(name):
     check_pass(passes()[name], *instances(name))
 
 
-@pytest.mark.parametrize("direction", ["to-machine", "to-tip"])
-def test_rtcp(tmp_path, direction):
+@pytest.mark.parametrize("name", ["rtcp", "to-tip"])
+def test_passes_that_need_a_machine(tmp_path, name):
     """The law on the path that tilts, there and back; test_rtcp.py has all kinds of machines."""
     file = tmp_path / "machine.toml"
     file.write_text(TURNING)
     machine = load_machine(file, default_registry().machines)
-    made = passes()["rtcp"]
-    steps = [made(tolerance=t, rapids="ends", direction=direction) for t in (0.3, 0.01)]
+    made = passes()[name]
+    steps = [made(tolerance=t, rapids="ends") for t in (0.3, 0.01)]
     check_pass(made, *steps, machine=machine)
 
 

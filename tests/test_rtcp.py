@@ -103,7 +103,7 @@ def test_axes_stay_on_theirs(tmp_path, kind, drawn):
     seed, poses = drawn
     chain = chain_of_kind(kind, seed)
     text = program(poses, ("X", "Y", "Z", *chain.letters), feed="F2.")
-    options = {"tolerance": 0.01, "direction": "to-tip"}
+    options = {"tolerance": 0.01, "use": "to-tip"}
     result = pipeline(tmp_path, machine_text(kind, chain), **options).run(text, "full")
     check_ways(text, result, chain, 0.01, axes)
 
@@ -287,19 +287,19 @@ def test_limits_are_those_of_the_machine(tmp_path):
         assert [d.code for d in caught.value.diagnostics] == ["GX331"]
 
 
-@pytest.mark.parametrize("direction", ["to-machine", "to-tip"])
+@pytest.mark.parametrize("use", ["rtcp", "to-tip"])
 @pytest.mark.parametrize("kind", KINDS)
-def test_undone_pieces_stay_beside_the_curve(tmp_path, kind, direction):
+def test_undone_pieces_stay_beside_the_curve(tmp_path, kind, use):
     """What the proof makes of a long move in proportion, against 400 points of it by scipy."""
     chain = chain_of_kind(kind, 8)
     letters = ("X", "Y", "Z", *chain.letters)
     poses = np.array([[0.0, 0, 0, 0, 0], [60, -30, 12, 55, -80], [60, -30, 12, 20, -10]])
     text = program(poses[1:], letters, feed="F2.")
-    steps = pipeline(tmp_path, machine_text(kind, chain), tolerance=0.05, direction=direction)
-    step = next(step for step in steps.path_passes if step.name == "rtcp")
+    steps = pipeline(tmp_path, machine_text(kind, chain), tolerance=0.05, use=use)
+    step = next(step for step in steps.path_passes if step.name == use)
     path = gx.Program(text, steps.source, steps.machine_reading).path
     undone = step.undo(path, steps.context)
-    model = tips if direction == "to-machine" else axes
+    model = tips if use == "rtcp" else axes
     assert 0.0 < undone.slack <= SHARE * 0.05
     for row in np.flatnonzero(path.kind == gx.Kind.LINE):
         mine = np.flatnonzero(undone.source == path.source[row])
@@ -380,3 +380,27 @@ M30
     assert result.certificate.verified
     times = [1.0 / float(f) for f in re.findall(r"A-?[\d.]+ F([\d.]+)", result.text.decode())]
     assert sum(times[-result.source_map.count(5) :]) > 1.1 * 76.53 / 2525.9
+
+
+@pytest.mark.parametrize(
+    ("said", "hints"),
+    [
+        ('direction = "to-tip"', ['write "to-tip" in the place of "rtcp"']),
+        (
+            'direction = "repost"\ncalibrated = "machine.toml"',
+            ['write "repost" in the place of "rtcp"', 'it is an option of "repost"'],
+        ),
+        (
+            'direction = "retarget"\ntarget = "machine.toml"',
+            ['write "retarget" in the place of "rtcp"', 'it is an option of "retarget"'],
+        ),
+    ],
+)
+def test_each_way_is_a_pass_of_its_own(tmp_path, said, hints):
+    machine = machine_text("ac-trunnion", chain_of_kind("ac-trunnion", 3))
+    pipeline(tmp_path, machine, tolerance=0.01)
+    file = tmp_path / "p.toml"
+    file.write_text(file.read_text().replace('use = "rtcp"\n', f'use = "rtcp"\n{said}\n'))
+    with pytest.raises(gx.UsageError) as refused:
+        gx.Pipeline.load(file)
+    assert [(d.code, d.hint) for d in refused.value.diagnostics] == [("GX701", h) for h in hints]

@@ -166,7 +166,7 @@ def test_the_proof_sees_what_is_wrong(tmp_path):
     feed[-1] *= 1.01
     with pytest.raises(gx.VerificationError, match="time of a move"):
         step.prove(path, after.replace(feed=feed), steps.context)
-    assert isinstance(step._proof(path, after, steps.context), Proof)
+    assert isinstance(step.proof(path, after, steps.context), Proof)
 
 
 def with_axis(path, letter):

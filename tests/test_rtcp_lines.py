@@ -487,7 +487,7 @@ def test_a_text_in_which_the_tool_comes_back_elsewhere_is_not_written(tmp_path, 
 def test_in_a_chain_lines_are_divided_by_commas(tmp_path):
     steps, _, _ = steps_of(tmp_path, "ac-trunnion", LIMITS["ac-trunnion"], **OPTIONS, **UP)
     chain = (
-        f"rtcp tolerance={TOLERANCE} direction=retarget target=target.toml rapids=ends "
+        f"retarget tolerance={TOLERANCE} target=target.toml rapids=ends "
         f"axis-tolerance=0.5 retract={BACK} retract-feed={FEED} "
         f"retract-lines='M9,(up),G53 G0 Z{TOP}' return-lines='G4 X1.5, M8'"
     )

@@ -113,8 +113,9 @@ def test_the_loop_in_one_step(here, orientation):
     """`repost` takes the place of the two runs, and corrects the tool axis too if asked."""
     dome = Path("dome.nc").read_bytes()
     posted = run("axes.toml", "set.toml", "dome.nc", "posted.nc")
-    asked = f'direction = "repost"\ncalibrated = "true.toml"\norientation = "{orientation}"\n'
+    asked = f'calibrated = "true.toml"\norientation = "{orientation}"\n'
     text = Path("axes.toml").read_text().replace("[output]", f"{asked}[output]")
+    text = text.replace('use = "rtcp"', 'use = "repost"').replace('rapids = "ends"\n', "")
     text = text if orientation == "keep" else text.replace(SEGMENT, "")
     Path("repost.toml").write_text(text)
     corrected = run("repost.toml", "set.toml", "posted.nc", "corrected.nc")

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from gcxform_plugins.passes.rtcp.conversion import Conversion
 from gcxform_plugins.passes.rtcp.forward.correction_bound import bend_of_correction
 from gcxform_plugins.passes.rtcp.proof.undoing import SHARE
 from hypothesis import HealthCheck, given, settings
@@ -66,7 +67,7 @@ def measured_text(kind, chain):
 def reposted(folder, kind, nominal, real, **options):
     """Return the pipeline that corrects programs for a nominal machine."""
     (folder / "real.toml").write_text(measured_text(kind, real))
-    options = {"tolerance": TOLERANCE, "direction": "repost", "calibrated": "real.toml"} | options
+    options = {"tolerance": TOLERANCE, "use": "repost", "calibrated": "real.toml"} | options
     options = {"decimals": FINE} | options
     return pipeline(folder, machine_text(kind, nominal), **options)
 
@@ -81,7 +82,7 @@ def posted(poses, letters):
 
 def step_of(steps):
     """Return the pass."""
-    return next(step for step in steps.path_passes if step.name == "rtcp")
+    return next(step for step in steps.path_passes if isinstance(step, Conversion))
 
 
 def poses_of(path, letters):

@@ -27,7 +27,7 @@ PAIRS = [
 def retargeted(folder, source, target, **options):
     """Return the pipeline from one kind with a chain to another."""
     (folder / "target.toml").write_text(machine_text(*target))
-    options = {"tolerance": 0.01, "direction": "retarget", "target": "target.toml"} | options
+    options = {"tolerance": 0.01, "use": "retarget", "target": "target.toml"} | options
     options = {"before": "", "rapids": "ends", "decimals": 4} | options
     return pipeline(folder, machine_text(*source), **options)
 

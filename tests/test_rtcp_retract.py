@@ -42,7 +42,7 @@ def steps_of(folder, kind, limits, **options):
     """Return the pipeline from an A/C trunnion without limits, with both chains."""
     source, target = chain_of_kind("ac-trunnion", 3), chain_of_kind(kind, 4)
     (folder / "target.toml").write_text(limited(machine_text(kind, target), limits))
-    said = {"tolerance": TOLERANCE, "axis_tolerance": 0.5, "direction": "retarget"}
+    said = {"tolerance": TOLERANCE, "axis_tolerance": 0.5, "use": "retarget"}
     said |= {"target": "target.toml", "before": "", "rapids": "ends", "decimals": 4}
     steps = pipeline(folder, machine_text("ac-trunnion", source), **(said | options))
     return steps, source, target
@@ -195,9 +195,9 @@ def test_options_that_do_not_fit(tmp_path, options, message):
 
 
 def test_it_is_for_another_machine(tmp_path):
-    """Other directions do not choose attitudes."""
+    """The other passes do not choose attitudes."""
     text = machine_text("ac-trunnion", chain_of_kind("ac-trunnion", 3))
-    with pytest.raises(gx.UsageError, match="retract is an option of retarget"):
+    with pytest.raises(gx.UsageError, match="unknown key 'retract'"):
         pipeline(tmp_path, text, before="", tolerance=0.01, **OPTIONS)
 
 
@@ -319,7 +319,7 @@ def test_the_tool_goes_in_with_the_axis_it_had(drawn, turn, count):
     step, context, path, after = drawn
     first, moves = first_of(after)
     rows = np.array([first + moves - 2, first + moves - 1])
-    _, place = step._machines(after, context)
+    _, place = step.places(after, context)
     held = place.tips_of(after.end[rows, :3], place.angles(after.end[rows]), rows)
     end, feed, column = after.end.copy(), after.feed.copy(), after.axes.index("B")
     way = end[rows[0]] - end[rows[0] - 1]

@@ -47,7 +47,7 @@ def farthest(text, result, chain):
 def steps_of(folder, kind, chain, decimals, tolerance=TOLERANCE, **others):
     """Return the pipeline of axes to tips, with so many decimals for angles."""
     each = ", ".join(f"{letter} = {decimals}" for letter in "ABC")
-    options = {"tolerance": tolerance, "direction": "to-tip"} | others
+    options = {"tolerance": tolerance, "use": "to-tip"} | others
     return pipeline(folder, machine_text(kind, chain), f"{{ {each} }}", **options)
 
 
@@ -134,7 +134,7 @@ def test_a_corrected_program(tmp_path, kind, decimals):
     poses = poses_of(300.0, 60.0).round(decimals)
     text = program(poses, letters, feed="F2.")
     steps = steps_of(
-        tmp_path, kind, chain, decimals, 0.004, direction="repost", calibrated="measured.toml"
+        tmp_path, kind, chain, decimals, 0.004, use="repost", calibrated="measured.toml"
     )
     found, _ = outcome(steps, text)
     if found is None:

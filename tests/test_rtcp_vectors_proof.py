@@ -156,8 +156,8 @@ def test_angles_are_not_read_as_vectors(tmp_path):
     ("options", "message"),
     [
         ({"rapids": "refuse"}, 'rapids = "ends"'),
-        ({"direction": "to-tip"}, "tip-codes"),
-        ({"direction": "retarget", "target": "machine.toml"}, "tip-codes"),
+        ({"use": "to-tip"}, "unknown key 'tip-codes'"),
+        ({"use": "retarget", "target": "machine.toml"}, "unknown key 'tip-codes'"),
         ({"retract": "5 mm", "retract_feed": 500.0}, "retract"),
     ],
 )

@@ -61,18 +61,18 @@ def chained(folder, kind, nominal, real, model, **options):
     """Return the pipeline of both passes."""
     (folder / "real.toml").write_text(measured_text(kind, real))
     given = {"tolerance": TOLERANCE, "after": volumetric(model)} | options
-    given |= {"decimals": FINE} if options.get("direction") == "repost" else {}
-    machine = measured_text(kind, real) if "direction" not in options else None
+    given |= {"decimals": FINE} if options.get("use") == "repost" else {}
+    machine = measured_text(kind, real) if "use" not in options else None
     return pipeline(folder, machine or machine_text(kind, nominal), **given)
 
 
-@pytest.mark.parametrize("direction", ["to-tip", "retarget"])
-def test_positions_that_are_not_those_of_the_machine_are_refused(tmp_path, direction):
+@pytest.mark.parametrize("use", ["to-tip", "retarget"])
+def test_positions_that_are_not_those_of_the_machine_are_refused(tmp_path, use):
     """After `to-tip` they are tips, and after `retarget` of axes that the machine file has not."""
     nominal = chain_of_kind("cb-fork", 12)
     (tmp_path / "target.toml").write_text(machine_text("cb-fork", nominal))
-    options = {"direction": direction, "tolerance": TOLERANCE}
-    if direction == "retarget":
+    options = {"use": use, "tolerance": TOLERANCE}
+    if use == "retarget":
         options |= {"target": "target.toml", "rapids": "ends", "before": ""}
     text = machine_text("cb-fork", nominal)
     assert pipeline(tmp_path, text, **options)
@@ -98,14 +98,14 @@ def short_walk(chain, seed):
 
 @pytest.mark.parametrize("kind", ["cb-fork", "c-table-b-head", "ac-trunnion"])
 @pytest.mark.parametrize("model", [LDDM, RIGID])
-@pytest.mark.parametrize("direction", ["repost", "to-machine"])
-def test_errors_of_linear_and_rotary_axes_in_one_budget(tmp_path, kind, model, direction):
+@pytest.mark.parametrize("use", ["repost", "rtcp"])
+def test_errors_of_linear_and_rotary_axes_in_one_budget(tmp_path, kind, model, use):
     """The true machine, at 33 places of each block: within both promises and the rounding."""
     nominal = chain_of_kind(kind, 12)
     real = measured(nominal, 13)
     letters = ("X", "Y", "Z", *nominal.letters)
     text = posted(short_walk(nominal, 3), letters)
-    options = {"direction": direction, "calibrated": "real.toml"} if direction == "repost" else {}
+    options = {"use": use, "calibrated": "real.toml"} if use == "repost" else {}
     steps = chained(tmp_path, kind, nominal, real, model, **options)
     result = steps.run(text, "full")
     errors = gx.ModelFile.load(model).model
@@ -116,7 +116,7 @@ def test_errors_of_linear_and_rotary_axes_in_one_budget(tmp_path, kind, model, d
         rows = np.flatnonzero(owner == line)
         along = np.linspace(0.0, 1.0, 401)[:, None]
         posed = old[line - 1] + along * (old[line] - old[line - 1])
-        wanted = tips(nominal, posed) if direction == "repost" else posed[:, :3]
+        wanted = tips(nominal, posed) if use == "repost" else posed[:, :3]
         uncorrected = tips(real, actual(errors, posed, ORIGINS[model], real)) - wanted
         without = max(without, float(np.linalg.norm(uncorrected, axis=1).max()))
         for row in rows:

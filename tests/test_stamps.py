@@ -226,11 +226,11 @@ def test_there_and_back_and_there(place):
 def test_tips_and_axes(place):
     to_axes, to_tips = (
         kit.pipeline(
-            f"{LINES} | rtcp tolerance=10um{more}",
+            f"{LINES} | {name} tolerance=10um",
             place,
             machine="set.toml",
         )
-        for more in ("", " direction=to-tip")
+        for name in ("rtcp", "to-tip")
     )
     axes = to_axes.run(kit.TIPS).text
     assert re.search(rb"\(GCXFORM STAMP \w{12} AXES [0-9A-F]{6} BY 0.1.0 RTCP\)", axes)
@@ -254,7 +254,7 @@ def test_one_run_of_two_steps_is_one_stamp(place):
 
 
 def test_axes_are_corrected_once(place):
-    repost = f"{LINES} | rtcp direction=repost calibrated=found.toml tolerance=10um"
+    repost = f"{LINES} | repost calibrated=found.toml tolerance=10um"
     pipe = kit.pipeline(repost, place, machine="set.toml")
     once = pipe.run(kit.TIPS).text
     assert kit.code(pipe, once) == "GX241"

@@ -79,11 +79,11 @@ def test_nothing_corrects_what_the_control_corrects(tmp_path, dialect, passes):
 
 
 @pytest.mark.parametrize("dialect", PROGRAMS)
-@pytest.mark.parametrize("direction", ["to-tip", "repost"])
-def test_positions_of_axes_are_not_those_of_tips(tmp_path, dialect, direction):
-    said = f'direction = "{direction}"\n'
-    said += 'calibrated = "machine.toml"\n' if direction == "repost" else ""
+@pytest.mark.parametrize("name", ["to-tip", "repost"])
+def test_positions_of_axes_are_not_those_of_tips(tmp_path, dialect, name):
+    said = 'calibrated = "machine.toml"\n' if name == "repost" else ""
     pipeline = PIPELINE.replace('tip-codes = "read"\nrapids = "ends"\n', said)
+    pipeline = pipeline.replace('use = "rtcp"', f'use = "{name}"')
     with pytest.raises(gx.InputError, match="GX210"):
         converted(tmp_path, dialect, program(dialect), pipeline)
 

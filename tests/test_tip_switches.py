@@ -35,7 +35,8 @@ WHOLE = [
 def linuxcnc(folder, control=CONTROL, **options):
     """Return the pipeline of `rtcp` for a LinuxCNC with a trunnion."""
     machine = machine_text("ac-trunnion", chain_of_kind("ac-trunnion", 3)) + control
-    pipeline(folder, machine, tolerance=0.01, **{"tip_codes": "read", **options})
+    options = options if "use" in options else {"tip_codes": "read", **options}
+    pipeline(folder, machine, tolerance=0.01, **options)
     text = (folder / "p.toml").read_text().replace('"fanuc"', '"linuxcnc"')
     (folder / "p.toml").write_text(text)
     return gx.Pipeline.load(folder / "p.toml")
@@ -362,8 +363,8 @@ def test_on_great_circles_a_position_that_is_lost_is_refused_at_the_switch(tmp_p
     "options",
     [
         {"tip_codes": "refuse"},
-        {"tip_codes": "refuse", "direction": "to-tip"},
-        {"tip_codes": "refuse", "direction": "repost", "calibrated": "machine.toml"},
+        {"use": "to-tip"},
+        {"use": "repost", "calibrated": "machine.toml"},
         {"control": ""},
     ],
 )

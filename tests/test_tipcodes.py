@@ -38,14 +38,12 @@ def test_unless_asked_it_refuses(tmp_path):
         pipeline(tmp_path, machine, tolerance=0.01).run(program("G43.4"))
 
 
-@pytest.mark.parametrize("direction", ["to-tip", "repost"])
-def test_nothing_is_corrected_twice(tmp_path, direction):
+@pytest.mark.parametrize("use", ["to-tip", "repost"])
+def test_nothing_is_corrected_twice(tmp_path, use):
     machine = machine_text("ac-trunnion", chain_of_kind("ac-trunnion", 3))
-    options = {"calibrated": "machine.toml"} if direction == "repost" else {}
-    with pytest.raises(gx.UsageError):
-        pipeline(
-            tmp_path, machine, tolerance=0.01, direction=direction, tip_codes="read", **options
-        )
+    options = {"calibrated": "machine.toml"} if use == "repost" else {}
+    with pytest.raises(gx.UsageError, match="unknown key 'tip-codes'"):
+        pipeline(tmp_path, machine, tolerance=0.01, use=use, tip_codes="read", **options)
 
 
 @pytest.mark.parametrize(

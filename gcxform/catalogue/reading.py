@@ -349,7 +349,7 @@ CODES: dict[str, tuple[str, str]] = {
     ),
     "GX330": (
         "A move that is not converted between tip and axes",
-        "`rtcp` converts plain lines in one work offset that is taken with all rotary axes at 0, "
+        "What is converted are plain lines in one work offset, taken with all rotary axes at 0, "
         "with tool lengths that are known and do not change while axes are turned. Moves to "
         "machine coordinates, rapids that turn axes and axes that the machine file does not have "
         "are refused, because where the tip goes is not known. So are axes that are turned while "
@@ -371,7 +371,7 @@ CODES: dict[str, tuple[str, str]] = {
         "Where the tool axis lies along the first rotary axis, that axis has no angle of its own; "
         "beside it a small lean of the tool is a long turn. Inside a cut it would have to leap. "
         "Lead the tool through the pole or farther beside it, or lift it off and turn the axis. "
-        "With `retract`, `rtcp` draws the tool back exactly at the pole, and turns the axis there.",
+        "With `retract`, `retarget` draws the tool back exactly at the pole, and turns the axis.",
     ),
     "GX334": (
         "The tool axis comes to the border of reach",
@@ -382,7 +382,7 @@ CODES: dict[str, tuple[str, str]] = {
         "The axes would have to flip over inside a cut",
         "The limits of the rotary axes leave no way along this cut, whatever attitude and turn it "
         "begins with. Lift the tool off where it is said, and begin another cut there; or "
-        "turn the part on the table; or let `rtcp` draw the tool back there and turn the axes "
+        "turn the part on the table; or let `retarget` draw the tool back there and turn the axes "
         "(`retract`).",
     ),
     "GX336": (

@@ -18,7 +18,7 @@ CODES: dict[str, tuple[str, str]] = {
     ),
     "GX606": (
         "A program for another machine does not keep the tool where it was",
-        "The path that `rtcp` made was followed by the forward models of both machines, and tip, "
+        "The path that a pass made was followed by the forward models of both machines, and tip, "
         "tool axis or time are not those of the program. Nothing was written. This is a bug of "
         "gcxform or of a plugin; please report it with the program.",
     ),
@@ -199,28 +199,28 @@ CODES: dict[str, tuple[str, str]] = {
         "it.",
     ),
     "GX742": (
-        "rtcp needs a machine with rotary axes",
+        "The pass needs a machine with rotary axes",
         "Where the axes turn, and whether they turn the table or the head, is in the machine "
         "file: name its `kinematics`, or list its axes in `table` and `head`, and give each axis "
         "a direction and a point.",
     ),
     "GX743": (
         "The calibrated machine is another one",
-        "`rtcp` corrects a program for the measured places of the same rotary axes: both files "
+        "`repost` corrects a program for the measured places of the same rotary axes: both files "
         "name them in the same order on the same sides, with the same gauge point. Take the file "
         "that `gcxform calibrate rotary` has written from the one of [machine].",
     ),
     "GX744": (
         "A program cannot be written for the target machine",
-        "`rtcp` finds the angles of machines with two rotary axes that count on, and it writes "
+        "Angles are found for machines with two rotary axes that count on, and `retarget` writes "
         "for the tools that the program was read with. Mend the file of the target machine.",
     ),
     "GX745": (
         "A line for where the tool is drawn back is not taken",
         "What stands in `retract-lines` and `return-lines` is written between the moves that "
-        "`rtcp` adds, so it has to be proved like them: comments, dwells, coolant, M codes that "
-        "both machine files call inert, and rapids of X, Y and Z to places of the machine, each in "
-        "a line of its own. Leave out what else there is.",
+        "`retarget` adds, so it has to be proved like them: comments, dwells, coolant, M codes "
+        "that both machine files call inert, and rapids of X, Y and Z to places of the machine, "
+        "each in a line of its own. Leave out what else there is.",
     ),
     "GX746": (
         "The dialect has no tool vectors",

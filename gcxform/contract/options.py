@@ -111,19 +111,26 @@ def build(
     where: Where,
     owner: str = "",
     machines: Known = NONE,
+    elsewhere: Callable[[str, object], str] = lambda key, value: "",
 ) -> Built:
     """Return a pass, or any dataclass of options, from the keys of its table, without `use`.
 
     `base` is the directory of relative paths; `where` gives the place of a key, and of the whole
-    for "use"; `owner` is what messages call it. Raises UsageError with all that is wrong.
+    for "use"; `owner` is what messages call it. `elsewhere` gives a hint for a key that is not
+    known, and its value, if it is one of another pass. Raises UsageError with all that is wrong.
     """
     owner = owner or f"the pass {getattr(pass_class, 'name', '')!r}"
     around = Around(base, tuple(formats), machines)
     specs = _specs(pass_class)
     known = [spec.key for spec in specs]
     found = [
-        Diagnostic("GX701", f"unknown key {key!r} in {owner}", where(key), did_you_mean(key, known))
-        for key in raw
+        Diagnostic(
+            "GX701",
+            f"unknown key {key!r} in {owner}",
+            where(key),
+            elsewhere(key, value) or did_you_mean(key, known),
+        )
+        for key, value in raw.items()
         if key not in known
     ]
     values: dict[str, object] = {}

@@ -27,6 +27,7 @@ from gcxform.contract.options import (
     Option,
     ParameterValues,
     build,
+    describe,
 )
 from gcxform.contract.passes import Pass, TextPass
 from gcxform.contract.tolerance_warnings import doubts_of
@@ -262,4 +263,11 @@ def built(
 ) -> Step:
     """Return a pass with its options; `where` gives the place of a key. Raises UsageError."""
     formats, machines = registry.formats.values(), registry.machines
-    return build(chosen, options, base, formats, where, machines=machines)
+
+    def elsewhere(key: str, value: object) -> str:
+        if isinstance(value, str) and value in registry.passes:
+            return f'write "{value}" in the place of "{chosen.name}"'
+        takers = [n for n, p in registry.passes.items() if key in {o.name for o in describe(p)}]
+        return f'it is an option of "{takers[0]}"' if len(takers) == 1 else ""
+
+    return build(chosen, options, base, formats, where, machines=machines, elsewhere=elsewhere)

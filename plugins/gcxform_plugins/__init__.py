@@ -31,7 +31,10 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
     from gcxform_plugins.passes.offsets import Offsets
     from gcxform_plugins.passes.plane import PlanePass
     from gcxform_plugins.passes.renumber import Renumber
+    from gcxform_plugins.passes.rtcp.repost import Repost
+    from gcxform_plugins.passes.rtcp.retarget import Retarget
     from gcxform_plugins.passes.rtcp.rtcp import Rtcp
+    from gcxform_plugins.passes.rtcp.to_tip import ToTip
     from gcxform_plugins.passes.segment import Segment
     from gcxform_plugins.passes.strip import Strip
     from gcxform_plugins.passes.volumetric.volumetric import Volumetric
@@ -44,8 +47,11 @@ def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
         Metric,
         Offsets,
         PlanePass,
+        Repost,
+        Retarget,
         Rtcp,
         Segment,
+        ToTip,
         Volumetric,
         Arcs,
         Renumber,

@@ -75,9 +75,9 @@ MUTATIONS = (
     ),
     Mutation(
         "promises: what proves itself has room for nothing",
-        "plugins/gcxform_plugins/passes/rtcp/rtcp.py",
+        "plugins/gcxform_plugins/passes/rtcp/conversion.py",
         "        return self.tolerance\n",
-        "        return 0.0 if self.turns_anew else self.tolerance\n",
+        "        return 0.0 if self.demands.resolves else self.tolerance\n",
         "tests/test_promises.py",
     ),
     Mutation(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 CUTTING = "plugins/gcxform_plugins/passes/rtcp/forward/cutting.py"
-RTCP = "plugins/gcxform_plugins/passes/rtcp/rtcp.py"
+CONVERSION = "plugins/gcxform_plugins/passes/rtcp/conversion.py"
 TIPS = "plugins/gcxform_plugins/passes/rtcp/proof/tips.py"
 DRIVEN = "plugins/gcxform_plugins/passes/rtcp/proof/driven.py"
 TESTS = "tests/test_rtcp_tips.py"
@@ -36,9 +36,9 @@ MUTATIONS = (
     ),
     Mutation(
         "tips: they are not followed",
-        RTCP,
-        'if self.direction != "to-machine":\n                self._tips',
-        'if self.direction == "to-machine":\n                self._tips',
+        CONVERSION,
+        "        self._tips(cutting.path, path, cutting.context, row).check_tips()\n",
+        "",
         PROVED,
     ),
     Mutation(

@@ -83,9 +83,9 @@ MUTATIONS = (
     ),
     Mutation(
         "lines: a code is inert if one machine file says so",
-        "plugins/gcxform_plugins/passes/rtcp/rtcp.py",
-        "inert = inert & self.target.machine.inert_m",
-        "inert = inert | self.target.machine.inert_m",
+        "plugins/gcxform_plugins/passes/rtcp/retarget.py",
+        "inert = context.machine.inert_m & self.target.machine.inert_m",
+        "inert = context.machine.inert_m | self.target.machine.inert_m",
         f"{TESTS}::test_inert_codes_are_those_of_both_machines",
     ),
     Mutation(

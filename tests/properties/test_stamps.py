@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from pathlib import Path
 
 import pytest
@@ -23,8 +24,7 @@ AFTER = ("absolute", "strip", "renumber", "strip | renumber")
 CHANGES = [
     case
     for case in CASES
-    if 'use = "volumetric"' in case.text("pipeline.toml")
-    or 'use = "rtcp"' in case.text("pipeline.toml")
+    if re.search('use = "(volumetric|rtcp|to-tip|repost|retarget)"', case.text("pipeline.toml"))
 ]
 FEW = settings(max_examples=10, suppress_health_check=[HealthCheck.function_scoped_fixture])
 

@@ -12,7 +12,7 @@ from gcxform.vocabulary import Flags, Floats, Ints
 
 SAME = 1e-9  # mm; two tools that differ by less are one
 TURN = 360.0
-ENOUGH = "rtcp converts programs in one work offset, with known tool lengths and nothing turned"
+ENOUGH = "positions are converted in one work offset, with known tool lengths and nothing turned"
 
 
 def turned_at(angles: Floats) -> Flags:
@@ -96,7 +96,7 @@ class Place:
         offset = table[self.path.first]
         if any(offset.get(letter, 0.0) for letter in self.chain.letters):
             message = f"the work offset {self.path.first} turns axes"
-            hint = "rtcp needs an offset that is taken with all rotary axes at 0"
+            hint = "take the offset with all rotary axes at 0"
             raise self.path.refuse("GX330", first, message, hint)
         return np.array([offset.get(axis, 0.0) for axis in "XYZ"])
 
