@@ -161,7 +161,7 @@ def test_a_wrong_table_is_refused_with_its_place(old, new, code, place, said):
     [
         (["-m", "headed.toml"], "GX490", 3),
         (["-m", "m.toml", "--noise", "0.1 um"], "GX475", 3),
-        (["-m", "m.toml", "--spindle-ball", "12 um"], "GX708", 2),
+        (["-m", "m.toml", "--spindle-ball", "12 um"], "GX702", 2),
         (["-m", "m.toml", "--spindle-ball", "1,x"], "GX708", 2),
         (["-m", "m.toml", "--bar", "0"], "GX706", 2),
         (["-m", "m.toml", "-o", "t.csv"], "GX727", 2),

@@ -12,7 +12,8 @@ import click
 from gcxform.cli import VERBS
 from gcxform.cli.calibration.plan import centres, plan
 from gcxform.cli.calibration.rotary_axes import ballbar, bundle, rotary
-from gcxform.cli.calibration.shared import about, length_of, path_of, write
+from gcxform.cli.calibration.shared import about, path_of, write
+from gcxform.cli.common.options import ABOVE_NOTHING
 from gcxform.cli.common.outputs import STDOUT, check_places
 from gcxform.diagnostics import UsageError
 
@@ -59,14 +60,14 @@ command.add_command(centres)
 @click.option("--linear", metavar="FILE", multiple=True, help="Direct linear tests of an axis.")
 @click.option(
     "--noise",
-    metavar="LENGTH",
+    type=ABOVE_NOTHING,
     default="1 um",
     show_default=True,
     help="Standard deviation of one step; with --plain of one length.",
 )
 @click.option(
     "--linear-noise",
-    metavar="LENGTH",
+    type=ABOVE_NOTHING,
     help="Standard deviation of a reading of a linear test.  [default: as --noise]",
 )
 @click.option(
@@ -88,8 +89,8 @@ def diagonal(
     data: str,
     plain: bool,
     linear: tuple[str, ...],
-    noise: str,
-    linear_noise: str | None,
+    noise: float,
+    linear_noise: float | None,
     misalignment: str,
     output: str | None,
     report: str | None,
@@ -103,18 +104,16 @@ def diagonal(
     method takes to be none, are a warning, as is more noise than was stated.
     """
     check_places({"-o": output, "--report": report}, [data, *linear])
-    sigma = length_of(noise, "--noise")
-    reading = None if linear_noise is None else length_of(linear_noise, "--linear-noise")
     if plain and linear:
         raise UsageError.one("GX728", "--plain and --linear exclude each other")
     if output is None and report is None:
         output = STDOUT
     with about(data):
         if plain:
-            model, found = _plain(data, sigma, output is not None)
+            model, found = _plain(data, noise, output is not None)
         else:
             free = misalignment == "free"
-            model, found = _steps(data, linear, (sigma, reading, free), output is not None)
+            model, found = _steps(data, linear, (noise, linear_noise, free), output is not None)
     for line in found["warnings"]:
         click.echo(f"warning: {line}", err=True)
     if output is not None:

@@ -14,7 +14,6 @@ from gcxform.cli.common.outputs import STDOUT
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked, excluding, needed_dialect
 from gcxform.comparison import TOLERANCE, Comparison, compare
-from gcxform.config.quantities import LENGTH
 from gcxform.contract.options import Argument, build
 from gcxform.contract.passes import Pass
 from gcxform.diagnostics import Location, UsageError
@@ -29,7 +28,7 @@ SHOWN = 10
 @click.option("-t", "--to", metavar="DIALECT", help="Dialect of B.  [default: that of A]")
 @click.option(
     "--tolerance",
-    metavar="LENGTH",
+    type=options.ABOVE_NOTHING,
     default=f"{TOLERANCE:g}",
     help=f"What is still the same, in mm or with a unit.  [default: {TOLERANCE * 1000:g} um]",
 )
@@ -48,7 +47,7 @@ def command(
     b: str,
     dialect: str | None,
     to: str | None,
-    tolerance: str,
+    tolerance: float,
     model: str | None,
     part_origin: str | None,
     table_origin: str | None,
@@ -61,26 +60,15 @@ def command(
     """Compare two programs; exit 1 if path, feeds or events differ."""
     if a == b == STDOUT:
         raise excluding("stdin as A and stdin as B")
-    limit = _length(tolerance)
     told = {"model": model, "part-origin": part_origin, "table-origin": table_origin}
     told |= {"outside": outside, "time": time, "backlash": backlash}
     through = _model({**told, "max-extrapolation": max_extrapolation})
     what = Asked(**asked)
     first = _program(a, needed_dialect(dialect), what)
     second = _program(b, to or needed_dialect(dialect), what)
-    found = compare(first, second, limit, through, what.loaded_machine)
+    found = compare(first, second, tolerance, through, what.loaded_machine)
     click.echo(report(found, first, second))
     return 0 if found.same else 1
-
-
-def _length(text: str) -> float:
-    try:
-        length = LENGTH.parse(text, bare=True)
-    except ValueError as error:
-        raise UsageError.one("GX708", str(error), Location("--tolerance")) from None
-    if not length > 0:
-        raise UsageError.one("GX706", f"{text} is not above 0 mm", Location("--tolerance"))
-    return length
 
 
 def _model(given: dict[str, str | None]) -> Pass | None:

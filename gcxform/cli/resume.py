@@ -13,7 +13,6 @@ from gcxform.cli.common import options
 from gcxform.cli.common.failures import warn
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked, needed_dialect
-from gcxform.config.quantities import LENGTH
 from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
 from gcxform.dialect.dialect import Dialect
 from gcxform.pipeline.plan import check_written
@@ -27,7 +26,7 @@ from gcxform.syntax.source import lines_in
 
 @click.command("resume", help=VERBS["resume"], short_help=VERBS["resume"])
 @click.option("--line", type=click.IntRange(1), required=True, help="Line to begin at, from 1.")
-@click.option("--clearance", metavar="LENGTH", help="Z of the program that is clear of all.")
+@click.option("--clearance", type=options.LENGTH, help="Z of the program that is clear of all.")
 @click.option("--plunge", metavar="FEED", type=float, help="Feed down to Z, mm/min.  [default: F]")
 @click.option("--tool-loaded", is_flag=True, help="Name the tool in a comment; do not change it.")
 @click.option("--rest", is_flag=True, help="Print the rest of the program as well.")
@@ -37,7 +36,7 @@ from gcxform.syntax.source import lines_in
 def command(
     file: str,
     line: int,
-    clearance: str | None,
+    clearance: float | None,
     plunge: float | None,
     tool_loaded: bool,
     rest: bool,
@@ -47,14 +46,13 @@ def command(
     """Print the blocks for a restart at a line, proved to lead to what the program does."""
     kind = default_registry().dialect(needed_dialect(dialect))
     check_written(kind)
-    height = _height(clearance)
     if plunge is not None and not plunge > 0:
         raise UsageError.one("GX706", f"{plunge:g} is not above 0", Location("--plunge"))
-    if rest and height is None:
+    if rest and clearance is None:
         raise UsageError.one("GX705", "--rest needs --clearance", hint="--clearance 50mm")
     with opened(file) as source:
         restart = Restart(kind, source, Asked(**asked).reading(), line)
-        preamble = restart.preamble(height, plunge, not tool_loaded)
+        preamble = restart.preamble(clearance, plunge, not tool_loaded)
         end = b"\r\n" if b"\r\n" in restart.rest[0] else b"\n"
         frame = ["%"] if rest and restart.state.percents == 1 else []
         stamps = stamps_in(source)
@@ -81,16 +79,6 @@ def _sealed(texts: list[bytes], kind: type[Dialect], stamps: Stamps, end: bytes)
         digest.update(part)
         yield part
     yield seal.close(end, True)[0]
-
-
-def _height(text: str | None) -> float | None:
-    """Return the clearance in mm."""
-    if text is None:
-        return None
-    try:
-        return LENGTH.parse(text, bare=True)
-    except ValueError as error:
-        raise UsageError.one("GX708", str(error), Location("--clearance")) from None
 
 
 def _as_note(found: Diagnostic) -> Diagnostic:

@@ -232,6 +232,14 @@ def _read_vector(raw: object, around: Around) -> tuple[float, float, float]:
     return x, y, z
 
 
+def _read_pair(raw: object, around: Around) -> tuple[float, float]:
+    parts = raw.split(",") if isinstance(raw, Argument) else []
+    if len(parts) != 2:
+        raise _expected("two lengths, such as 0.1,-0.2", raw)
+    x, y = (_read_quantity(LENGTH, Argument(part), around) for part in parts)
+    return x, y
+
+
 def _read_coordinates(raw: object, around: Around) -> dict[str, float]:
     if not isinstance(raw, dict):
         raise _expected("a table of axis letters, such as {X = 0.0, A = 0.0}", raw)
@@ -283,6 +291,7 @@ _ANGLE = Kind("angle", partial(_read_quantity, ANGLE), unit=" deg")
 _INCREMENT = Kind("increment system or length", _read_increment, unit=" mm")
 _FEED_INCREMENT = Kind("increment system or number", _read_feed_increment)
 _VECTOR = Kind("three lengths", _read_vector, list)
+_PAIR = Kind("two lengths", _read_pair, list)
 _COORDINATES = Kind("coordinates by axis letter", _read_coordinates)
 _PARAMETERS = Kind("numbers by parameter", _read_parameters)
 PLAIN: dict[type, Kind] = {
@@ -309,6 +318,8 @@ FeedIncrement = Annotated[float | str, _FEED_INCREMENT]
 """A number of units per minute, or the name of a system or of calculator input."""
 Vector = Annotated[tuple[float, float, float], _VECTOR]
 """Three lengths in mm; written as a list, as "0,0,0" or as a table of X, Y and Z."""
+Pair = Annotated[tuple[float, float], _PAIR]
+"""Two lengths in mm; a word of the command line, such as "0,0"."""
 Coordinates = Annotated[dict[str, float], _COORDINATES]
 """Positions by axis letter, mm or degrees; written as a table."""
 ParameterValues = Annotated[dict[str, float], _PARAMETERS]

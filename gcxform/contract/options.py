@@ -44,6 +44,7 @@ from gcxform.contract.option_kinds import KinematicsFile as KinematicsFile
 from gcxform.contract.option_kinds import Length as Length
 from gcxform.contract.option_kinds import Lines as Lines
 from gcxform.contract.option_kinds import ModelFile as ModelFile
+from gcxform.contract.option_kinds import Pair as Pair
 from gcxform.contract.option_kinds import ParameterValues as ParameterValues
 from gcxform.contract.option_kinds import Vector as Vector
 from gcxform.diagnostics import Diagnostic, Location, UsageError
@@ -161,6 +162,18 @@ def _instance(target: type[Built], values: dict[str, object], owner: str, where:
         raise UsageError.one("GX713", f"{owner}: {error}", where("use")) from None
 
 
+def read_word(kind: str, mark: Option, word: str, where: Location | None) -> Any:
+    """Return what a word of the command line is worth as an option. Raises UsageError.
+
+    `kind` is what this module calls the type, such as "Length".
+    """
+    spec = dataclasses.replace(_spec_of("", globals()[kind], MISSING), option=mark)
+    try:
+        return spec.read(Argument(word), Around(Path()))
+    except RefusedError as refusal:
+        raise UsageError.one(refusal.code, refusal.message, where, refusal.hint) from None
+
+
 def taken(instance: Built) -> Built:
     """Return a dataclass of options that was made in Python, its values as a file would give them.
 
@@ -228,27 +241,31 @@ def _specs(target: Any) -> tuple[_Spec, ...]:
     """Return the options of a dataclass; TypeError for a field whose type is not one of ours."""
     hints = typing.get_type_hints(target, include_extras=True)
     fields = [f for f in dataclasses.fields(target) if f.init]
-    return tuple(_spec(f, hints[f.name]) for f in fields)
+    return tuple(_spec_of(f.name, hints[f.name], _default(f)) for f in fields)
 
 
-def _spec(of: dataclasses.Field[Any], annotation: Any) -> _Spec:
+def _default(of: dataclasses.Field[Any]) -> Any:
+    default = of.default if of.default_factory is MISSING else of.default_factory()
+    return MISSING if isinstance(default, property) else default  # one of the base class
+
+
+def _spec_of(name: str, annotation: Any, default: Any) -> _Spec:
     alternatives, metadata = _flat(annotation)
     types_ = [kind for kind in alternatives if kind is not types.NoneType]
     plain = [kind for kind in types_ if typing.get_origin(kind) is not dict] or types_
     marks = [mark for mark in metadata if isinstance(mark, Kind)]
     choices = _choices(plain[0])
     kind = marks[0] if marks else choice_kind(choices) if choices else PLAIN.get(plain[0])
-    default = of.default if of.default_factory is MISSING else of.default_factory()
     if kind is None or (len(plain) != 1 and not marks):
-        raise TypeError(f"the option {of.name!r} has the type {annotation}, which is none of ours")
+        raise TypeError(f"the option {name!r} has the type {annotation}, which is none of ours")
     return _Spec(
-        name=of.name,
-        key=of.name.replace("_", "-"),
+        name=name,
+        key=name.replace("_", "-"),
         kind=kind,
         option=next((mark for mark in metadata if isinstance(mark, Option)), Option()),
         by_letter=len(plain) < len(types_),
         choices=choices,
-        default=MISSING if isinstance(default, property) else default,  # one of the base class
+        default=default,
     )
 
 

@@ -7,14 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gcxform.cli.calibration.shared import (
-    any_length,
-    check_axis,
-    length_of,
-    path_of,
-    three_lengths,
-    write,
-)
+from gcxform.cli.calibration.shared import check_axis, path_of, write
+from gcxform.cli.common.options import ABOVE_NOTHING, LENGTH, THREE_LENGTHS
 from gcxform.cli.common.outputs import STDOUT, check_places
 from gcxform.cli.common.request import Asked
 from gcxform.diagnostics import FileError, UsageError
@@ -41,7 +35,7 @@ _OUTPUT = click.option(
 @click.option("-m", "--machine", metavar="FILE", required=True, help="The machine, with limits.")
 @click.option(
     "--ball",
-    metavar="X,Y,Z",
+    type=THREE_LENGTHS,
     multiple=True,
     required=True,
     help="Where a ball stands, with all rotary axes at 0; once for each.",
@@ -70,7 +64,7 @@ _OUTPUT = click.option(
 )
 @click.option(
     "--noise",
-    metavar="LENGTH",
+    type=ABOVE_NOTHING,
     default="2 um",
     show_default=True,
     help="Standard deviation of a coordinate of a centre.",
@@ -89,15 +83,15 @@ _OUTPUT = click.option(
     help="The control of the program.",
 )
 @click.option(
-    "--radius", metavar="LENGTH", default="15 mm", show_default=True, help="Of ball and stylus."
+    "--radius", type=ABOVE_NOTHING, default="15 mm", show_default=True, help="Of ball and stylus."
 )
 @click.option(
-    "--clearance", metavar="LENGTH", default="5 mm", show_default=True, help="Around a touch."
+    "--clearance", type=ABOVE_NOTHING, default="5 mm", show_default=True, help="Around a touch."
 )
 @click.option("--after-touch", metavar="BLOCK", help="A block of the program that stores a touch.")
 def plan(
     machine: str,
-    ball: tuple[str, ...],
+    ball: tuple[Triple, ...],
     axis: str | None,
     tool: int | None,
     output: str,
@@ -120,15 +114,13 @@ def plan(
     assert believed is not None
     chain = probing(believed, tool)
     check_axis(axis, chain.letters, believed.name)
-    lengths = Probing(*(length_of(given[name], f"--{name}") for name in ("radius", "clearance")))
+    lengths = Probing(given["radius"], given["clearance"])
     room = lengths.radius + lengths.clearance
     wanted = Wanted(given["poses"], room, given["tilt"], given["linear"])
-    places = [three_lengths(one, "--ball") for one in ball]
-    noise = length_of(given["noise"], "--noise")
     poses, said = (
-        _circle(chain, axis, places, wanted, noise)
+        _circle(chain, axis, ball, wanted, given["noise"])
         if axis
-        else _bundle(chain, places, wanted, noise)
+        else _bundle(chain, ball, wanted, given["noise"])
     )
     if program:
         text = probing_program(chain, poses, lengths, given["dialect"], given["after_touch"])
@@ -171,13 +163,11 @@ def _circle(
 @click.option(
     "--axis", metavar="A", type=click.Choice([*"ABC"]), help="The axis of a plan of one axis."
 )
-@click.option("--radius", metavar="LENGTH", required=True, help="Of ball and stylus together.")
-@click.option(
-    "-o", "--output", metavar="FILE", default=STDOUT, help="The table.  [default: stdout]"
-)
+@click.option("--radius", type=LENGTH, required=True, help="Of ball and stylus together.")
+@_OUTPUT
 @click.argument("touches", metavar="TOUCHES")
 def centres(
-    machine: str, poses: str, axis: str | None, radius: str, output: str, touches: str
+    machine: str, poses: str, axis: str | None, radius: float, output: str, touches: str
 ) -> None:
     """Turn touches, X Y Z A B C a line as LinuxCNC writes them, into a table of ball centres.
 
@@ -193,12 +183,11 @@ def centres(
     assert believed is not None
     chain = turning(believed)
     check_axis(axis, chain.letters, believed.name)
-    size = any_length(radius, "--radius")
     try:
         text = inputs.read(path_of(touches)).decode("ascii")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not plain text"
         raise FileError.one("GX901", f"cannot read {touches}: {reason}") from None
     plan = read_plan(path_of(poses), chain.letters, axis)
-    read = found(chain, plan, parse_touches(text, touches), size, touches)
+    read = found(chain, plan, parse_touches(text, touches), radius, touches)
     write(output, plan_csv(read, chain.letters, axis))

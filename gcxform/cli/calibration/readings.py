@@ -9,17 +9,12 @@ from typing import Any, TypeVar
 import click
 import numpy as np
 
-from gcxform.cli.calibration.shared import (
-    check_axis,
-    path_of,
-    scatter_of,
-    three_lengths,
-    two_lengths,
-    write,
-)
+from gcxform.cli.calibration.shared import check_axis, path_of, write
+from gcxform.cli.common.options import SCATTER, THREE_LENGTHS, TWO_LENGTHS
 from gcxform.cli.common.outputs import STDOUT, check_places
 from gcxform.cli.common.request import Asked
 from gcxform.diagnostics import Location, UsageError
+from gcxform.machine.chain import Triple
 from gcxform.machine.machine import Machine
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -36,9 +31,7 @@ def _read_options(command: Command) -> Command:
         click.option(
             "--true", metavar="FILE", required=True, help="The machine file of the axes there are."
         ),
-        click.option(
-            "--noise", metavar="LENGTH", default="0", help="Standard deviation of a reading."
-        ),
+        click.option("--noise", type=SCATTER, default="0", help="Standard deviation of a reading."),
         click.option(
             "--seed", metavar="N", type=click.IntRange(0), default=0, help="Seed of the noise."
         ),
@@ -57,7 +50,7 @@ def _read_options(command: Command) -> Command:
 @click.option("--tool", metavar="N", type=int, help="The probe: X, Y, Z are then of the axes.")
 @click.argument("plan", metavar="PLAN")
 def balls(
-    plan: str, true: str, noise: str, seed: int, output: str, axis: str | None, tool: int | None
+    plan: str, true: str, noise: float, seed: int, output: str, axis: str | None, tool: int | None
 ) -> None:
     """Centres of balls at poses, as `calibrate rotary` and `calibrate bundle` read them.
 
@@ -70,20 +63,23 @@ def balls(
     check_places({"-o": output}, [plan, true])
     machine = _machine(true)
     chain, model = probing(machine, tool), _errors(machine)
-    sigma, generator = scatter_of(noise, "--noise"), np.random.default_rng(seed)
+    generator = np.random.default_rng(seed)
     check_axis(axis, chain.letters, machine.name)
     poses = read_plan(path_of(plan), chain.letters, axis)
-    read = simulate_poses(chain, poses, model, noise=sigma, generator=generator)
+    read = simulate_poses(chain, poses, model, noise=noise, generator=generator)
     write(output, plan_csv(read, chain.letters, axis))
 
 
 @click.command("ballbar-rtcp", short_help="Circles with RTCP on, for `calibrate ballbar`.")
 @click.option("-m", "--machine", metavar="FILE", required=True, help="The machine as it is set.")
 @click.option(
-    "--ball", metavar="X,Y,Z", required=True, help="The table ball, with all rotary axes at 0."
+    "--ball", type=THREE_LENGTHS, required=True, help="The table ball, with all rotary axes at 0."
 )
 @click.option(
-    "--spindle-ball", metavar="X,Y", default="0,0", help="What the spindle ball is off the spindle."
+    "--spindle-ball",
+    type=TWO_LENGTHS,
+    default="0,0",
+    help="What the spindle ball is off the spindle.",
 )
 @click.option(
     "--samples",
@@ -97,10 +93,10 @@ def balls(
 def ballbar_rtcp(
     machine: str,
     true: str,
-    ball: str,
-    spindle_ball: str,
+    ball: Triple,
+    spindle_ball: tuple[float, float],
     samples: int,
-    noise: str,
+    noise: float,
     seed: int,
     output: str,
 ) -> None:
@@ -122,10 +118,8 @@ def ballbar_rtcp(
     if not control.table:
         message = f"no rotary axis of {machine} turns a table"
         raise UsageError.one("GX707", message, Location("--machine"))
-    tests = standard_setups(control, three_lengths(ball, "--ball"))
-    spindle = two_lengths(spindle_ball, "--spindle-ball")
-    sigma = scatter_of(noise, "--noise")
-    traces = simulate_tests(control, actual, tests, samples, spindle, noise=sigma, seed=seed)
+    tests = standard_setups(control, ball)
+    traces = simulate_tests(control, actual, tests, samples, spindle_ball, noise=noise, seed=seed)
     write(output, circles_csv(traces))
 
 

@@ -8,16 +8,8 @@ from pathlib import Path
 import click
 
 from gcxform import plot
-from gcxform.cli.calibration.shared import (
-    NOISE,
-    Files,
-    Found,
-    found_options,
-    hand_out,
-    length_of,
-    path_of,
-    two_lengths,
-)
+from gcxform.cli.calibration.shared import NOISE, Files, Found, found_options, hand_out, path_of
+from gcxform.cli.common.options import ABOVE_NOTHING, TWO_LENGTHS
 from gcxform.cli.common.request import Asked
 
 _BALLS = """
@@ -52,7 +44,7 @@ def rotary(
     axis: str,
     machine: str | None,
     tool: int | None,
-    noise: str,
+    noise: float,
     **files: str | None,
 ) -> None:
     """Turn centres of a ball, probed at angles of a rotary axis, into its direction and point.
@@ -70,7 +62,7 @@ def rotary(
     places.check(data, machine)
     measured = read_balls(path_of(data))
     believed = Asked(machine=machine).loaded_machine
-    found, before = located(measured.centres, axis, length_of(noise, "--noise"), believed, tool)
+    found, before = located(measured.centres, axis, noise, believed, tool)
     text = with_found(found, axis, believed, rotarywords.comments(found, measured.file))
     whole = rotarywords.report(found, axis, measured.file, measured.conditions, before)
     title = f"axis {axis}, {Path(measured.file).name}"
@@ -110,7 +102,7 @@ def bundle(
     data: str,
     machine: str,
     tool: int | None,
-    noise: str,
+    noise: float,
     linear: str,
     **files: str | None,
 ) -> None:
@@ -130,7 +122,7 @@ def bundle(
     assert believed is not None
     chain = probing(believed, tool)
     measured = read_poses(path_of(data), chain.letters)
-    found = fit(chain, measured.poses, length_of(noise, "--noise"), linear)
+    found = fit(chain, measured.poses, noise, linear)
     text = bundled_text(found, believed, measured.file) if places.output else ""
     whole = bundlewords.report(found, measured.file, measured.conditions)
     said = bundlewords.lines(found)
@@ -164,20 +156,20 @@ and --noise is that of an eccentricity.
 @click.option("-m", "--machine", metavar="FILE", required=True, help="The machine as it is set.")
 @click.option(
     "--spindle-ball",
-    metavar="X,Y",
+    type=TWO_LENGTHS,
     default="0,0",
     help="How far the spindle ball is off the spindle.  [default: 0,0, with a warning]",
 )
 @click.option(
-    "--bar", metavar="LENGTH", default="100 mm", show_default=True, help="Length of the bar."
+    "--bar", type=ABOVE_NOTHING, default="100 mm", show_default=True, help="Length of the bar."
 )
 @found_options("Standard deviation of a reading.", "1 um")
 def ballbar(
     data: str,
     machine: str,
-    bar: str,
-    spindle_ball: str,
-    noise: str,
+    bar: float,
+    spindle_ball: tuple[float, float],
+    noise: float,
     **files: str | None,
 ) -> None:
     """Turn circular tests with a ballbar into the rotary axes of a table, AC, BC or any other.
@@ -195,10 +187,8 @@ def ballbar(
     places.check(data, machine)
     believed = Asked(machine=machine).loaded_machine
     assert believed is not None
-    sigma = length_of(noise, "--noise")
-    measured = read_circles(path_of(data), sigma, length_of(bar, "--bar"))
-    spindle = two_lengths(spindle_ball, "--spindle-ball")
-    found = identify(turning(believed), measured.tests, spindle, sigma)
+    measured = read_circles(path_of(data), noise, bar)
+    found = identify(turning(believed), measured.tests, spindle_ball, noise)
     above = partial(ballbarwords.comments, found, file=measured.file)
     text = with_axes(found.chain.table, believed, above) if places.output else ""
     whole = ballbarwords.report(found, measured.file, measured.conditions)

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, TypeVar
 import click
 
 from gcxform import plot
+from gcxform.cli.common.options import ABOVE_NOTHING
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
 from gcxform.diagnostics import GcxformError, Location, UsageError
 
@@ -63,7 +64,7 @@ class Files:
 def found_options(noise: str, default: str) -> Callable[[Command], Command]:
     """Return a decorator for the options of measurements that say where rotary axes are."""
     parts = (
-        click.option("--noise", metavar="LENGTH", default=default, show_default=True, help=noise),
+        click.option("--noise", type=ABOVE_NOTHING, default=default, show_default=True, help=noise),
         click.option("-o", "--output", metavar="FILE", help="Write the machine file (TOML)."),
         click.option(
             "--report", metavar="FILE", help="Write what was found, with covariance (JSON)."
@@ -102,51 +103,6 @@ def check_axis(axis: str | None, letters: Sequence[str], machine: str) -> None:
 def path_of(name: str) -> Path:
     """Return the file of an argument; `-` is stdin."""
     return Path("/dev/stdin" if name == STDOUT else name)
-
-
-def length_of(text: str, option: str) -> float:
-    """Return a length in mm that is above 0. Raises UsageError."""
-    length = any_length(text, option)
-    if not length > 0:
-        raise UsageError.one("GX706", f"{text} is not above 0 mm", Location(option))
-    return length
-
-
-def scatter_of(text: str, option: str) -> float:
-    """Return a standard deviation in mm, 0 for none. Raises UsageError."""
-    length = any_length(text, option)
-    if not length >= 0:
-        raise UsageError.one("GX706", f"{text} is below 0 mm", Location(option))
-    return length
-
-
-def any_length(text: str, option: str) -> float:
-    """Return a length in mm. Raises UsageError."""
-    from gcxform.config.quantities import LENGTH
-
-    try:
-        return LENGTH.parse(text, bare=True)
-    except ValueError as error:
-        raise UsageError.one("GX708", str(error), Location(option)) from None
-
-
-def two_lengths(text: str, option: str) -> tuple[float, float]:
-    """Return two lengths in mm. Raises UsageError."""
-    x, y = _lengths(text, option, ("two", 2))
-    return x, y
-
-
-def three_lengths(text: str, option: str) -> tuple[float, float, float]:
-    """Return three lengths in mm. Raises UsageError."""
-    x, y, z = _lengths(text, option, ("three", 3))
-    return x, y, z
-
-
-def _lengths(text: str, option: str, count: tuple[str, int]) -> list[float]:
-    parts = text.split(",")
-    if len(parts) != count[1]:
-        raise UsageError.one("GX708", f"{text!r} is not {count[0]} lengths", Location(option))
-    return [any_length(part.strip(), option) for part in parts]
 
 
 def write(name: str, text: str) -> None:

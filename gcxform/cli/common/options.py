@@ -7,8 +7,33 @@ from typing import Any, Final, TypeVar
 
 import click
 
+from gcxform.diagnostics import Location
+from gcxform.system.option_mark import Option
+
 ENVIRONMENT: Final = "GCXFORM_PIPELINE"
 Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+class Typed(click.ParamType[Any]):
+    """A type of `gcxform.contract.options`, by its name, for an option that click declares."""
+
+    def __init__(self, metavar: str, kind: str, mark: Option | None = None) -> None:
+        self.name, self.kind, self.mark = metavar, kind, mark or Option()
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return what a word is worth. Raises UsageError. What options need is loaded here."""
+        from gcxform.contract import options
+
+        where = Location(max(param.opts, key=len)) if param else None
+        is_word = isinstance(value, str)
+        return options.read_word(self.kind, self.mark, value, where) if is_word else value
+
+
+LENGTH: Final = Typed("LENGTH", "Length")
+ABOVE_NOTHING: Final = Typed("LENGTH", "Length", Option(above=0))
+SCATTER: Final = Typed("LENGTH", "Length", Option(at_least=0))
+TWO_LENGTHS: Final = Typed("X,Y", "Pair")
+THREE_LENGTHS: Final = Typed("X,Y,Z", "Vector")
 
 FROM = click.option("-f", "--from", "dialect", metavar="DIALECT", help="Dialect of the program.")
 TO = click.option("-t", "--to", metavar="DIALECT", help="Dialect to write.  [default: as read]")
