@@ -73,7 +73,9 @@ def expanded(program: bytes, block_delete: str = "execute") -> bytes:
 def run(change: Change, program: bytes, size: int = 1 << 19) -> bytes:
     """Expand cycles with an emitter that lies: its lines are changed before they are verified."""
     job, texts = Run(chain(), Source.of_bytes(program), "full"), list[bytes]()
-    emit = job.emitter.emit
+    assert job.stages is not None
+    emitter = job.stages.emitter
+    emit = emitter.emit
 
     def lying(*task: object) -> Emitted:
         right = emit(*task)  # type: ignore[arg-type]
@@ -87,7 +89,7 @@ def run(change: Change, program: bytes, size: int = 1 << 19) -> bytes:
         source, nth = (np.array([line[k] for line in changed], np.int64) for k in (1, 2))
         return Emitted(b"".join(line[0] for line in changed), source, nth)
 
-    job.emitter.emit = lying  # type: ignore[method-assign]
+    emitter.emit = lying  # type: ignore[method-assign]
     job.over(Output(texts.append, None), lambda _: None, size)
     return b"".join(texts)
 

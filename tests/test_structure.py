@@ -337,22 +337,6 @@ def test_late_births_are_found() -> None:
     assert born_late({"m": PLANTED}) == {"m.Planted": expected, "m.Bare": {"promised"}}
 
 
-STILL_LATE: dict[str, int] = {
-    "gcxform.deviations.chains._Side": 6,
-    "gcxform.emit.positions.Positions": 1,
-    "gcxform.emit.templates.TemplateWriter": 7,
-    "gcxform.modal.moves.moves.Moves": 6,
-    "gcxform.modal.reader.WindowReader": 2,
-    "gcxform.pipeline.run.Run": 2,
-    "gcxform.resume.restart.Restart": 1,
-    "gcxform.testing.generate.Builder": 1,
-    "gcxform.testing.kit._PathCheck": 1,
-    "gcxform_plugins.dialects.heidenhain.moves.Moves": 1,
-    "gcxform_plugins.passes.arcs.fit._Runs": 5,
-}
-"""Classes, and how many attributes they are still given late."""
-
-
 def test_objects_are_whole_when_they_are_made() -> None:
     """What comes later belongs into what a function returns."""
     texts = {
@@ -361,5 +345,4 @@ def test_objects_are_whole_when_they_are_made() -> None:
         for file in (ROOT / root).glob("gcxform*/**/*.py")
     }
     assert len(texts) > 350
-    late = born_late(texts)
-    assert {name: len(attributes) for name, attributes in late.items()} == STILL_LATE, late
+    assert born_late(texts) == {}

@@ -181,7 +181,9 @@ def test_turns_alone_share_their_time_by_angles(tmp_path, seed):
 def with_two_feeds_changed(steps, text):
     """Run a pipeline whose emitter takes half the time of a piece, and gives it to the next."""
     job = Run(steps, Source.of_bytes(text), "full")
-    emit = job.emitter.emit
+    assert job.stages is not None
+    emitter = job.stages.emitter
+    emit = emitter.emit
 
     def lying(*task):
         emitted = emit(*task)
@@ -195,7 +197,7 @@ def with_two_feeds_changed(steps, text):
             lines[at + k] = words + b"F%.4f\n" % (1.0 / time)
         return Emitted(b"".join(lines), emitted.source, np.zeros(len(sources), np.int64))
 
-    job.emitter.emit = lying
+    emitter.emit = lying
     job.over(Output(lambda text: None, None), lambda _: None, 1 << 19)
 
 

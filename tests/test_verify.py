@@ -53,7 +53,9 @@ def run(
     source = Source.of_bytes(program)
     pipeline = gx.Pipeline.parse(chain, "linuxcnc") if isinstance(chain, str) else chain
     job = Run(pipeline, source, "full")
-    emit, texts = job.emitter.emit, list[bytes]()
+    assert job.stages is not None
+    emitter = job.stages.emitter
+    emit, texts = emitter.emit, list[bytes]()
 
     def lying(*task: object) -> Emitted:
         emitted = emit(*task)  # type: ignore[arg-type]
@@ -64,7 +66,7 @@ def run(
         source = np.array([number for _, number in several], np.int64)
         return Emitted(text, source, np.zeros(len(source), np.int64))
 
-    job.emitter.emit = lying  # type: ignore[method-assign]
+    emitter.emit = lying  # type: ignore[method-assign]
     job.over(Output(texts.append, None), lambda _: None, size)
     return b"".join(texts)
 

@@ -72,26 +72,24 @@ class _Side:
         self.last = np.append(np.diff(self.group) != 0, True)
         self.first = np.append(True, np.diff(self.group) != 0)
         self.sweep = np.asarray(path.sweep[rows])
-        self._prepare()
-
-    def _prepare(self) -> None:
-        """Note the circles of the arcs, and lengths."""
         arcs = np.flatnonzero(self.arc)
-        self.angle, self.radius = np.zeros((2, len(self.arc)))
+        self.angle, self.radius = np.zeros((2, count))
         first, last, angle = radius_and_angle(self.path, 2 * arcs + 1)
         self.radius[arcs], self.angle[arcs] = np.maximum(first, last), angle
         self.way = self.end - self.start
         self.square = (self.way**2).sum(axis=1)
+        self.key = self._keys()
+        self.began = np.where(self.first, self.group, np.append(0.0, self.key[:-1]))
+
+    def _keys(self) -> Floats:
+        """Return, per row, its group and how much of that has been travelled behind it."""
         normal = np.array([plane.axes[2] for plane in Plane])[self.path.plane[1::2]]
         rise = self.way[np.arange(len(normal)), normal]
         along = np.where(self.arc, np.hypot(self.radius * self.sweep, rise), np.sqrt(self.square))
         total = np.cumsum(along)
         before = (total - along)[self.first][self.group]
         whole = total[self.last][self.group] - before
-        self.key: Floats = self.group.astype(np.float64)
-        self.key += np.where(whole > 0, (total - before) / whole, 1.0)
-        earlier = np.append(0.0, self.key[:-1])
-        self.began = np.where(self.first, self.group, earlier)
+        return self.group.astype(np.float64) + np.where(whole > 0, (total - before) / whole, 1.0)
 
     def points(self, row: Ints, part: Floats) -> Floats:
         """Return points (n, 3) at parts of rows."""

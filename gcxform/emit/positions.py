@@ -37,7 +37,6 @@ class Positions:
             self.entry = path.frames[int(path.frame[0])].words(believed.position[None, :])[0]
         self.inch = path.blocks.inch[path.block]
         self.held = column_major(rows, axes)
-        self.before = column_major(rows, axes)
         self._mixed = bool(path.blocks.inch.any()) and not path.blocks.inch.all()
         self._mixed |= bool(path.blocks.inch[:1].any()) != bool(believed.inch)
         self._mixed |= self._off_grid()
@@ -50,7 +49,7 @@ class Positions:
             slot = task.table.slots[task.shape, ord(axis) - 65]
             self.programmed[:, column] = (slot >= 0)[path.block]
             self._round(column, axis)
-        self._look_back()
+        self.after, self.before = self._looking_back()
         for column in range(axes):
             self._choose(column)
 
@@ -76,19 +75,18 @@ class Positions:
 
     def look_again(self) -> None:
         """Take over what has been changed in `held`."""
-        self._look_back()
+        self.after, self.before = self._looking_back()
         for column in range(len(self.task.path.axes)):
             self._choose(column)
 
-    def _look_back(self) -> None:
-        """Find what the control believes before each row, in the frame of that row."""
+    def _looking_back(self) -> tuple[Floats, Floats]:
+        """Return what the control believes after each row, and before it in the row's frame."""
         path = self.task.path
-        self.after = path.from_frames(self.held)
-        self.before[1:] = self.after[:-1]
-        self.before[:1] = self.believed.position
-        path.with_lost(self.before)
-        if not path.plainly_framed:
-            self.before = path.in_frames(self.before)
+        after, before = path.from_frames(self.held), column_major(*self.held.shape)
+        before[1:] = after[:-1]
+        before[:1] = self.believed.position
+        path.with_lost(before)
+        return after, before if path.plainly_framed else path.in_frames(before)
 
     def _choose(self, column: int) -> None:
         """Decide which words of an axis are needed: those that change or were programmed."""

@@ -47,10 +47,11 @@ OFFSETS = {"X": "I", "Y": "J", "Z": "K"}
 
 
 class TemplateWriter:
-    """Makes the templates of one shape."""
+    """Makes one template: of a shape, in one way."""
 
     def __init__(
         self,
+        key: Key,
         shape: Shape,
         meaning: Meaning,
         manner: Manner,
@@ -69,9 +70,6 @@ class TemplateWriter:
         self.unsaid = unsaid_words(meaning, folded_to)
         self.gap = own_gap(shape, gap)
         self.uncompensated = uncompensated
-
-    def write(self, key: Key) -> tuple[Field, ...]:
-        """Return the fields of a piece of the block. Raises CannotSayError."""
         self.draft = Draft(self.text, self.target, self.gap)
         self.key = key
         self.codes = CodeWords(self.draft, key, self.shape, self.meaning, self.manner)
@@ -80,10 +78,13 @@ class TemplateWriter:
         self.cycle_words = CycleWords("XYZR" if key.tap else "", named, self.gap)
         self.centre_written = not key.arc
         self.feed_written = False
-        if key.role is Role.GONE:
+
+    def write(self) -> tuple[Field, ...]:
+        """Return the fields of a piece of the block. Raises CannotSayError."""
+        if self.key.role is Role.GONE:
             return self._comments()
         at = slot = 0
-        whole = key.role not in (Role.MIDDLE, Role.LAST)
+        whole = self.key.role not in (Role.MIDDLE, Role.LAST)
         gap: bytes | None = None  # what stood before words that are left out
         for item in self.shape.block.items:
             lead = self.text[at : item.start].encode("latin-1") if whole else b""

@@ -166,6 +166,7 @@ class Writing:
             int(self._turns()[row]) if arc else 0,
         )
         writer = TemplateWriter(
+            key,
             self.task.table.shapes.shapes[shape],
             self.task.table.meanings[shape],
             self.task.manner,
@@ -175,7 +176,7 @@ class Writing:
             self.task.path.blocks.uncompensated,
         )
         try:
-            return writer.write(key)
+            return writer.write()
         except CannotSayError as error:
             where = self.task.location(line, error.column, error.width)
             raise InputError.one("GX501", error.message, where, error.hint) from None

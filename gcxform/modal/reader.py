@@ -24,16 +24,17 @@ class WindowReader:
     def __init__(self, dialect: type[Dialect]) -> None:
         self.dialect = dialect
         self.lines = 0
-        self._begin()
+        self.table = new_table(dialect)
 
-    def _begin(self) -> None:
-        self.shapes = ShapeTable(self.dialect.load_grammar())
-        self.table = MeaningTable(self.shapes, self.dialect)
+    @property
+    def shapes(self) -> ShapeTable:
+        """The shapes met so far."""
+        return self.table.shapes
 
     def read(self, text: bytes) -> Window:
         """Return the next window."""
         if len(self.shapes) > SHAPES_AT_MOST:
-            self._begin()
+            self.table = new_table(self.dialect)
         window = scan(text, self.lines, self.shapes)
         self.lines += len(window)
         return window
@@ -49,10 +50,15 @@ class WindowReader:
         """Return a window that another reader has read, with the shapes it needs in this table."""
         window, known, shapes = apart
         if not known:
-            self._begin()
+            self.table = new_table(self.dialect)
         self.shapes.take_over(shapes if known else shapes[1:])  # every table begins with the first
         self.lines += len(window)
         return window
+
+
+def new_table(dialect: type[Dialect]) -> MeaningTable:
+    """Return the table of the meanings of shapes of which none is known yet."""
+    return MeaningTable(ShapeTable(dialect.load_grammar()), dialect)
 
 
 def windows_of(source: Source, dialect: type[Dialect]) -> Iterator[tuple[Window, WindowReader]]:

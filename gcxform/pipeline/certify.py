@@ -109,7 +109,7 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
         what = "the order in which calls and loops execute blocks: it was found once"
         certificate.not_checked.append(what)
     certificate.not_checked += _of_the_file(run)
-    assert run.interpreter is not None
+    assert run.stages is not None
     found = run.findings
     for count, what in (
         (
@@ -141,9 +141,9 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
     if added := [f"{count} {what}" for what, count in run.added.items() if count]:
         what = "whether the tool is clear in moves that the source does not have"
         certificate.not_checked.append(f"{what}: {', '.join(added)}")
-    chosen = (*run.assumed, *run.emitter.assumed)
-    certificate.assumed += assumptions(run.interpreter, run.plan.source, chosen)
-    certificate.warnings += warnings_of(run.interpreter, run.source)
+    chosen = (*run.assumed, *run.stages.emitter.assumed)
+    certificate.assumed += assumptions(run.stages.interpreter, run.plan.source, chosen)
+    certificate.warnings += warnings_of(run.stages.interpreter, run.source)
 
 
 def assumptions(

@@ -53,6 +53,15 @@ class Transformed:
     path: Toolpath
 
 
+@dataclass(frozen=True, slots=True)
+class Stages:
+    """What reads, writes and proves the windows of a program that is not only copied."""
+
+    interpreter: Interpreter
+    emitter: Emitter
+    verifier: Verifier | None
+
+
 class Run:
     """One run: its readers, writer and verifier."""
 
@@ -81,11 +90,13 @@ class Run:
         self.measured: dict[str, float] = {}
         self.added: dict[str, int] = {}
         self.held: dict[int, Floats] = {}
-        self.verifier: Verifier | None = None
         self.findings = Findings()
-        self.interpreter: Interpreter | None = None
-        if not plan.copies:
-            self._prepare()
+        self.stages = None if plan.copies else self._stages()
+
+    @property
+    def verifier(self) -> Verifier | None:
+        """What proves windows; None where nothing is to be proved."""
+        return None if self.stages is None else self.stages.verifier
 
     def _heads(self) -> Heads | None:
         """Return what writes stamps; None where there are none, or every byte is copied."""
@@ -97,33 +108,35 @@ class Run:
         lines = [comment_line(target, stamp.content) for stamp in self.marks.written]
         return Heads(target, lines, bool(self.marks.read))
 
-    def _prepare(self) -> None:
+    def _stages(self) -> Stages:
+        """Return what reads, writes and proves windows; note what frames the program."""
         plan = self.plan
         axes = self.source.axes(plan.source.axes)
         written = set(axes).union(*(step.demands.letters for step in self.steps))
         axes = "".join(axis for axis in plan.source.axes if axis in written)
         reading = plan.reading_at_start(axes)
-        self.axes = axes
-        self.interpreter = Interpreter(self.dialect, reading, axes, self.source.name)
+        interpreter = Interpreter(self.dialect, reading, axes, self.source.name)
         self.frame = self._frame()
-        start = self.interpreter.state.position
+        start = interpreter.state.position
         called = self.source.is_called
-        self.emitter = Emitter(plan.manner, start, self.source.name, called)
-        self.emitter.believed.inch = int(plan.first_units == "in")
+        emitter = Emitter(plan.manner, start, self.source.name, called)
+        emitter.believed.inch = int(plan.first_units == "in")
         self.books = Books(plan.context, self._switches())
-        if self.verify != "off":
-            self.verifier = Verifier(
-                self.steps[resolved(self.steps) :],
-                plan.context,
-                self._reading_of_output(reading),
-                axes,
-                plan.limit_of_written,
-                plan.angle_limits(written=True),
-                self.source.name,
-                any(step.demands.folds for step in self.steps),
-                self._switches(),
-                plan.bounded,
-            )
+        if self.verify == "off":
+            return Stages(interpreter, emitter, None)
+        verifier = Verifier(
+            self.steps[resolved(self.steps) :],
+            plan.context,
+            self._reading_of_output(reading),
+            axes,
+            plan.limit_of_written,
+            plan.angle_limits(written=True),
+            self.source.name,
+            any(step.demands.folds for step in self.steps),
+            self._switches(),
+            plan.bounded,
+        )
+        return Stages(interpreter, emitter, verifier)
 
     def _frame(self) -> Frame:
         """Return the percent signs that the program lacks for the target."""
@@ -252,7 +265,8 @@ class Run:
 
     def _emitted(self, one: Transformed, first: bool, last: bool) -> Emitted:
         """Return the text of a window, with the stamps if they are due."""
-        emitted = self.emitter.emit(one.window, one.table, one.read, one.path)
+        assert self.stages is not None
+        emitted = self.stages.emitter.emit(one.window, one.table, one.read, one.path)
         emitted = emitted.framed(self.frame, first, last)
         if self.heads is None:
             return emitted
@@ -263,8 +277,9 @@ class Run:
 
     def _check_end(self) -> None:
         """Refuse to leave the control in another feed mode than the source program does."""
-        assert self.interpreter is not None
-        if self.emitter.believed.feed_mode != self.interpreter.state.groups["feed-mode"]:
+        assert self.stages is not None
+        emitter, interpreter = self.stages.emitter, self.stages.interpreter
+        if emitter.believed.feed_mode != interpreter.state.groups["feed-mode"]:
             where = Location(self.source.name, max(self.reader.lines, 1))
             message = "the program ends without M2 or M30: its feed mode cannot be restored"
             raise InputError.one("GX321", message, where, "write M30 at its end")
@@ -298,10 +313,10 @@ class Run:
 
     def _transform(self, apart: Apart) -> Transformed:
         """Interpret one window and run the passes."""
-        assert self.interpreter is not None
+        assert self.stages is not None
         window = self.reader.take_over(apart)
         table = self.reader.table
-        read = self.interpreter.interpret(window, table)
+        read = self.stages.interpreter.interpret(window, table)
         path = meant = read.path
         for number, step in enumerate(self.steps):
             path = self._apply(step, self._held(number, path), window)

@@ -46,7 +46,7 @@ class Restart:
         self.reader = WindowReader(self.dialect)
         self.interpreter = self._interpreter(self.reading)
         self.memory = Memory(self.dialect)
-        self.rest = self._read()
+        self.text, self.rest = self._read()
         self.state = copy.deepcopy(self.interpreter.state)
         self.used = self._used_after()
         self._refuse_if_unsafe()
@@ -56,9 +56,9 @@ class Restart:
 
     # --- before the line ---
 
-    def _read(self) -> list[bytes]:
-        """Interpret what is before the line; return the windows from the line on."""
-        rest: list[bytes] = []
+    def _read(self) -> tuple[str, list[bytes]]:
+        """Interpret what is before the line; return its text and the windows from it on."""
+        line, rest = "", list[bytes]()
         for text in self.source.windows():
             if rest:
                 rest.append(text)
@@ -74,11 +74,11 @@ class Restart:
             if start:
                 self._before(self.reader.read(text[:start]))
             rest.append(text[start:])
-            self.text = window.line(index).decode("latin-1")
+            line = window.line(index).decode("latin-1")
         if not rest:
             message = f"{self.source.name} has {self.reader.lines} lines and no line {self.line}"
             raise UsageError.one("GX731", message)
-        return rest
+        return line, rest
 
     def _before(self, window: Window) -> None:
         """Take a window before the line into account."""

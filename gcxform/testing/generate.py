@@ -85,8 +85,8 @@ class Builder:
         end = "\r\n" if self.chance(15) else "\n"
         return (end.join(lines) + end).encode("latin-1")
 
-    def _open(self) -> None:
-        """Write a first block with every mode and, absolutely, every axis."""
+    def _open(self) -> str:
+        """Write a first block with every mode and, absolutely, every axis; return the offset."""
         if self.dialect in POINTED:
             self.lines.append(f"O{self.pick(1, 9999):04d}")
         self.inch = self.options.inches and self.chance(25)
@@ -96,12 +96,12 @@ class Builder:
         if self.chance(30):
             modes += self.one((["G40"], ["G49"], ["G80"], [f"G{self.pick(54, 59)}"]))
         self._emit([(code[0], code[1:]) for code in modes], plain=True)
-        self.first_work = modes[-1] if modes[-1][1] == "5" else "G54"
         self.motion = "G0"
         words: Words = [("G", "0")]
         for axis in self.axes:
             words.append((axis, self._place(axis)))
         self._emit(words)
+        return modes[-1] if modes[-1][1] == "5" else "G54"
 
     def _step(self) -> None:
         """Write one block, sometimes a comment or an empty line before it."""

@@ -71,7 +71,9 @@ def check_pass(
         if isinstance(instance, TextPass):
             _check_text(instance)
         else:
-            _PathCheck(instance, machine).run()
+            for target in (Plain, PlainXY):
+                context = PassContext(Plain, target, target.numbers, machine)
+                _PathCheck(instance, context).run()
 
 
 def _check_declaration(pass_class: type[Pass] | type[TextPass]) -> None:
@@ -129,25 +131,20 @@ class _Trial:
 
 
 class _PathCheck:
-    """The checks of one instance of a pass."""
+    """The checks of one instance of a pass in one context."""
 
-    def __init__(self, step: Pass, machine: Machine | None) -> None:
+    def __init__(self, step: Pass, context: PassContext) -> None:
         self.step = step
-        self.machine = machine
+        self.context = context
 
     def run(self) -> None:
         promise = self.step.promise
         assert promise >= 0.0, f"{self.step.name} promises {promise!r}, which is no distance"
-        for target in (Plain, PlainXY):
-            self.context = PassContext(Plain, target, target.numbers, self.machine)
-            try:
-                self.step.begin(self.context)
-            except GcxformError as error:
-                message = f"{self.step.name} does not begin; give another instance: {error}"
-                raise AssertionError(message) from None
-            self._run_in_context()
-
-    def _run_in_context(self) -> None:
+        try:
+            self.step.begin(self.context)
+        except GcxformError as error:
+            message = f"{self.step.name} does not begin; give another instance: {error}"
+            raise AssertionError(message) from None
         trials = [
             _Trial(label, path, after)
             for label, path in paths()

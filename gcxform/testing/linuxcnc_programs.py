@@ -81,10 +81,10 @@ class EverythingBuilder(WholeBuilder):
         plain = [kind for kind in super()._kinds() if kind != self._spline]
         return [*plain, *self.topics * 4]
 
-    def _open(self) -> None:
-        super()._open()
-        self.lines.append("#<deep> = 7")
-        self.lines.append("#101 = 1.5")
+    def _open(self) -> str:
+        work = super()._open()
+        self.lines += ["#<deep> = 7", "#101 = 1.5"]
+        return work
 
     def _free(self) -> bool:
         """Tell whether a block may come that wants plain modes."""

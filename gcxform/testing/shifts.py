@@ -72,9 +72,9 @@ class ShiftingBuilder(Builder):
     def _kinds(self) -> list[Callable[[], None]]:
         return [*super()._kinds(), *[self._shift] * 5, self._home, self._machine]
 
-    def _open(self) -> None:
-        super()._open()
-        self.book.work = self.first_work
+    def _open(self) -> str:
+        self.book.work = super()._open()
+        return self.book.work
 
     def _cancel(self) -> Words:
         words = super()._cancel()

@@ -64,8 +64,8 @@ MUTATIONS = (
     Mutation(
         "frames: G54.1 is taken for the offset before",
         "gcxform/modal/moves/moves.py",
-        "again &= (self.modes.work != MANY_WORK) & ~self._reset",
-        "again &= ~self._reset",
+        "again &= (self.modes.work != MANY_WORK) & ~reset",
+        "again &= ~reset",
         FOUND,
     ),
     Mutation(

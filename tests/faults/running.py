@@ -48,7 +48,7 @@ MUTATIONS = (
     Mutation(
         "reader: a table that was begun anew is gone on with",
         "gcxform/modal/reader.py",
-        "        if not known:\n            self._begin()\n",
+        "        if not known:\n            self.table = new_table(self.dialect)\n",
         "",
         "tests/test_worker.py",
     ),

@@ -8,6 +8,7 @@ row; G28 and G53 move in a way of their own (`gcxform/modal/moves/home.py`), and
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -33,6 +34,21 @@ from gcxform.system.distinct import distinct
 from gcxform.toolpath.columns import constant, picked
 from gcxform.toolpath.path import Blocks, Kind, Toolpath
 from gcxform.toolpath.still_axes import turns_only
+
+
+@dataclass(frozen=True, slots=True)
+class Stretches:
+    """First line and last line + 1 of stretches, and what lines do that begin some of them.
+
+    Before `leaving` an M code loses positions; `busy` (live + 1,) counts lines that change them.
+    """
+
+    borders: list[tuple[int, int]]
+    acts: set[int]
+    resets: set[int]
+    singles: set[int]
+    leaving: set[int]
+    busy: list[int]
 
 
 class Moves:
@@ -63,14 +79,12 @@ class Moves:
         """Return the moves as a toolpath."""
         moving = self._moving()
         lost = self.lines.loses_position()
-        self._busy_until = np.append(0, np.cumsum(moving | lost | self.track.worded)).tolist()
-        self._leaving = self._leaves(lost)
-        stretches = self._stretches(moving)
-        if len(stretches) > 1 and not lost.any():
+        of = self._stretches(moving, lost)
+        if len(of.borders) > 1 and not lost.any():
             self.shifted = Shifted(self.track, moving)
         losing = lost if lost.any() else None
-        found = [self._stretch(first, last, moving, losing) for first, last in stretches]
-        if self.lines.live in self._leaving:
+        found = [self._stretch(first, last, of, moving, losing) for first, last in of.borders]
+        if self.lines.live in of.leaving:
             self.track.lose_all(self.lines.live)
         rows = [part for part in found if part is not None and len(part.line)]
         if self.shifted is not None:
@@ -192,52 +206,47 @@ class Moves:
 
     # --- stretches ---
 
-    def _acting(self) -> Ints:
+    def _acting(self, reset: Flags) -> Ints:
         """Return the lines that act on the frame or move in a way of their own."""
         acts = self.lines.flag("acts")
-        self._reset = self._after_end()
         if not acts.any():
-            return np.flatnonzero(self._reset)
+            return np.flatnonzero(reset)
         work = np.append(np.int8(self.state.groups["frame"]), self.modes.work)
         again = self.lines.flag("work_only") & (work[1:] == work[:-1])
-        again &= (self.modes.work != MANY_WORK) & ~self._reset
+        again &= (self.modes.work != MANY_WORK) & ~reset
         if not self.state.frames.known and again.any():
             again[int(np.argmax(again))] = False
-        return np.flatnonzero((acts & ~again) | self._reset)
+        return np.flatnonzero((acts & ~again) | reset)
 
     def _after_end(self) -> Flags:
         """Return the lines before which a control that goes on has reset the work offset."""
-        after = np.zeros(self.lines.live, np.bool_)
-        if "frame" in self.dialect.program_rule.resets_at_end:
-            after[1:] = self.lines.flag("ends")[:-1]
-        return after
+        resets = "frame" in self.dialect.program_rule.resets_at_end
+        return np.append(False, self.lines.flag("ends")[:-1] & resets)[: self.lines.live]
 
-    def _alone(self, moving: Flags) -> Flags:
-        """Return the lines that are a tap or a probe."""
-        return np.asarray(moving & self.tied.single) if self.tied.any else moving[:0]
-
-    def _stretches(self, moving: Flags) -> list[tuple[int, int]]:
-        """Return first and last line + 1 of the stretches."""
-        acting = self._acting()
+    def _stretches(self, moving: Flags, lost: Flags) -> Stretches:
+        """Return the stretches: a line that does more than move along begins one."""
+        busy = np.append(0, np.cumsum(moving | lost | self.track.worded)).tolist()
+        leaving, reset = self._leaves(lost), self._after_end()
+        acting = self._acting(reset)
         own = self.lines.flag("own_moves")[acting]
         drills = self.drilling.borders()
-        alone = np.flatnonzero(self._alone(moving))
-        self._singles = set(alone.tolist())
-        alone = np.concatenate([acting[own], alone])
-        ends = np.array([0, self.lines.live, *self._leaving], np.int64)
+        singles = np.flatnonzero(moving & self.tied.single if self.tied.any else moving[:0])
+        alone = np.concatenate([acting[own], singles])
+        ends = np.array([0, self.lines.live, *leaving], np.int64)
         borders = distinct(np.concatenate([acting, alone, alone + 1, drills, ends])).tolist()
-        self._acts = set(acting.tolist())
-        self._resets = set(np.flatnonzero(self._reset).tolist())
-        return list(pairwise(borders)) or [(0, 0)]
+        acts, resets, taps = (set(x.tolist()) for x in (acting, np.flatnonzero(reset), singles))
+        return Stretches(list(pairwise(borders)) or [(0, 0)], acts, resets, taps, leaving, busy)
 
-    def _stretch(self, first: int, last: int, moving: Flags, lost: Flags | None) -> Rows | None:
+    def _stretch(
+        self, first: int, last: int, of: Stretches, moving: Flags, lost: Flags | None
+    ) -> Rows | None:
         """Return the rows of a stretch; None where it has none, or they are made at the end."""
         self._refuse_other_units(first, first + 1)
-        if first in self._resets:
+        if first in of.resets:
             self.track.reset_work(first)
-        if first in self._leaving or (first + 1 in self._leaving and first in self._acts):
+        if first in of.leaving or (first + 1 in of.leaving and first in of.acts):
             self.track.lose_all(first)
-        if first in self._acts:
+        if first in of.acts:
             self.track.act(first)
             own = own_moves(self.track, first)
             if own is not None:
@@ -246,9 +255,9 @@ class Moves:
         self._refuse_other_units(first + 1, last)
         if self.drilling.follows(first, last):
             return None
-        if first in self._singles:
+        if first in of.singles:
             return self.tied.row(first)
-        if self._busy_until[last] == self._busy_until[first]:
+        if of.busy[last] == of.busy[first]:
             return None
         if self.shifted is not None and self.shifted.takes(first, last):
             self.shifted.follow(first, last)

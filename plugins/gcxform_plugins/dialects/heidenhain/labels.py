@@ -26,7 +26,6 @@ class Labels(Moves):
         super().__init__(*program)
         self.calls: list[int] = []
         self.left: dict[tuple[int, int], int] = {}
-        self.over = False
         self._labels: dict[str, int] | None = None
 
     def labels(self, item: gx.Item) -> dict[str, int]:

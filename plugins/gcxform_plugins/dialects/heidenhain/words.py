@@ -44,6 +44,7 @@ class Words(gx.Translator):
     polar     PR and PA that were programmed last, None after other moves
     moved     axes that have moved to a place of the workpiece since the program began
     side      G41 or G42 where RL or RR is in force
+    over      whether the program has ended
     """
 
     grammar = ("gcxform_grammars", "heidenhain")
@@ -66,6 +67,7 @@ class Words(gx.Translator):
         self.shortest = False
         self.side = ""
         self.in_spindle = ""
+        self.over = False
 
     # --- numbers ---
 

@@ -88,10 +88,7 @@ class _Runs:
         at = np.arange(len(self.run)) - self.begin[self.run] + first[self.run]
         self.u, self.v, self.w = (axis[at] for axis in fit.corners)
         self.inner = self.run[1:] == self.run[:-1]  # the lines between two corners of one run
-        self._turn()
-
-    def _turn(self) -> None:
-        """Turn each run so that its chord lies along x, its middle at the origin."""
+        # each run is turned so that its chord lies along x, its middle at the origin
         a, b = (self.u[self.begin], self.v[self.begin]), (self.u[self.final], self.v[self.final])
         du, dv = b[0] - a[0], b[1] - a[1]
         self.chord = np.hypot(du, dv)
