@@ -15,6 +15,7 @@ is not known: each axis that was tested may have a polynomial of its own there.
 A step of an axis is read four times and has three errors, so that of all that angles do only one
 number of each step shows, and with linear tests a little more. What is fitted is the least field
 that explains the residuals: the machine may have more.
+It is a test of what was identified, and changes nothing in it.
 """
 
 from __future__ import annotations

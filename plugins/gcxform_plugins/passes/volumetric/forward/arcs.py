@@ -1,4 +1,7 @@
-"""How `volumetric` keeps arcs: one through compensated points, cut until it is near enough."""
+"""How `volumetric` keeps arcs: one through compensated points, cut until it is near enough.
+
+Where a piece would be shorter than `min-length`, equal ones that hold the tolerance are looked for.
+"""
 
 from __future__ import annotations
 
