@@ -1,4 +1,4 @@
-"""What `rtcp` tells of its own work besides the deviation."""
+"""What the passes tell of their work besides the deviation."""
 
 from __future__ import annotations
 

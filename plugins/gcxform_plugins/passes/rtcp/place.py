@@ -1,4 +1,4 @@
-"""Where tip and axes of a path are in the machine, for `rtcp`."""
+"""Where tip and axes of a path are in the machine."""
 
 from __future__ import annotations
 

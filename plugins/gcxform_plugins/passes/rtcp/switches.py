@@ -1,4 +1,4 @@
-"""Where a control that is switched by M codes follows the tip of the tool, for `rtcp`.
+"""Where a control that is switched by M codes follows the tip of the tool.
 
 A program that switches with codes of the control is one of tips while they are on, and of axes
 while they are off. With all rotary axes at 0 tip and axes are at one position. With an axis turned

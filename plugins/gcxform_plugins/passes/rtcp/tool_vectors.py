@@ -1,4 +1,4 @@
-"""What a program says with tool vectors (G43.5), for `rtcp` and for its proof."""
+"""What a program says with tool vectors (G43.5), for finding angles and for the proof."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What `rtcp` writes."""
+"""What finds what is written."""

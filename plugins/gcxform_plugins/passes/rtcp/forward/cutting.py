@@ -1,4 +1,4 @@
-"""How `rtcp` works forward: lines are cut until their pieces hold, then each end is converted."""
+"""How positions are converted: lines are cut until their pieces hold, then their ends are."""
 
 from __future__ import annotations
 

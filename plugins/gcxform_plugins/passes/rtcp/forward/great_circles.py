@@ -1,4 +1,4 @@
-"""Tool axes on great circles between blocks, for `rtcp`."""
+"""Tool axes on great circles between blocks."""
 
 from __future__ import annotations
 

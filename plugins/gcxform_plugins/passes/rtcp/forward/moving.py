@@ -1,4 +1,4 @@
-"""How `rtcp` gives a program other angles: those of a calibrated machine, or of another one.
+"""How a program gets other angles: those of a calibrated machine, or of another one.
 
 Of each place of the source path the tip and the tool axis are known, by the machine that it was
 posted for. The angles that give the same tool axis on the target are rounded as they are written,

@@ -1,4 +1,4 @@
-"""The moves of `rtcp` that the source does not have: out of a cut, axes turned, and in again.
+"""The moves of `retarget` that the source does not have: out of a cut, axes turned, and in again.
 
 The tool is drawn back along its own axis with the angles at which it cuts; then the axes turn, the
 tip near the place that it was drawn back to; then it goes along its axis to where it left the cut,

@@ -1,4 +1,4 @@
-"""From what to what `rtcp` converts positions, and how far that is from being linear.
+"""From what to what positions are converted, and how far that is from being linear.
 
 Between two machines both agree where all rotary axes are at 0, where the work offset is taken. The
 correction is then nearly constant, so only long turns are cut (`correction_bound.py`). The tool

@@ -1,4 +1,18 @@
-"""Where tools are along a path, for the proof of `rtcp`: as axes drive them, or as it is led."""
+"""Where tools are along a path, for the proofs: as axes drive them, or as it is led.
+
+At part s of a row, 0 <= s <= 1:
+
+    p, a, q   (3,) mm, (3,), (m,) degrees: the tip and the tool axis on the workpiece, the angles
+    T, w      rad: by how much the axes turn in the row, in all; the angle between a(0) and a(1)
+
+    Driven    j and q in proportion to s, p and a by the chain:    bent by T^2 at most
+    Led       p straight, a = sin((1 - s) w) / sin(w) a(0) + sin(s w) / sin(w) a(1): bent by w^2
+    Pointed   the same, a(0) and a(1) being the vectors that the program says
+    Straight  p straight, q in proportion; only tips are compared with it
+
+`bends` and `leans` are an eighth of how far p (`undoing.py`) and a are bent: of bounds of their
+second derivatives by s.
+"""
 
 from __future__ import annotations
 

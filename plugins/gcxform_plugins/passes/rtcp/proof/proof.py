@@ -1,8 +1,23 @@
-"""Whether a program for another machine keeps tool and speed: the proof of `rtcp`.
+"""Whether a program with other angles keeps tool and speed: the proof of all that turns anew.
 
 It has the forward models of both machines, and no search. A move of the source is followed from
-end to end beside the moves that it became, which share it evenly; at so many places that between
-them each tip is within a tenth of the tolerance of its chord. There both tools are compared. Moves
+end to end beside the n moves that it became, which share it evenly. At part t of the i-th of these,
+which is part s = (i - 1 + t) / n of the source's:
+
+    p, a, q     (3,) mm, (3,), (m,) degrees: tip, tool axis and angles as the source leads them
+    p', a', q'  the same as the target drives them
+    b, b'       mm: `bends` of both, an eighth of bounds of second derivatives; l, l' `leans`, rad
+    N           into how many pieces each of the n is divided: their ends are looked at
+    d           mm: (b / n^2 + b') / N^2 <= SHARE tolerance, and so for l with LEAN_SHARE
+
+Claimed, for every s of a cut, and for s = 1 of a rapid:
+
+    |p - p'| <= tolerance     |a - a'| <= axis tolerance     |q - q'| <= largest turn
+
+where the last holds for one machine and its calibrated twin. Checked: |p - p'| + d <= tolerance at
+the places, and so for a. That is enough: between two places both curves are within d, together, of
+their chords, and two chords are farthest apart at an end. q' is linear in s and q too. The times
+1 / F of the n moves are each a n-th of the source's, or what an axis needs at its full speed. Moves
 that draw the tool back are taken out before (`retracted.py`): the rest has to be the source.
 """
 

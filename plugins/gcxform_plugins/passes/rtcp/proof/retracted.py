@@ -1,6 +1,14 @@
 """Which moves of a program draw the tool back and in again, and do nothing else: for the proof.
 
-Such moves follow a piece of a line and belong to its block: one back along the tool's axis, by the
+    p, a   (3,) mm, (3,): the tip and the tool axis where the piece before ends
+    L, F   mm, mm/min or degrees/min: by how much the tool is drawn back, and at which feed
+    y      (3,) mm: the tip in a move between; a' the tool axis where the last one ends
+
+Such moves go from p to p + L a, with |y - (p + L a)| <= NEAR L while axes turn, and from p + L a'
+to p, with |a' - a| <= axis tolerance. Each takes the time of its way over F. What is claimed is
+that such moves, and no others, are taken for these.
+
+They follow a piece of a line and belong to its block: one back along the tool's axis, by the
 length asked for and with all angles as they are; some in which axes turn, each steadily one way,
 with the tip near where it is; and one with all angles as they are, to where the tip was, with the
 tool axis that it had. Each takes the time that its feed says. What is anything else is no such

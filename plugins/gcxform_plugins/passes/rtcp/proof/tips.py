@@ -1,4 +1,7 @@
-"""Whether tips stay where axes bring them, at angles that are rounded: the proof of `rtcp`.
+"""Whether tips stay where axes bring them, at angles that are rounded: `to-tip` and `repost`.
+
+In the notation of `proof.py`, claimed for every s of a cut in which axes are turned, and checked in
+the same way: |p - p'| <= tolerance, of which p' is the tip at angles as they are written.
 
 What is written is compared with the source in positions of axes. These stand where they would have
 stood, whatever the angles are rounded to; the tip does not, by the lever that it has about each

@@ -1,9 +1,23 @@
-"""How `rtcp` is undone: the way of the tip when the control moves all axes in proportion.
+"""How tips and axes are undone: the way of the tip when the control moves all axes in proportion.
 
-It is a curve, which is followed in pieces. How far the pieces are from it is bounded by lengths
-alone: a point at most rho from all axes of a side, which turn by T in all, and whose own first and
-second derivatives are at most v and a, has a second derivative of at most T^2 rho + 2 T v + a.
-Nothing here is shared with the cutting of lines.
+In the notation of `gcxform/machine/chain.py`, along a row with u from 0 to 1:
+
+    j, q      (3,) mm, (m,) degrees: X, Y, Z and the angles, both in proportion to u
+    p, p0     (3,) mm: the tip on the workpiece; the tip with all axes at 0
+    M_T, M_H  what table and head do:  p = M_T(q)^-1 (j + M_H(q) p0),  j = M_T(q) p - M_H(q) p0
+    T, H      rad: by how much the axes of the table turn in the row, and those of the head, in all
+    A         mm: how far the tip is from the axes of the head, at most
+    R, V      mm: how far the point that the table carries is from its axes, at most; its own way
+
+Claimed: in each of n even pieces the curve p(u), or j(u) for the reverse, is at most B / (8 n^2)
+from its chord (an eighth of the largest second derivative: the remainder of linear interpolation),
+
+    B = T^2 R + 2 T V + H^2 A,   V = |j(1) - j(0)| + H A   or, for the reverse, |p(1) - p(0)|
+
+as a point at most R from axes that turn by T in all, and whose own first and second derivatives are
+at most V and a, has a second derivative of at most T^2 R + 2 T V + a. From the axes of one machine
+to those of another the table turns there and back: 2 T and 2 H^2 A stand for T and H^2 A. The
+comparison of paths counts B / (8 n^2), as `slack`. Nothing is shared with the cutting of lines.
 """
 
 from __future__ import annotations

@@ -1,5 +1,15 @@
 """The proof of `rtcp` for programs with tool vectors: the tool points where I, J and K say.
 
+    k0, k1  (3,) unit vectors that the program says at both ends of a block; w rad between them
+    a'      (3,) the tool axis as the axes drive it at part s of the block; q' (m,) its angles
+    c(s)    (3,) the point of the great circle from k0 to k1
+    e       degrees: half of the last decimals of all angles
+
+Claimed: |a'(1) - k1| <= e, and |a' - c(s)| <= axis tolerance on great circles. With angles in
+proportion: q'(s) = q'(0) + s (q'(1) - q'(0)) to half of the last decimal, no angle turns by more
+than 180 degrees in a block, and |a' - c(s)| <= w + 2 e, with room for the places between which it
+is not looked at (`proof.py`).
+
 Tips, tool axes and times are compared as ever, with the vectors of the source in the place of its
 angles. At the ends of blocks no more is left than the angles are rounded by. Between them the tool
 axis is on a great circle; or, where angles change in proportion, they do, by no more than half a
