@@ -15,10 +15,11 @@ from ball_kit import CENTRE, around, measured
 from ball_kit import NOISE as BALL
 from ballbar_kit import identified
 from ballbar_kit import measured as traces
+from scipy.optimize import least_squares
 from scipy.stats import chi2
 
 from gcxform.calibrate.rotary.axis import Centres, locate
-from gcxform.calibrate.solution import Scatter, belonging, plausible
+from gcxform.calibrate.solution import CAUCHY, TIGHT, Scatter, belonging, cauchy, plausible
 from gcxform.diagnostics import InputError
 
 SEEDS = 80
@@ -105,3 +106,16 @@ def test_outliers_are_told_from_readings_that_are_all_worse() -> None:
     lying[3] = 30.0
     assert np.flatnonzero(~belonging(lying, 4.0)).tolist() == [3]
     assert np.flatnonzero(~belonging(2.8 * lying, 4.0)).tolist() == [3]
+
+
+def test_the_robust_fit_is_that_of_reweighting() -> None:
+    """Places measured in three coordinates, some of them far off."""
+    points = np.random.default_rng(0).normal(size=(20, 3))
+    points[:4] += (9.0, 12.0, -5.0)
+    found = least_squares(lambda x: (x - points).ravel(), np.zeros(3), loss=cauchy, **TIGHT).x
+    middle = points.mean(axis=0)
+    for _ in range(200):
+        weights = 1.0 / (1.0 + ((points - middle) ** 2).sum(axis=1) / CAUCHY**2)
+        middle = weights @ points / weights.sum()
+    assert found == pytest.approx(middle, abs=1e-6)
+    assert np.linalg.norm(found - points[4:].mean(axis=0)) < 0.3

@@ -303,6 +303,13 @@ MUTATIONS = (
         BUNDLE,
     ),
     _rotary(
+        "gcxform/calibrate/solution.py",
+        "what is far off weighs as much as the rest",
+        "1.0 / (1.0 + part)",
+        "1.0 + 0.0 * part",
+        "tests/test_scatter.py",
+    ),
+    _rotary(
         "gcxform/calibrate/rotary/predicted_check.py",
         "a shift is a tilt",
         "for part in parts",

@@ -8,7 +8,7 @@ With M their errors (the actual is the nominal position plus M times it) a readi
     q = (I + M)^-1 p,    p = where the chain has to stand
 
 The absolute scale is one more unknown that nothing tells: points, balls and readings grow together.
-Gauss-Newton, with central differences of the chain; a robust fit finds outliers, as in `rotary`.
+Least squares with central differences of the chain; a robust fit finds outliers, as in `rotary`.
 What the readings do not determine is refused, with the direction in which nothing changes.
 """
 
@@ -22,9 +22,8 @@ from typing import Final
 
 import numpy as np
 
-from gcxform.calibrate.rotary.axis import CAUCHY, OUTLYING, REJECTED
-from gcxform.calibrate.rotary.circle import STEPS
-from gcxform.calibrate.solution import Scatter, belonging
+from gcxform.calibrate.rotary.axis import OUTLYING, REJECTED
+from gcxform.calibrate.solution import CAUCHY, TIGHT, Scatter, belonging, cauchy
 from gcxform.diagnostics import InputError, Location
 from gcxform.machine.chain import Chain, Rotary
 from gcxform.system.arrays import Flags, Floats
@@ -252,31 +251,35 @@ def worded(layout: Layout, row: Floats) -> str:
     return " with ".join(f"{name} {value:+.4g}" for name, value, said in pairs if said)
 
 
-def _fitted(layout: Layout, start: Floats, weights: Floats) -> Floats:
-    """Return the unknowns of weighted least squares. Raises InputError (GX486)."""
-    unknowns, root = start, np.repeat(np.sqrt(weights), 3)
-    for _ in range(STEPS):
-        away = (layout.poses.points - layout.readings(unknowns)).ravel() * root
-        design = layout.design(unknowns) * root[:, None]
-        lengths = np.where(_lengths(design) > 0.0, _lengths(design), 1.0)
-        step = np.asarray(np.linalg.lstsq(design / lengths, away, rcond=None)[0]) / lengths
-        unknowns = unknowns + step
-        if np.abs(step / layout.steps).max() < 1e-7:
-            return unknowns
-    message = "the ball centres do not agree with this machine: the fit does not converge"
-    raise InputError.one("GX486", message, layout.poses.where(0))
+def _fitted(
+    layout: Layout, start: Floats, scale: Floats, loss: str | Callable[[Floats], Floats] = "linear"
+) -> Floats:
+    """Return the unknowns of least squares of residuals times a scale. Raises InputError (GX486).
+
+    `scale` (n,) is of the poses, `loss` as scipy takes it.
+    """
+    from scipy.optimize import least_squares
+
+    rows = np.repeat(scale, 3)
+    found = least_squares(
+        lambda unknowns: (layout.readings(unknowns) - layout.poses.points).ravel() * rows,
+        start,
+        lambda unknowns: layout.design(unknowns) * rows[:, None],
+        x_scale="jac",
+        loss=loss,
+        **TIGHT,
+    )
+    if not found.success:
+        message = "the ball centres do not agree with this machine: the fit does not converge"
+        raise InputError.one("GX486", message, layout.poses.where(0))
+    return np.asarray(found.x)
 
 
 def _believed(layout: Layout, start: Floats, noise: float) -> Flags:
     """Return which poses belong to the rest, by a robust fit."""
-    unknowns, weights = start, np.ones(len(layout.poses.points))
-    for _ in range(STEPS):
-        away = layout.poses.points - layout.readings(unknowns)
-        size = np.linalg.norm(away, axis=1) / noise
-        before, weights = weights, 1.0 / (1.0 + (size / CAUCHY) ** 2)
-        if np.abs(weights - before).max() < 1e-4:
-            break
-        unknowns = _fitted(layout, unknowns, weights)
+    unknowns = _fitted(layout, start, np.full(len(layout.poses.points), 1.0 / noise), cauchy)
+    size = np.linalg.norm(layout.poses.points - layout.readings(unknowns), axis=1) / noise
+    weights = 1.0 / (1.0 + (size / CAUCHY) ** 2)
     away = layout.poses.points - layout.readings(unknowns)
     design = layout.design(unknowns)
     kept = belonging(_standardised(design, away, weights, noise), OUTLYING)

@@ -28,7 +28,7 @@ from typing import Final
 import numpy as np
 
 from gcxform.calibrate.rotary.circle import CONVERGED, STEPS, Circles, fit_circles, upright
-from gcxform.calibrate.solution import Scatter, belonging
+from gcxform.calibrate.solution import CAUCHY, Scatter, belonging
 from gcxform.diagnostics import InputError, Location
 from gcxform.machine.chain import Triple, turned
 from gcxform.system.arrays import Flags, Floats
@@ -41,7 +41,6 @@ OUTLYING: Final = 4.0
 """Standardised residuals above this are outliers."""
 REJECTED: Final = 3.0
 """Residuals above this many times the stated noise contradict each other."""
-CAUCHY: Final = 2.385  # half of the weight is lost here; 95 % efficient on one normal variable
 EVEN: Final = 1.4  # times the gap of even positions: three at 180 degrees are not around a turn
 
 
