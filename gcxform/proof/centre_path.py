@@ -5,6 +5,11 @@ arc in the measure of both radii, at a corner by the slant of it, and a contour 
 just follow may be one that it cannot. So the centre path of the source and that of the output are
 computed, by the installed pass that resolves compensation, and these are compared.
 
+Claimed of every stretch p of the source and w of the output, with C the centre path that a control
+makes of one and b the budget: |C(w) - C(p)| <= b, along both in the order of travel
+(`gcxform/deviations/`), for every C in `ways` that p has. That C(p) itself is beside the contour is
+the claim of the pass that resolves compensation, and proved there.
+
 A stretch that is the same to the last bit leads the centre the same way. Of such a one, as of every
 other, is asked whether the control stops at it, where that is known.
 

@@ -1,4 +1,11 @@
-"""The proof of events: what is done between the moves is that of the source, in its order."""
+"""The proof of events: what is done between the moves is that of the source, in its order.
+
+Claimed, with e_1 ... e_n the events of the source and f_1 ... f_m those read from the output,
+lengths in mm, without those that are folded or taken over by a pass: n = m, and for every j what
+e_j and f_j do and their numbers are the same, f_j is in a block of the line of e_j, and the written
+row before which f_j stands is the one for the row before which e_j stands (`Trace.stands_before`);
+rows no longer together than the budget may lie between.
+"""
 
 from __future__ import annotations
 

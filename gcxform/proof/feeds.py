@@ -1,4 +1,22 @@
-"""The proof of feeds: they are those of the source, or take the time those of the source do."""
+"""The proof of feeds: they are those of the source, or take the time those of the source do.
+
+    F, L       feed and length of a row of the source: mm/min and mm, or 1/min in G93
+    f_i, l_i   the same of its written moves i = 1 ... m; t_i = l_i / f_i, or 1 / f_i in G93
+    e, u, b    TIME_ERROR, UNEVEN, and the budget: mm, or degrees where rotary axes turn alone
+
+Claimed of every row that is no rapid, but for moves in which an axis is at its full speed:
+
+    feed per minute     |f_i - F| <= SAME_FEED f_i
+    G93                 |sum t_i - 1 / F| <= e / F
+    G93 and converted   |t_i - s l_i| <= s (u l_i + 2 b),   s = sum t_i / sum l_i
+    converted           l (1 - e) - m b <= F sum t_i <= L (1 + e) + m b   (F L for F in G93)
+
+l and L are there the least and the largest of the ways as programmed and as written (an arc whose
+ends are on two circles has two), and a row at full speed may be late by that. What F is worth are
+the definitions of G93 and G94 in RS274/NGC (NISTIR 6556), 3.5.19. That pieces share the time of
+their row as they share its way is derived from them: a control goes evenly along a block. Both ends
+of a piece may be off by b, hence 2 b, and a chord is shorter than its arc, hence u.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,10 @@
-"""Proves that what a program holds besides its moves is held by what was written for it."""
+"""Proves that what a program holds besides its moves is held by what was written for it.
+
+Assignments: the same number of them, in order, in blocks of the same lines, and of two values v, w
+|v - w| <= |v| 10^(1 - d), d the digits that the control keeps. What stands behind the end: the same
+bytes, by SHA-256, if the dialect is the same. The rest is counted, in kinds
+(`gcxform/modal/inventory.py`), on both sides.
+"""
 
 from __future__ import annotations
 

@@ -2,8 +2,14 @@
 
 Where a control ends the moves of canned cycles exactly whatever is stated
 (`MotionRule.cycles_stop`), moves that stand for one under G64 have to be in G61, and all others in
-the mode of the source. What
-was added for that is taken out of the events, and is nothing but a pair around each such block.
+the mode of the source. What was added for that is taken out of the events, and is nothing but a
+pair around each such block.
+
+    M(k)  mode in force in row k of the source, with its words in mm;  N(i)  in written row i
+    k(i)  the row that i stands for;  expanded  i is a plain move of a line that calls a cycle
+
+Claimed: N(i) = G61 where i is expanded and M(k(i)) = G64, else N(i) = M(k(i)); and at the end of
+each window both files have left the same mode.
 """
 
 from __future__ import annotations

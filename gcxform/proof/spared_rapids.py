@@ -5,6 +5,12 @@ compensates writes it as it stands. The tool is then off by the machine's error,
 be a rapid, and the control must be told what the program says; no feed move may begin there, which
 the proof sees by where the machine is.
 
+Claimed of every rapid that some pass spares (`Demands.spares`), with p its row as read, w as it was
+written and undone by all passes but those that spare, and b the budget: in each axis
+
+    |end of w - end of p| <= b,  or both stand still there,  or, for a return to reference in G91,
+    |way of w - way of p| <= b.
+
 The certificate says in `not_checked` how many there are, and how far off the machine is there.
 `compare --model` and `simulate` go by the same undo; `compare` holds spared rapids against what the
 control is told, and where feed moves begin behind them against where the tool is.

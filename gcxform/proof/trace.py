@@ -1,4 +1,13 @@
-"""Which move of the output belongs to which move of the input, by the source map."""
+"""Which move of the output belongs to which move of the input, by the source map.
+
+    source  (lines of the output,) line s of the program that each came from, from 0
+    nth     (lines of the output,) which of the moves of s its first move is
+    count   (lines of the window,) rows of the program in each line; `row_of_line` the first, or -1
+
+Defined: the owner of a written row i in output line j is row_of_line[s_j] + nth_j + (nth of i in
+its line), where line s_j has so many rows, else -1, and then the proof fails. Nothing claimed hangs
+on the map being right: with a wrong owner the paths are apart.
+"""
 
 from __future__ import annotations
 

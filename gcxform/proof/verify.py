@@ -4,6 +4,22 @@ The reader of the output is a new one that knows nothing of how the text was mad
 is traced to a line of the input by the source map; the models of what the machine does with the
 passes' output are applied in reverse order; what comes out must follow the input's path within the
 budget, with the same kinds of moves, feeds and events.
+
+    before     p, the path as read: rows k, mm and degrees
+    written    w, the path of the text as it is read again
+    after      a = undo_1(... undo_n(w)), what the machine does; `owner` k of each of its rows
+    budget b   mm, promises of the passes and rounding; `angle_budget`: degrees, of rotary axes
+
+Claimed, for every row of a and the run of rows of p that it stands for, along both in the order of
+travel (a bound of the Frechet distance, `gcxform/deviations/`):
+
+    |a - p| <= b in X, Y and Z,   |angle of a - angle of p| <= angle budget of the axis;
+
+of rapids at their ends only, for no control is bound to go straight in them. Feed moves begin
+within b of where they began. Rows of p that nothing stands for are lines, and those that follow one
+another have ways of <= b together. Left to bounds of their own are moves between taps (IN_AIR) and
+rapids that passes spare (`gcxform/proof/spared_rapids.py`). That a pass keeps its promise is not
+assumed: whatever b is made of, this is measured.
 """
 
 from __future__ import annotations

@@ -5,6 +5,14 @@ the error is linear between its nodes, the commands for a straight way whose two
 commands in one cell of the table are a straight way as well: a cell is convex, and the machine goes
 straight along straight commands in it. So ways are cut until that is so of every piece.
 
+    q, c  a point of the path of the machine, and its command: c + E(c) = q; mm
+    L     `lipschitz` of E, at most STEEPEST
+
+Claimed: c_k+1 = q - E(c_k) ends within FOUND of c, for |c_k+1 - c| <= L / (1 - L) |c_k+1 - c_k|
+(Banach's fixed point theorem, L <= 1/2); and pieces stay within `slack` of c, where commands that
+reach `beyond` their cell add 2 L of that, and the inverse is steeper than the model by at most
+`stretch` = 1 / (1 - L), since |c' + E'(c) c'| >= (1 - L) |c'|.
+
 The facts of the pass are turned round: a program of commands is taken for COMPENSATED when it is
 read.
 """

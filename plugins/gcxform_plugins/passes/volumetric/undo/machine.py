@@ -2,9 +2,20 @@
 
 The forward model alone: nothing here is shared with the search for commands.
 
-A tip at most r from axes that turn by T goes T r and bends by T^2 r (`Arm`). Pieces are straight
-within their slack, so nothing is sampled. Nodes are found as the search finds them
-(`gcxform/toolpath/crossings.py`), which has tests of its own.
+    c(x)  commanded point, x in 0 ... 1 along a row, mm; o  `offset`: c + o is in the table
+    t     from the gauge point to the tip, mm; E(c + o, t)  error of the model, mm
+    K     `curvature` (3, 3), mm/mm2: along a way w E is bent by |w| K |w|, |w| its moduli by axis
+    T, r  a tip at most r (mm) from axes that turn by T (rad) goes T r, bends by T^2 r (`Arm`)
+
+The machine is at m = c + E(c + o, t). Claimed: pieces between the cuts stay within `slack` of m,
+
+    |m - chord of a piece| <= (|w| K |w| + bending by T and r) / (8 n^2) <= BEND_SLACK
+
+for each of the n pieces of a line between two nodes, because E has no kink there, and a chord is
+off its curve by an eighth of the bending at most (the remainder of linear interpolation). Arcs are
+cut so that UNDO_SLACK holds (`arc_cuts` of `gcxform/toolpath/`). So nothing is sampled.
+Nodes are found as the search finds them (`gcxform/toolpath/crossings.py`), which has tests of its
+own.
 """
 
 from __future__ import annotations
