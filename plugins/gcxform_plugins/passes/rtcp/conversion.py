@@ -7,7 +7,7 @@ are apart by a rotation and an arm that the angles alone fix. So one bound serve
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -22,6 +22,14 @@ from gcxform_plugins.passes.rtcp.proof.proof import Proof
 from gcxform_plugins.passes.rtcp.proof.tips import TipProof
 
 PLAIN = frozenset({gx.ABSOLUTE, gx.LINEAR_ONLY, gx.NOMINAL})
+Rapids = Annotated[
+    Literal["refuse", "ends"],
+    gx.Option("rapids that turn axes: refuse them, or convert where they end"),
+]
+AxisTolerance = Annotated[
+    gx.Angle,
+    gx.Option("how far the tool axis may lean from its way, where angles change", above=0.0),
+]
 
 
 @dataclass(frozen=True)

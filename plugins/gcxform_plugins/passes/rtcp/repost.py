@@ -12,7 +12,12 @@ from typing import Annotated, Literal
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.passes.rtcp.conversion import PLAIN, Conversion, check_angles
+from gcxform_plugins.passes.rtcp.conversion import (
+    PLAIN,
+    AxisTolerance,
+    Conversion,
+    check_angles,
+)
 from gcxform_plugins.passes.rtcp.forward.cutting import Cutting
 from gcxform_plugins.passes.rtcp.forward.moving import Correcting
 from gcxform_plugins.passes.rtcp.forward.ways import Corrected
@@ -46,10 +51,7 @@ class Repost(Conversion):
     largest_turn: Annotated[
         gx.Angle, gx.Option("by how much an angle may be corrected", above=0.0)
     ] = 0.5
-    axis_tolerance: Annotated[
-        gx.Angle,
-        gx.Option("how far the tool axis may lean from its way, where angles change", above=0.0),
-    ] = 0.1
+    axis_tolerance: AxisTolerance = 0.1
 
     def __post_init__(self) -> None:
         """Take any path where angles are corrected, as it is proved as a whole."""

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.passes.rtcp.conversion import PLAIN, Conversion, check_angles
+from gcxform_plugins.passes.rtcp.conversion import (
+    PLAIN,
+    AxisTolerance,
+    Conversion,
+    Rapids,
+    check_angles,
+)
 from gcxform_plugins.passes.rtcp.forward.moving import Moving
 from gcxform_plugins.passes.rtcp.measured import AXIS_OFF, TIP_OFF
 from gcxform_plugins.passes.rtcp.options import Options, Retraction
@@ -35,10 +41,7 @@ class Retarget(Conversion):
         gx.KinematicsFile,
         gx.Option("the machine to write for; [machine] is the one posted for"),
     ]
-    rapids: Annotated[
-        Literal["refuse", "ends"],
-        gx.Option("rapids that turn axes: refuse them, or convert where they end"),
-    ] = "refuse"
+    rapids: Rapids = "refuse"
     retract: Annotated[
         gx.Length | None,
         gx.Option(
@@ -61,10 +64,7 @@ class Retarget(Conversion):
         gx.Lines | None,
         gx.Option("retract: written once axes have turned, before the tool comes back"),
     ] = None
-    axis_tolerance: Annotated[
-        gx.Angle,
-        gx.Option("how far the tool axis may lean from its way, where angles change", above=0.0),
-    ] = 0.1
+    axis_tolerance: AxisTolerance = 0.1
 
     def __post_init__(self) -> None:
         """Refuse options that do not go together. Raises ValueError."""

@@ -14,7 +14,13 @@ from typing import Annotated, Literal
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.passes.rtcp.conversion import PLAIN, Conversion, check_angles
+from gcxform_plugins.passes.rtcp.conversion import (
+    PLAIN,
+    AxisTolerance,
+    Conversion,
+    Rapids,
+    check_angles,
+)
 from gcxform_plugins.passes.rtcp.forward.cutting import Cutting
 from gcxform_plugins.passes.rtcp.forward.great_circles import Circling
 from gcxform_plugins.passes.rtcp.forward.moving import Moving
@@ -55,18 +61,12 @@ class Rtcp(Conversion):
             "K (G43.5)"
         ),
     ] = "refuse"
-    rapids: Annotated[
-        Literal["refuse", "ends"],
-        gx.Option("rapids that turn axes: refuse them, or convert where they end"),
-    ] = "refuse"
+    rapids: Rapids = "refuse"
     orientation_path: Annotated[
         Literal["angles", "great-circle"],
         gx.Option("between blocks angles change in proportion, or the tool axis does"),
     ] = "angles"
-    axis_tolerance: Annotated[
-        gx.Angle,
-        gx.Option("how far the tool axis may lean from its way, where angles change", above=0.0),
-    ] = 0.1
+    axis_tolerance: AxisTolerance = 0.1
 
     def __post_init__(self) -> None:
         """Take any path if it is proved as a whole. Raises ValueError: vectors need rapids."""

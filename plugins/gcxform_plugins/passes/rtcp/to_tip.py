@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal
 
 import gcxform as gx
-from gcxform_plugins.passes.rtcp.conversion import PLAIN, Conversion
+from gcxform_plugins.passes.rtcp.conversion import (
+    PLAIN,
+    Conversion,
+    Rapids,
+)
 from gcxform_plugins.passes.rtcp.forward.cutting import Cutting
 from gcxform_plugins.passes.rtcp.forward.ways import Between
 from gcxform_plugins.passes.rtcp.measured import TIP_OFF
@@ -30,10 +33,7 @@ class ToTip(Conversion):
     clears = frozenset({gx.AXIS_POSITIONS})
     demands = gx.Demands(deviates={"deviation": TIP_OFF})
 
-    rapids: Annotated[
-        Literal["refuse", "ends"],
-        gx.Option("rapids that turn axes: refuse them, or convert where they end"),
-    ] = "refuse"
+    rapids: Rapids = "refuse"
 
     def options(self, context: gx.PassContext) -> Options:
         """Return what the work and its proof know of the options."""
