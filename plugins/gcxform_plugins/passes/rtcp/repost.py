@@ -12,12 +12,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.passes.rtcp.conversion import (
-    PLAIN,
-    AxisTolerance,
-    Conversion,
-    check_angles,
-)
+from gcxform_plugins.passes.rtcp.conversion import PLAIN, AxisTolerance, Conversion, check_angles
 from gcxform_plugins.passes.rtcp.forward.cutting import Cutting
 from gcxform_plugins.passes.rtcp.forward.moving import Correcting
 from gcxform_plugins.passes.rtcp.forward.ways import Corrected

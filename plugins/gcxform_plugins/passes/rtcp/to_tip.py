@@ -5,11 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import gcxform as gx
-from gcxform_plugins.passes.rtcp.conversion import (
-    PLAIN,
-    Conversion,
-    Rapids,
-)
+from gcxform_plugins.passes.rtcp.conversion import PLAIN, Conversion, Rapids
 from gcxform_plugins.passes.rtcp.forward.cutting import Cutting
 from gcxform_plugins.passes.rtcp.forward.ways import Between
 from gcxform_plugins.passes.rtcp.measured import TIP_OFF
