@@ -58,14 +58,12 @@ class Copying:
         self.path, self.original = task.path, task.read.path
         live = task.read.live
         old_count = np.bincount(self.original.block, minlength=live)
-        self.exact = np.zeros(len(self.path), np.bool_)
         self.believed_exact = believed.exact
         self.believed_said = believed.said
         self.believed_position = believed.position
         self.same = SameRows(self.path, self.original, positions)
         self.lines = (old_count == 0) & (pieces.count == 0) & ~pieces.expanded_line
-        self.converted = np.zeros(live, np.bool_)
-        stands = self._standing(old_count, pieces, stated)
+        stands, converted, self.exact = self._standing(old_count, pieces, stated)
         self._refuse_changed(stands, pieces)
         self._refuse_presets()
         self._refuse_lengths()
@@ -73,7 +71,7 @@ class Copying:
             self.lines &= self._nothing_to_say()
         else:
             self.lines &= self.same.modes()
-            self.lines |= stands & ~self.converted
+            self.lines |= stands & ~converted
         if self.path.folded:
             self.lines[self.task.table.flag("framing", self.task.shape)] = False
         self.lines &= ~self.task.table.flag("switches", self.task.shape)
@@ -213,8 +211,13 @@ class Copying:
             pointed &= self.task.table.flag("has_centre", self.task.shape)
         return pointed
 
-    def _standing(self, old_count: Ints, pieces: Pieces, stated: Stated) -> Flags:
-        """Return the lines whose rows are those of the source and need no other words."""
+    def _standing(
+        self, old_count: Ints, pieces: Pieces, stated: Stated
+    ) -> tuple[Flags, Flags, Flags]:
+        """Return the lines whose rows are those of the source and need no other words.
+
+        And those of them whose words are converted to another unit, and `exact`.
+        """
         stands = np.zeros(len(old_count), np.bool_)
         special = np.zeros(len(old_count), np.bool_)
         special[self.original.block[~self.original.is_free]] = True
@@ -222,11 +225,11 @@ class Copying:
         rows = np.flatnonzero(paired[self.path.block])
         others = np.flatnonzero(paired[self.original.block])
         if not len(rows):
-            return stands
+            return stands, stands, np.zeros(len(self.path), np.bool_)
         lines = self.path.block[rows]
         alike = self.same.modes() | self._without_lengths(special)
-        self.converted = ~alike & convertible(self.task, pieces, self.positions)
-        good = (alike | self.converted)[lines]
+        converted = ~alike & convertible(self.task, pieces, self.positions)
+        good = (alike | converted)[lines]
         if not self.task.manner.crossing:
             repaired = np.zeros(len(old_count), np.bool_)
             repaired[pieces.line[stated.repaired]] = True
@@ -241,7 +244,7 @@ class Copying:
             good[own] &= self.same.words(rows[own], others[own])
         turned = plain | (self.path.form[rows] == Form.SPLINE)
         good &= ~turned | self.same.frames(rows, others)
-        starts_exact = self._track_exactness(rows, others, good & ~self.converted[lines])
+        starts_exact, exact = self._exactness(rows, others, good & ~converted[lines])
         incremental = self.path.blocks.incremental[self.path.block[rows]]
         doubtful = np.flatnonzero(good & plain & incremental & ~starts_exact)
         if len(doubtful):
@@ -251,7 +254,7 @@ class Copying:
             good[arcs] &= self.same.arcs(rows[arcs], others[arcs], starts_exact[arcs])
         stands[self.path.block[rows]] = True
         stands[self.path.block[rows[~good]]] = False
-        return stands
+        return stands, converted, exact
 
     def _without_lengths(self, special: Flags) -> Flags:
         """Return the lines, of those that are special, that only the unit of no length changes."""
@@ -266,15 +269,15 @@ class Copying:
             free[line] = not any(window.value[first + slots[a]] for a in LINEAR if a in slots)
         return free
 
-    def _track_exactness(self, rows: Ints, others: Ints, good: Flags) -> Flags:
-        """Follow how far everything is exactly as in the source; return where rows start so."""
+    def _exactness(self, rows: Ints, others: Ints, good: Flags) -> tuple[Flags, Flags]:
+        """Return before which rows, and behind which, everything is exactly as in the source."""
         whole = len(rows) == len(self.path) == len(self.original)
         if not whole or not good[0] or not self.believed_exact:
-            return np.zeros(len(rows), np.bool_)
+            return np.zeros(len(rows), np.bool_), np.zeros(len(self.path), np.bool_)
         end, old = self.path.end, self.original.end
         alike = ((end == old) | (np.isnan(end) & np.isnan(old))).all(axis=1) & good
-        self.exact = np.logical_and.accumulate(alike)
-        return np.append(True, self.exact[:-1])
+        exact = np.logical_and.accumulate(alike)
+        return np.append(True, exact[:-1]), exact
 
     def said_exactly(self) -> Flags:
         """Return whether the control stands exactly where the path is (rows, 3), after each row.
