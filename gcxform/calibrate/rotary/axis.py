@@ -6,7 +6,7 @@ A ball on the table is probed at angles q, all other rotary axes at 0. Its centr
 
 with seven unknowns: c, three small turns of the figure, its radius. The start is linear, p = c + u
 cos q + w sin q, and V is along u x w, so that the sense of the axis comes from the angles; then
-Gauss-Newton steps (reference: estimators with encoder angles). The shift along V changes nothing,
+least squares (reference: estimators with encoder angles). The shift along V changes nothing,
 so the point that is given is c. A probe in a turning head goes round a fixed ball by the same
 equation, and the axis is where the tip was at 0, plus a.
 
@@ -27,8 +27,8 @@ from typing import Final
 
 import numpy as np
 
-from gcxform.calibrate.rotary.circle import CONVERGED, STEPS, Circles, fit_circles, upright
-from gcxform.calibrate.solution import CAUCHY, Scatter, belonging
+from gcxform.calibrate.rotary.circle import Circles, fit_circles, upright
+from gcxform.calibrate.solution import CAUCHY, TIGHT, Scatter, belonging, cauchy
 from gcxform.diagnostics import InputError, Location
 from gcxform.machine.chain import Triple, turned
 from gcxform.system.arrays import Flags, Floats
@@ -202,13 +202,9 @@ def locate(
 
 def _believed(centres: Centres, start: Figure, noise: float) -> Flags:
     """Return which centres belong to the rest, by a robust fit."""
-    figure, weights = start, np.ones(len(centres))
-    for _ in range(STEPS):
-        size = np.linalg.norm(residuals(centres, figure), axis=1) / noise
-        before, weights = weights, 1.0 / (1.0 + (size / CAUCHY) ** 2)
-        figure = fitted(centres, weights, figure)
-        if np.abs(weights - before).max() < 1e-6:
-            break
+    figure = fitted(centres, np.full(len(centres), 1.0 / noise), start, cauchy)
+    size = np.linalg.norm(residuals(centres, figure), axis=1) / noise
+    weights = 1.0 / (1.0 + (size / CAUCHY) ** 2)
     kept = belonging(standardised(centres, figure, noise, weights), OUTLYING)
     enough = distinct(centres.degrees[kept]) >= 4 and 4 * (~kept).sum() <= len(centres)
     return kept if enough else np.ones(len(centres), dtype=bool)
@@ -296,22 +292,30 @@ def arc(degrees: Floats) -> float:
 # --- the fit ---
 
 
-def fitted(centres: Centres, weights: Floats, start: Figure | None = None) -> Figure:
-    """Return the figure of weighted least squares. Raises InputError (GX486)."""
-    figure = start or _started(centres)
-    root = np.sqrt(weights)[:, None]
-    for _ in range(STEPS):
-        design = jacobian(figure, centres.degrees) * root[..., None]
-        away = residuals(centres, figure) * root
-        solved = np.linalg.lstsq(design.reshape(-1, UNKNOWNS), away.ravel(), rcond=None)
-        step = np.asarray(solved[0], np.float64)
-        step[3:6] *= min(1.0, 0.5 / max(1e-12, float(np.linalg.norm(step[3:6]))))
-        figure = figure.moved(step)
-        size = np.abs(step[[0, 1, 2, 6]]).max() + figure.radius * np.abs(step[3:6]).max()
-        if size <= CONVERGED * figure.radius:
-            return figure
-    _refuse(centres, "the centres do not turn with the angles: the fit does not converge")
-    return figure
+def fitted(
+    centres: Centres,
+    scale: Floats,
+    start: Figure | None = None,
+    loss: str | Callable[[Floats], Floats] = "linear",
+) -> Figure:
+    """Return the figure of least squares of residuals times a scale. Raises InputError (GX486).
+
+    `scale` (n,) is of the centres, `loss` as scipy takes it.
+    """
+    from scipy.optimize import least_squares
+
+    first = start or _started(centres)
+    found = least_squares(
+        lambda step: (residuals(centres, first.moved(step)) * scale[:, None]).ravel(),
+        np.zeros(UNKNOWNS),
+        "3-point",
+        x_scale="jac",
+        loss=loss,
+        **TIGHT,
+    )
+    if not found.success:
+        _refuse(centres, "the centres do not turn with the angles: the fit does not converge")
+    return first.moved(found.x)
 
 
 def _started(centres: Centres) -> Figure:
