@@ -63,6 +63,7 @@ class MotionRule:
     lone_codes_count  G1, G2 and G3 are executed without axis words too: G1 asks for a feed, arcs
                       for words
     g28_without_axes  G28 without an axis word sends all axes home
+    g28_ends_length   after G28 a tool length may not be in force any more: it is not known
     g53_in_g91        what G53 does under G91: "absolute", or "refused" by the control or by us
     g53_is_rapid      G53 moves in rapid whatever motion code is in force
     rounds_corners    corners are rounded where no path mode is stated, as they are in G64
@@ -72,6 +73,7 @@ class MotionRule:
 
     lone_codes_count: bool = False
     g28_without_axes: bool = False
+    g28_ends_length: bool = False
     g53_in_g91: str = "refused"
     g53_is_rapid: bool = False
     rounds_corners: bool = False

@@ -1,6 +1,8 @@
-"""Facts that are refused although their control executes them, and why."""
+"""Facts that are not read as they say, and why."""
 
 KNOWN = {
+    "haas_g28_alone": "it asks for a refusal for want of a source; the operator's manual (96-8000, "
+    "G28) says that all axes go to machine zero at once",
     "siemens_mcall": "it names neither a motion code nor a feed, so settings of the control decide "
     "both (MD20150); with G0 and F before, tests/test_siemens.py reads it as the fact says",
 }

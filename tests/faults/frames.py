@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import FACTS, FOUND, OFFSETS, SHIFTS, Mutation
+from faults.mutation import CORPUS, FACTS, FOUND, OFFSETS, SHIFTS, Mutation
 
 MUTATIONS = (
     Mutation(
@@ -109,5 +109,12 @@ MUTATIONS = (
         "bool(self.tool_name),",
         "any(self.tool),",
         "tests/test_corpus.py::test_case[rtcp/tool-length-zero]",
+    ),
+    Mutation(
+        "frames: a length goes on behind G28 where it may have ended",
+        "gcxform/modal/moves/home.py",
+        "    if frames.tool_name:",
+        "    if not frames.tool_name:",
+        CORPUS + "[dialects/haas/home-ends-the-length]",
     ),
 )

@@ -138,7 +138,7 @@ class Track:
             self.state.polar = np.nan, np.nan
         if act.name in LOST_BY_TURN:
             self._lose(line, self._turned_by(line, before, frames))
-        self._enter(line, old)
+        self.enter(line, old)
 
     def _upright(self) -> bool:
         """Whether all rotary axes are known to be at 0, where the tip is as far as the axes are."""
@@ -160,10 +160,10 @@ class Track:
         old = self.frame
         work = self.dialect.program_rule.resets_at_end["frame"]
         self.state.frames = self.state.frames.in_work(work)
-        self._enter(line, old)
+        self.enter(line, old)
 
-    def _enter(self, line: int, old: Frame) -> None:
-        """Note the frame that is now in force, if it is another one."""
+    def enter(self, line: int, old: Frame) -> None:
+        """Note the frame that is in force from a line on, if it is another one."""
         new = self.state.frames.frame()
         if new != old:
             pairs = enumerate(zip(old.origin, new.origin, strict=True))

@@ -78,7 +78,19 @@ def _home(track: Track, line: int, code: str) -> Rows:
     for k, axis in enumerate(track.axes):
         if axis in words or not words:
             home[k] = _in_frame(track, k, place.get(axis, np.nan))
-    return _rows(track, line, Form.HOME, [*moves, (Kind.RAPID, home)])
+    rows = _rows(track, line, Form.HOME, [*moves, (Kind.RAPID, home)])
+    if track.dialect.motion_rule.g28_ends_length:
+        _let_go_of_length(track, line, code)
+    return rows
+
+
+def _let_go_of_length(track: Track, line: int, code: str) -> None:
+    """Take a tool length for unknown behind a return home, until the program states one again."""
+    frames = track.state.frames
+    if frames.tool_name:
+        unknown = *frames.tool[:2], float("nan")
+        track.state.frames = frames.with_tool(unknown, f"{frames.tool_name}, after {code}")
+        track.enter(line + 1, track.frame)
 
 
 def _warn_of_plunge(track: Track, line: int, code: str, by_way: float) -> None:

@@ -18,7 +18,8 @@ refused. What is not named here is as in `fanuc`.
 | start and end radius | 0.001 inch is said of alarm 303: taken as 0.01 mm | known |
 | M5 M9 M89, M0 M1 M2 M30 | act after the motion of their block | known |
 | G154, G110 to G129 | more work offsets: as Fanuc's G54.1 | manual |
-| G28 | without axis words every axis goes home at once: refused | known |
+| G28 | without axis words every axis goes home at once | manual |
+| a tool length behind G28 | cancelled, or not: it says both, so that it is not known | manual |
 | G52, G92 | Setting 33: refused unless `[control] g52 = "fanuc"` says that it is FANUC | manual |
 | canned cycles | L counts the holes, L0 stores; I, J, K, and P of G73, G83: refused | known |
 | a cycle without X and Y | Setting 28: refused unless `cycle-without-place = "drills"` | manual |
@@ -115,6 +116,7 @@ class Haas(Fanuc):
         dwell={"P": 0.001},
         dwell_in_seconds=True,
     )
+    motion_rule = replace(Fanuc.motion_rule, g28_without_axes=True, g28_ends_length=True)
     offset_rule = replace(
         Fanuc.offset_rule,
         names={code: f"G154 P{int(code[1:]) - 109}" for code in MORE_OFFSETS},
