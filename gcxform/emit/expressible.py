@@ -99,6 +99,8 @@ def is_foreign(item: Item, target: type[Dialect]) -> bool:
         return item.kind == "assignment" and not lasts_in(item, target)
     if not isinstance(item, Mark):
         return False
+    if item.kind == "block_end":  # the line end says it everywhere
+        return True
     if item.kind == "percent":
         return not target.program_rule.has_percent
     return item.kind.startswith("program") and not target.program_rule.has_program_number

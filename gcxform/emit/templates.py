@@ -173,9 +173,14 @@ class TemplateWriter:
         if item.kind == "block_delete":
             if self.source.program_rule.block_delete != self.target.program_rule.block_delete:
                 self._check_same(item, "a block with a slash in the same way")
-        elif self.key.role in (Role.MIDDLE, Role.LAST) or is_foreign(item, self.target):
+        elif item.kind == "block_end":
+            self._rest()
+            if self.source is not self.target:
+                return
+        elif is_foreign(item, self.target):
             return
-        self.draft.literal(lead, self.text[item.start : item.end])
+        if item.kind == "block_delete" or self.key.role not in (Role.MIDDLE, Role.LAST):
+            self.draft.literal(lead, self.text[item.start : item.end])
 
     # --- words ---
 

@@ -110,4 +110,15 @@ MUTATIONS = (
         "return np.ones(len(line), np.bool_)",
         CORPUS,
     ),
+    Mutation(
+        "writing: words are added behind the end of their block",
+        "gcxform/emit/templates.py",
+        """        elif item.kind == "block_end":
+            self._rest()
+""",
+        """        elif item.kind == "block_end":
+            pass
+""",
+        CORPUS + "[dialects/fanuc/block-end-anew]",
+    ),
 )

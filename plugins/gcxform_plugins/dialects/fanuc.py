@@ -3,6 +3,7 @@
 | what | Fanuc |
 |---|---|
 | a distance without a point | parameters 1013 and 3401#0 decide: `[input] increment` |
+| `;` at the end of a line | is the end of the block, which the line end says as well |
 | motion at start | parameter 3402: taken as unknown, so the first move needs its code |
 | units, distance mode at start | parameters: taken as G21 G90, and the certificate says so |
 | two codes of a group | the last is taken |
