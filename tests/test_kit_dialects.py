@@ -105,3 +105,12 @@ def test_what_nothing_reads_is_refused():
     """Such as a fact that has moved into a rule: it would be left out without a word."""
     with pytest.raises(TypeError, match=r"Old\.arc_planes: gcxform\.Dialect has no arc_planes"):
         type("Old", (Plain,), {"arc_planes": frozenset({"XY"})})
+    mixed = type("Mixed", (), {"comments": "("})
+    with pytest.raises(TypeError, match=r"Mixed\.comments: gcxform\.Dialect has no comments"):
+        type("Old", (mixed, Plain), {})
+
+
+@pytest.mark.parametrize("value", [None, {"planes": {"XY"}}, gx.ArcRule, gx.FeedRule()])
+def test_a_rule_of_another_type_is_refused(value):
+    with pytest.raises(TypeError, match=r"Odd\.arc_rule is no ArcRule"):
+        type("Odd", (Plain,), {"arc_rule": value})

@@ -6,13 +6,17 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 
+import click
 import gcxform_plugins
 import pytest
 
 from gcxform.catalogue import CATALOGUE
+from gcxform.cli.machine import taken_over
 from gcxform.diagnostics import Location, Severity, UsageError
+from gcxform.machine.formats import TAKEN
 from gcxform.plugin.registry import KINDS, Registry, default_registry
 
 PASSES = """
@@ -185,6 +189,75 @@ def test_a_broken_plugin_costs_only_itself(install: Install, source: str, messag
     assert message in found
     assert "move" in registry.passes
     assert "fanuc" in registry.dialects
+
+
+@pytest.mark.parametrize(
+    ("member", "message"),
+    [
+        ("    joins = True", "Shift.joins is read in `demands` alone"),
+        (
+            "    def spares(self, path): return path.rapid",
+            "Shift.spares is read in `demands` alone",
+        ),
+        ("    demands = None", "Shift.demands is neither a property nor a Demands"),
+        ("    demands: str = ''", "Shift.demands is neither a property nor a Demands"),
+    ],
+)
+def test_a_pass_says_in_demands_what_a_run_has_to_know(
+    install: Install, member: str, message: str
+) -> None:
+    install("acme", PASSES.format(name="shift").replace("    by:", f"{member}\n    by:"))
+    assert [message in found for found in warnings(Registry.load())] == [True]
+
+
+def test_a_pass_may_have_an_option_that_is_called_as_a_demand(install: Install) -> None:
+    install(
+        "acme", PASSES.format(name="shift").replace("    by:", "    letters: str = ''\n    by:")
+    )
+    registry = Registry.load()
+    assert not warnings(registry)
+    assert "shift" in registry.passes
+
+
+@pytest.mark.parametrize(
+    ("member", "message"),
+    [
+        *(
+            (f"{name}: str = ''", f"C.{name}: `gcxform machine import` has")
+            for name in sorted(TAKEN)
+        ),
+        ("def tools(self, path, units): return {}", "C.tools is not a static method"),
+        ("tools = None", "C.tools is not a static method"),
+        ("kinematics = None", "C.kinematics is not a method"),
+    ],
+)
+def test_a_control_that_no_command_can_be_made_of(
+    install: Install, member: str, message: str
+) -> None:
+    source = f"""
+from dataclasses import dataclass
+{HEAD}def gcxform_control_files(): return [C]
+@dataclass(frozen=True)
+class C(gx.ControlFiles):
+    name = "acme"
+    {member}
+"""
+    install("acme", source)
+    registry = Registry.load()
+    assert [message in found for found in warnings(registry)] == [True]
+    assert "acme" not in registry.controls
+
+
+def test_what_every_command_of_a_control_has_is_known() -> None:
+    context = click.Context(taken_over)
+    for name in taken_over.list_commands(context):
+        command = taken_over.get_command(context, name)
+        assert command is not None
+        own = {each.name for each in fields(default_registry().controls[name])}
+        params = command.get_params(context)
+        names = {word.lstrip("-").replace("-", "_") for each in params for word in each.opts}
+        names |= {each.name or "" for each in params}
+        assert {name for name in names - own if len(name) > 1 and name[0] != "_"} == TAKEN
 
 
 def test_a_misspelt_hook_is_proposed(install: Install) -> None:

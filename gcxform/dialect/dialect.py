@@ -18,7 +18,7 @@ Everything is data; the reader, the emitter and the verifier ask here and nowher
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
 from typing import ClassVar
 
 from gcxform.config import arguments
@@ -119,12 +119,18 @@ class Dialect:
     def __init_subclass__(cls) -> None:
         """Let machine files have the settings that the dialect asks for.
 
-        Raises TypeError for an attribute that nothing would read, as one that is misspelled.
+        Raises TypeError for an attribute that nothing would read, as one that is misspelled, and
+        for a rule that is none.
         """
         super().__init_subclass__()
-        for name in vars(cls):
+        added = [part for part in cls.__mro__ if part not in Dialect.__mro__]
+        stated = [(f"{part.__name__}.{k}", k, v) for part in added for k, v in vars(part).items()]
+        for place, name, value in stated:
             if not (name.startswith("_") or hasattr(Dialect, name)):
-                raise TypeError(f"{cls.__name__}.{name}: gcxform.Dialect has no {name}")
+                raise TypeError(f"{place}: gcxform.Dialect has no {name}")
+            known = getattr(Dialect, name, None)
+            if is_dataclass(known) and not isinstance(value, type(known)):
+                raise TypeError(f"{place} is no {type(known).__name__}: {value!r}")
         declare(cls.settings)
 
     @classmethod

@@ -12,6 +12,9 @@ from gcxform.machine.kinds import Kinds
 from gcxform.machine.machine import Machine, Tool
 from gcxform.system import inputs
 
+TAKEN = frozenset({"file", "output", "limit", "allow_outside", "debug", "show_traceback", "help"})
+"""What every command of `gcxform machine import` has, so no field of a control has such a name."""
+
 
 class ControlFiles:
     """The files of a control; its docstring is what `gcxform list controls` shows.

@@ -266,7 +266,8 @@ def built(
 
     def elsewhere(key: str, value: object) -> str:
         if isinstance(value, str) and value in registry.passes:
-            return f'write "{value}" in the place of "{chosen.name}"'
+            other = value != chosen.name
+            return f'write "{value}" in the place of "{chosen.name}"' if other else "leave it out"
         takers = [n for n, p in registry.passes.items() if key in {o.name for o in describe(p)}]
         return f'it is an option of "{takers[0]}"' if len(takers) == 1 else ""
 

@@ -12,21 +12,23 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import redirect_stdout
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cache
 from importlib.metadata import EntryPoint
+from inspect import getattr_static
 from types import MappingProxyType
 from typing import Any, TypeVar
 
 import pluggy
 
 from gcxform.config.toml_text import did_you_mean
+from gcxform.contract.demands import Demands
 from gcxform.contract.options import describe
 from gcxform.contract.passes import Pass, TextPass
 from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
 from gcxform.dialect.dialect import Dialect
 from gcxform.errormodel.formats import ErrorFormat
-from gcxform.machine.formats import ControlFiles, Known
+from gcxform.machine.formats import TAKEN, ControlFiles, Known
 from gcxform.machine.kinds import Kinematics
 from gcxform.plugin import hookspecs
 from gcxform.toolpath.facts import FACTS, Fact
@@ -232,6 +234,32 @@ def _options_name(offer: Any, bases: tuple[type, ...]) -> str:
     return name
 
 
+def _pass_name(offer: Any) -> str:
+    """Return the name of a pass that says what a run has to know of it in `demands`."""
+    name = _options_name(offer, (Pass, TextPass))
+    said = getattr_static(offer, "demands", Demands())
+    lost = {each.name for each in fields(Demands)} & set(dir(offer))
+    lost -= {each.name for each in fields(offer)}
+    if lost and said is getattr_static(Pass, "demands"):
+        raise TypeError(f"{offer.__name__}.{min(lost)} is read in `demands` alone")
+    if not isinstance(said, property | Demands):
+        raise TypeError(f"{offer.__name__}.demands is neither a property nor a Demands")
+    return name
+
+
+def _control_name(offer: Any) -> str:
+    """Return the name of a control whose options can stand beside those of its command."""
+    name = _options_name(offer, (ControlFiles,))
+    if taken := sorted(TAKEN & {each.name for each in fields(offer)}):
+        message = f"`gcxform machine import` has a {taken[0]} of its own"
+        raise TypeError(f"{offer.__name__}.{taken[0]}: {message}")
+    if not isinstance(getattr_static(offer, "tools"), staticmethod | classmethod):
+        raise TypeError(f"{offer.__name__}.tools is not a static method")
+    if not callable(offer.kinematics):
+        raise TypeError(f"{offer.__name__}.kinematics is not a method")
+    return name
+
+
 def _fact_name(offer: Any) -> str:
     if not isinstance(offer, Fact):
         raise TypeError(f"{offer!r} is not a Fact")
@@ -248,9 +276,9 @@ def _format_name(offer: Any) -> str:
 _CHECKS: Mapping[str, Callable[[Any], str]] = MappingProxyType(
     {
         "dialect": lambda offer: _named(offer, (Dialect,)),
-        "pass": lambda offer: _options_name(offer, (Pass, TextPass)),
+        "pass": _pass_name,
         "kinematics": lambda offer: _named(offer, (Kinematics,)),
-        "control": lambda offer: _options_name(offer, (ControlFiles,)),
+        "control": _control_name,
         "fact": _fact_name,
         "format": _format_name,
     }
