@@ -18,6 +18,7 @@ class ArcRule:
     planes    in which it can cut arcs
     turns     the word that counts the turns of an arc (n - 1 full turns beyond the arc itself)
     circle_needs_axis_word   whether a full circle has to name an axis of its plane
+    drops_third   a centre word along the normal of the plane is dropped, beside one in the plane
     """
 
     absolute: float = 0.01
@@ -29,6 +30,7 @@ class ArcRule:
     planes: frozenset[str] = frozenset({"XY", "ZX", "YZ"})
     turns: str = ""
     circle_needs_axis_word: bool = False
+    drops_third: bool = False
 
 
 @dataclass(frozen=True, slots=True)

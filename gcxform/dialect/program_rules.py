@@ -14,6 +14,7 @@ class ProgramRule:
     """Where programs begin and end, and which of their blocks are executed.
 
     has_percent        a percent sign may stand around a program
+    drops_percent      where it may not: a line of one does nothing, wherever it stands
     has_program_number an O number may stand at its head
     number_digits      how many digits such a number may have; 0: any number
     spindle_stands     the spindle stands still, as far as the control knows, when a program starts
@@ -24,6 +25,7 @@ class ProgramRule:
     """
 
     has_percent: bool = True
+    drops_percent: bool = False
     has_program_number: bool = True
     number_digits: int = 0
     spindle_stands: bool = False

@@ -90,10 +90,11 @@ def needs_assignment(statement: Statement, source: type[Dialect], target: type[D
     return f"the assignment to {name}, which lasts longer than the program"
 
 
-def is_foreign(item: Item, target: type[Dialect]) -> bool:
+def is_foreign(item: Item, source: type[Dialect], target: type[Dialect]) -> bool:
     """Whether an item has no place in another dialect: assignments, frames that it has not.
 
-    An assignment of a number to a parameter that lasts, in a control that has it, is no such item.
+    A percent sign that says nothing in the source would say something in a target that has it. An
+    assignment of a number to a parameter that lasts, in a control that has it, is no such item.
     """
     if isinstance(item, Statement):
         return item.kind == "assignment" and not lasts_in(item, target)
@@ -102,7 +103,8 @@ def is_foreign(item: Item, target: type[Dialect]) -> bool:
     if item.kind == "block_end":  # the line end says it everywhere
         return True
     if item.kind == "percent":
-        return not target.program_rule.has_percent
+        framed = source.program_rule.has_percent and target.program_rule.has_percent
+        return source is not target and not framed
     return item.kind.startswith("program") and not target.program_rule.has_program_number
 
 
@@ -141,7 +143,7 @@ def nothing_left(items: tuple[Item, ...], meaning: Meaning, manner: Manner, work
         slash = isinstance(item, Mark) and item.kind == "block_delete"
         if isinstance(item, Statement) and needs_assignment(item, manner.source, manner.target):
             return False
-        return slash or (manner.crossing and is_foreign(item, manner.target))
+        return slash or (manner.crossing and is_foreign(item, manner.source, manner.target))
 
     kept = [item for item in items if not (isinstance(item, Word) and item.address == "N")]
     kept = [item for item in kept if not (isinstance(item, Mark) and item.kind == "block_delete")]

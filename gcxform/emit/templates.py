@@ -177,7 +177,7 @@ class TemplateWriter:
             self._rest()
             if self.source is not self.target:
                 return
-        elif is_foreign(item, self.target):
+        elif is_foreign(item, self.source, self.target):
             return
         if item.kind == "block_delete" or self.key.role not in (Role.MIDDLE, Role.LAST):
             self.draft.literal(lead, self.text[item.start : item.end])

@@ -224,7 +224,7 @@ def _lacking(dialect: type[Dialect]) -> Iterator[str]:
     if not dialect.program_rule.has_program_number:
         yield "O1000"
     if not dialect.program_rule.has_percent:
-        yield "%"
+        yield "% G0" if dialect.program_rule.drops_percent else "%"
 
 
 def _check_refusals(dialect: type[Dialect]) -> None:

@@ -29,6 +29,8 @@ READ = {
     "circle_with_its_end": ("G2 X0 Y0 I5 F10", "cw I5 F10"),
     "r_short": ("G2 X5 Y5 R5 F10", "cw X5 Y5 I5 F10"),
     "r_long": ("G2 X5 Y5 R-5 F10", "cw X5 Y5 J5 F10"),
+    "third_centre": ("G2 X10 I5 K3 F10", "cw X10 I5 F10"),
+    "percent": ("%|G0 X1", "rapid X1"),
     "zx": ("G18 G2 X10 Z0 I5 F10", "cw X10 I5 F10"),
     "off_by_4um": ("G2 X10.004 I5 F10", "cw X10.004 I5 F10"),
     "off_by_a_thousandth": ("G2 X200.09 I100 F10", "cw X200.09 I100 F10"),
@@ -43,7 +45,9 @@ READ = {
 }
 
 REFUSED = {
-    "percent": "%|G0 X1",
+    "percent_beside_a_word": "% G0 X1",
+    "third_centre_alone": "G2 X10 K5 F10",
+    "third_centre_beside_r": "G2 X10 R5 K0 F10",
     "program_number": "O1234|G0 X1",
     "n_beyond_ten_million": "N10000001 G0 X1",
     "line_of_80": "G0 X1 Y2 Z" + "0" * 73,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import FACTS, FOUND, LIMITS, READING, VERIFY, Mutation
+from faults.mutation import CORPUS, FACTS, FOUND, LIMITS, READING, VERIFY, Mutation
 
 MUTATIONS = (
     # reading
@@ -19,6 +19,27 @@ MUTATIONS = (
         "2.0 * self.kind - 5.0",
         "5.0 - 2.0 * self.kind",
         READING,
+    ),
+    Mutation(
+        "reading: the centre word that is dropped makes an arc alone",
+        "gcxform/modal/moves/arcs.py",
+        "~(in_plane & self.rule.drops_third)",
+        "~(has.any(axis=1) & self.rule.drops_third)",
+        CORPUS,
+    ),
+    Mutation(
+        "reading: a percent sign beside words is dropped",
+        "gcxform/modal/meaning/sorting.py",
+        "return alone and dialect.program_rule.drops_percent",
+        "return dialect.program_rule.drops_percent",
+        CORPUS,
+    ),
+    Mutation(
+        "reading: a percent sign that says nothing goes to a control to which it does",
+        "gcxform/emit/expressible.py",
+        "source is not target and not framed",
+        "source is not target and not target.program_rule.has_percent",
+        CORPUS,
     ),
     Mutation(
         "reading: a full circle has no sweep",

@@ -74,9 +74,15 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
         elif isinstance(item, Mark):
             meaning.marked = True
             meaning.deleted |= item.kind == "block_delete"
-            meaning.percent |= item.kind == "percent"
+            meaning.percent |= item.kind == "percent" and not _dropped(shape, dialect)
         elif isinstance(item, Comment):
             yield from _comment(item, shape, dialect, meaning)
+
+
+def _dropped(shape: Shape, dialect: type[Dialect]) -> bool:
+    """Whether a percent sign does nothing, because it stands in a line of its own."""
+    alone = all(isinstance(item, Mark | Comment) for item in shape.block.items)
+    return alone and dialect.program_rule.drops_percent
 
 
 def _comment(

@@ -142,8 +142,9 @@ class _Part:
             "an arc, but where it starts is not known",
             hint="begin with a line to a known point, or say start = { X = ... } in [input]",
         )
+        across = has[:, self.normal] & ~(in_plane & self.rule.drops_third)
         self._refuse(
-            has[:, self.normal],
+            across,
             "GX304",
             f"{'IJK'[self.normal]} is not in the plane of this arc",
             "IJK"[self.normal],

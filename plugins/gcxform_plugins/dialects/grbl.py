@@ -7,10 +7,11 @@
 | two codes of a group, a word twice, a word nobody uses | refused |
 | G80 beside a motion code, G49 beside one | refused |
 | G49 beside axis words | does not move: refused |
-| arc centre | incremental only |
+| arc centre | incremental only; K of an arc in XY is dropped, beside I or J |
 | full circle | at least one plane word must be there |
 | start and end radius | refused beyond 0.5 mm, or beyond 0.005 mm and 0.1 % |
-| `%`, O numbers | refused |
+| `%` | error 1, and nothing is executed, or left out by what sends the program: copied |
+| O numbers | refused |
 | after M2, M30 | modes are G1 G17 G90 G94 G54 and execution goes on |
 | G93 on an arc | its source takes F as mm/min there: refused where feeds are converted |
 | another feed mode | the feed is not known until it is programmed |
@@ -55,6 +56,7 @@ class Grbl(gx.Dialect):
     initial: ClassVar[Mapping[str, str]] = {**gx.Dialect.initial, "motion": "G0"}
     program_rule = gx.ProgramRule(
         has_percent=False,
+        drops_percent=True,
         has_program_number=False,
         block_delete="execute",
         stops_at_end=False,
@@ -76,7 +78,9 @@ class Grbl(gx.Dialect):
     block_rule = gx.BlockRule(words="FIJKLNPRST", axis_words_once=True, g80_beside_motion=False)
     feed_rule = gx.FeedRule(arcs_in_time=False)
     motion_rule = gx.MotionRule(g28_without_axes=True, g53_in_g91="absolute")
-    arc_rule = gx.ArcRule(absolute=0.005, relative=0.001, largest=0.5, circle_needs_axis_word=True)
+    arc_rule = gx.ArcRule(
+        absolute=0.005, relative=0.001, largest=0.5, circle_needs_axis_word=True, drops_third=True
+    )
     offset_rule = gx.OffsetRule(
         known_at_start=True,
         g10_p0_is_active=True,
