@@ -104,7 +104,8 @@ class Interpreter:
         rule = self.dialect.cycle_rule
         if rule is not None:
             control = self.reading.control
-            state.cycles = Cycles(rule, *(_length(control, name) for name in PECKS))
+            up, above = (_length(control, name) for name in PECKS)
+            state.cycles = Cycles(rule, up, above, self.reading.open_pecks)
         retract = int(rule is None or rule.initial_level)
         spindle = 0 if self.dialect.program_rule.spindle_stands else UNKNOWN_SPINDLE
         state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": spindle, "behind": 0}

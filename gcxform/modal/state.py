@@ -42,6 +42,8 @@ class Reading:
     feed_increment   what 1 means in an F without a point: a number of units per minute, a system
                   or "calculator"; None: such an F is refused where the dialect asks for a point
     rotary        the letters of the rotary axes of the machine; "" where that is not known
+    open_pecks    whether a cycle may be read whose way back between pecks is a parameter that is
+                  not given: where it then goes up to is nan. Its block must stay as it is
     parameters    values of parameters before the first block, by number ("100") or name ("<a>")
     """
 
@@ -58,6 +60,7 @@ class Reading:
     control: Mapping[str, str | float] = field(default_factory=dict)
     inert_m: frozenset[int] = frozenset()
     rotary: str = ""
+    open_pecks: bool = False
 
     def __post_init__(self) -> None:
         """Take what a caller may write for what it means; refuse all else. Raises UsageError."""

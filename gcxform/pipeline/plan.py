@@ -188,7 +188,9 @@ class Plan:
     @property
     def machine_reading(self) -> Reading:
         """What is known of programs before they are read, with what the machine file says."""
-        return self.reading if self.machine is None else self.reading.on(self.machine)
+        reading = self.reading if self.machine is None else self.reading.on(self.machine)
+        expands = any(NO_CYCLES in step.ensures for step in self.path_passes)
+        return replace(reading, open_pecks=self.source is self.target and not expands)
 
     def reading_at_start(self, axes: str) -> Reading:
         """Return what is known at the start; where only programmed words are written, 0 for axes.

@@ -128,8 +128,8 @@ FAULTS = (
     (
         "clearance and return are swapped",
         STEPS,
-        "clears, rule.peck_clearance or 0.0, rule.peck_return or 0.0",
-        "clears, rule.peck_return or 0.0, rule.peck_clearance or 0.0",
+        "clears, above, up",
+        "clears, up, above",
     ),
     (
         "the first peck is left out",
@@ -208,5 +208,19 @@ MUTATIONS = (
         "stretch.bottom > stretch.clearance",
         "stretch.bottom > np.inf",
         "tests/test_cycle_refusals.py",
+    ),
+    Mutation(
+        "cycles: two controls have one and the same parameter of pecks",
+        "gcxform/pipeline/plan.py",
+        "open_pecks=self.source is self.target and not expands",
+        "open_pecks=not expands",
+        "tests/test_corpus.py::test_case[dialects/across/pecks-for-haas]",
+    ),
+    Mutation(
+        "cycles: pecks that are not known are expanded",
+        "gcxform/pipeline/plan.py",
+        "open_pecks=self.source is self.target and not expands",
+        "open_pecks=self.source is self.target",
+        "tests/test_corpus.py::test_case[bad/gx215-cycle]",
     ),
 )

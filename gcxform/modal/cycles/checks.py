@@ -29,10 +29,16 @@ class Refusal:
 
 
 class Checks:
-    """Looks at the columns of stretches; `pecks` (n,): in how many pecks holes are drilled."""
+    """Looks at the columns of stretches; `pecks` (n,): in how many pecks holes are drilled.
 
-    def __init__(self, stretch: Stretch, rule: CycleRule, pecks: Ints) -> None:
+    `open_pecks`: where the tool goes between them need not be known.
+    """
+
+    def __init__(
+        self, stretch: Stretch, rule: CycleRule, pecks: Ints, open_pecks: bool = False
+    ) -> None:
         self.stretch, self.rule, self.pecks, self.cycles = stretch, rule, pecks, rule.cycles
+        self.open_pecks = open_pecks
         self.calls, self.drilled, self.words = stretch.calls, stretch.drilled, stretch.words
         self.codes = set(distinct(self.calls.code).tolist())
 
@@ -169,7 +175,7 @@ class Checks:
             key = name.replace("_", "-")
             hint = f'{key} = "0.5 mm" in [control] of the machine file, as the machine has it'
             message = "{code}: how far it goes back between pecks is a parameter of the control"
-            yield deep & (needed is None), message, hint
+            yield deep & (needed is None and not self.open_pecks), message, hint
 
 
 def _takes_no(letter: str) -> tuple[str, str]:

@@ -43,7 +43,7 @@ class Cycles:
     """Expands the stretches of one program in order. `mode` is immutable, so a copy is cheap.
 
     `zero` is from where levels counted in the last stretch. `peck_return` and `peck_clearance` (mm)
-    are for controls in which they are parameters.
+    are for controls in which they are parameters; with `open_pecks` what they leave open is nan.
     """
 
     def __init__(
@@ -51,12 +51,14 @@ class Cycles:
         rule: CycleRule,
         peck_return: float | None = None,
         peck_clearance: float | None = None,
+        open_pecks: bool = False,
     ) -> None:
         self.rule = replace(
             rule,
             peck_return=rule.peck_return if peck_return is None else peck_return,
             peck_clearance=rule.peck_clearance if peck_clearance is None else peck_clearance,
         )
+        self.open_pecks = open_pecks
         self.mode = Mode()
         self.zero: object = None
 
@@ -82,7 +84,7 @@ class Cycles:
         """Return the moves of stretches of one plane and unit, and what speaks against them."""
         stretch = joined(stretches)
         pecks = _pecks(stretch, self.rule)
-        refusals, wrong = Checks(stretch, self.rule, pecks).refusals()
+        refusals, wrong = Checks(stretch, self.rule, pecks, self.open_pecks).refusals()
         holes = holes_of(stretch, stretch.drilled & ~wrong, pecks)
         return Steps(rows_of(holes, self.rule), stretch.after, refusals)
 

@@ -157,7 +157,9 @@ def _pecks(
     top = holes.levels[hole, Level.CLEARANCE]
     depth = top - (peck + 1) * holes.peck[hole]
     clears = between == 3
-    back = np.where(clears, rule.peck_clearance or 0.0, rule.peck_return or 0.0)
+    above = np.nan if rule.peck_clearance is None else rule.peck_clearance
+    up = np.nan if rule.peck_return is None else rule.peck_return
+    back = np.where(clears, above, up)
     normal = np.where(part == 0, depth, depth + back)
     end[at, 2] = np.where(clears & (part == 1), top, normal)
     end[at, :2] = holes.at[hole]

@@ -22,7 +22,7 @@
 | G41, G42, G40 with an arc | refused: alarm 34 |
 | tool change | moves axes: positions are unknown after it |
 | canned cycles | R, Z, P, Q stay until the cycle mode ends; K0 stores them without drilling |
-| G73, G83 between pecks | parameters 5114 and 5115: must be given |
+| G73, G83 between pecks | parameters 5114, 5115: must be given, unless the blocks are copied |
 | G76, G87, G88 | depend on parameters or on the operator: refused |
 | M29 | the tap that follows is in step with the spindle: it moves nothing itself |
 | G96 | changes the speed of the spindle and no path |
