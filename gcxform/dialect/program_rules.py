@@ -72,7 +72,8 @@ class BlockRule:
     last_code_wins    of two codes of one group the last is taken; otherwise the block is refused
     axis_words_once   a motion code beside a code that takes the axis words for itself (G92, G28)
                       is refused
-    g80_beside_motion G80 beside another motion code says nothing; otherwise the block is refused
+    g80_beside_motion G80 beside another motion code says nothing, and beside G92 or G28 leaves it
+                      the axis words; otherwise the block is refused
     most_m_words      how many M words a block may have; 0: any number
     unknown_m         what an M code outside `m_codes` is; None: it is refused
     m_first           M codes that may move axes do so before the motion of their block, for certain

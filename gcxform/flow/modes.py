@@ -116,7 +116,7 @@ class StoredModes:
         feed = [f"{a}{stored[a]}" for a in (FEED, SPEED) if a in differ]
         codes = [stored[group] for group in RESTORED if group in differ]
         units = [stored[UNITS]] if UNITS in differ else []
-        for words in (units, feed, codes, self._machine_codes(differ, stored)):
+        for words in (units, feed, codes, *self._machine_codes(differ, stored)):
             if words:
                 self.program.write_line(" ".join(words))
 
@@ -128,13 +128,18 @@ class StoredModes:
                 message = f"{now[group]} would have to go back to {before or 'what was before'}"
                 raise self.program.refusal("GX210", f"the modes are restored here: {message}")
 
-    def _machine_codes(self, differ: set[str], stored: Codes) -> list[str]:
-        """Return the M codes that bring spindle and coolant back."""
+    def _machine_codes(self, differ: set[str], stored: Codes) -> list[list[str]]:
+        """Return the M codes that bring spindle and coolant back, by block.
+
+        M7 and M8 are of one modal group: a block may have one of them.
+        """
         found = [stored[SPINDLE]] if SPINDLE in differ else []
+        second: list[str] = []
         if differ & {MIST, FLOOD}:
             on = [stored[code] for code in (MIST, FLOOD) if stored[code]]
             off = any(code in differ and not stored[code] for code in (MIST, FLOOD))
-            found += (["M9"] if off and not on else []) + on
+            found += (["M9"] if off and not on else []) + on[:1]
+            second = on[1:]
             if off and on:
                 raise self.program.refusal("GX210", "one of two coolants would go off here")
-        return found
+        return [found, second]

@@ -29,6 +29,7 @@ READ = {
     "circle_with_its_end": ("G2 X0 Y0 I5 F10", "cw I5 F10"),
     "r_short": ("G2 X5 Y5 R5 F10", "cw X5 Y5 I5 F10"),
     "r_long": ("G2 X5 Y5 R-5 F10", "cw X5 Y5 J5 F10"),
+    "g80_beside_g28": ("G0 X5|G80 G28|G0 X1 Y0 Z0", "rapid X5|rapid|rapid X1"),
     "third_centre": ("G2 X10 I5 K3 F10", "cw X10 I5 F10"),
     "percent": ("%|G0 X1", "rapid X1"),
     "zx": ("G18 G2 X10 Z0 I5 F10", "cw X10 I5 F10"),
@@ -46,6 +47,8 @@ READ = {
 
 REFUSED = {
     "percent_beside_a_word": "% G0 X1",
+    "g80_beside_g92": "G80 G92 X1",
+    "g80_beside_g28_x": "G80 G28 X1",
     "third_centre_alone": "G2 X10 K5 F10",
     "third_centre_beside_r": "G2 X10 R5 K0 F10",
     "program_number": "O1234|G0 X1",

@@ -28,6 +28,20 @@ MUTATIONS = (
         CORPUS,
     ),
     Mutation(
+        "reading: GRBL leaves G92 its axis words beside G80",
+        "gcxform/modal/meaning/sorting.py",
+        "dialect.block_rule.g80_beside_motion or words.isdisjoint(dialect.axes)",
+        "dialect.block_rule.g80_beside_motion or bool(words)",
+        CORPUS,
+    ),
+    Mutation(
+        "reading: G80 leaves G43.1 its axis words",
+        "gcxform/modal/meaning/sorting.py",
+        'meaning.groups["motion"] != "G80" or code.act == "length-vector"',
+        'meaning.groups["motion"] != "G80"',
+        CORPUS,
+    ),
+    Mutation(
         "reading: a percent sign beside words is dropped",
         "gcxform/modal/meaning/sorting.py",
         "return alone and dialect.program_rule.drops_percent",

@@ -213,9 +213,20 @@ def _g_act(
         message = f"{name} takes the axis words here, and has no use for them"
         yield Refusal("GX202", word.start, width, message, "move in a block of its own")
     once = dialect.block_rule.axis_words_once
-    if once and code.act in TAKES_MOTION and "motion" in meaning.groups:
+    wants = code.act in TAKES_MOTION and "motion" in meaning.groups
+    if once and wants and not _leaves_words(dialect, meaning, code, taken):
         message = f"{name} and {meaning.groups['motion']} both want the axis words"
         yield Refusal("GX202", word.start, width, message)
+
+
+def _leaves_words(
+    dialect: type[Dialect], meaning: Meaning, code: Code, taken: tuple[tuple[str, int], ...]
+) -> bool:
+    """Whether the motion code of a block is G80 and leaves its axis words to another code."""
+    if meaning.groups["motion"] != "G80" or code.act == "length-vector":
+        return False
+    words = {*meaning.slots, *(address for address, _ in taken)}
+    return dialect.block_rule.g80_beside_motion or words.isdisjoint(dialect.axes)
 
 
 def _take(
