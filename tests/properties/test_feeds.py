@@ -128,7 +128,7 @@ def written(seed: int) -> tuple[gx.Pipeline, bytes, gx.Result, float] | None:
 
 
 @pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
-@shares(COUNT, 75)
+@shares(COUNT, 150)
 def test_linuxcnc_takes_as_long(seeds: range) -> None:
     modes: set[tuple[frozenset[str], frozenset[str]]] = set()
     jobs = [job for seed in seeds if (job := written(seed)) is not None]

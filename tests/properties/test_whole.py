@@ -26,7 +26,7 @@ def drawn(seed: int, blocks: int = 30) -> bytes:
     return WholeBuilder(random.Random(seed).randint, options, vector).build()
 
 
-@shares(COUNT, 500)
+@shares(COUNT, 250)
 def test_gcxform_reads_the_whole_language_as_linuxcnc_does(seeds: range) -> None:
     codes: Counter[str] = Counter()
     sources = [drawn(seed) for seed in seeds]
