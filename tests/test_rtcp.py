@@ -394,7 +394,7 @@ M30
             'direction = "retarget"\ntarget = "machine.toml"',
             ['write "retarget" in the place of "rtcp"', 'it is an option of "retarget"'],
         ),
-        ('direction = "rtcp"', ["leave it out"]),
+        ('direction = "to-machine"', ["leave it out"]),
     ],
 )
 def test_each_way_is_a_pass_of_its_own(tmp_path, said, hints):

@@ -258,6 +258,10 @@ class _Reader:
                     self.found += error.diagnostics
 
 
+DIRECTIONS = ("to-machine", "to-tip", "repost", "retarget")
+"""What an option of `rtcp` said, which is passes of their own now."""
+
+
 def built(
     chosen: type[Step], options: Mapping[str, object], base: Path, registry: Registry, where: Any
 ) -> Step:
@@ -265,8 +269,8 @@ def built(
     formats, machines = registry.formats.values(), registry.machines
 
     def elsewhere(key: str, value: object) -> str:
-        if isinstance(value, str) and value in registry.passes:
-            other = value != chosen.name
+        if key == "direction" and value in DIRECTIONS:
+            other = value in registry.passes and value != chosen.name
             return f'write "{value}" in the place of "{chosen.name}"' if other else "leave it out"
         takers = [n for n, p in registry.passes.items() if key in {o.name for o in describe(p)}]
         return f'it is an option of "{takers[0]}"' if len(takers) == 1 else ""
