@@ -9,32 +9,32 @@ from cycle_kit import Drawn, Played, Player, text
 from hypothesis import settings
 from oracles import rs274, toolpaths
 from oracles.canon import CanonProgram
+from seeds_kit import shares
 
 import gcxform as gx
 from gcxform.plugin.registry import default_registry
 
 COUNT = 5 * settings.default.max_examples  # 500; the profile `long` asks for more
-CHUNK = 500
 NEAR = 1e-4  # of a unit of the program: the rounding of the print, and a little
 
 pytestmark = pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
 
 
-def test_cycles_move_as_linuxcnc_moves() -> None:
+@shares(COUNT, 250)
+def test_cycles_move_as_linuxcnc_moves(seeds: range) -> None:
     rule = default_registry().dialect("linuxcnc").cycle_rule
     assert rule is not None
     moves = refused = 0
-    for first in range(0, COUNT, CHUNK):
-        programs = [Drawn(seed).blocks() for seed in range(first, min(first + CHUNK, COUNT))]
-        answers = rs274.run_many([text(blocks) for blocks in programs])
-        for blocks, answer in zip(programs, answers, strict=True):
-            played = Player(rule).play(blocks)
-            problem = difference(played, answer) or program_difference(text(blocks), answer)
-            assert problem == "", f"{problem}\n{text(blocks).decode()}"
-            moves += len(played.moves)
-            refused += played.refused > 0
-    assert moves > 20 * COUNT
-    assert 0.05 * COUNT < refused < 0.5 * COUNT
+    programs = [Drawn(seed).blocks() for seed in seeds]
+    answers = rs274.run_many([text(blocks) for blocks in programs])
+    for blocks, answer in zip(programs, answers, strict=True):
+        played = Player(rule).play(blocks)
+        problem = difference(played, answer) or program_difference(text(blocks), answer)
+        assert problem == "", f"{problem}\n{text(blocks).decode()}"
+        moves += len(played.moves)
+        refused += played.refused > 0
+    assert moves > 20 * len(seeds)
+    assert 0.05 * len(seeds) < refused < 0.5 * len(seeds)
 
 
 def program_difference(program: bytes, answer: CanonProgram | rs274.Rejected) -> str:
