@@ -88,7 +88,7 @@ class Execution(RunState):
         """Whether the control skips the line; a slash on one that decides something is refused."""
         if not has_slash(block):
             return False
-        policy = self.reading.block_delete or self.dialect.program_rule.block_delete
+        policy = self.reading.blocks_with_a_slash(self.dialect)
         if not policy:
             message = "a switch of the control decides whether this block is executed"
             hint = 'block-delete = "execute" in [input], or block-delete = "skip" in [input]'

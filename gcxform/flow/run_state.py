@@ -92,7 +92,7 @@ class RunState:
 
     def stands(self, block: Block) -> bool:
         """Whether a line counts where lines are put together: not if it is skipped."""
-        policy = self.reading.block_delete or self.dialect.program_rule.block_delete
+        policy = self.reading.blocks_with_a_slash(self.dialect)
         return not (policy == "skip" and has_slash(block))
 
     # --- values ---

@@ -232,7 +232,7 @@ class Translator(ABC):
         slash = next((item for item in items if item.kind == BLOCK_DELETE), None)
         if slash is None:
             return False
-        policy = self.reading.block_delete or self.dialect.program_rule.block_delete
+        policy = self.reading.blocks_with_a_slash(self.dialect)
         if not policy:
             message = "a switch of the control decides whether this block is executed"
             hint = 'block-delete = "execute" in [input], or block-delete = "skip" in [input]'

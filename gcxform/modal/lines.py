@@ -118,7 +118,7 @@ class Lines:
         ends = np.zeros(len(shape), np.bool_)
         if self.dialect.program_rule.stops_at_end:
             ends |= self.table.flag("ends", shape)
-            if (self.reading.block_delete or self.dialect.program_rule.block_delete) != "execute":
+            if self.reading.blocks_with_a_slash(self.dialect) != "execute":
                 ends &= ~self.table.flag("deleted", shape)
         percent = np.flatnonzero(self.table.flag("percent", shape))
         for line in percent[max(0, 1 - self.state.percents) :][:1]:
@@ -132,7 +132,7 @@ class Lines:
     def _deleted_blocks(self) -> None:
         """Execute or silence blocks with a slash, or refuse them."""
         deleted = np.flatnonzero(self.flag("deleted"))
-        policy = self.reading.block_delete or self.dialect.program_rule.block_delete
+        policy = self.reading.blocks_with_a_slash(self.dialect)
         if len(deleted) and self.reading.block_delete:
             done = {"execute": "executed", "skip": "skipped"}[self.reading.block_delete]
             self.state.assumed[f"blocks with a slash are {done}"] = None

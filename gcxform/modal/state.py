@@ -10,6 +10,7 @@ import numpy as np
 from gcxform.config import arguments
 from gcxform.config.quantities import AXIS_LETTERS
 from gcxform.diagnostics import Diagnostic, UsageError
+from gcxform.dialect.dialect import Dialect
 from gcxform.dialect.increments import Increments
 from gcxform.machine.machine import TIP_AT_START, Machine, Tool
 from gcxform.modal.cycles.expansion import Cycles
@@ -70,6 +71,10 @@ class Reading:
             _ = self.increments
         except ValueError as error:
             raise UsageError.one("GX708", f"increment: {error}") from None
+
+    def blocks_with_a_slash(self, dialect: type[Dialect]) -> str:
+        """Return what is done with them: what is told, else what the dialect says, else ""."""
+        return self.block_delete or dialect.program_rule.block_delete
 
     def _taken(self) -> dict[str, object]:
         """Return the fields that a program cannot be read without understanding, converted."""

@@ -142,7 +142,7 @@ class Restart:
         return used
 
     def _refuse_skipped(self) -> None:
-        skips = (self.reading.block_delete or self.dialect.program_rule.block_delete) == "skip"
+        skips = self.reading.blocks_with_a_slash(self.dialect) == "skip"
         if skips and self.text.lstrip().startswith("/"):
             raise self.refusal("the block is skipped", "begin at a block that is executed")
 
