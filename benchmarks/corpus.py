@@ -1,15 +1,18 @@
-"""Run every real program of a corpus and print how many go through and why the rest is refused.
+"""Run every real program of a corpus and say which go through, and why each other does not.
 
-    python benchmarks/corpus.py [CORPUS] [--list]
+    python benchmarks/corpus.py [CORPUS] [--list] [--dialect NAME] [--cause TEXT] [--bytes]
 
-CORPUS is a folder with `manifest.csv` and `programs/`; by default the one beside the checkout. For
-each program: reading and printing must give its bytes, so must the empty pipeline, and `absolute |
-segment | volumetric` must give a verified program or a refusal with a code and a line. Programs of
-other dialects are run too, as each of ours: they may be refused, but never crash.
+CORPUS is a folder with `manifest.csv`, `rs274_results.csv` and `programs/`; by default the one
+beside the checkout. Each program is run where it lies, through two chains, with what a user of its
+machine could have filled in (`corpus_machines/`, chosen by `corpus.toml`).
 
-A second table says what the programs that go through held, before and after: blocks that move,
-subprograms, parameters that are set. A program that moved and does not move any more is emptied,
-and one that is refused has lost nothing.
+*Through* is a program whose result is proved, and which holds what its source held: as many blocks
+that move, and every subprogram by its name, counted by patterns that know nothing of gcxform. What
+is lost in a proved run is the cause `LOST`, and counts as not through.
+
+Every cause has a judgement in `corpus.toml`: *right*, and why; or *missing*, and what. Programs of
+LinuxCNC count if its interpreter `rs274` accepts them, of GRBL if its parser does, by the rules in
+`grbl_rules.py`.
 """
 
 from __future__ import annotations
@@ -17,13 +20,24 @@ from __future__ import annotations
 import argparse
 import csv
 import re
+import signal
 import sys
+import tomllib
 from collections import Counter
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
+from types import FrameType
+
+from grbl_rules import accepts
 
 import gcxform as gx
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
+from gcxform.pipeline.chain_text import parse_chain
+from gcxform.pipeline.file import load
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
 from gcxform.syntax.source import Source
@@ -32,25 +46,162 @@ from gcxform.syntax.tree import print_block
 HERE = Path(__file__).resolve().parent
 BESIDE = HERE.parents[1] / "shared" / "corpus"
 MODEL = HERE.parent / "examples" / "lddm" / "model.toml"
-CHAIN = (
-    "absolute | segment chord-error=5um | "
-    f"volumetric model={MODEL} part-origin=0,0,0 outside=clamp tolerance=1um"
-)
+CHAIN = f"absolute | segment chord-error=5um | volumetric model={MODEL} outside=clamp tolerance=1um"
+CHAINS = {"absolute": "absolute", "compensated": CHAIN}
 OURS = ("fanuc", "grbl", "haas", "linuxcnc")
+BARS = {"fanuc": 32, "haas": 11}
+"""Programs that are to go through `absolute`; in the long chain a tenth fewer may."""
+SECONDS = 120
 START = Reading({"X": 0.0, "Y": 0.0, "Z": 0.0})
 """Many programs leave an axis where it is: the machine is taken to stand at its origin."""
 NUMBERS = gx.NumberFormat(mm=4, inch=5, angle=4)
 
 
+@dataclass(frozen=True)
+class Job:
+    """A program of the corpus, and the chain that it is run through."""
+
+    corpus: Path
+    path: str
+    dialect: str
+    chain: str
+
+    @property
+    def text(self) -> bytes:
+        """The program."""
+        return (self.corpus / self.path).read_bytes()
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a program: nothing in `code` if it went through."""
+
+    job: Job
+    code: str = ""
+    says: str = ""
+    line: int = 0
+
+    @property
+    def cause(self) -> str:
+        """The code and the sentence, without names and numbers."""
+        says = re.sub(r"(?<=O)<[^>]*>|\d[-.\d]*", "..", self.says, flags=re.IGNORECASE)
+        return f"{self.code} {says[:75]}"
+
+    @property
+    def judgement(self) -> str:
+        """What `corpus.toml` says of the cause; empty if nothing."""
+        for cause in notes()["cause"]:
+            named = re.search(cause.get("programs", ""), self.job.path)
+            if cause["code"] == self.code and re.search(cause.get("says", ""), self.says) and named:
+                kind = "right" if "right" in cause else "missing"
+                return f"{kind}: {cause[kind]}"
+        return ""
+
+
+# --- what is run ---
+
+
+@cache
+def notes() -> dict[str, list[dict[str, str]]]:
+    """Return the machines and the judgements of `corpus.toml`."""
+    return tomllib.loads((HERE / "corpus.toml").read_text("utf-8"))
+
+
 def pipeline(dialect: str, chain: str) -> Pipeline:
-    """Return a chain in one of our dialects."""
+    """Return a chain in one of our dialects, with nothing that a machine file says."""
     kind = default_registry().dialect(dialect)
-    passes = Pipeline.parse(chain, dialect).passes
+    passes = tuple(parse_chain(chain, HERE, default_registry()))
     return Pipeline(kind, kind, passes, START, numbers=NUMBERS)
 
 
+@cache
+def filled_in(dialect: str, path: str, chain: str) -> Pipeline:
+    """Return a chain with what the user of the machine of a program filled in."""
+    registry = default_registry()
+    mine = [m for m in notes()["machine"] if m["dialect"] == dialect]
+    file = [m["file"] for m in mine if re.search(m.get("programs", ""), path)][-1]
+    spec = load(HERE / "corpus_machines" / file, registry)
+    passes = tuple(parse_chain(CHAINS[chain], HERE, registry))
+    made = Pipeline.of_spec(replace(spec, passes=passes), registry, dialect)
+    return replace(made, numbers=NUMBERS)
+
+
+def counted(corpus: Path, ours: Iterable[str] = OURS) -> Iterator[Job]:
+    """Yield the programs that count, through each chain."""
+    with (corpus / "rs274_results.csv").open(newline="") as stream:
+        accepted = {row["path"] for row in csv.DictReader(stream) if row["exit"] == "0"}
+    with (corpus / "manifest.csv").open(newline="") as stream:
+        programs = [r for r in csv.DictReader(stream) if r["role"] == "program"]
+    for row in programs:
+        dialect, path = row["dialect"], row["path"]
+        if dialect not in ours or (dialect == "linuxcnc" and path not in accepted):
+            continue
+        if dialect == "grbl" and not accepts((corpus / path).read_bytes()):
+            continue
+        yield from (Job(corpus, path, dialect, chain) for chain in CHAINS)
+
+
+def run(job: Job) -> Outcome:
+    """Run a program through its chain."""
+    try:
+        with_limit = filled_in(job.dialect, job.path, job.chain)
+        signal.signal(signal.SIGALRM, _too_long)
+        signal.alarm(SECONDS)
+        result = with_limit.run(job.corpus / job.path)
+    except gx.GcxformError as error:
+        first = error.diagnostics[0]
+        return Outcome(job, first.code, first.message, first.where.line if first.where else 0)
+    except TimeoutError:
+        return Outcome(job, "TIME", f"not done after {SECONDS} s")
+    except Exception as error:
+        return Outcome(job, "CRASH", repr(error))
+    finally:
+        signal.alarm(0)
+    if not result.certificate.verified:
+        return Outcome(job, "NOT VERIFIED")
+    lost = what_is_lost(job.text, result.text)
+    return Outcome(job, "LOST", lost) if lost else Outcome(job)
+
+
+def _too_long(number: int, frame: FrameType | None) -> None:
+    raise TimeoutError
+
+
+def outcomes(jobs: Iterable[Job], processes: int = 2) -> list[Outcome]:
+    """Return what became of programs."""
+    with ProcessPoolExecutor(processes) as pool:
+        return list(pool.map(run, jobs))
+
+
+# --- what a program holds ---
+
+WORD = rb"(?<![#<A-Z])[XYZABCUVW][ \t]*(?:[-+.0-9#\[]|[A-Z]{2,5}[ \t]*\[)"
+MOVES = re.compile(WORD, re.IGNORECASE)
+NAME = re.compile(rb"O[ \t]*(<[^<>]*>|[0-9]+)[ \t]*(?:SUB)?", re.IGNORECASE)
+FLOW = re.compile(rb"O[ \t]*(?:<[^<>]*>|[0-9]+)[ \t]*[A-Z]{2}", re.IGNORECASE)
+ASIDE = re.compile(rb"\([^()\n]*\)|;[^\n]*|^[/\s]*(?:N[0-9.]+)?\s+")
+
+
+def held(text: bytes) -> tuple[int, Counter[bytes]]:
+    """Return how many blocks move, and which names of subprograms there are, by patterns alone."""
+    lines = [ASIDE.sub(b"", line).strip() for line in text.splitlines()]
+    names = Counter(m[1].lower() for m in map(NAME.fullmatch, lines) if m)
+    plain = [line for line in lines if FLOW.match(line) is None]
+    return sum(MOVES.search(line) is not None for line in plain), names
+
+
+def what_is_lost(before: bytes, after: bytes) -> str:
+    """Return a sentence about blocks and names of a source that its result has not; or nothing."""
+    moves, names = held(before)
+    moves_after, names_after = held(after)
+    gone = names - names_after
+    if gone:
+        return f"{gone.total()} of {names.total()} definitions are gone"
+    return f"{moves - moves_after} of {moves} motions are gone" if moves > moves_after else ""
+
+
 def prints_back(text: bytes, dialect: str) -> bool:
-    """Whether the trees of all lines print the bytes they were read from."""
+    """Whether the empty pipeline, and the trees of all lines, give the bytes that were read."""
     reader = WindowReader(default_registry().dialect(dialect))
     grammar = reader.dialect.load_grammar()
     printed = []
@@ -60,106 +211,52 @@ def prints_back(text: bytes, dialect: str) -> bool:
             block = grammar.parse(window.line(line).decode("latin-1"))
             end = part[int(window.end[line]) : int(window.next[line])]
             printed.append(print_block(block).encode("latin-1") + end)
-    return b"".join(printed) == text
+    return b"".join(printed) == text == pipeline(dialect, "").run(text).text
 
 
-HELD = ("motions", "definitions", "assignments")
-WORD = rb"(?<![#<A-Z])[XYZABCUVW][ \t]*(?:[-+.0-9#\[]|[A-Z]{2,5}[ \t]*\[)"
-MOVES = re.compile(WORD, re.IGNORECASE)
-NAME = re.compile(rb"O[ \t]*(?:<[^<>]*>|[0-9]+)[ \t]*(?:SUB)?", re.IGNORECASE)
-FLOW = re.compile(rb"O[ \t]*(?:<[^<>]*>|[0-9]+)[ \t]*[A-Z]{2}", re.IGNORECASE)
-SETS = re.compile(rb"#[^#=\s]+[ \t]*=", re.IGNORECASE)
-ASIDE = re.compile(rb"\([^()\n]*\)|;[^\n]*|^[/\s]*(?:N[0-9.]+)?\s+")
+# --- what is printed ---
 
 
-def held(text: bytes) -> tuple[int, int, int]:
-    """Return how many blocks move, begin a subprogram, and set a parameter, by patterns alone."""
-    lines = [ASIDE.sub(b"", line) for line in text.splitlines()]
-    names = sum(NAME.fullmatch(line) is not None for line in lines)
-    plain = [line for line in lines if FLOW.match(line) is None]
-    moves = sum(MOVES.search(line) is not None for line in plain)
-    return moves, names, sum(len(SETS.findall(line)) for line in plain)
+def through(found: Iterable[Outcome]) -> dict[tuple[str, str], tuple[int, int]]:
+    """Return how many programs went through, and how many there are, by dialect and chain."""
+    kinds = [(one.job.dialect, one.job.chain, not one.code) for one in found]
+    totals, good = Counter(k[:2] for k in kinds), Counter(k[:2] for k in kinds if k[2])
+    return {key: (good[key], total) for key, total in totals.items()}
 
 
-def outcome(text: bytes, dialect: str, chain: str, before_after: Counter[str] | None = None) -> str:
-    """Return "verified", or the code with which a program is refused.
-
-    What a program that goes through held is added to `before_after`.
-    """
-    try:
-        result = pipeline(dialect, chain).run(text)
-    except gx.GcxformError as error:
-        first = error.diagnostics[0]
-        placed = first.where is not None and first.where.line > 0
-        return first.code if placed else f"{first.code} WITHOUT A LINE"
-    if before_after is not None:
-        _add_up(before_after, held(text), held(result.text))
-    return "verified" if result.certificate.verified else "NOT VERIFIED"
-
-
-def _add_up(total: Counter[str], before: tuple[int, ...], after: tuple[int, ...]) -> None:
-    """Add what a program held before and after to the sums."""
-    for kind, one, other in zip(HELD, before, after, strict=True):
-        total[f"{kind} before"] += one
-        total[f"{kind} after"] += other
-    total["programs that keep their motion"] += before[0] > 0 and after[0] > 0
-    total["emptied"] += before[0] > 0 and not after[0]
+def print_tables(found: list[Outcome]) -> None:
+    """Print how many go through, and each cause with its judgement."""
+    table = through(found)
+    print(f"\n| through | {' | '.join(CHAINS)} | of |\n|---|{'--:|' * (len(CHAINS) + 1)}")
+    for dialect in dict.fromkeys(key[0] for key in table):
+        counts = [table[dialect, chain] for chain in CHAINS]
+        print(f"| {dialect} | {' | '.join(str(n) for n, _ in counts)} | {counts[0][1]} |")
+    causes = Counter((o.job.chain, o.job.dialect, o.cause, o.judgement) for o in found if o.code)
+    print("\n| chain | dialect | cause | programs | judgement |\n|---|---|---|--:|---|")
+    for (chain, dialect, cause, judgement), count in sorted(causes.items()):
+        print(f"| {chain} | {dialect} | {cause} | {count} | {judgement} |")
 
 
 def main() -> int:
-    """Print the tables; return 1 if anything is not as promised."""
+    """Print the tables; return 1 if a program crashed, or a result is not what was promised."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("corpus", nargs="?", type=Path, default=BESIDE)
     parser.add_argument("--list", action="store_true", help="one line per program")
+    parser.add_argument("--dialect", choices=OURS, help="these programs alone")
+    parser.add_argument("--cause", help="list those alone whose cause has this text")
+    parser.add_argument("--chain", choices=CHAINS, help="this chain alone")
+    parser.add_argument("--bytes", action="store_true", help="also that trees print the programs")
     options = parser.parse_args()
-    with (options.corpus / "manifest.csv").open() as stream:
-        entries = [row for row in csv.DictReader(stream) if row["role"] == "program"]
-    tables: dict[str, Counter[str]] = {dialect: Counter() for dialect in OURS}
-    sums: dict[str, Counter[str]] = {dialect: Counter() for dialect in OURS}
-    bad = 0
-    for entry in entries:
-        text = (options.corpus / entry["path"]).read_bytes()
-        mine = [entry["dialect"]] if entry["dialect"] in OURS else list(OURS)
-        for dialect in mine:
-            ours = entry["dialect"] in OURS
-            found = outcome(text, dialect, CHAIN, sums[dialect] if ours else None)
-            same = outcome_of_nothing(text, dialect)
-            if entry["dialect"] in OURS:
-                tables[dialect][found] += 1
-                same = same and prints_back(text, dialect)
-            bad += not same or found == "NOT VERIFIED" or "WITHOUT" in found
-            if options.list or not same:
-                print(f"{found:10} {'same' if same else 'CHANGED'} {dialect:9} {entry['path']}")
-    print_tables(tables)
-    print_sums(sums)
-    emptied = sum(table["emptied"] for table in sums.values())
-    return 1 if bad or emptied else 0
-
-
-def outcome_of_nothing(text: bytes, dialect: str) -> bool:
-    """Whether the empty pipeline gives the same bytes."""
-    return pipeline(dialect, "").run(text).text == text
-
-
-def print_sums(sums: dict[str, Counter[str]]) -> None:
-    """Print a Markdown table of what programs that go through held, before and after."""
-    rows = [f"{kind} {when}" for kind in HELD for when in ("before", "after")]
-    print(f"\n| verified programs | {' | '.join(sums)} |\n|---|{'--:|' * len(sums)}")
-    for row in ["programs that keep their motion", "emptied", *rows]:
-        print(f"| {row} | {' | '.join(str(table[row]) for table in sums.values())} |")
-
-
-def print_tables(tables: dict[str, Counter[str]]) -> None:
-    """Print a Markdown table of outcomes."""
-    from gcxform.catalogue import CATALOGUE
-
-    print(f"| outcome | {' | '.join(tables)} | meaning |")
-    print(f"|---|{'--:|' * len(tables)}---|")
-    codes = sorted({code for table in tables.values() for code in table}, reverse=True)
-    for code in codes:
-        counts = " | ".join(str(table[code]) for table in tables.values())
-        print(f"| {code} | {counts} | {CATALOGUE.get(code, ('',))[0]} |")
-    print(f"| all | {' | '.join(str(t.total()) for t in tables.values())} | |")
+    ours = (options.dialect,) if options.dialect else OURS
+    jobs = [j for j in counted(options.corpus, ours) if options.chain in (None, j.chain)]
+    found = outcomes(jobs)
+    for one in found:
+        why = f"{one.code} {one.line}: {one.says}" if one.code else "through"
+        if options.list or (options.cause and options.cause in why):
+            print(f"{one.job.dialect} {one.job.chain} {one.job.path}: {why}")
+    print_tables(found)
+    same = not options.bytes or all(prints_back(job.text, job.dialect) for job in jobs)
+    return 0 if same and not {"CRASH", "NOT VERIFIED"} & {one.code for one in found} else 1
 
 
 if __name__ == "__main__":
