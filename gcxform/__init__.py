@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from gcxform.dialect.move_rules import MotionRule as MotionRule
     from gcxform.dialect.program_rules import BlockRule as BlockRule
     from gcxform.dialect.program_rules import FlowRule as FlowRule
+    from gcxform.dialect.program_rules import LookupRule as LookupRule
     from gcxform.dialect.program_rules import ProgramRule as ProgramRule
     from gcxform.dialect.program_rules import TextRule as TextRule
     from gcxform.errormodel.converting import Fit as Fit
@@ -157,7 +158,7 @@ _HOMES = {
     "dialect.frame_rules": "OffsetRule TipRule ToolRule",
     "dialect.increments": "PointRule",
     "dialect.move_rules": "ArcRule FeedRule MotionRule",
-    "dialect.program_rules": "BlockRule FlowRule ProgramRule TextRule",
+    "dialect.program_rules": "BlockRule FlowRule LookupRule ProgramRule TextRule",
     "flow.translation": "Item Translator",
     "guess": "Evidence Guess guess_dialect",
     "plugin.hookspecs": "hookimpl",

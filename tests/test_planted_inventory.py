@@ -14,11 +14,13 @@ import numpy as np
 import pytest
 
 import gcxform as gx
+from gcxform.dialect.program_rules import LookupRule
 from gcxform.emit.emitter import Emitted, Emitter
 from gcxform.flow import lasting_values as lasting
 from gcxform.flow.execution import Execution
 from gcxform.flow.line_account import check_walk
 from gcxform.flow.listing import Listing
+from gcxform.flow.lookup import Folders
 from gcxform.flow.macros import MacroB
 from gcxform.flow.owords import OWords
 from gcxform.modal.lines import Assigned
@@ -27,6 +29,7 @@ from gcxform.modal.state import Reading
 from gcxform.plugin.registry import default_registry
 from gcxform.proof.inventory import assignments_differ
 
+NOWHERE = Folders((), LookupRule())
 STRAIGHT = b"""G21 G90 G94
 #<_deep>=2.5
 G0 X1
@@ -189,7 +192,8 @@ def test_an_account_of_kinds_and_rules() -> None:
 def walked() -> OWords:
     """Return the execution of a loop, as it was."""
     told = Reading(parameters={"1": 0.0})
-    done = OWords(Listing(LOOP, default_registry().dialect("linuxcnc"), "-"), told, keeps=True)
+    lines = Listing(LOOP, default_registry().dialect("linuxcnc"), "-", NOWHERE)
+    done = OWords(lines, told, keeps=True)
     done.run()
     check_walk(done)
     return done

@@ -7,10 +7,11 @@ Codes are never reused. The hundreds say where a thing was found: 1 text, 2 mean
 
 from __future__ import annotations
 
-from gcxform.catalogue import machines, reading, usage, writing
+from gcxform.catalogue import flow, machines, reading, usage, writing
 
 CATALOGUE: dict[str, tuple[str, str]] = {
     **reading.CODES,
+    **flow.CODES,
     **machines.CODES,
     **writing.CODES,
     **usage.CODES,

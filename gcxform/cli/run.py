@@ -106,5 +106,7 @@ def _proof(found: Certificate) -> str:
     largest = found.largest
     text = f"largest deviation {largest['deviation']:.5f} mm of {found.budget['deviation']:.5f} mm"
     if largest["source_line"]:
-        text += f", source line {largest['source_line']}, output line {largest['output_line']}"
+        file = f"{largest['source_file']} " if "source_file" in largest else ""
+        text += f", {file}source line {largest['source_line']}"
+        text += f", output line {largest['output_line']}"
     return f"{text}   PASS"

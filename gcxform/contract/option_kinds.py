@@ -181,6 +181,16 @@ def _read_existing(raw: object, around: Around) -> Path:
     return path
 
 
+def _read_folders(raw: object, around: Around) -> tuple[Path, ...]:
+    """Return folders that are there; those of a file as it may name other files."""
+    if not isinstance(raw, list | tuple):
+        raise _expected('a list of folders, such as ["subprograms"]', raw)
+    paths = tuple(_read_path(each, around) for each in raw)
+    if wrong := [path for path in paths if not os.path.isdir(path)]:
+        raise RefusedError("GX709", f"the folder {str(wrong[0])!r} does not exist")
+    return paths
+
+
 def _read_model(raw: object, around: Around) -> ModelFile:
     return ModelFile.load(_read_existing(raw, around), around.formats)
 
@@ -294,6 +304,7 @@ _VECTOR = Kind("three lengths", _read_vector, list)
 _PAIR = Kind("two lengths", _read_pair, list)
 _COORDINATES = Kind("coordinates by axis letter", _read_coordinates)
 _PARAMETERS = Kind("numbers by parameter", _read_parameters)
+_FOLDERS = Kind("list of folders", _read_folders, lambda paths: [str(p.absolute()) for p in paths])
 PLAIN: dict[type, Kind] = {
     bool: Kind("true or false", partial(_read_plain, bool, "true or false")),
     int: Kind("whole number", partial(_read_plain, int, "a whole number")),
@@ -324,3 +335,5 @@ Coordinates = Annotated[dict[str, float], _COORDINATES]
 """Positions by axis letter, mm or degrees; written as a table."""
 ParameterValues = Annotated[dict[str, float], _PARAMETERS]
 """Values of parameters by number ("100") or name ("<depth>"); written as a table."""
+FolderList = Annotated[tuple[Path, ...], _FOLDERS]
+"""Folders, relative to the file that names them; written as a list."""

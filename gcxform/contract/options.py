@@ -39,6 +39,7 @@ from gcxform.contract.option_kinds import Angle as Angle
 from gcxform.contract.option_kinds import Argument as Argument
 from gcxform.contract.option_kinds import Coordinates as Coordinates
 from gcxform.contract.option_kinds import FeedIncrement as FeedIncrement
+from gcxform.contract.option_kinds import FolderList as FolderList
 from gcxform.contract.option_kinds import Increment as Increment
 from gcxform.contract.option_kinds import KinematicsFile as KinematicsFile
 from gcxform.contract.option_kinds import Length as Length

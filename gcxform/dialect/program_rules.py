@@ -94,6 +94,26 @@ class BlockRule:
 
 
 @dataclass(frozen=True, slots=True)
+class LookupRule:
+    """What the files of subprograms are called that a program calls and does not hold.
+
+    numbers    the name of the file of a program number n, as `str.format` takes it: "O{n:04}"
+    names      the same of a subprogram that is called by a name: "{name}"
+    endings    what may stand behind, with its point; "" for nothing
+    own_ending so may the ending of the program that calls
+    any_case   small letters and capitals are the same in names of files
+    by_name    a file without an O number has the number that its name says: an assumption
+    """
+
+    numbers: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
+    endings: tuple[str, ...] = ("",)
+    own_ending: bool = False
+    any_case: bool = False
+    by_name: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class FlowRule:
     """How programs compute, call and repeat.
 
@@ -101,8 +121,10 @@ class FlowRule:
                     none
     arithmetic      how the control computes expressions; None: they are refused
     calls_own_lines M97 calls lines of the same program, up to M99
+    lookup          in which files subprograms are looked up
     """
 
     language: str = ""
     arithmetic: Arithmetic | None = None
     calls_own_lines: bool = False
+    lookup: LookupRule = field(default_factory=LookupRule)

@@ -3,16 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from hashlib import sha256
 
 import numpy as np
 
+from gcxform.diagnostics import Location
 from gcxform.dialect.arithmetic import Key
 from gcxform.modal.inventory import Account, nothing_held
-from gcxform.syntax.source import Source
+from gcxform.syntax.source import Source, lines_in
 from gcxform.system.arrays import Ints
 
 NEAR = 1e-11  # of a value: as many digits as are written
+
+
+@dataclass(frozen=True, slots=True)
+class CalledFile:
+    """A file that a program calls, and what it is called in messages.
+
+    Its lines are counted on behind those of the program: `first`, from 0, is its first one.
+    """
+
+    name: str
+    first: int
+    text: bytes
+
+    def described(self) -> dict[str, str | int]:
+        """Return what a certificate says of the file; `first` is its first line in source maps."""
+        lines = lines_in(self.text) if self.text else 0
+        digest = sha256(self.text).hexdigest()
+        return {"name": self.name, "first": self.first + 1, "lines": lines, "sha256": digest}
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +69,10 @@ class Executed:
 
 
 class WrittenOut(Source):
-    """The blocks a program executes, in their order; `origin` are their lines, from 0."""
+    """The blocks a program executes, in their order; `origin` are their lines, from 0.
+
+    Lines of `files` are counted on behind those of the program.
+    """
 
     def __init__(
         self,
@@ -57,9 +80,11 @@ class WrittenOut(Source):
         text: bytes,
         origin: Ints,
         assumed: Iterable[str] = (),
+        files: tuple[CalledFile, ...] = (),
     ) -> None:
         super().__init__(Source.of_bytes(text).stream, source.name)
         self.origin = origin
+        self.files = files
         self.assumed = tuple(assumed)
         self.executed: Executed | None = None
         self.called = np.zeros(0, np.bool_)
@@ -68,6 +93,17 @@ class WrittenOut(Source):
         """Return the line of the program that an executed line stands for."""
         inside = 0 < line <= len(self.origin)
         return int(self.origin[line - 1]) + 1 if inside else line
+
+    def place_of(self, line: int) -> tuple[str, int]:
+        """Return the file, and its line, from 1, that an executed line stands for."""
+        number = self.line_of(line)
+        file = next((each for each in reversed(self.files) if number > each.first), None)
+        return (self.name, number) if file is None else (file.name, number - file.first)
+
+    def shown(self, where: Location) -> Location:
+        """Return a place in a file for one in the text."""
+        file, line = self.place_of(where.line)
+        return replace(where, file=file, line=line)
 
     def is_called(self, line: int) -> bool:
         """Whether a line of the text, from 0, came from a subprogram that was called."""

@@ -14,12 +14,14 @@ import numpy as np
 from gcxform.dialect.arithmetic import Key
 from gcxform.flow.lasting_values import Lasting
 from gcxform.flow.listing import Definition, Listing, bare
+from gcxform.flow.lookup import Found, LookupFailedError, only
 from gcxform.flow.run_state import UNKNOWN, Call, Edit, RunState, computed, has_slash
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import Block, Comment, Statement, Word
 from gcxform.system.limits import how_to_raise, limits
 
 BYTES_AT_MOST = 1 << 28  # of executed blocks
+MOST_FILES = 1000  # that one program calls
 HINT = "let the CAM write plain blocks, or use passes that keep positions"
 
 
@@ -44,14 +46,24 @@ class Execution(RunState):
 
     def run(self) -> None:
         """Execute the program to its end. Raises InputError where that cannot be done."""
-        special = self.listing.special
         while not self.ended and self.at < len(self.listing):
+            if self.at in self.listing.seams:
+                self._leave_file()
+                break
+            special = self.listing.special  # more with every file that is called
             following = int(np.searchsorted(special, self.at))
             stop = int(special[following]) if following < len(special) else len(self.listing)
             if stop > self.at:
                 self._copy(stop)
             else:
                 self._step()
+
+    def _leave_file(self) -> None:
+        """Come to the end of a file: that of the program is its end, that of another is refused."""
+        if self.at > self.listing.own:
+            self.line = self.at - 1
+            message = "the file of a subprogram ends here, without a return to what has called it"
+            raise self.refusal("GX223", message)
 
     def _copy(self, stop: int) -> None:
         """Take plain lines over as they stand."""
@@ -63,6 +75,8 @@ class Execution(RunState):
         """Execute one line that is more than a plain block."""
         self.line, self.at = self.at, self.at + 1
         self.times[self.line] += 1
+        if self.line > self.listing.own and self.listing.meaning(self.line).percent:
+            self._leave_file()
         self._count()
         self._refuse_lone_cr()
         block = self.listing.block(self.line)
@@ -120,10 +134,10 @@ class Execution(RunState):
         for each in self.kept:
             lines = np.arange(each.first, each.last + 1)
             self.put(self.listing.raw(each.first, each.last + 1), lines)
-        last = len(self.listing) - 1
+        last = self.listing.own - 1
         while last > 0 and not self.listing.window.line(last).strip():
             last -= 1
-        if self.ended and last > self.line and self.listing.meaning(last).percent:
+        if self.ended and not self.times[last] and self.listing.meaning(last).percent:
             self.put(self.listing.raw(last, last + 1), np.array([last]))
 
     # --- what differs between controls ---
@@ -141,6 +155,10 @@ class Execution(RunState):
         return iter(())
 
     @abstractmethod
+    def arrange(self) -> None:
+        """Find which lines belong together, anew. Raises InputError for what does not fit."""
+
+    @abstractmethod
     def callees(self, line: int) -> frozenset[str] | None:
         """Return the names of the subprograms that a line calls; None: it may be any of them."""
 
@@ -149,6 +167,34 @@ class Execution(RunState):
         """Do what a line decides about the order of execution; return whether that was all."""
 
     # --- calls ---
+
+    def add_file(self, found: Found | None) -> bool:
+        """Put the file of a subprogram behind the lines there are; return whether there is one."""
+        if found is None:
+            return False
+        if len(self.listing.files) >= MOST_FILES:
+            raise self.refusal("GX224", f"{MOST_FILES} files are called, and one more")
+        self.listing = self.listing.with_file(found)
+        more = len(self.listing) - len(self.times)
+        self.times = np.concatenate([self.times, np.zeros(more, np.int64)])
+        line = self.line
+        self.arrange()
+        self.line = line
+        return True
+
+    def found(self, files: Iterator[Found], what: str) -> list[Found]:
+        """Return the files that were looked up. Raises InputError where one cannot be taken."""
+        try:
+            return list(files)
+        except LookupFailedError as why:
+            raise self.refusal("GX227", f"{what}: {why}") from None
+
+    def only(self, found: list[Found], what: str) -> Found | None:
+        """Return the file that was found, if any. Raises InputError for two that differ."""
+        try:
+            return only(found, what)
+        except LookupFailedError as why:
+            raise self.refusal("GX227", str(why)) from None
 
     def refuse_more(self, items: list[Word | Statement], addresses: str) -> None:
         """Refuse a block that calls or returns and does anything else, or has a word twice."""

@@ -41,5 +41,5 @@ def _written(program: Execution) -> Ints:
 
 def _refuse(program: Execution, wrong: Flags, message: str) -> None:
     if wrong.any():
-        where = Location(program.listing.file, int(np.argmax(wrong)) + 1)
+        where = Location(*program.listing.place(int(np.argmax(wrong))))
         raise VerificationError((Diagnostic("GX601", message, where, HINT),))

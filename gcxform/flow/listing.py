@@ -1,13 +1,20 @@
-"""A whole program as lines that can be executed in any order: texts, trees and where they stand."""
+"""A whole program as lines that can be executed in any order: texts, trees and where they stand.
+
+Behind its own lines stand those of the files that it calls, each with an empty line before it, a
+seam: who comes to a seam has left a file at its end.
+"""
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass
 
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
+from gcxform.flow.executed import CalledFile
+from gcxform.flow.lookup import Folders, Found
 from gcxform.flow.messages import prints_values
 from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.reader import WindowReader
@@ -35,20 +42,35 @@ class Listing:
     """The lines of a program; numbers of lines count from 0.
 
     `special` (m,) are the lines, ascending, that may do more than be executed once as they stand:
-    those with expressions, statements, calls, labels, or an end. `units` (n,) is 1 where a line
-    has G20, 0 where it has G21, -1 where it has neither.
+    those with expressions, statements, calls, labels, or an end, and both sides of a seam. `units`
+    (n,) is 1 where a line has G20, 0 where it has G21, -1 where it has neither. `own` is how many
+    lines are those of the program itself, `files` are those behind them, found in `folders`.
     """
 
-    def __init__(self, text: bytes, dialect: type[Dialect], file: str) -> None:
+    def __init__(
+        self,
+        text: bytes,
+        dialect: type[Dialect],
+        file: str,
+        folders: Folders,
+        files: tuple[CalledFile, ...] = (),
+    ) -> None:
         reader = WindowReader(dialect)
         self.dialect = dialect
         self.file = file
+        self.folders = folders
+        self.files = files
         self.window = reader.read(text)
+        self.own = files[0].first - 1 if files else len(self.window)
+        self.seams = frozenset(each.first - 1 for each in files)
         self.table = reader.table
         self.table.update()
         shapes = reader.shapes.shapes
         odd = [self._is_special(n, shape.block) for n, shape in enumerate(shapes)]
-        self.special = np.flatnonzero(np.array(odd, np.bool_)[self.window.shape])
+        special = np.array(odd, np.bool_)[self.window.shape]
+        for seam in self.seams:
+            special[seam - 1 : seam + 1] = True
+        self.special = np.flatnonzero(special)
         self._blocks: dict[int, Block] = {}
         number = {"G20": 1, "G21": 0}
         said = [number.get(m.groups.get("units", ""), -1) for m in self.table.meanings]
@@ -56,6 +78,31 @@ class Listing:
 
     def __len__(self) -> int:
         return len(self.window)
+
+    def with_file(self, found: Found) -> Listing:
+        """Return the listing with one more file behind it; the lines before stay where they are."""
+        text = self.window.text
+        end = b"" if text.endswith(b"\n") else b"\n"
+        joined = b"".join((text, end, b"\n", found.text))
+        files = (*self.files, CalledFile(found.name, len(self) + 1, found.text))
+        return Listing(joined, self.dialect, self.file, self.folders, files)
+
+    def part(self, line: int) -> tuple[int, int]:
+        """Return the first line of the file in which a line stands, and the line behind its last.
+
+        That behind the last is a seam, or the end of everything.
+        """
+        number = bisect_right(self.files, line, key=lambda each: each.first)
+        ends = [each.first - 1 for each in self.files] + [len(self)]
+        return (self.files[number - 1].first if number else 0), ends[number]
+
+    def place(self, line: int) -> tuple[str, int]:
+        """Return the file in which a line stands, and which of its lines that is, from 1."""
+        number = bisect_right(self.files, line, key=lambda each: each.first)
+        if not number:
+            return self.file, line + 1
+        file = self.files[number - 1]
+        return file.name, line - file.first + 1
 
     def _is_special(self, shape: int, block: Block) -> bool:
         meaning = self.table.meanings[shape]
@@ -86,11 +133,11 @@ class Listing:
         return self._blocks[line]
 
     def last_of(self, first: int, after: int | None) -> int:
-        """Return the last line of a part that ends before another, or with the file.
+        """Return the last line of a part that ends before another, or with the program.
 
         Empty lines at its end, and the last percent sign, are no part of it.
         """
-        last = len(self) - 1 if after is None else after - 1
+        last = (self.own if after is None else after) - 1
         while last > first and (not self.window.line(last).strip() or self.meaning(last).percent):
             last -= 1
         return last
@@ -119,7 +166,7 @@ class Listing:
         """Return the error about a line, at columns from 0; about all of it without a place."""
         text = self.window.line(line).decode("latin-1")
         start, end = place or (len(text) - len(text.lstrip()), len(text.rstrip()))
-        where = Location(self.file, line + 1, start + 1, text, max(1, end - start))
+        where = Location(*self.place(line), start + 1, text, max(1, end - start))
         return InputError((Diagnostic(code, message, where, hint),))
 
 

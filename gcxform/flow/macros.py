@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 from lark import Token
@@ -19,9 +20,10 @@ from lark import Token
 from gcxform.dialect.arithmetic import MACRO_B, Arithmetic, NoValueError
 from gcxform.flow.execution import HINT, Execution
 from gcxform.flow.listing import Definition, Listing, bare
+from gcxform.flow.numbered_files import begins_program, file_of, first_block, program_number
 from gcxform.flow.run_state import UNKNOWN, Call, whole_number
 from gcxform.modal.state import Reading
-from gcxform.syntax.tree import BLANKS, Block, Mark, Number, Statement, Word
+from gcxform.syntax.tree import BLANKS, Block, Number, Statement, Word
 
 LOCALS = MACRO_B.local
 LOOPS = ("1", "2", "3")
@@ -66,22 +68,29 @@ class MacroB(Execution):
         self.starts: dict[int, int] = {}
         self.twice: set[int] = set()
         self.bounds: list[int] = []
-        self._arrange()
+        self.unnumbered: dict[int, int] = {}
+        self.arrange()
 
     # --- which lines belong together ---
 
-    def _arrange(self) -> None:
+    def arrange(self) -> None:
         """Find programs and loops. Raises InputError for what does not fit together."""
+        self.loops, self.starts, self.twice, self.bounds = {}, dict(self.unnumbered), set(), []
+        self.__dict__.pop("_sequences", None)
         open_: list[tuple[int, str]] = []
         for line in self.listing.special.tolist():
             self.line = line
+            if line in self.listing.seams:
+                self._refuse_open(open_)
+                self.bounds = [*(self.bounds or [0]), line + 1]
+                continue
             block = self.listing.block(line)
             if not self.stands(block):
                 continue
-            if _begins_program(block):
+            if begins_program(block):
                 self._refuse_open(open_)
                 self.line = line
-                self._begin(line, _program_number(block))
+                self._begin(line, program_number(block))
             statement = _statement(block)
             if statement is not None:
                 self._place(line, statement, open_)
@@ -89,14 +98,21 @@ class MacroB(Execution):
 
     def _begin(self, line: int, number: int | None) -> None:
         """Note a program that begins; what stands before the first one is a program too."""
-        if not self.bounds and any(bare(self.listing.block(before)) for before in range(line)):
+        if not self.bounds and self._holds_blocks(0, line):
             self.bounds.append(0)
+        first, _ = self.listing.part(line)
+        if first and self.bounds[-1] == first and not self._holds_blocks(first, line):
+            self.bounds.pop()
         self.bounds.append(line)
         if number is None:
             return
         if number in self.starts:
             self.twice.add(number)
         self.starts[number] = line
+
+    def _holds_blocks(self, first: int, last: int) -> bool:
+        """Whether anything is done in lines up to one."""
+        return any(bare(self.listing.block(line)) for line in range(first, last))
 
     def _place(self, line: int, statement: Statement, open_: list[tuple[int, str]]) -> None:
         """Put the begin or the end of a loop to its other half."""
@@ -142,7 +158,7 @@ class MacroB(Execution):
 
     def act(self, block: Block) -> bool:
         """Do what flow words and calls do."""
-        if _begins_program(block) and self.line != self.bounds[0]:
+        if begins_program(block) and self.line != self.bounds[0]:
             message = "the program before goes on into this one, without M30 or M99"
             raise self.refusal("GX223", message)
         statement = _statement(block)
@@ -179,9 +195,10 @@ class MacroB(Execution):
 
     def definitions(self) -> Iterator[Definition]:
         """Yield the programs of the file behind the first, which is the one that runs."""
-        for line, after in pairwise([*self.bounds[1:], None]):
+        own = [line for line in self.bounds if line < self.listing.own]
+        for line, after in pairwise([*own[1:], None]):
             assert line is not None
-            number = _program_number(self.listing.block(line))
+            number = program_number(self.listing.block(line))
             name = "a program without a number" if number is None else f"O{number}"
             yield Definition(name, line, self.listing.last_of(line, after))
 
@@ -208,7 +225,7 @@ class MacroB(Execution):
                 raise self.refusal("GX223", f"N{target} stands inside a loop that is not running")
         else:
             target, times = self._unpacked(target, int(times), block)
-            first = self._start(target) + 1
+            first = self._start(target)
         before = {k: v for k, v in self.parameters.items() if k in LOCALS}
         self.parameters |= dict.fromkeys(before, UNKNOWN)
         self.enter(Call(name, self.at, first, int(times), before))
@@ -217,7 +234,7 @@ class MacroB(Execution):
         """Return program and count of a P that may hold both."""
         if self.dialect.program_rule.number_digits > 4:
             return number, times
-        packed = number >= PACKED and number % PACKED in self.starts
+        packed = number >= PACKED and self._has(number % PACKED)
         if packed and (number in self.starts or any(w.address == "L" for w in block.words)):
             raise self.refusal("GX210", "P can be read as a program, or as a count and a program")
         if not packed:
@@ -227,16 +244,33 @@ class MacroB(Execution):
         return target, times
 
     def _start(self, number: int) -> int:
-        if number in self.twice:
-            raise self.refusal("GX223", f"the file has two programs O{number}")
-        if number not in self.starts:
-            message = f"the subprogram O{number} is not in this file"
+        """Return the first line of a program that is executed by a call."""
+        if not self._has(number):
+            message = f"the subprogram O{number} is not in this file, and in no file beside it"
             raise self.refusal("GX210", message, HINT)
+        if number in self.twice:
+            raise self.refusal("GX223", f"there are two programs O{number}")
+        if number in self.unnumbered:
+            return self.unnumbered[number]
         block = self.listing.block(self.starts[number])
         if len(bare(block)) > (1 if any(block.words) else 0):
             message = f"words stand beside O{number}: whether a call executes them is not certain"
             raise self.refusal("GX210", message, "write them into a block of their own")
-        return self.starts[number]
+        return self.starts[number] + 1
+
+    def _has(self, number: int) -> bool:
+        """Whether there is a program of a number, in the lines or in a file that is now added."""
+        return number in self.starts or self._look_up(number)
+
+    def _look_up(self, number: int) -> bool:
+        """Add the file of a program, and return whether there is one. Raises InputError."""
+        if not self.add_file(file_of(self, number)):
+            return False
+        if number not in self.starts:
+            self.starts[number] = self.unnumbered[number] = first_block(self.listing)
+            name = Path(self.listing.files[-1].name).name
+            self.assumed[f"{name} has no O number, and is O{number}, as its name says"] = None
+        return True
 
     def _return(self, block: Block, items: list[Word | Statement]) -> None:
         self.refuse_more(items, "MP")
@@ -347,22 +381,3 @@ def _code(word: Word) -> str:
     """Return a G or M code as it is named."""
     value = word.value
     return f"{word.address}{value.value:g}" if isinstance(value, Number) else "computed"
-
-
-def _begins_program(block: Block) -> bool:
-    """Whether a program begins at a block, by a number or by a name."""
-    named = any(
-        isinstance(i, Mark) and i.kind in ("program_id", "program_name") for i in block.items
-    )
-    return named or any(word.address == "O" for word in block.words)
-
-
-def _program_number(block: Block) -> int | None:
-    """Return the number of the program that begins at a block."""
-    for item in block.items:
-        if isinstance(item, Word) and item.address == "O":
-            return whole_number(item)
-        if isinstance(item, Mark) and item.kind == "program_id":
-            text = block.text[item.start + 1 : item.end].translate(BLANKS)
-            return int(text) if text.isdecimal() else None
-    return None

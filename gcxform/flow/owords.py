@@ -42,7 +42,15 @@ class OWords(Execution):
         self.places = Places(self)
         self.counters: dict[int, int] = {}
         self.left: set[int] = set()
+        self.words: dict[int, OWord] = {}
+        self.construct: dict[int, Construct] = {}
+        self.subs: dict[str, Construct] = {}
+        self.labels: dict[int, list[int]] = {}
         self.returned()
+        self.arrange()
+
+    def arrange(self) -> None:
+        """Find which lines belong together."""
         arranged = Constructs(self)
         self.words, self.construct = arranged.words, arranged.construct
         self.subs, self.labels = arranged.subs, arranged.labels

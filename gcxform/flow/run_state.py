@@ -190,12 +190,13 @@ class RunState:
     def located(self, error: InputError) -> InputError:
         """Return an error about executed blocks as one about the lines of the program."""
         lines = np.concatenate(self.origin)
-        return InputError(
-            tuple(
-                d.at(replace(d.where, line=int(lines[d.where.line - 1]) + 1)) if d.where else d
-                for d in error.diagnostics
-            )
-        )
+        found = []
+        for each in error.diagnostics:
+            if each.where is not None:
+                file, line = self.listing.place(int(lines[each.where.line - 1]))
+                each = each.at(replace(each.where, file=file, line=line))
+            found.append(each)
+        return InputError(tuple(found))
 
     def refusal(
         self, code: str, message: str, hint: str = "", place: tuple[int, int] | None = None
@@ -204,10 +205,15 @@ class RunState:
         error = self.listing.refusal(self.line, code, message, hint, place)
         if not self.calls:
             return error
-        names = [call.name for call in reversed(self.calls)]
-        inside = " in ".join(names[:NAMED] + ["..."] * (len(names) > NAMED))
+        names = [self._told(call) for call in reversed(self.calls)]
+        inside = ", by ".join(names[:NAMED] + ["..."] * (len(names) > NAMED))
         found = tuple(replace(d, context=f"called by {inside}") for d in error.diagnostics)
         return InputError(found)
+
+    def _told(self, call: Call) -> str:
+        """Return a call with its place; it goes on at the line behind that."""
+        file, line = self.listing.place(call.back - 1)
+        return f"{call.name} at {file}:{line}"
 
 
 def computed(word: Word) -> bool:

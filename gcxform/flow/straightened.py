@@ -43,11 +43,11 @@ def written_out(
     if not assigns and not has_flow(source, dialect):
         return source
     keeps = target is not None
-    run = _executed(b"".join(source.windows()), source.name, dialect, reading, keeps)
+    run = _executed(source, dialect, reading, keeps)
     if not run.acted and not (assigns and run.lasting.assigned):
         return source
     lines = np.concatenate([np.empty(0, np.int64), *run.origin])
-    found = WrittenOut(source, b"".join(run.text), lines, run.assumed)
+    found = WrittenOut(source, b"".join(run.text), lines, run.assumed, run.listing.files)
     found.executed = _account(run)
     found.called = _inside(run)[lines]
     return found
@@ -58,13 +58,14 @@ def _inside(run: Execution) -> Flags:
     inside = np.zeros(len(run.listing.window), np.bool_)
     for definition in run.definitions():
         inside[definition.lines] = True
+    inside[run.listing.own :] = True
     return inside
 
 
 def _account(run: Execution) -> Executed:
     """Return what an execution did with what the lines hold."""
-    shapes, table = run.listing.window.shape, run.listing.table
-    idle = run.times == 0
+    shapes, table = run.listing.window.shape[: run.listing.own], run.listing.table
+    idle = run.times[: run.listing.own] == 0
     for each in run.kept:
         idle[each.first : each.last + 1] = False
     for definition in run.definitions():
@@ -82,18 +83,20 @@ def _assigns_for(source: Source, dialect: type[Dialect], target: type[Dialect]) 
     return any(b"#" in text and b"=" in text for text in source.windows())
 
 
-def _executed(
-    text: bytes, file: str, dialect: type[Dialect], reading: Reading, keeps: bool
-) -> Execution:
+def _executed(source: Source, dialect: type[Dialect], reading: Reading, keeps: bool) -> Execution:
     """Execute a program; what does that is loaded for programs that need it."""
     from gcxform.flow.line_account import check_walk
     from gcxform.flow.listing import Listing
+    from gcxform.flow.lookup import Folders
     from gcxform.flow.macros import MacroB
     from gcxform.flow.owords import OWords
     from gcxform.flow.uncalled_subprograms import kept
 
     kind: type[Execution] = OWords if dialect.flow_rule.language == "o-words" else MacroB
-    run = kind(Listing(text, dialect, file), reading, keeps)
+    beside = [source.folder] if source.folder is not None else []
+    folders = Folders([*beside, *reading.subprograms], dialect.flow_rule.lookup, source.suffix)
+    listing = Listing(b"".join(source.windows()), dialect, source.name, folders)
+    run = kind(listing, reading, keeps)
     run.run()
     run.close(kept(run))
     check_walk(run)

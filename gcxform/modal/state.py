@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -46,6 +47,7 @@ class Reading:
     open_pecks    whether a cycle may be read whose way back between pecks is a parameter that is
                   not given: where it then goes up to is nan. Its block must stay as it is
     parameters    values of parameters before the first block, by number ("100") or name ("<a>")
+    subprograms   folders in which subprograms are looked up, behind that of the program
     """
 
     start: Mapping[str, float] = field(default_factory=dict)
@@ -62,6 +64,7 @@ class Reading:
     inert_m: frozenset[int] = frozenset()
     rotary: str = ""
     open_pecks: bool = False
+    subprograms: tuple[Path, ...] = ()
 
     def __post_init__(self) -> None:
         """Take what a caller may write for what it means; refuse all else. Raises UsageError."""
@@ -96,6 +99,7 @@ class Reading:
             "units": arguments.chosen("units", self.units, UNITS),
             "increment": _increment("increment", self.increment),
             "feed_increment": _increment("feed_increment", self.feed_increment),
+            "subprograms": tuple(Path(each) for each in self.subprograms),
         }
 
     @property

@@ -42,6 +42,8 @@ def certificate(run: Run, out: Output) -> Certificate:
         | {"ratio": out.growth, "limit": plan.growth},
         run.verifier is not None or (plan.copies and run.verify != "off"),
     )
+    if run.files:
+        made.source["files"] = [each.described() for each in run.files]
     made.measured = run.measured
     made.added = run.added
     made.inventory = dict(run.account.table())
@@ -80,9 +82,11 @@ def _fill(run: Run, certificate: Certificate) -> None:
             certificate.not_checked.append("anything: verification was switched off")
         return
     found = run.findings
+    file, line = run.source.place_of(found.source_line)
     certificate.largest = {
         "deviation": found.deviation,
-        "source_line": run.source.line_of(found.source_line),
+        **({} if file == run.source.name else {"source_file": file}),
+        "source_line": line,
         "output_line": found.output_line,
         "angle": found.angle,
     }

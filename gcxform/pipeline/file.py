@@ -22,6 +22,7 @@ from gcxform.config.toml_text import Codes, TomlText, read_toml
 from gcxform.contract.options import (
     Coordinates,
     FeedIncrement,
+    FolderList,
     Increment,
     Length,
     Option,
@@ -67,6 +68,9 @@ class InputSpec:
     parameters: Annotated[
         ParameterValues, Option("values of parameters that the program reads and does not set")
     ] = field(default_factory=dict)
+    subprograms: Annotated[
+        FolderList, Option("folders of subprograms, besides that of the program")
+    ] = ()
     again: Annotated[bool, Option("take stamped programs too, as if they were not stamped")] = False
 
 

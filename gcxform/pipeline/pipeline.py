@@ -167,4 +167,5 @@ def _reading(source: type[Dialect], spec: PipelineSpec) -> Reading:
         given.units,
         given.feed_increment,
         dict(given.parameters),
+        subprograms=given.subprograms,
     )

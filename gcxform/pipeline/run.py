@@ -79,6 +79,7 @@ class Run:
         self.executes = self.source is not source
         self.assumed = self.source.assumed
         self.executed = getattr(self.source, "executed", None)
+        self.files = getattr(self.source, "files", ())
         self.source, self.dialect = plan.without_tip_codes(self.source)
         self.ending = Ending(self.dialect, source.name)
         self.books = Books(plan.context, frozenset())

@@ -35,10 +35,13 @@ class Source:
     """A program and its name. The stream can be read from the start more than once.
 
     `assumed` is what was chosen among several meanings where the text was made of another one;
-    `written` is when its file was (seconds of the epoch), None for what is no file.
+    `written` is when its file was (seconds of the epoch), None for what is no file; `folder` is
+    where that lies, whose other files it may call, and `suffix` the ending of its name.
     """
 
     assumed: tuple[str, ...] = ()
+    folder: Path | None = None
+    suffix = ""
 
     def __init__(self, stream: BinaryIO, name: str = "-", written: float | None = None) -> None:
         self.stream = stream
@@ -61,7 +64,10 @@ class Source:
                 hint = "- is the program on stdin"
                 raise FileError.one("GX901", f"{path} is a device, not a program", hint=hint)
             with path.open("rb") as stream:
-                return cls.copied(stream, str(path))
+                found = cls.copied(stream, str(path))
+            if stat.S_ISREG(kind):
+                found.folder, found.suffix = path.parent, path.suffix
+            return found
         except (OSError, ValueError) as error:  # ValueError: a null character in the name
             reason = getattr(error, "strerror", None) or str(error)
             raise FileError.one("GX901", f"cannot read {path}: {reason}") from None
@@ -87,6 +93,10 @@ class Source:
     def line_of(self, line: int) -> int:
         """Return the line of the file, from 1, that a line of the text came from; 0 for 0."""
         return line
+
+    def place_of(self, line: int) -> tuple[str, int]:
+        """Return the file, and its line, from 1, that a line of the text came from."""
+        return self.name, self.line_of(line)
 
     def is_called(self, line: int) -> bool:
         """Whether a line of the text, from 0, came from a subprogram that was called."""

@@ -14,6 +14,40 @@ def _flow(name: str, file: str, old: str, new: str, tests: str = CASES) -> Mutat
 
 MUTATIONS = (
     _flow(
+        "a file with another number is taken",
+        "gcxform/flow/numbered_files.py",
+        "number in numbers or (",
+        "True or (",
+    ),
+    _flow(
+        "of two files the first is taken", "gcxform/flow/lookup.py", "found}) > 1:", "found}) > 9:"
+    ),
+    _flow(
+        "a link leads out of its folder",
+        "gcxform/flow/lookup.py",
+        "if os.path.commonpath([real, root]) != root:",
+        "if False:",
+        "tests/test_lookup.py",
+    ),
+    _flow(
+        "the end of a file is a return",
+        "gcxform/flow/execution.py",
+        "if self.at > self.listing.own:",
+        "if False:",
+    ),
+    _flow(
+        "a jump leads into another file",
+        "gcxform/flow/macros.py",
+        "self.bounds = [*(self.bounds or [0]), line + 1]",
+        "pass",
+    ),
+    _flow(
+        "lines of a file are those of the program",
+        "gcxform/flow/listing.py",
+        "return file.name, line - file.first + 1",
+        "return self.file, line + 1",
+    ),
+    _flow(
         "a call keeps the values of its caller", "gcxform/flow/owords.py", "if k not in own}", "}"
     ),
     _flow("what is not given is one", "gcxform/flow/owords.py", "*[0.0] *", "*[1.0] *", AGREES),

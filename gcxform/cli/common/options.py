@@ -81,6 +81,12 @@ _READING = (
         "--units", type=click.Choice(["mm", "in"]), help="Units before the first G20 or G21."
     ),
     click.option("--parameters", metavar="100=1.5", help="Values that the program does not set."),
+    click.option(
+        "--subprograms",
+        metavar="DIR",
+        multiple=True,
+        help="Where subprograms lie, besides beside the program.",
+    ),
 )
 
 

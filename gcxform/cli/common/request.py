@@ -37,6 +37,7 @@ class Asked:
     feed: str | None = None
     units: str | None = None
     parameters: str | None = None
+    subprograms: tuple[str, ...] = ()
     budget: str | None = None
     growth: str | None = None
     decimals: str | None = None
@@ -124,6 +125,8 @@ class Asked:
             raw["start"] = _pairs(self.start, "start")
         if self.parameters:
             raw["parameters"] = _pairs(self.parameters, "parameters")
+        if self.subprograms:
+            raw["subprograms"] = [Argument(each) for each in self.subprograms]
         return raw
 
     @staticmethod
@@ -135,7 +138,9 @@ class Asked:
         """Return what the command line says for reading a program without a pipeline."""
         said = self.input()
         given = (dict(said.start), said.increment, said.feed, said.block_delete, said.units)
-        reading = Reading(*given, said.feed_increment, said.parameters)
+        reading = Reading(
+            *given, said.feed_increment, said.parameters, subprograms=said.subprograms
+        )
         return reading.on(self.loaded_machine) if self.loaded_machine else reading
 
 

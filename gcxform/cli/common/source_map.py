@@ -3,8 +3,9 @@
     {"format": 1, "source": {...}, "output": {...}, "lines": [[1, 1, 40, 1], [41, 40, 6, 0], ...]}
 
 `lines` holds runs: first output line, first source line, how many output lines, and by how much the
-source line grows from one to the next. Lines count from 1. A program of which little is changed has
-few runs, and a split block is one.
+source line grows from one to the next. Lines count from 1; those of a file that the program calls
+are counted on behind its own, from the `first` of the file in `source`. A program of which little
+is changed has few runs, and a split block is one.
 """
 
 from __future__ import annotations

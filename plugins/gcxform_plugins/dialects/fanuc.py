@@ -33,7 +33,8 @@
 | G36, G37 | measure a tool and write its offset: refused |
 | G33, G34, G63 | threads and taps with a feed whose meaning changes: refused |
 | G27, G29, G60 | over, from or past points that the program does not tell: refused |
-| M98 M99 | executed where the program is in the file; L counts, or the digits of P before four |
+| M98 M99 | executed where the program is in the file or in one beside it, which its number names |
+| L of M98 | counts, or the digits of P before four |
 | local variables across M98 | shared or not: known in two ways, so they have no value there |
 | M198 G65 G66 | calls of other programs, or with values: refused |
 | a variable that nothing has set | is null: refused, unless given |
@@ -78,6 +79,13 @@ CYCLES = {
     88: v.Cycle(takes="PQK", refused=BY_HAND),
     89: v.Cycle(BORE_DWELL, needs="P", takes="PQK"),
 }
+FILES = gx.LookupRule(
+    numbers=("O{n}", "O{n:04}", "O{n:05}", "O{n:08}", "{n}", "{n:04}", "{n:05}"),
+    endings=("", ".nc", ".cnc", ".tap"),
+    own_ending=True,
+    any_case=True,
+    by_name=True,
+)
 CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, stores=True, repeats="K")
 
 
@@ -166,7 +174,7 @@ class Fanuc(gx.Dialect):
         m_order_chosen=True,
         unknown_m=gx.MCode("user", loses_position=True),
     )
-    flow_rule = gx.FlowRule("macro-b", v.MACRO_B)
+    flow_rule = gx.FlowRule("macro-b", v.MACRO_B, lookup=FILES)
     point_rule = gx.PointRule(required=True, dwell={"X": 1.0, "U": 1.0, "P": 0.001})
     feed_rule = gx.FeedRule(change_clears=True)
     motion_rule = gx.MotionRule(g53_is_rapid=True)

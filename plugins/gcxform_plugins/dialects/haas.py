@@ -29,7 +29,7 @@ refused. What is not named here is as in `fanuc`.
 | G68, G101, G100 | as Fanuc's G68, G51.1, G50.1; G101 with zeros only; G51 is refused | manual |
 | G107 G112 G113 G234 G253 to G255 G268 G269 | another frame: refused | manual |
 | G103, G187 | look-ahead, smoothness: change no position | manual |
-| M97 M98 M99 | executed where what they call is in the file; P of M98 holds no count | manual |
+| M97 M98 M99 | executed where what they call is found, as Fanuc; P of M98 holds no count | manual |
 | M96 M198, G65 | jumps at an input, other programs, calls with values: refused | manual |
 | M16 | is M6 | known |
 | M29, M48, M49 | are no tapping mode and no overrides: as any unknown M code | known |
