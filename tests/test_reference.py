@@ -21,7 +21,7 @@ from gcxform.testing.strategies import lines_of_bytes, programs
 
 FACTS = Path(__file__).parents[2] / "shared" / "dialect-facts"
 ZERO = dict.fromkeys("XYZABC", 0.0)
-COUNT = 20 * settings.default.max_examples  # 2,000; a profile may ask for more
+COUNT = 20 * settings.default.max_examples  # 1,500; a profile may ask for more
 CHUNK = 2000
 OTHERS = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 INSERTS = """X1 Y Z- A5 G0 G1 G2 G3 G4 G17 G18 G91 G90 G93 G94 G95 G20 G21 G80 G90.1 G91.1 F0 F-1

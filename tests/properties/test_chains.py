@@ -25,7 +25,7 @@ from gcxform.plugin.registry import default_registry
 from gcxform.testing.cases import read_case
 
 LONG = settings.default.max_examples > 1000
-COUNT = 20_000 if LONG else 500
+COUNT = 20_000 if LONG else 375
 TARGETS = ("fanuc", "grbl", "haas", "linuxcnc")
 CASES = [case for case in map(read_case, test_corpus.paths()) if not case.xfail]
 

@@ -17,7 +17,7 @@ import gcxform as gx
 from gcxform.machine.machine import Machine, Tool
 from gcxform.plugin.registry import default_registry
 
-COUNT = 4 * settings.default.max_examples  # 400; the profile `long` asks for more
+COUNT = 4 * settings.default.max_examples  # 300; the profile `long` asks for more
 CLOSE = 1.1e-4  # mm: twice the rounding of the print
 REFUSED_BY_US = (
     "turns back on itself",  # LinuxCNC takes the inside or the outside of so sharp a corner

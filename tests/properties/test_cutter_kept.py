@@ -24,7 +24,7 @@ import gcxform as gx
 from gcxform.machine.machine import Machine, Tool
 from gcxform.plugin.registry import default_registry
 
-COUNT = settings.default.max_examples  # 100; the profile `long` asks for more
+COUNT = settings.default.max_examples  # 75; the profile `long` asks for more
 STEPS = (
     "absolute",
     "offsets",

@@ -14,7 +14,7 @@ from seeds_kit import shares
 import gcxform as gx
 from gcxform.plugin.registry import default_registry
 
-COUNT = 5 * settings.default.max_examples  # 500; the profile `long` asks for more
+COUNT = 5 * settings.default.max_examples  # 375; the profile `long` asks for more
 NEAR = 1e-4  # of a unit of the program: the rounding of the print, and a little
 
 pytestmark = pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")

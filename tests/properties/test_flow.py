@@ -9,7 +9,7 @@ from oracles.canon import CanonProgram
 
 import gcxform as gx
 
-COUNT = 3 * settings.default.max_examples  # 300; the profile `long` asks for more
+COUNT = 3 * settings.default.max_examples  # 225; the profile `long` asks for more
 NOT_RESOLVED = (
     "polar words are resolved in G90",
     "the control loses its place",

@@ -23,7 +23,7 @@ from gcxform.plugin.registry import default_registry
 from gcxform.testing.generate import Options, program
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
-COUNT = 20 * settings.default.max_examples  # 2,000; the profile `long` asks for more
+COUNT = 20 * settings.default.max_examples  # 1,500; the profile `long` asks for more
 CLOSE = 1e-4  # mm, degrees; beyond the rounding of the print
 PRINTED = 0.5e-4  # units of the program
 START = dict.fromkeys("XYZABC", 0.0)

@@ -25,7 +25,7 @@ from gcxform.testing.generate import Options
 from gcxform.testing.shifts import ShiftingBuilder
 
 INCH = 25.4
-COUNT = 20 * settings.default.max_examples  # 2,000; the profile `long` asks for more
+COUNT = 20 * settings.default.max_examples  # 1,500; the profile `long` asks for more
 CHORD = 0.02  # mm
 CLOSE = 0.012  # mm; what is printed is rounded in inches, and read back from that
 

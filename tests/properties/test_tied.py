@@ -13,7 +13,7 @@ from properties import test_laws as laws
 
 import gcxform as gx
 
-COUNT = 5 * settings.default.max_examples  # 500; the profile `long` asks for more
+COUNT = 5 * settings.default.max_examples  # 375; the profile `long` asks for more
 CHUNK = 250
 NEAR = 1.2e-3  # mm: what is written is rounded to 1e-4 of a unit, which may be an inch
 

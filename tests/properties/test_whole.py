@@ -16,7 +16,7 @@ from seeds_kit import shares
 from gcxform.testing.generate import Options
 from gcxform.testing.linuxcnc_language import WholeBuilder
 
-COUNT = 20 * settings.default.max_examples  # 2,000; the profile `long` asks for more
+COUNT = 20 * settings.default.max_examples  # 1,500; the profile `long` asks for more
 
 pytestmark = pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
 
