@@ -13,6 +13,7 @@ from enum import IntEnum
 from typing import ClassVar, Self
 
 PRINTED_AT_MOST = 20
+PLACES_SHOWN = 5  # of the other lines on which a finding holds as well
 
 
 class Severity(IntEnum):
@@ -39,7 +40,10 @@ class Location:
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One finding: `code` is in the catalogue, `message` is one sentence without a full stop."""
+    """One finding: `code` is in the catalogue, `message` is one sentence without a full stop.
+
+    `also` are other places with the same cause.
+    """
 
     code: str
     message: str
@@ -47,6 +51,7 @@ class Diagnostic:
     hint: str = ""
     context: str = ""
     severity: Severity = Severity.ERROR
+    also: tuple[Location, ...] = ()
 
     def render(self) -> str:
         """Return the text for a person: place, code, sentence; the line, a caret, a hint."""
@@ -56,6 +61,8 @@ class Diagnostic:
             lines += _excerpt(self.where)
         if self.context:
             lines.append(f"    = modal: {self.context}")
+        if self.also:
+            lines.append(f"    = also {_places(self.also)}")
         if self.hint:
             lines.append(f"    = hint: {self.hint}")
         return "\n".join(lines)
@@ -63,6 +70,14 @@ class Diagnostic:
     def at(self, where: Location) -> Diagnostic:
         """Return the same finding at a place."""
         return replace(self, where=where)
+
+
+def _places(places: tuple[Location, ...]) -> str:
+    """Return other places in words: "at lines 12, 15, 20 (9 more)"."""
+    first = [each for each in places if each.file == places[0].file][:PLACES_SHOWN]
+    more = len(places) - len(first)
+    lines = ", ".join(str(each.line) for each in first)
+    return f"at line{'s' * (len(first) > 1)} {lines}" + (f" ({more} more)" if more else "")
 
 
 def _excerpt(where: Location) -> list[str]:

@@ -1,19 +1,22 @@
 """The settings that hints name: found, tried, and said as the command line takes them.
 
-A hint gives a setting as a pipeline file has it, `increment = "IS-B" in [input]`, or as a step has
-it, `chord-error = "2 um"`. Who has typed a chain has no such file: to them it is an option of the
+A hint gives a setting as a pipeline file has it, `increment = "IS-B" in [input]`, as a machine file
+has it, `X = ... in [home.G28]`, or as a step has it, `chord-error = "2 um"`; dots stand for numbers
+that the reader knows. Who has typed a chain has no pipeline file: to them it is an option of the
 command line, `--increment IS-B`, or a word of the chain, `chord-error=2um`.
 """
 
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Iterator, Mapping
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 VALUE: Final = r'"[^"]*"|\'[^\']*\'|\[[^\]]*\]|\{[^}]*\}|-?[0-9.]+'
 SETTING: Final = re.compile(
-    rf"(?P<key>[a-z][a-z0-9-]*) = (?P<value>{VALUE})(?: in \[(?P<section>[a-z]+)\])?"
+    rf"(?P<key>[a-z][a-z0-9-]*|\b[A-Z](?= = \S+ in \[)) = (?P<value>{VALUE})"
+    r"(?: in \[(?P<section>[a-z][^\]]*)\])?"
 )
 ON_COMMAND_LINE: Final[Mapping[tuple[str, str], str]] = {
     ("input", "dialect"): "-f",
@@ -39,6 +42,11 @@ class Setting(NamedTuple):
     section: str
     key: str
     value: str
+
+    def worth(self) -> Any:
+        """Return the value; 0 where dots or a small letter stand for a number."""
+        text = re.sub(r"\.\.\.|\b[a-z]\b(?=[],])", "0.0", self.value).replace(", 0.0 }", " }")
+        return tomllib.loads(f"value = {text}")["value"]
 
 
 def settings(hint: str) -> Iterator[Setting]:

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import click
 import numpy as np
 
+from gcxform.catalogue.questions import PIPELINE
 from gcxform.cli import VERBS
 from gcxform.cli.common import options
 from gcxform.cli.common.failures import warn
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked
+from gcxform.cli.program.asking import block, sections
+from gcxform.cli.program.asking import options as as_options
+from gcxform.cli.program.missing import STATELESS, Missing, Visit
+from gcxform.config.to_fill_in import told_open
 from gcxform.contract.passes import Pass
-from gcxform.diagnostics import PRINTED_AT_MOST, Diagnostic, InputError, Severity
+from gcxform.diagnostics import PRINTED_AT_MOST, Diagnostic, InputError, Severity, UsageError
 from gcxform.flow.straightened import located, written_out
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.program_end import Ending
@@ -29,8 +34,6 @@ from gcxform.stamps.comment import stamps_in
 from gcxform.syntax.source import Source
 from gcxform.toolpath.facts import Fact
 
-STATELESS = frozenset({"GX101", "GX201", "GX202", "GX205", "GX206", "GX210", "GX211"})
-"""Findings about a block by itself, which hold whatever stood before it."""
 ENOUGH = 100 * PRINTED_AT_MOST
 
 
@@ -50,7 +53,7 @@ def command(file: str | None, **asked: Any) -> int:
         return 0
     with opened(file) as source:
         click.echo(text)
-        return _check(pipeline, source)
+        return _check(pipeline, source, what)
 
 
 # --- the chain ---
@@ -106,23 +109,66 @@ def _limits(pipeline: Pipeline) -> str:
 # --- the program ---
 
 
-def _check(pipeline: Pipeline, source: Source) -> int:
+def _check(pipeline: Pipeline, source: Source, what: Asked) -> int:
     """Say what speaks against a program; return the exit code."""
     stamps = stamps_in(source)
     for line in told(stamps):
         click.echo(f"stamp     {line}")
     warn(edited(stamps.edited, source.name, stamps.line))
     taken: list[str] = []
-    found = _again(pipeline, source) or list(_first(_reading(pipeline, source, taken)))
-    found = found or _refusals(pipeline, source, taken)
+    done = _again(pipeline, source)
+    seen = done or speaks_against(pipeline, source, taken)
     lines = sum(len(window) for window, _ in windows_of(source, pipeline.read_as))
-    warn(found)
-    found = [each for each in found if each.severity is Severity.ERROR]
+    errors = [each for each in seen if each.severity is Severity.ERROR]
+    open_ = Visit(pipeline, source, speaks_against).run([] if done else errors)
+    found = errors if done else list(told_open(open_.told(), pipeline.to_fill_in))
+    warn([*found, *(each for each in seen if each.severity is not Severity.ERROR)])
     for line in dict.fromkeys(taken):
         click.echo(f"assumed   {line}")
-    count = f"{len(found)}{'+' if len(found) >= ENOUGH else ''}" if found else "no"
-    click.echo(f"{source.name}: {lines} lines, {count} finding{'' if len(found) == 1 else 's'}")
+    click.echo(f"{source.name}: {lines} lines, {_count(found)}")
+    for line in _asked(open_, what, pipeline):
+        click.echo(line)
     return 1 if found else 0
+
+
+def _count(found: Sequence[Diagnostic]) -> str:
+    """Return in words how many findings there are, and how many places they have."""
+    if not found:
+        return "no findings"
+    places = sum(1 + len(each.also) for each in found)
+    said = f"{len(found)} finding{'s' * (len(found) > 1)}"
+    return said if places == len(found) else f"{said} at {places} lines"
+
+
+def _asked(found: Missing, what: Asked, pipeline: Pipeline) -> Iterator[str]:
+    """Yield what is missing, as text to paste into files, and as options for who has none."""
+    asked, notes = found.asked(), found.notes()
+    for question in (each for each in asked if each in pipeline.to_fill_in):
+        yield f"fill in   {pipeline.to_fill_in[question]}, {notes.get(question, '')}"
+    tables = sections(each for each in asked if each not in pipeline.to_fill_in)
+    dialect, file = pipeline.source.name, pipeline.machine.file if pipeline.machine else None
+    if PIPELINE in tables:
+        yield from ("", f'# {what.file or "pipeline file"}: fill in what is "?"')
+        if not what.file:
+            yield f"# or as options: {as_options(asked)}"
+        yield from block(tables.pop(PIPELINE), notes, dialect)
+    if tables:
+        yield from ("", f'# {file or "machine file, -m FILE"}: fill in what is "?"')
+        yield from [] if file else ["format = 1"]
+    for questions in tables.values():
+        yield from ("", *block(questions, notes, dialect))
+
+
+def speaks_against(
+    pipeline: Pipeline, source: Source, taken: list[str] | None = None
+) -> list[Diagnostic]:
+    """Return why a program is refused, or warnings; `taken` gets what was assumed on the way."""
+    taken = [] if taken is None else taken
+    try:
+        found = list(_first(_reading(pipeline, source, taken)))
+        return found or _refusals(pipeline, source, taken)
+    except UsageError as error:  # of a pass that was told of a machine on trial
+        return list(error.diagnostics)
 
 
 def _again(pipeline: Pipeline, source: Source) -> list[Diagnostic]:

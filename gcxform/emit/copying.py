@@ -112,7 +112,7 @@ class Copying:
             axis = self.path.axes[int(np.argmax(unknown[row]))]
             where = self.task.location(int(self.path.block[row]))
             message = f"the block would be written anew, and where {axis} goes is not known"
-            hint = f"program {axis} before, or give a machine file with the offsets"
+            hint = f"program {axis} before, or give a machine file with X = ... in [work-offset.*]"
             raise InputError.one("GX506", message, where, hint)
 
     def _refuse_polar(self) -> None:

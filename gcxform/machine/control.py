@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from gcxform.config.quantities import LENGTH
 from gcxform.config.toml_text import TomlText, did_you_mean
@@ -34,6 +34,7 @@ class Setting:
     name: str
     help: str
     choices: tuple[str | int, ...] = ()
+    kind: ClassVar[str] = "a length in mm"
 
     def read(self, raw: object) -> str | float:
         """Return the value; ValueError, with a sentence, for what is none."""
@@ -54,6 +55,8 @@ class Setting:
 @dataclass(frozen=True)
 class _Code(Setting):
     """A setting that names an M code of the machine's own."""
+
+    kind: ClassVar[str] = "an M code"
 
     def read(self, raw: object) -> str | float:
         """Return the code; ValueError for what is none."""
@@ -88,6 +91,15 @@ declare(
         Setting(TIP_AT_START, "whether it does before the first block", ("off", "on")),
     )
 )
+
+
+def answers(name: str) -> str:
+    """Return what a setting says and which values it takes, in words; "" for one that is none."""
+    setting = _KNOWN.get(name)
+    if setting is None:
+        return ""
+    choices = " or ".join(f'"{c}"' if isinstance(c, str) else str(c) for c in setting.choices)
+    return f"{setting.help}: {choices or setting.kind}"
 
 
 def settings_of(control: Mapping[str, Value]) -> dict[str, str | float]:

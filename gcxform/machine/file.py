@@ -27,6 +27,7 @@ from gcxform.config.quantities import (
     Quantity,
     quantity_of,
 )
+from gcxform.config.to_fill_in import split_open
 from gcxform.config.toml_text import TomlText, convert, did_you_mean, read_toml
 from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.errormodel.model_file import CODES, check_version
@@ -43,6 +44,8 @@ from gcxform.machine.machine import (
 )
 from gcxform.system.inputs import referred
 
+FILLED_IN = ("control", "tool", "work-offset", "home")
+"""The tables in which a value may be left to be filled in."""
 EXAMPLES = {"axis": "X", "work-offset": "G54", "home": "G28", "tool": "1"}
 Keys = tuple[str | int, ...]
 _HOME = re.compile(r"G28|G30( P[0-9]+)?")
@@ -54,7 +57,7 @@ def load_machine(path: Path, known: Known = NONE) -> Machine:
 
     Raises UsageError, with the place in the file, for all that is wrong with it.
     """
-    document = read_toml(path, CODES)
+    document, still_open = split_open(read_toml(path, CODES), FILLED_IN)
     check_version(document, "machines")
     file = _converted(_without_units(document))
     named = tuple(presets.findings(document, file, known.kinematics))
@@ -74,6 +77,7 @@ def load_machine(path: Path, known: Known = NONE) -> Machine:
         tools=_tools(document, file, known),
         control=control.settings_of(file.control),
         inert_m=control.inert_of(file.control),
+        open=still_open,
     )
 
 

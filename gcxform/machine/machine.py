@@ -7,6 +7,8 @@ from typing import Annotated, Literal
 
 import msgspec
 
+from gcxform.diagnostics import Location
+
 MARK = "a number, or a string with a unit"
 """The description, in the schema, of what may be written with a unit."""
 SWITCHES = ("tip-on", "tip-off")
@@ -88,7 +90,8 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True):
     `table` and `head` name the rotary axes from the base to the workpiece and to the spindle;
     `gauge_point` (mm) is that of the spindle with all axes at 0; `errors` is a file. `homes` are
     the machine positions of G28 and G30; `control` has settings that codes depend on; `inert_m` are
-    M codes of the machine's own that move no axis and set no variable.
+    M codes of the machine's own that move no axis and set no variable. `open` has the places of
+    values that the file leaves to be filled in.
     """
 
     file: Path
@@ -103,3 +106,4 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True):
     tools: dict[int, Tool] = {}
     control: dict[str, str | float] = {}
     inert_m: frozenset[int] = frozenset()
+    open: dict[tuple[str, ...], Location] = {}

@@ -18,6 +18,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal, TypeVar
 
+from gcxform.config.to_fill_in import Open, split_open
 from gcxform.config.toml_text import Codes, TomlText, read_toml
 from gcxform.contract.options import (
     Coordinates,
@@ -93,7 +94,8 @@ class OutputSpec:
 class PipelineSpec:
     """A pipeline as written: input, machine file, budget (mm), growth, passes, output, limits.
 
-    `warnings` is what is odd in it, and no error.
+    `warnings` is what is odd in it, and no error; `open` has the places of values in `[input]` that
+    are left to be filled in.
     """
 
     input: InputSpec = field(default_factory=InputSpec)
@@ -105,6 +107,7 @@ class PipelineSpec:
     file: Path | None = None
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)
     limits: Limits | None = None
+    open: Open = field(default_factory=dict, compare=False)
 
 
 @dataclass(frozen=True)
@@ -141,12 +144,12 @@ def load(path: Path, registry: Registry) -> PipelineSpec:
 
     Raises UsageError, with places in the file, for all that is wrong with it.
     """
-    document = read_toml(path, CODES)
+    document, still_open = split_open(read_toml(path, CODES), ("input",))
     _check_version(document)
     reader = _Reader(document, path.parent, registry, _unknown_keys(document))
     limits = reader.section("limits", Limits)
     with in_force(limits):
-        return replace(_spec(reader, path), limits=limits)
+        return replace(_spec(reader, path), limits=limits, open=still_open)
 
 
 def _spec(reader: _Reader, path: Path) -> PipelineSpec:

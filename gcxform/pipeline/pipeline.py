@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from gcxform.config import arguments
-from gcxform.diagnostics import UsageError
+from gcxform.config.to_fill_in import told_open
+from gcxform.diagnostics import InputError, UsageError
 from gcxform.dialect.dialect import Dialect, NumberFormat
 from gcxform.machine.file import load_machine
 from gcxform.modal.state import Reading
@@ -105,6 +106,7 @@ class Pipeline(Plan):
             spec.input.again,
             spec.warnings,
             spec.limits,
+            spec.open,
         )
 
     # --- runs ---
@@ -137,7 +139,10 @@ class Pipeline(Plan):
         out = Output(sink, source_map)
         with in_force(self.limits):
             run = Run(self, source, verify)
-            run.over(out, progress or (lambda size: None))
+            try:
+                run.over(out, progress or (lambda size: None))
+            except InputError as error:
+                raise InputError(tuple(told_open(error.diagnostics, self.to_fill_in))) from None
             run.check_growth(out)
         return certificate(run, out)
 

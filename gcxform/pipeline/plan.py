@@ -26,6 +26,7 @@ from string import ascii_uppercase
 import numpy as np
 
 from gcxform.config import arguments
+from gcxform.config.to_fill_in import Open
 from gcxform.contract.options import taken
 from gcxform.contract.passes import Pass, PassContext, TextPass, resolved
 from gcxform.contract.tip_codes import with_refusal, with_switches, with_vectors, without_tip_codes
@@ -67,6 +68,7 @@ class Plan:
     stamp    whether what turns positions into others is stamped, so that it is not done twice
     again    run on stamped programs all the same, as if they were not
     limits   what a run may take; None: as much as is usual
+    open     the places of values that the pipeline file leaves to be filled in
     """
 
     source: type[Dialect]
@@ -83,6 +85,7 @@ class Plan:
     again: bool = False
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)
     limits: Limits | None = None
+    open: Open = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
         for name, value in self._taken().items():
@@ -146,6 +149,11 @@ class Plan:
             )
 
     # --- what a run is told ---
+
+    @property
+    def to_fill_in(self) -> Open:
+        """The places of values that its files leave to be filled in, by their keys."""
+        return {**self.open, **(self.machine.open if self.machine else {})}
 
     @property
     def path_passes(self) -> tuple[Pass, ...]:

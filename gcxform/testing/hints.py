@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-import re
-import tomllib
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from gcxform.catalogue.settings import Setting, settings
 from gcxform.contract.options import build, describe
 from gcxform.diagnostics import Location, UsageError
+from gcxform.machine.control import answers, settings_of
+from gcxform.machine.file import FILLED_IN
+from gcxform.machine.machine import Offset, Tool
 from gcxform.pipeline.file import SECTIONS
 from gcxform.plugin.registry import Registry
 
@@ -25,12 +28,13 @@ def _try(setting: Setting, registry: Registry) -> None:
 
     Letters and dots that stand for numbers (`start = { X = ... }`, `[x, y, z]`) count as 0.
     """
-    text = re.sub(r"\.\.\.|\b[a-z]\b(?=[],])", "0.0", setting.value).replace(", 0.0 }", " }")
-    value = tomllib.loads(f"value = {text}")["value"]
+    value = setting.worth()
+    table, *name = setting.section.split(".", 1)
+    if table in FILLED_IN:
+        _try_machine(table, name, setting.key, value)
+        return
     if setting.section:
         owners: list[type] = [SECTIONS[setting.section]] if setting.section in SECTIONS else []
-        if setting.section == "control":
-            return
     else:
         owners = list(registry.passes.values())
     having = [owner for owner in owners if setting.key in {o.name for o in describe(owner)}]
@@ -38,6 +42,18 @@ def _try(setting: Setting, registry: Registry) -> None:
         raise ValueError(f"[{setting.section}] has no key {setting.key!r}")
     for owner in having:
         _take(owner, setting.key, value)
+
+
+def _try_machine(table: str, name: list[str], key: str, value: Any) -> None:
+    """Raise ValueError if a machine file does not take a value; `*` is any name."""
+    if table == "control":
+        if not answers(key):
+            raise ValueError(f"[control] has no key {key!r}")
+        settings_of({key: value})
+        return
+    fields = msgspec.structs.fields(Tool if table == "tool" else Offset)
+    if len(name) != 1 or key not in {each.encode_name for each in fields}:
+        raise ValueError(f"[{'.'.join([table, *name])}] has no key {key!r}")
 
 
 def _take(owner: type, key: str, value: Any) -> None:

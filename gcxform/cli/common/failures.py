@@ -15,6 +15,7 @@ from typing import Any, Final, TextIO
 
 import click
 
+from gcxform.catalogue.questions import questions
 from gcxform.catalogue.settings import for_chain
 from gcxform.cli.common import DEBUG
 from gcxform.cli.common.options import ENVIRONMENT
@@ -28,6 +29,7 @@ FAILED: Final = 5
 BUG: Final = 70
 INTERRUPTED: Final = 130
 WORDS: Final = "gcxform.words"
+ALL_AT_ONCE: Final = "gcxform check, with the same words, says all that is missing at once, as TOML"
 
 _HEAD = re.compile(r"\b(error|warning|note)\[(GX\d+)\]:")
 _COLOUR = {"error": "31;1", "warning": "33;1", "note": "36;1"}
@@ -61,6 +63,8 @@ def _run(group: click.Command, name: str, words: list[str], extra: Mapping[str, 
         return USAGE
     except GcxformError as error:
         say(paint(render_all(_typed(error.diagnostics, words)), sys.stderr))
+        if words[:1] == ["run"] and _asks(error):
+            say(ALL_AT_ONCE)
         return error.exit_code
     except click.Abort:
         say("interrupted")
@@ -69,6 +73,11 @@ def _run(group: click.Command, name: str, words: list[str], extra: Mapping[str, 
         return _system_failure(error)
     except Exception:
         return _bug(words, bool(meta.get(DEBUG)))
+
+
+def _asks(error: GcxformError) -> bool:
+    """Whether an error ends if more is said of the program or the machine."""
+    return any(True for each in error.diagnostics for _ in questions(each.hint))
 
 
 def say(text: str) -> None:

@@ -20,8 +20,6 @@ from gcxform.syntax.tree import BLANKS, Statement
 Parameters = Mapping[Key, float]
 """Values by parameter; nan for one that is no longer known."""
 
-HOW_TO_GIVE = "set it in the program, or say what it is worth: parameters in [input]"
-
 
 class LocatedError(NoValueError):
     """An expression without a value, and where in the block that is (columns from 0)."""
@@ -39,6 +37,13 @@ def parameter_key(text: str) -> Key:
     if not bare.isdecimal():
         raise ValueError(f"{text!r} is neither a number nor a name such as '<depth>'")
     return int(bare)
+
+
+def how_to_give(key: Key) -> str:
+    """Return what to do about a parameter without a value."""
+    name = key if isinstance(key, int) else f"<{key}>"
+    setting = f'parameters = {{ "{name}" = ... }} in [input]'
+    return f"set it in the program, or say what it is worth: {setting}"
 
 
 def written(key: Key) -> str:
@@ -124,11 +129,11 @@ class Evaluator:
         name = written(key)
         if value is not None:
             message = f"{name} is not known after a block that is refused, or that may run a macro"
-            raise NoValueError(message, HOW_TO_GIVE, "GX220")
+            raise NoValueError(message, how_to_give(key), "GX220")
         if not self.arithmetic.owns(key):
             raise NoValueError(f"{name} has a value that only the control knows", code="GX220")
         message = f"nothing in the program has set {name} before"
-        raise NoValueError(message, HOW_TO_GIVE, "GX220")
+        raise NoValueError(message, how_to_give(key), "GX220")
 
     def _exists(self, arguments: list[Any]) -> float:
         """Return whether a parameter has a value; only of local names is that known."""

@@ -22,7 +22,7 @@ def user_code(state: FrameState, asked: Asked) -> FrameState:
         raise ActError(
             "GX214",
             f"{asked.code} runs a program of this machine, if it has one",
-            'say that it has: [control] user-codes = "keep" in the machine file; positions are '
+            'say that it has: user-codes = "keep" in [control] of the machine file; positions are '
             "then lost behind it",
         )
     return state

@@ -180,7 +180,7 @@ def _refuse_unset(asked: Asked) -> None:
     raise ActError(
         "GX214",
         f"what {asked.code} does depends on a setting of the control",
-        'say that it is as on a Fanuc: [control] g52 = "fanuc" in the machine file; see the '
+        'say that it is as on a Fanuc: g52 = "fanuc" in [control] of the machine file; see the '
         "dialect's page",
     )
 

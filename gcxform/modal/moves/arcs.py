@@ -140,7 +140,8 @@ class _Part:
             unknown,
             "GX208",
             "an arc, but where it starts is not known",
-            hint="begin with a line to a known point, or say start = { X = ... } in [input]",
+            hint="begin with a line to a known point, or say "
+            f"start = {{ {'XYZ'[self.first]} = ..., {'XYZ'[self.second]} = ... }} in [input]",
         )
         across = has[:, self.normal] & ~(in_plane & self.rule.drops_third)
         self._refuse(

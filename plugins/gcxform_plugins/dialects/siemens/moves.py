@@ -10,7 +10,7 @@ from gcxform_plugins.dialects.siemens.line import ABSOLUTE, STEP, Line
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
 from gcxform_plugins.dialects.siemens.reading import Statements
 
-EDGE = "say D1 before, or [control] edge-after-tool-change = 1 (or 0) in the machine file"
+EDGE = "say D1 before, or edge-after-tool-change = 1 in [control] of the machine file (or 0)"
 ALONG = 'move in G17; or say [control] tool-length-axis = "Z", if it stays there (SD42940)'
 LINEAR_WAY = 'write ORIAXES and ORIMKS; or say [control] orientation-path = "angles", if it is so'
 

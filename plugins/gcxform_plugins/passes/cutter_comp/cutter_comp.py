@@ -145,7 +145,7 @@ def _refuse(path: gx.Toolpath, context: gx.PassContext) -> None:
             on & np.isnan(path.radius),
             "GX231",
             "the radius of the tool under cutter compensation is not known",
-            "give a machine file with the tool: [tool.1] radius = 5.0, or -m MACHINE.toml",
+            "give a machine file with the tool, -m MACHINE.toml: radius = ... in [tool.*]",
         ),
         (
             changes,

@@ -92,7 +92,8 @@ class Place:
         table, first = context.machine.work_offsets, np.array([0])
         if self.path.first not in table:
             message = f"the machine file has no work offset {self.path.first}"
-            raise self.path.refuse("GX314", first, message, "add it there")
+            hint = f"add it there: X = ... in [work-offset.{self.path.first}]"
+            raise self.path.refuse("GX314", first, message, hint)
         offset = table[self.path.first]
         if any(offset.get(letter, 0.0) for letter in self.chain.letters):
             message = f"the work offset {self.path.first} turns axes"

@@ -137,7 +137,8 @@ class Volumetric(VolumetricOptions, gx.Pass):
         self._check_frames(path, "the machine file has not all offsets of this block", True)
         if path.first not in table:
             message = f"the machine file has no work offset {path.first}"
-            raise path.refuse("GX314", np.array([0]), message, "add it there")
+            hint = f"add it there: X = ... in [work-offset.{path.first}]"
+            raise path.refuse("GX314", np.array([0]), message, hint)
         zero = [table[path.first].get(axis, 0.0) for axis in "XYZ"]
         offset = np.array([zero]) - origin
         if not self.model.model.needs_tool:
@@ -171,7 +172,8 @@ class Volumetric(VolumetricOptions, gx.Pass):
                 rows = np.flatnonzero(path.frame == number)[:1]
                 known = " and ".join(dict.fromkeys(n for n in named if n != path.first))
                 hint = (
-                    f"not known: {known}; give a machine file with [work-offset.*] and [tool.*]"
+                    f"not known: {known}; give a machine file with them: X = ... in "
+                    "[work-offset.*], length = ... in [tool.*]"
                     + ("" if tools else " instead of part-origin")
                 )
                 raise path.refuse("GX314", rows, message, hint)

@@ -289,7 +289,7 @@ class Cutting:
         if self.place.chain.head:
             none = ~self.place.called
             message = "no tool length is in force, and the head is turned"
-            hint = "call it with G43, and give the tools of the machine file their lengths"
+            hint = "call it with G43, and give the tools their lengths: length = ... in [tool.*]"
             self._refuse("GX330", none & turned, message, hint)
 
     def _check_feeds(self, moved: Flags) -> None:

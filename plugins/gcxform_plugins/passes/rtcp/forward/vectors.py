@@ -94,7 +94,7 @@ class Pointing(OnCircles):
         """Yield rows without a tool length, and those in which it changes within a section."""
         place, on = self.place, self.vectors.on
         none = ~place.called
-        hint = "call it with H, and give the tools of the machine file their lengths"
+        hint = "call it with H, and give the tools their lengths: length = ... in [tool.*]"
         yield "GX330", np.asarray(on & none), "no tool length is in force", hint
         changed = on & np.append(False, on[:-1])[: len(on)] & (place.which != place.which_before)
         yield "GX330", changed, "the tool length changes under G43.5", "write G49 before"

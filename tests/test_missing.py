@@ -1,0 +1,192 @@
+"""`gcxform check` says all at once: every cause once, and one block that ends all of them."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from cli_kit import call, workplace
+
+from gcxform.machine.file import load_machine
+
+ANSWERS: dict[str, Any] = {
+    "increment": "IS-B",
+    "feed-increment": 1.0,
+    "feed": 100.0,
+    "block-delete": "skip",
+    "peck-return": 0.5,
+    "peck-clearance": 1.0,
+    "g52": "fanuc",
+    "cycle-without-place": "drills",
+    "user-codes": "keep",
+}
+BODIES = {
+    "a start in G91": (
+        "fanuc",
+        "G91 G1 X1. Y1. F99.\nX2.\nG2 X1. Y1. I1.\nG90 G1 X0 Y0 Z5.",
+        "",
+    ),
+    "increments": ("fanuc", "G90 G0 X10 Y10\nG1 X20. F100.\nZ-2", ""),
+    "feeds": ("haas", "G90 G0 X10. Y10.\nG1 X20. F100\nY5.", ""),
+    "a switch": ("fanuc", "G90 G0 X10. Y10.\n/G1 X20. F100.\nY5.", ""),
+    "pecks": (
+        "fanuc",
+        "G0 Z5. X0 Y0\nG73 X1. Z-9. R2. Q2. F99.\nG83 X2. Q2.\nG80",
+        "cycles",
+    ),
+    "a setting of G52": ("haas", "G90 G0 X1. Y1. Z1.\nG52 X1. Y0.\nG0 X2.\nG52 X0 Y0", ""),
+    "a code of the maker": ("linuxcnc", "G90 G0 X1. Y1. Z1.\nM120\nG90 G0 X2. Y2. Z2.", ""),
+    "a parameter": ("fanuc", "G90 G0 X#510 Y1. Z1.\nG1 X[#510+#511] F100.", ""),
+    "two work offsets": ("fanuc", "G90 G0 X1. Y1. Z1.\nG55 X1. Y1. Z1.\nG1 X2. F99.", "offsets"),
+    "all of it": (
+        "fanuc",
+        "G91 G0 X10 Y10\n/M8\nG90 G43 H3 Z50.\nG73 X1. Y1. Z-9. R2. Q2. F99.\nG80\nG55 X1. Z2. Y1.",
+        "",
+    ),
+}
+
+
+def check(here: Path, dialect: str, chain: str, *more: str) -> tuple[int, str, str]:
+    found = call("check", "-f", dialect, "-x", chain, *more, str(here / "p.nc"))
+    return found.exit_code, found.stdout, found.stderr
+
+
+def pasted(stdout: str) -> dict[str, Any]:
+    """Return the block of TOML that ends what check says, as values."""
+    return tomllib.loads(stdout[stdout.index("\n\n#") :])
+
+
+def filled(node: Any, key: str = "") -> Any:
+    if isinstance(node, dict):
+        return {name: filled(value, name) for name, value in node.items()}
+    return ANSWERS.get(key, 1.5) if node == "?" else node
+
+
+def as_toml(values: dict[str, Any]) -> str:
+    """Return tables as text; a table in a table has its own header."""
+    lines = [f"{key} = {inline(v)}" for key, v in values.items() if not isinstance(v, dict)]
+    for name, table in values.items():
+        if name in ("tool", "home", "work-offset"):
+            lines += [t for k, v in table.items() for t in _table(f'{name}."{k}"', v)]
+        elif isinstance(table, dict):
+            lines += _table(name, table)
+    return "\n".join(lines) + "\n"
+
+
+def _table(name: str, table: dict[str, Any]) -> list[str]:
+    return [f"[{name}]", *(f"{key} = {inline(value)}" for key, value in table.items())]
+
+
+def inline(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f'"{k}" = {inline(v)}' for k, v in value.items()) + " }"
+    return f'"{value}"' if isinstance(value, str) else repr(value)
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    return workplace(tmp_path, monkeypatch)
+
+
+@pytest.mark.parametrize("name", list(BODIES))
+def test_what_is_missing_is_all_that_is_missing(here: Path, name: str) -> None:
+    dialect, body, chain = BODIES[name]
+    (here / "p.nc").write_text(f"%\nG21 G17 G40 G80 G94 G54\n{body}\nM30\n%\n")
+    chain = chain or "absolute"
+    code, out, _ = check(here, dialect, chain)
+    assert code == 1
+    said = filled(pasted(out))
+    pipeline = {"format": 1, "input": {"dialect": dialect, **said.pop("input", {})}}
+    (here / "m.toml").write_text(as_toml({"format": 1, **said}))
+    text = as_toml(pipeline) + "".join(f'[[pass]]\nuse = "{each}"\n' for each in chain.split(" | "))
+    (here / "full.toml").write_text(text)
+    found = call("check", "-p", "full.toml", "-m", "m.toml", "p.nc")
+    assert (found.exit_code, found.stderr) == (0, "")
+    assert call("run", "-q", "-p", "full.toml", "-m", "m.toml", "p.nc").exit_code == 0
+
+
+def test_one_unknown_start_is_one_finding_with_twelve_places(here: Path) -> None:
+    body = "".join(f"G1 X{n}. F100.\n" for n in range(1, 13))
+    (here / "p.nc").write_text(f"O0001\nG91\n{body}M30\n")
+    _, out, err = check(here, "fanuc", "absolute")
+    assert "1 finding at 12 lines" in out
+    assert err.count("error[") == 1
+    assert "also at lines 4, 5, 6, 7, 8 (6 more)" in err
+    assert pasted(out) == {"input": {"start": {"X": "?"}}}
+    assert "--start 'X=?'" in out
+
+
+def test_what_a_setting_does_not_end_is_not_asked_for(here: Path) -> None:
+    (here / "p.nc").write_text("G90 G0 X0 Y0 Z0\nM120\nG91 X1.\nM30\n")
+    (here / "m.toml").write_text('format = 1\n[control]\nuser-codes = "keep"\n')
+    code, out, err = check(here, "linuxcnc", "absolute", "-m", "m.toml")
+    assert code == 1
+    assert "GX207" in err
+    assert "start" not in out
+
+
+def test_behind_a_block_that_nothing_helps_the_rest_is_found(here: Path) -> None:
+    (here / "p.nc").write_text("O0001\nG90 G0 X0 Y0 Z0\nG999 X1.\nG1 X10 F100.\n/M8\nM30\n")
+    _, out, err = check(here, "fanuc", "absolute")
+    assert re.findall(r"GX\d+", err) == ["GX201", "GX211", "GX205"]
+    assert pasted(out)["input"] == {"increment": "?", "block-delete": "?"}
+
+
+def test_what_a_block_left_out_may_have_said_is_not_asked_for(here: Path) -> None:
+    (here / "p.nc").write_text("O0001\nG90 G999 X0 Y0 Z0\nG91 G1 X1. F9.\nM30\n")
+    _, out, err = check(here, "fanuc", "absolute")
+    assert re.findall(r"GX\d+", err) == ["GX201"]
+    assert "start" not in out
+
+
+def test_of_two_values_on_trial_the_one_with_which_least_is_found_counts(here: Path) -> None:
+    text = "O0001\nG90 G0 X0 Y0\nG43 H1 Z100\nG81 X9. Y2. Z-20. R2. F20.\nG80\nM30\n"
+    (here / "p.nc").write_text(text)
+    _, out, err = check(here, "fanuc", "absolute")
+    assert "1 finding" in out
+    assert "GX215" not in err  # 0.1 mm, below R2., in IS-B
+
+
+def test_what_is_open_is_refused_with_its_place_and_only_where_it_is_needed(here: Path) -> None:
+    file = 'format = 1\n[input]\ndialect = "fanuc"\nincrement = "?"\n[[pass]]\nuse = "absolute"\n'
+    (here / "open.toml").write_text(file)
+    (here / "m.toml").write_text('format = 1\n[control]\npeck-return = "?"\n')
+    (here / "p.nc").write_text("O0001\nG90 G0 X10 Y0 Z0\nM30\n")
+    found = call("run", "-p", "open.toml", "-m", "m.toml", "p.nc")
+    assert found.exit_code == 3
+    assert 'still "?" at open.toml:4:1' in found.stderr
+    assert "gcxform check" in found.stderr
+    found = call("check", "-p", "open.toml", "-m", "m.toml", "p.nc")
+    assert "fill in   open.toml:4:1, asked by line 2" in found.stdout
+    assert "[input]" not in found.stdout
+    (here / "p.nc").write_text("O0001\nG90 G0 X10. Y0 Z0\nM30\n")
+    assert call("run", "-q", "-p", "open.toml", "-m", "m.toml", "p.nc").exit_code == 0
+
+
+def test_half_a_tool_is_none(here: Path) -> None:
+    text = """format = 1
+[tool.3]
+radius = 5.0
+length = "?"
+[tool.4]
+length = 90.0
+[work-offset.G55]
+X = 1.0
+Z = "?"
+[home.G28]
+X = "?"
+Z = 0.0
+"""
+    (here / "m.toml").write_text(text)
+    machine = load_machine(here / "m.toml")
+    assert list(machine.tools) == [4]
+    assert machine.work_offsets == {}
+    assert machine.homes == {"G28": {"Z": 0.0}}
+    assert {keys: place.line for keys, place in machine.open.items()} == {
+        ("tool", "3", "length"): 4,
+        ("work-offset", "G55", "Z"): 9,
+        ("home", "G28", "X"): 11,
+    }
