@@ -60,6 +60,18 @@ G1 X9
 o<kept> endsub
 """
 MACRO = b"O1\nG21 G90\n#1=0\nWHILE[#1LT2]DO1\n#500=#1\nG0 X#1\n#1=#1+1\nEND1\nG0 X5.\nG0 X6.\nM30\n"
+LOST = b"""O1
+G21 G90 G94
+G0 X0. Y0. Z5.
+#501=#501+1
+#502=#1005
+G1 X5. F#510
+G0 Y#511
+S#512 M3
+G4 P#513
+G0 Y1.
+M30
+"""
 GRBL = b"G21 G90 G94\nG0 X1\nG1 X2 F100\n"
 
 
@@ -156,6 +168,15 @@ FAULTS = {
     "a line behind a WHILE is dropped": (MACRO, replaces(MacroB, "_while", long_while)),
     "what lasts is not written": (LOOP, replaces(lasting.Lasting, "account", silent)),
     "what lasts is off": (LOOP, replaces(lasting.Lasting, "account", off)),
+    "a counter counts otherwise": (LOST, rewrites(b"#501+1", b"#501+2")),
+    "a counter is another": (LOST, rewrites(b"=#1005", b"=#1006")),
+    "a counter is known": (LOST, rewrites(b"#502=#1005", b"#502=1.")),
+    "a feed is another variable": (LOST, rewrites(b"F#510", b"F#514")),
+    "a feed that is not known is left out": (LOST, rewrites(b" F#510", b"")),
+    "an axis goes to another variable": (LOST, rewrites(b"Y#511", b"Y#514")),
+    "an axis is not lost": (LOST, rewrites(b"Y#511", b"Y511.")),
+    "a speed is another variable": (LOST, rewrites(b"S#512", b"S#514")),
+    "a time is another variable": (LOST, rewrites(b"P#513", b"P#514")),
     "percent signs are forgotten": (GRBL, replaces(Frame, "put", lambda s, t, a, b: (t, 0, 0))),
     "only one percent sign": (
         GRBL,
@@ -167,7 +188,8 @@ FAULTS = {
 @pytest.mark.parametrize("name", FAULTS)
 def test_the_proof_of_a_run_catches(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     program, plant = FAULTS[name]
-    kinds = {MACRO: ("fanuc", "fanuc"), GRBL: ("grbl", "linuxcnc")}.get(program, ("linuxcnc",) * 2)
+    fanuc = "fanuc", "fanuc"
+    kinds = {MACRO: fanuc, LOST: fanuc, GRBL: ("grbl", "linuxcnc")}.get(program, ("linuxcnc",) * 2)
     assert run(program, *kinds).certificate.verified
     plant(monkeypatch)
     with pytest.raises((gx.VerificationError, gx.InputError)):

@@ -7,9 +7,12 @@ CODES: dict[str, tuple[str, str]] = {
         "A parameter whose value is not known",
         "An expression reads a parameter (a variable) that nothing in the program has set before. "
         "It has what another program has left in it, or what the control keeps there; to take it "
-        "for zero could move a tool to the wrong place. Set it in the program, or say what it is "
-        'worth: `parameters = { "100" = 1.5 }` in [input], with a name as `"<depth>"`. What '
-        "the control itself changes (positions, offsets, probe results) cannot be given.",
+        "for zero could move a tool to the wrong place. An axis, a feed, a speed or a tool with "
+        "such a value stays as it stands and is not known until it is programmed again; so does "
+        "an assignment. What is refused are words on which more depends: of arcs, cycles and "
+        "shifts, and branches. Set it in the program, or say what it is worth: `parameters = { "
+        '"100" = 1.5 }` in [input], with a name as `"<depth>"`. What the control itself changes '
+        "(positions, offsets, probe results) cannot be given.",
     ),
     "GX221": (
         "An expression without a value",

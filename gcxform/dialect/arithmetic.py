@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -26,14 +26,40 @@ Operator = Callable[[float, float], float]
 Function = Callable[..., float]
 
 
-class NoValueError(Exception):
-    """An expression without a value, or without one that is known: why, and what to do."""
+@dataclass(frozen=True, slots=True)
+class MachineParameters:
+    """What is known of the parameters of a control whose values only the machine knows.
 
-    def __init__(self, message: str, hint: str = "", code: str = "GX221") -> None:
+    outputs    those that a program may set without any effect on positions
+    signals    those that mean the same in any unit, mode and place: inputs, clocks, counters
+    names      names of such
+    measured   those that do in any mode and place, in one unit: offsets, results of probes
+    hidden     names that have another value where calls and loops are written out
+    highest    the highest number; a higher one is an error
+    """
+
+    outputs: tuple[range, ...] = ()
+    signals: tuple[range, ...] = ()
+    names: frozenset[str] = frozenset()
+    measured: tuple[range, ...] = ()
+    hidden: frozenset[str] = frozenset()
+    highest: int = 2**31
+
+
+class NoValueError(Exception):
+    """An expression without a value, or without one that is known: why, and what to do.
+
+    `lost`: it has a value, and only the machine knows it, so that what it goes into is lost.
+    """
+
+    def __init__(
+        self, message: str, hint: str = "", code: str = "GX221", lost: bool = False
+    ) -> None:
         super().__init__(message)
         self.message = message
         self.hint = hint
         self.code = code
+        self.lost = lost
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +76,7 @@ class Arithmetic:
                   effect after their block
     local         numbers of the parameters that end with their call, or with the program
     digits        significant digits of a number that may be written; 17 are all there are
+    machine       what is known of the parameters that belong to the control
     """
 
     operators: Mapping[str, Operator]
@@ -63,12 +90,33 @@ class Arithmetic:
     beside_words: bool = True
     local: range = range(0)
     digits: int = 17
+    machine: MachineParameters = field(default_factory=lambda: MachineParameters())
 
     def owns(self, key: Key) -> bool:
         """Return whether a parameter belongs to programs, and not to the control."""
         if isinstance(key, int):
             return any(key in numbers for numbers in self.own)
         return self.named and key.split("[")[0] not in self.system
+
+    def sets(self, key: Key) -> bool:
+        """Return whether a program may set a parameter, and nothing else changes by it."""
+        return self.owns(key) or _among(key, self.machine.outputs)
+
+    def exists(self, key: Key) -> bool:
+        """Return whether a parameter has a value, if only the machine may know which."""
+        if isinstance(key, int):
+            return 0 < key <= self.machine.highest
+        named = self.named and key.split("[")[0] not in self.machine.hidden
+        return named and (key.startswith("_") or not self.owns(key))
+
+    def hangs_on(self, key: Key) -> str:
+        """Return on what of a program the value of a parameter depends: "", "units" or "place"."""
+        known = self.machine
+        if self.owns(key) or _among(key, known.signals):
+            return ""
+        if isinstance(key, str) and key.split("[")[0] in known.names:
+            return ""
+        return "units" if _among(key, known.measured) else "place"
 
     def outlives(self, key: Key) -> bool:
         """Return whether a parameter keeps its value when the program that has set it is over."""
@@ -77,6 +125,10 @@ class Arithmetic:
     def can_say(self, key: Key) -> bool:
         """Return whether an assignment to a parameter can be written, and lasts as long here."""
         return self.owns(key) and self.outlives(key)
+
+
+def _among(key: Key, numbers: tuple[range, ...]) -> bool:
+    return isinstance(key, int) and any(key in each for each in numbers)
 
 
 def whole(value: float, slip: float = INTEGER) -> int:
@@ -171,6 +223,17 @@ _value_returned _vmajor _vminor _w _x _y _z
 """
 
 
+SIGNAL_NAMES = frozenset(
+    f"_{name}"
+    for name in (
+        *("hal", "ini", "task", "vmajor", "vminor", "mist", "flood"),
+        *("current_tool", "selected_tool", "current_pocket", "selected_pocket"),
+        *("spindle_on", "spindle_cw", "feed_override", "speed_override"),
+        *("adaptive_feed", "feed_hold"),
+    )
+)
+"""Names of LinuxCNC that mean the same in any unit, mode and place."""
+
 RS274 = Arithmetic(
     operators={
         "**": _power,
@@ -210,6 +273,13 @@ RS274 = Arithmetic(
     whole="DHLT",
     whole_slip=INTEGER,
     local=range(1, 31),
+    machine=MachineParameters(
+        signals=(range(5070, 5071), range(5399, 5401), range(5599, 5600)),
+        names=SIGNAL_NAMES,
+        measured=(range(5061, 5070), range(5161, 5400), range(5401, 5411)),
+        hidden=frozenset({"_line", "_call_level", "_remap_level"}),
+        highest=5601,
+    ),
 )
 
 
@@ -296,4 +366,9 @@ MACRO_B = Arithmetic(
     beside_words=False,
     local=range(1, 34),
     digits=12,
+    machine=MachineParameters(
+        outputs=(range(1100, 1200), *(range(n, n + 1) for n in (3000, 3003, 3006, 3901, 3902))),
+        signals=(range(1000, 1200), range(3000, 4000)),
+        measured=(range(2001, 3000), range(5061, 5069), range(5201, 5400), range(7001, 8000)),
+    ),
 )

@@ -14,6 +14,7 @@ from gcxform.emit.same_rows import EXACT, SameRows
 from gcxform.emit.stated import Stated
 from gcxform.emit.tapping import Taps
 from gcxform.modal.columns import fill
+from gcxform.modal.lines import Unknown
 from gcxform.modal.meaning.meaning import FRAMING
 from gcxform.modal.meaning.tables import GROUPS
 from gcxform.system.arrays import Flags, Ints
@@ -66,6 +67,7 @@ class Copying:
         stands, converted, self.exact = self._standing(old_count, pieces, stated)
         self._refuse_changed(stands, pieces)
         self._refuse_presets()
+        self._refuse_other_values()
         self._refuse_lengths()
         if task.manner.crossing:
             self.lines &= self._nothing_to_say()
@@ -113,6 +115,8 @@ class Copying:
             where = self.task.location(int(self.path.block[row]))
             message = f"the block would be written anew, and where {axis} goes is not known"
             hint = f"program {axis} before, or give a machine file with X = ... in [work-offset.*]"
+            if any(each.line == self.path.block[row] for each in self.task.read.unknown):
+                hint = f"write {axis} as a number, or leave out the pass that changes this block"
             raise InputError.one("GX506", message, where, hint)
 
     def _refuse_polar(self) -> None:
@@ -131,16 +135,43 @@ class Copying:
         if self.path.folded:
             return
         for line in np.flatnonzero(self.task.table.flag("presets", self.task.shape)).tolist():
-            now = np.searchsorted(self.path.block, line) - 1
-            was = np.searchsorted(self.original.block, line) - 1
-            if self.exact[now] if now >= 0 else self.believed_exact:
-                continue
-            stands = self.positions.after[now] if now >= 0 else self.believed_position
-            gap = np.abs(stands - (self.original.end[was] if was >= 0 else self.original.entry))
-            if (gap > EXACT).any():
+            if self._stands_elsewhere(line):
                 message = "this block counts from where the axes stand, and they stand elsewhere"
                 hint = 'put the pass "offsets" before'
                 raise InputError.one("GX506", message, self.task.location(line), hint)
+
+    def _stands_elsewhere(self, line: int) -> bool:
+        """Whether the axes stand elsewhere before a line than in the source."""
+        now = np.searchsorted(self.path.block, line) - 1
+        was = np.searchsorted(self.original.block, line) - 1
+        if self.exact[now] if now >= 0 else self.believed_exact:
+            return False
+        stands = self.positions.after[now] if now >= 0 else self.believed_position
+        gap = np.abs(stands - (self.original.end[was] if was >= 0 else self.original.entry))
+        return bool((gap > EXACT).any())
+
+    def _refuse_other_values(self) -> None:
+        """Refuse what only the machine can compute if it would compute something else.
+
+        That is so where it reads positions and they are others, or is a length in another unit.
+        """
+        for each in self.task.read.unknown:
+            if self._has_other_value(each):
+                message = f"{each.text} is computed by the machine, and would have another value"
+                hint = "leave out the pass that changes the unit, the modes or the positions here"
+                raise InputError.one("GX506", message, self.task.location(each.line), hint)
+
+    def _has_other_value(self, each: Unknown) -> bool:
+        now, old, line = self.path.blocks, self.original.blocks, each.line
+        if self.task.manner.crossing:
+            return True
+        if each.hangs_on and now.inch[line] != old.inch[line]:
+            return True
+        if each.hangs_on and now.feed_mode[line] != old.feed_mode[line]:
+            return True
+        if each.hangs_on != "place":
+            return False
+        return not bool(self.same.modes()[line]) or self._stands_elsewhere(line)
 
     def _refuse_lengths(self) -> None:
         """Refuse lengths that codes take for themselves where another unit would be in force."""

@@ -51,6 +51,7 @@ class SameRows:
             held = _take(self.positions.held[:, k], rows)
             programmed = _take(self.positions.programmed[:, k], rows)
             same = (np.abs(held - old) <= EXACT) | (end == old)
+            same |= np.isnan(end) & np.isnan(old)  # the machine knows what the word is worth
             left = ~_take(self.positions.write[:, k], rows)
             left |= polar & (end == old)  # one word moves two axes: it says both
             good &= np.where(programmed, same, left)

@@ -187,7 +187,8 @@ class _Needs:
         given = given[pieces.line] / np.where(timed, 1.0, unit_here)
         need = np.where(word & ~self._other_mode, given, np.nan)
         need = np.where(self._feeding, pieces.of_rows(path.feed, np.nan) / unit, need)
-        lost = self._feed_lost(inch, feed_mode)
+        unknown = word & np.isnan(given)  # only the machine knows it
+        lost = self._feed_lost(inch, feed_mode) | unknown
         sets = ~np.isnan(need) | lost
         after = fill(need, sets, self.believed.feed)
         unit_after = fill(unit_here, sets, self.believed.feed_unit)
@@ -197,6 +198,7 @@ class _Needs:
         held = np.where(lost, np.nan, held)
         changes = self._feeding & (~_close(held, need) | timed)
         kept = word & _close(need, modes.feed[pieces.line]) & self._reads_alike(slot)
+        kept |= unknown
         written = ~kept & ~np.isnan(need) & (word | changes)
         which = np.where(kept, Feed.KEEP, np.where(written, Feed.WRITE, Feed.NONE)).astype(np.int8)
         return Feeds(which, need, after, unit_after, written | (word & ~kept))

@@ -17,7 +17,8 @@ def events_of(
     """Return what happens between the moves, in the order of execution.
 
     `rows` (n,) are the lines of the moves. `within` is what happens within canned cycles: the
-    first line of a stretch, how many moves behind its first, and what.
+    first line of a stretch, how many moves behind its first, and what. A piece of a line that only
+    the machine can compute is an event as well: its text, which has to stay.
     """
     events: list[Event] = []
     after: list[bool] = []
@@ -31,13 +32,17 @@ def events_of(
             where = last_row if shape.after else first_row
             events.append(Event(where, shape.what, values, line + first_line))
             after.append(shape.after)
-    if not within:
+    if not within and not lines.unknown:
         return tuple(events)
-    firsts, behind, inner = zip(*within, strict=True)
-    at = np.searchsorted(rows, firsts) + behind
-    for row, event in zip(at.tolist(), inner, strict=True):
+    rank = [2 * each for each in after]
+    for first, behind, event in within:
+        row = int(np.searchsorted(rows, first)) + behind
         events.append(Event(row, event.what, event.values, event.line, True))
-    rank = [*(2 * np.array(after, np.int64)), *[1] * len(inner)]
+        rank.append(1)
+    for each in lines.unknown:
+        row = int(np.searchsorted(rows, each.line))
+        events.append(Event(row, each.text, (), each.line + first_line))
+        rank.append(-1)
     order = np.lexsort((rank, [event.line for event in events], [event.row for event in events]))
     return tuple(events[number] for number in order.tolist())
 
@@ -45,6 +50,8 @@ def events_of(
 def _value(lines: Lines, what: str, address: str, number: int) -> tuple[str, float]:
     """Return a word of an event; a time in seconds where the dialect knows its unit."""
     value = float(lines.window.value[number])
+    if value != value:
+        return f"{address}?", 0.0  # what it is stands in an event of its own
     if what != "DWELL":
         return address, value
     unit = lines.pointless.dwell(address, int(lines.window.decimals[number])) if value else 1.0

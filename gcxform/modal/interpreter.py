@@ -22,7 +22,7 @@ from gcxform.modal.cycles.expansion import Cycles
 from gcxform.modal.expressions.assignments import compute
 from gcxform.modal.expressions.value import parameter_key
 from gcxform.modal.frame_state import FrameState
-from gcxform.modal.lines import Assigned, Lines
+from gcxform.modal.lines import Assigned, Lines, Unknown
 from gcxform.modal.meaning.tables import GROUPS, NUMBER, SPLINES, MeaningTable
 from gcxform.modal.moves.moves import Moves
 from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, State
@@ -37,7 +37,7 @@ class Interpreted:
 
     `shape` (live,) are their shapes: that of an empty line for blocks that are skipped. `value`
     are the window's numbers, those that were computed among them; `assigned` are the parameters
-    that the lines set, in order.
+    that the lines set, in order, and `unknown` what of them only the machine can compute.
     """
 
     path: Toolpath
@@ -47,6 +47,7 @@ class Interpreted:
     before: State
     value: Floats
     assigned: tuple[Assigned, ...] = ()
+    unknown: tuple[Unknown, ...] = ()
 
 
 PECKS = ("peck-return", "peck-clearance")
@@ -131,7 +132,8 @@ class Interpreter:
         lines.findings.raise_if_any()
         self._carry(lines, modes)
         value, assigned = lines.window.value, tuple(lines.assigned)
-        return Interpreted(path, modes, lines.live, lines.shape, before, value, assigned)
+        unknown = tuple(lines.unknown)
+        return Interpreted(path, modes, lines.live, lines.shape, before, value, assigned, unknown)
 
     def _carry(self, lines: Lines, modes: Modes) -> None:
         """Leave the state in which the window ends."""

@@ -30,11 +30,27 @@ DISTANCES = "XYZABCUVWIJKR"
 
 
 class Assigned(NamedTuple):
-    """A parameter that a line of the program, from 0, has set, and its value."""
+    """A parameter that a line of the program, from 0, has set, and its value.
+
+    `text` is the assignment itself where only the machine knows the value, which is nan then.
+    """
 
     line: int
     key: Key
     value: float
+    text: str = ""
+
+
+class Unknown(NamedTuple):
+    """A piece of a line of the window, from 0, that only the machine can compute.
+
+    `text` has no blanks. `hangs_on` is what of the program its value depends on besides parameters:
+    "" for nothing, "units", or "place" for the places of the axes and all modes.
+    """
+
+    line: int
+    text: str
+    hangs_on: str
 
 
 LENGTHS = LINEAR + "IJKR"
@@ -49,6 +65,8 @@ class Lines:
     first    (live,) index of the first number of each
     parameters   what the program has set, before the window and, once computed, after it
     assigned     what the window has set, in order, once computed
+    unknown      what of it only the machine can compute
+    feed_lost    (live,) whether a feed is in force that only the machine knows
     """
 
     def __init__(
@@ -69,6 +87,8 @@ class Lines:
         self.pointless = Pointless(dialect, reading, self.findings, state.assumed)
         self.parameters = dict(state.parameters)
         self.assigned: list[Assigned] = []
+        self.unknown: list[Unknown] = []
+        self.feed_lost: Flags = np.zeros(0, np.bool_)
         self.live = self._live()
         self.shape = window.shape[: self.live]
         self.first = window.first_number[: self.live]
@@ -186,7 +206,8 @@ class Lines:
             distance = address in DISTANCES
         if self.dialect.point_rule.required and distance:
             decimals = self.window.decimals[number]
-            value = self.pointless.distances(address, value, present, decimals, self.inch)
+            known = present & ~np.isnan(value)  # a value of the machine's is rounded by itself
+            value = self.pointless.distances(address, value, known, decimals, self.inch)
         return value, present
 
     def refuse_pointless(self, line: int, address: str, number: int) -> None:
@@ -314,8 +335,13 @@ class Lines:
             if self.dialect.point_rule.required:
                 slot = self.table.slots[self.shape, ord("F") - 65]
                 decimals = self.window.decimals[np.where(present, self.first + slot, 0)]
-                value = self.pointless.feeds(value, present, decimals, feed_mode, inch)
+                known = present & ~np.isnan(value)
+                value = self.pointless.feeds(value, known, decimals, feed_mode, inch)
+        named = present & np.isnan(value)
         present = present | self._cleared(feed_mode, inch)
+        self.feed_lost = fill(named, present, self.state.feed_lost)
+        if self.live:
+            self.state.feed_lost = bool(self.feed_lost[-1])
         if self.dialect.feed_rule.before_units:
             inch = np.append(self.state.groups["units"] == 1, inch[:-1])[: self.live]
         unit = np.where(inch, INCH, 1.0)

@@ -143,6 +143,7 @@ class State:
     pull   P and Q of the last move if that was a G5, in units of the program
     assumed  what was chosen among several meanings that a word can have, in sentences; those that
              may surprise with a warning
+    feed_lost  a feed is in force that only the machine knows
     vector the tool axis that G43.5 has led to, nan where it is not in force
     """
 
@@ -173,6 +174,7 @@ class State:
     pull: tuple[float, float] | None = None
     vector: tuple[float, float, float] = (np.nan, np.nan, np.nan)
     memory: dict[str, int] = field(default_factory=dict)
+    feed_lost: bool = False
 
 
 @dataclass(frozen=True, slots=True)

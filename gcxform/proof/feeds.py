@@ -80,6 +80,7 @@ class FeedProof:
         inverse = after.feed_mode == FeedMode.INVERSE_TIME
         plain = moving & ~inverse
         off = np.abs(after.feed - before.feed[owner]) > SAME_FEED * np.abs(after.feed)
+        off |= np.isnan(after.feed) != np.isnan(before.feed[owner])
         if (off & plain).any():
             yield self._at("the feed has changed", int(np.argmax(off & plain)))
         if (moving & inverse).any():

@@ -3,13 +3,15 @@
 Assignments: the same number of them, in order, in blocks of the same lines, and of two values v, w
 |v - w| <= |v| 10^(1 - d), d the digits that the control keeps. What stands behind the end: the same
 bytes, by SHA-256, if the dialect is the same. The rest is counted, in kinds
-(`gcxform/modal/inventory.py`), on both sides.
+(`gcxform/modal/inventory.py`), on both sides. A value that only the machine knows is the same if it
+is the same text.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from hashlib import sha256
+from math import isnan
 
 from gcxform.contract.passes import PassContext
 from gcxform.diagnostics import Diagnostic, GcxformError, InputError, Location, VerificationError
@@ -45,7 +47,9 @@ def assignments_differ(
     for before, after in zip(old, new, strict=False):
         line = trace.line_of(after.line)
         close = abs(before.value - after.value) <= abs(before.value) * near
-        if (before.line, before.key) != (line, after.key) or not close:
+        close |= isnan(before.value) and isnan(after.value)
+        same = (before.line, before.key, before.text) == (line, after.key, after.text)
+        if not same or not close:
             message = f"{_said(before)} of the source became {_said(after)}, or moved"
             return message, before.line, after.line
     if len(old) == len(new):
@@ -62,7 +66,7 @@ def _lasts(key: Key, context: PassContext) -> bool:
 
 
 def _said(one: Assigned) -> str:
-    return f"{written(one.key)}={one.value:.10g}"
+    return one.text or f"{written(one.key)}={one.value:.10g}"
 
 
 def not_taken(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import Mutation
+from faults.mutation import CORPUS, Mutation
 
 
 def _computed(name: str, file: str, old: str, new: str) -> Mutation:
@@ -59,7 +59,7 @@ MUTATIONS = (
     _computed(
         "assignments act at once",
         "gcxform/modal/expressions/assignments.py",
-        "return key, evaluator.value(expression)",
+        "return Assigned(line, key, evaluator.value(expression))",
         "self.lines.parameters[key] = evaluator.value(expression)\n            return None",
     ),
     _computed(
@@ -88,5 +88,61 @@ MUTATIONS = (
         "np.where(computed, rounded, np",
         "np.where(computed, value, np",
         "tests/test_expressions.py",
+    ),
+    Mutation(
+        "what only the machine knows is taken for zero",
+        "gcxform/modal/expressions/assignments.py",
+        "            return value\n        return UNKNOWN",
+        "            return value\n        return 0.0",
+        "tests/test_expressions.py",
+    ),
+    Mutation(
+        "words of arcs may be unknown",
+        "gcxform/modal/expressions/assignments.py",
+        "if why.lost and may_be_unknown(word.address, self.meaning):",
+        "if why.lost:",
+        CORPUS,
+    ),
+    Mutation(
+        "what the machine computes may be in another unit",
+        "gcxform/emit/copying.py",
+        "if each.hangs_on and now.inch[line] != old.inch[line]:",
+        "if False:",
+        CORPUS,
+    ),
+    Mutation(
+        "what the machine computes may be read elsewhere",
+        "gcxform/emit/copying.py",
+        "return not bool(self.same.modes()[line]) or self._stands_elsewhere(line)",
+        "return False",
+        CORPUS,
+    ),
+    Mutation(
+        "texts of what the machine computes are not compared",
+        "gcxform/modal/events.py",
+        "events.append(Event(row, each.text, (), each.line + first_line))",
+        'events.append(Event(row, "?", (), each.line + first_line))',
+        "tests/test_planted_inventory.py",
+    ),
+    Mutation(
+        "a feed that only the machine knows is in force no more",
+        "gcxform/modal/lines.py",
+        "self.state.feed_lost = bool(self.feed_lost[-1])",
+        "pass",
+        CORPUS,
+    ),
+    Mutation(
+        "a feed that is not known is left out",
+        "gcxform/emit/stated.py",
+        "        kept |= unknown\n",
+        "",
+        CORPUS,
+    ),
+    Mutation(
+        "cycles may go where only the machine knows",
+        "gcxform/modal/moves/moves.py",
+        "if drilling[each.line] and each.text[0] in self.axes:",
+        "if False:",
+        CORPUS,
     ),
 )

@@ -17,7 +17,7 @@ def _proof(
 MUTATIONS = (
     _proof(
         "other values are ignored",
-        "if (before.line, before.key) != (line, after.key) or not close:",
+        "if not same or not close:",
     ),
     _proof("missing assignments are ignored", "if len(old) == len(new):", "if True:"),
     _proof("kinds need not balance", "            if count:", "            if count > 99:"),

@@ -78,8 +78,8 @@ MUTATIONS = (
     Mutation(
         "vectors: steps are taken from where the control has left an axis",
         "gcxform/modal/frames/track.py",
-        "self._refuse_steps(incremental & ~np.isfinite(position), axis, here.start)",
-        "self._refuse_steps(incremental & np.isnan(position), axis, here.start)",
+        "nowhere = incremental & ~np.isfinite(position) & np.isfinite(value)",
+        "nowhere = incremental & np.isnan(position) & np.isfinite(value)",
         f"{CORPUS}[rtcp/vectors-incremental-after]",
     ),
     Mutation(

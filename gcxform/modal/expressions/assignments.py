@@ -3,8 +3,9 @@
 This is done line by line, in the order of execution, for the lines that compute something and for
 no others; the rest of the interpreter then finds numbers where the program has expressions.
 
-All or nothing: a value that is not known is refused, and none is guessed. Assignments leave their
-parameters to the next window. The writer copies words with expressions where they say what is
+No value is guessed. One that only the machine knows is nan and makes lost what it goes into
+(`unknown.py`); what the control would stop at is refused. Assignments leave their parameters to the
+next window. The writer copies words with expressions where they say what is
 meant, and writes numbers where not; assignments stay, once, in the first piece of their block,
 unless the dialect changes. The proof computes all of it again from the output.
 """
@@ -12,14 +13,17 @@ unless the dialect changes. The proof computes all of it again from the output.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic
-from gcxform.dialect.arithmetic import Key, NoValueError, whole
+from gcxform.dialect.arithmetic import NoValueError, whole
+from gcxform.modal.expressions.unknown import bare_text, hangs_on, may_be_unknown
 from gcxform.modal.expressions.value import Evaluator, LocatedError, settable
 from gcxform.modal.findings import Findings
-from gcxform.modal.lines import Assigned, Lines
+from gcxform.modal.lines import Assigned, Lines, Unknown
 from gcxform.syntax.tree import Expression, Statement, Word
 from gcxform.system.arrays import Floats
 
@@ -29,7 +33,7 @@ UNKNOWN = float("nan")
 def compute(lines: Lines) -> None:
     """Give the words of the lines their values, and leave the parameters after the last line.
 
-    Raises InputError for what has no value, or none that is known.
+    Raises InputError for what has no value.
     """
     having = np.flatnonzero(lines.flag("computes"))
     if not len(having) or lines.dialect.flow_rule.arithmetic is None:
@@ -61,42 +65,61 @@ class _Block:
             self.value[first + slot] = self._word(word)
         changes = [self._assigned(statement) for statement in self.meaning.assignments]
         made = [change for change in changes if change is not None]
-        self.lines.parameters.update(made)
-        line = self.lines.window.first_line + self.line
-        self.lines.assigned += [Assigned(line, key, value) for key, value in made]
+        self.lines.parameters.update({each.key: each.value for each in made})
+        self.lines.assigned += made
         if self.meaning.runs_macro and not self.meaning.lost_by <= self.lines.reading.inert_m:
             self.lines.parameters = dict.fromkeys(self.lines.parameters, UNKNOWN)
 
     def _word(self, word: Word) -> float:
-        """Return the value of a word, nan after a finding."""
+        """Return the value of a word, nan where only the machine knows it, and after a finding."""
         assert isinstance(word.value, Expression)
         evaluator = Evaluator(self.arithmetic, self.lines.parameters, in_word=True)
         try:
             value = evaluator.value(word.value.tree)
             if word.address in self.arithmetic.whole and not self.meaning.is_length(word.address):
                 value = float(whole(value, self.arithmetic.whole_slip))
-        except LocatedError as why:
-            self._refuse(why, why.start, why.end)
         except NoValueError as why:
-            self._refuse(why, word.start, word.end)
+            if why.lost and may_be_unknown(word.address, self.meaning):
+                self._keep(word, word.value.tree, evaluator)
+            else:
+                self._refuse(why, word)
         else:
             return value
         return UNKNOWN
 
-    def _assigned(self, statement: Statement) -> tuple[Key, float] | None:
-        """Return a parameter and its new value: nan after a finding, None if it is not known."""
+    def _keep(self, item: Word | Statement, tree: Any, evaluator: Evaluator) -> str:
+        """Note that the text of an item has to stay, for its value is not known; return it."""
+        kept, hangs = bare_text(self._text[item.start : item.end]), hangs_on(tree, evaluator)
+        if isinstance(item, Word) and item.address in self.meaning.axes + "F":
+            hangs = hangs or "units"
+        self.lines.unknown.append(Unknown(self.line, kept, hangs))
+        return kept
+
+    @cached_property
+    def _text(self) -> str:
+        return self.lines.window.line(self.line).decode("latin-1")
+
+    def _assigned(self, statement: Statement) -> Assigned | None:
+        """Return a parameter and its new value, nan if that is not known; None after a finding."""
         evaluator = Evaluator(self.arithmetic, self.lines.parameters)
         parameter, expression = statement.tree.children
-        key: Key | None = None
+        line = self.lines.window.first_line + self.line
         try:
             key = settable(self.arithmetic, evaluator.key(parameter))
-            return key, evaluator.value(expression)
-        except LocatedError as why:
-            self._refuse(why, why.start, why.end)
         except NoValueError as why:
-            self._refuse(why, statement.start, statement.end)
-        return None if key is None else (key, UNKNOWN)
+            self._refuse(why, statement)
+            return None
+        try:
+            return Assigned(line, key, evaluator.value(expression))
+        except NoValueError as why:
+            if not why.lost:
+                self._refuse(why, statement)
+                return Assigned(line, key, UNKNOWN)
+        return Assigned(line, key, UNKNOWN, self._keep(statement, statement.tree, evaluator))
 
-    def _refuse(self, why: NoValueError, start: int, end: int) -> None:
+    def _refuse(self, why: NoValueError, item: Word | Statement) -> None:
+        place = item.start, item.end
+        if isinstance(why, LocatedError):
+            place = why.start, why.end
         diagnostic = Diagnostic(why.code, why.message, hint=why.hint)
-        self.lines.findings.add_at(self.line, (start, end), diagnostic)
+        self.lines.findings.add_at(self.line, place, diagnostic)

@@ -25,7 +25,7 @@ class LocatedError(NoValueError):
     """An expression without a value, and where in the block that is (columns from 0)."""
 
     def __init__(self, why: NoValueError, start: int, end: int) -> None:
-        super().__init__(why.message, why.hint, why.code)
+        super().__init__(why.message, why.hint, why.code, why.lost)
         self.start, self.end = start, end
 
 
@@ -128,12 +128,13 @@ class Evaluator:
             return value
         name = written(key)
         if value is not None:
-            message = f"{name} is not known after a block that is refused, or that may run a macro"
-            raise NoValueError(message, how_to_give(key), "GX220")
+            message = f"{name} is not known here: it was set to what only the control knows"
+            raise NoValueError(message, how_to_give(key), "GX220", True)
         if not self.arithmetic.owns(key):
-            raise NoValueError(f"{name} has a value that only the control knows", code="GX220")
+            message = f"{name} has a value that only the control knows"
+            raise NoValueError(message, "", "GX220", self.arithmetic.exists(key))
         message = f"nothing in the program has set {name} before"
-        raise NoValueError(message, how_to_give(key), "GX220")
+        raise NoValueError(message, how_to_give(key), "GX220", self.arithmetic.exists(key))
 
     def _exists(self, arguments: list[Any]) -> float:
         """Return whether a parameter has a value; only of local names is that known."""
@@ -145,7 +146,7 @@ class Evaluator:
             return 1.0
         if isinstance(key, int) or key.startswith("_"):
             raise NoValueError(
-                f"only the control knows whether {written(key)} exists", code="GX220"
+                f"only the control knows whether {written(key)} exists", code="GX220", lost=True
             )
         return 0.0
 
@@ -174,7 +175,7 @@ LITERAL = replace(RS274, operators={}, functions={})
 
 def settable(arithmetic: Arithmetic, key: Key) -> Key:
     """Return the key of a parameter that a program may set. Raises NoValueError."""
-    if not arithmetic.owns(key):
+    if not arithmetic.sets(key):
         message = f"{written(key)} belongs to the control, which may do something when it is set"
         raise NoValueError(message, code="GX206")
     return key

@@ -12,7 +12,8 @@ from gcxform.modal.frames.act import ActError, Asked
 
 def change_tool(state: FrameState, asked: Asked) -> FrameState:
     """M6: the tool that T has named is in the spindle."""
-    return replace(state, in_spindle=int(asked.tool_word), changes=state.changes + 1)
+    tool = -1 if np.isnan(asked.tool_word) else int(asked.tool_word)
+    return replace(state, in_spindle=tool, changes=state.changes + 1)
 
 
 def user_code(state: FrameState, asked: Asked) -> FrameState:
@@ -69,6 +70,8 @@ def _tool_vector(
 ) -> tuple[tuple[float, float, float], str]:
     """Return the vector of a tool, nan along Z where its length is not known, and its name."""
     number = asked.words.get("H", np.nan)
+    if "H" in asked.words and np.isnan(number):
+        return _unknown_tool(state, asked, "the tool that H names")
     if asked.dialect.tool_rule.g43_takes_spindle_tool and not number > 0:
         if number < 0:
             raise ActError("GX213", "H is not a number of a tool")
@@ -90,15 +93,16 @@ def _tool_vector(
     return (sign * x, sign * y, sign * z), f"H{number:g}"
 
 
-def _unknown_tool(state: FrameState, asked: Asked) -> tuple[tuple[float, float, float], str]:
-    """Return the vector and the name of the tool that H0, or no H, stands for.
+def _unknown_tool(
+    state: FrameState, asked: Asked, name: str = "the tool in the spindle"
+) -> tuple[tuple[float, float, float], str]:
+    """Return the vector and the name of the tool that H0, no H, or a number not known stands for.
 
     Which that is no block has said, or none is there (then `rs274` takes the length of the one
     before): its length is not known, and after every change it may be another.
     """
     aside = any(tool.vector[0] or tool.vector[1] for tool in asked.reading.tools.values())
     across = np.nan if aside else 0.0
-    name = "the tool in the spindle"
     if state.changes:
         name += f" after tool change {state.changes}"
     return (across, across, np.nan), name

@@ -281,7 +281,8 @@ class Track:
         if not incremental.any():
             return fill(value, placed, before)
         position = _with_increments(value, placed, incremental, before)
-        self._refuse_steps(incremental & ~np.isfinite(position), axis, here.start)
+        nowhere = incremental & ~np.isfinite(position) & np.isfinite(value)
+        self._refuse_steps(nowhere, axis, here.start)
         return position
 
     def named(self, own: Flags) -> Ints:

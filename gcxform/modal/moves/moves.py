@@ -150,12 +150,20 @@ class Moves:
         moves &= self.modes.motion != NUMBER["G80"]
         moves |= centre & arc & ~own
         self._refuse_lent(moves | self.drilling.calls, arc)
+        self._refuse_unknown_cycles(drilling)
         self.tied.check(moves, own)
         in_machine = self.lines.flag("in_machine") & (self.modes.motion == Kind.LINE)
         feeding = (moves & ~self.tied.paced) | in_machine | self._lone_codes(moves, drilling)
         calls = self.drilling.calls | self.lines.flag("probes")
         self._check_feed(feeding, calls)
         return moves
+
+    def _refuse_unknown_cycles(self, drilling: Flags) -> None:
+        """Refuse words of canned cycles that only the machine knows: they would stay in force."""
+        for each in self.lines.unknown:
+            if drilling[each.line] and each.text[0] in self.axes:
+                message = "a canned cycle goes where only the machine knows"
+                self.findings.add(each.line, "GX220", message, each.text[0])
 
     def _lone_codes(self, moves: Flags, drilling: Flags) -> Flags:
         """Return the lines that state a code of feed moves and move nothing, where that counts.
@@ -190,7 +198,7 @@ class Moves:
     def _check_feed(self, moves: Flags, calls: Flags) -> None:
         """Refuse feed moves without a feed, and blocks in inverse time without a feed word."""
         feeding = (moves & (self.modes.motion != Kind.RAPID)) | calls
-        none = ~(self.modes.feed > 0)
+        none = ~(self.modes.feed > 0) & ~self.lines.feed_lost
         inverse = self.modes.feed_mode == NUMBER["G93"]
         if inverse.any():
             word = self.lines.word("F")

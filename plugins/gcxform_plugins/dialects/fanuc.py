@@ -37,7 +37,7 @@
 | L of M98 | counts, or the digits of P before four |
 | local variables across M98 | shared or not: known in two ways, so they have no value there |
 | M198 G65 G66 | calls of other programs, or with values: refused |
-| a variable that nothing has set | is null: refused, unless given |
+| a variable that nothing has set | is null, or is left from before: lost, unless given |
 | a computed distance | in mm, rounded to `[input] increment`, which must be given |
 | an assignment beside words | when it acts is not certain: refused |
 | AND OR XOR | known in two ways: refused |
@@ -45,7 +45,7 @@
 | ATAN, ASIN below 0 | a parameter may add 360 degrees: refused |
 | ROUND in a word | rounds to the increment of the word: refused |
 | computed S T F D H L P | must be whole numbers |
-| #1000 and above | belong to the control: refused |
+| #1000 and above | belong to the control: what they go into is lost; only outputs may be set |
 | IF WHILE GOTO | executed; numbers that are almost equal are refused |
 """
 
