@@ -140,8 +140,8 @@ MUTATIONS = (
     ),
     Mutation(
         "cycles may go where only the machine knows",
-        "gcxform/modal/moves/moves.py",
-        "if drilling[each.line] and each.text[0] in self.axes:",
+        "gcxform/modal/moves/cycle_patterns.py",
+        "if self.modes.cycle[each.line] != CYCLE_OFF and each.text[0] in self.track.axes:",
         "if False:",
         CORPUS,
     ),

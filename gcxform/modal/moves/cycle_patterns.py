@@ -74,6 +74,13 @@ class Drilling:
         if self.cycles is not None:
             self.cycles.zero = None
 
+    def refuse_unknown(self) -> None:
+        """Refuse words of canned cycles that only the machine knows: they would stay in force."""
+        for each in self.lines.unknown:
+            if self.modes.cycle[each.line] != CYCLE_OFF and each.text[0] in self.track.axes:
+                message = "a canned cycle goes where only the machine knows"
+                self.lines.findings.add(each.line, "GX220", message, each.text[0])
+
     # --- stretches, as they come ---
 
     def follows(self, first: int, last: int) -> bool:

@@ -150,20 +150,13 @@ class Moves:
         moves &= self.modes.motion != NUMBER["G80"]
         moves |= centre & arc & ~own
         self._refuse_lent(moves | self.drilling.calls, arc)
-        self._refuse_unknown_cycles(drilling)
+        self.drilling.refuse_unknown()
         self.tied.check(moves, own)
         in_machine = self.lines.flag("in_machine") & (self.modes.motion == Kind.LINE)
         feeding = (moves & ~self.tied.paced) | in_machine | self._lone_codes(moves, drilling)
         calls = self.drilling.calls | self.lines.flag("probes")
         self._check_feed(feeding, calls)
         return moves
-
-    def _refuse_unknown_cycles(self, drilling: Flags) -> None:
-        """Refuse words of canned cycles that only the machine knows: they would stay in force."""
-        for each in self.lines.unknown:
-            if drilling[each.line] and each.text[0] in self.axes:
-                message = "a canned cycle goes where only the machine knows"
-                self.findings.add(each.line, "GX220", message, each.text[0])
 
     def _lone_codes(self, moves: Flags, drilling: Flags) -> Flags:
         """Return the lines that state a code of feed moves and move nothing, where that counts.
