@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from step_diagonal_kit import simulate_linear, simulate_step_diagonal
 
 from gcxform.calibrate.diagonal.readings import Diagonals, LinearTest, step_diagonals
 from gcxform.calibrate.diagonal.step_diagonal import Assumed
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 from gcxform.errormodel.model_file import load_model
-from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal
 from gcxform.system.arrays import Floats
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "lddm"

@@ -122,8 +122,8 @@ def needs(name: str) -> frozenset[str]:
         return frozenset()
     for imported in module.imports:
         first, _, rest = imported.partition(".")
-        home = gcxform._HOME.get(rest) if first == "gcxform" else None
-        found.update(known(f"gcxform.{home}" if home else imported))
+        home = gcxform._HOMES.get(rest) if first == "gcxform" else None
+        found.update(known(home or imported))
     if not name.startswith("gcxform") or name.startswith("gcxform.testing"):
         asked = module.words | {f".{attribute}" for attribute in module.attributes}
         for word in asked & offers().keys():

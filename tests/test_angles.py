@@ -14,16 +14,15 @@ import numpy as np
 import pytest
 from cli_kit import call
 from scipy.stats import f as ratios
+from step_diagonal_kit import diagonals_csv, linear_csv, simulate_linear, simulate_step_diagonal
 from test_loop import LOW, TRAVEL, truth
 
 from gcxform.calibrate.diagonal.angles import Angles, Field, Pattern, fields
-from gcxform.calibrate.diagonal.file import diagonals_csv, linear_csv
 from gcxform.calibrate.diagonal.plain_diagonal import squareness
 from gcxform.calibrate.diagonal.readings import Diagonals, LinearTest, step_diagonals
 from gcxform.calibrate.diagonal.step_diagonal import Assumed, Identified, solved
 from gcxform.errormodel.functions import AxisFunction
 from gcxform.errormodel.rigid import RigidBody
-from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal
 from gcxform.system.arrays import Floats
 
 ANGLE = 16e-6  # rad

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from cli_kit import call
 from diagonal_kit import LENGTHS, apart, linear, published, readings
+from step_diagonal_kit import diagonals_csv, linear_csv
 
-from gcxform.calibrate.diagonal.file import diagonals_csv, linear_csv
 from gcxform.calibrate.diagonal.plain_diagonal import ANGLES, BLIND
 
 

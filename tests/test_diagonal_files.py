@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from diagonal_kit import ALIGNED, TRAVEL, apart, published, readings
+from step_diagonal_kit import diagonals_csv, simulate_step_diagonal
 
 from gcxform.calibrate.csv_text import parse_csv, read_csv
 from gcxform.calibrate.diagonal.file import (
-    diagonals_csv,
     parse_diagonals,
     parse_linear,
     read_diagonals,
@@ -21,7 +21,6 @@ from gcxform.calibrate.diagonal.file import (
 from gcxform.calibrate.diagonal.readings import FOUR, Leg, Volume, plain_diagonals, step_diagonals
 from gcxform.calibrate.diagonal.step_diagonal import identify
 from gcxform.diagnostics import FileError, InputError
-from gcxform.simulate.stepdiagonal import simulate_step_diagonal
 
 VOLUME = Volume(np.zeros(3), np.array(TRAVEL), 2)
 HEADER = "diagonal,X [mm],Y [mm],Z [mm],reading [mm]"

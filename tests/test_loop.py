@@ -18,13 +18,12 @@ import numpy as np
 import pytest
 from console_kit import check_console
 from htm import actual
+from step_diagonal_kit import diagonals_csv, linear_csv, simulate_linear, simulate_step_diagonal
 from test_rigid import scalar
 from test_rigid_pass import away, point
 
 import gcxform as gx
 from gcxform.calibrate.diagonal.file import (
-    diagonals_csv,
-    linear_csv,
     parse_diagonals,
     parse_linear,
     read_diagonals,
@@ -36,7 +35,6 @@ from gcxform.errormodel.functions import AxisFunction
 from gcxform.errormodel.model_file import load_model
 from gcxform.errormodel.model_text import to_toml
 from gcxform.errormodel.rigid import RigidBody
-from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal
 
 BRACKET = Path(__file__).parents[1] / "examples" / "bracket"
 LOW, TRAVEL, STEPS = np.zeros(3), np.array([480.0, 330.0, 450.0]), 10

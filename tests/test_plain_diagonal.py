@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from diagonal_kit import ALIGNED, LOW, SLOPES, TRAVEL, readings, values
+from step_diagonal_kit import simulate_step_diagonal
 
 from gcxform.calibrate.diagonal.plain_diagonal import BLIND, spread, squareness
 from gcxform.calibrate.diagonal.readings import plain_diagonals
 from gcxform.calibrate.diagonal.step_diagonal import identify
-from gcxform.simulate.stepdiagonal import simulate_step_diagonal
 
 
 def test_s1_squareness_from_the_totals():

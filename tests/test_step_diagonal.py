@@ -20,6 +20,7 @@ from diagonal_kit import (
     values,
 )
 from gcxform_plugins.formats.lddm import Lddm
+from step_diagonal_kit import simulate_linear, simulate_step_diagonal, step_positions
 
 from gcxform.calibrate.diagonal.readings import step_diagonals
 from gcxform.calibrate.diagonal.reframe import reframed
@@ -29,7 +30,6 @@ from gcxform.calibrate.solution import plausible
 from gcxform.diagnostics import InputError, UsageError
 from gcxform.errormodel.functions import AxisFunctions
 from gcxform.errormodel.model_file import load_model
-from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal, step_positions
 
 SAMPLES = 700
 

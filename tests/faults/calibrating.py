@@ -1,4 +1,4 @@
-"""Faults of calibration by body diagonals, and of the readings that a simulated machine gives."""
+"""Faults of calibration by body diagonals."""
 
 from __future__ import annotations
 
@@ -18,10 +18,6 @@ def _calibrate(file: str, name: str, old: str, new: str, tests: str = FIGURES) -
 
 def _angles(name: str, old: str, new: str) -> Mutation:
     return _calibrate("gcxform/calibrate/diagonal/angles.py", name, old, new, ANGLES)
-
-
-def _simulate(name: str, old: str, new: str, tests: str = FIGURES) -> Mutation:
-    return Mutation(f"readings: {name}", "gcxform/simulate/stepdiagonal.py", old, new, tests)
 
 
 MUTATIONS = (
@@ -273,22 +269,6 @@ MUTATIONS = (
         "slice(None)",
     ),
     # readings
-    _simulate("a step moves the wrong axis", "+ 2 - np.arange(3))", "+ np.arange(3))"),
-    _simulate(
-        "a misaligned beam is too long",
-        "_normalised(ideal + angle @ sideways(signs, size)) - ideal",
-        "2.0 * (angle @ sideways(signs, size))",
-    ),
-    _simulate(
-        "errors do not count from the corner",
-        "(error - error[0]) @ (ideal + aside)",
-        "(error + error[0]) @ (ideal + aside) * 1.001",
-    ),
-    _simulate(
-        "noise does not wander",
-        "np.cumsum(noise * generator.standard_normal(len(stops) - 1))",
-        "noise * generator.standard_normal(len(stops) - 1)",
-    ),
     # angular errors
     _angles("a turn moves along its lever", "self.direction] = shape", "self.lever] = shape"),
     _angles("the noise of what is left is forgotten", "max(1.0, self.left / self.freedom)", "1.0"),

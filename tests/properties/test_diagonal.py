@@ -7,14 +7,14 @@ import pytest
 from diagonal_kit import apart, turned, values
 from hypothesis import given
 from hypothesis import strategies as st
+from step_diagonal_kit import diagonals_csv, linear_csv, simulate_linear, simulate_step_diagonal
 
-from gcxform.calibrate.diagonal.file import diagonals_csv, linear_csv, parse_diagonals, parse_linear
+from gcxform.calibrate.diagonal.file import parse_diagonals, parse_linear
 from gcxform.calibrate.diagonal.plain_diagonal import squareness
 from gcxform.calibrate.diagonal.readings import plain_diagonals, step_diagonals
 from gcxform.calibrate.diagonal.reframe import reframed
 from gcxform.calibrate.diagonal.step_diagonal import Assumed, identify
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
-from gcxform.simulate.stepdiagonal import simulate_linear, simulate_step_diagonal
 
 SENSES = st.tuples(*(st.tuples(st.sampled_from((1, -1)), st.just(signs)) for signs in (
     (1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))))  # fmt: skip

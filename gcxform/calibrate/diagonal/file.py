@@ -30,7 +30,7 @@ A constant in a run means nothing: where it was set to zero is not used.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -217,29 +217,3 @@ def _check_inside(table: CsvTable, name: str, position: Floats, volume: Volume) 
         message = f"{AXES[axis]} {at:.6g} is outside the diagonals, {low:.6g} to {high:.6g} mm"
         hint = "leave the positions outside out: a constant in a run means nothing"
         raise InputError.one("GX474", message, table.where(int(beyond[0]), name), hint)
-
-
-# --- writing ---
-
-
-def diagonals_csv(legs: Iterable[Leg]) -> str:
-    """Return legs as a file that reads back as the same, up to the rounding of um to mm."""
-    lines = ["diagonal,run,direction,X [mm],Y [mm],Z [mm],deviation [um]"]
-    runs: dict[tuple[Signs, bool], int] = {}
-    for leg in legs:
-        key = leg.signs, leg.forward
-        runs[key] = runs.get(key, 0) + 1
-        head = f"{leg.name},{runs[key]},{'+' if leg.forward else '-'}"
-        for (x, y, z), value in zip(leg.position.tolist(), leg.deviation.tolist(), strict=True):
-            lines.append(f"{head},{x!r},{y!r},{z!r},{value * 1e3!r}")
-    return "\n".join(lines) + "\n"
-
-
-def linear_csv(tests: Iterable[LinearTest]) -> str:
-    """Return runs of one axis as a file."""
-    tests = list(tests)
-    lines = [f"{AXES[tests[0].axis]} [mm],run,deviation [um]"]
-    for run, test in enumerate(tests, 1):
-        for at, value in zip(test.position.tolist(), test.deviation.tolist(), strict=True):
-            lines.append(f"{at!r},{run},{value * 1e3!r}")
-    return "\n".join(lines) + "\n"

@@ -1,4 +1,4 @@
-"""The readings of a step diagonal and of linear tests on a machine whose errors are known.
+"""What tests measure: a step diagonal and linear tests on a machine whose errors are known.
 
 The mirror is flat and square to the beam, so a reading is the motion of the machine, nominal plus
 error, along the beam: w . (p - p0 + E(p) - E(p0)), first order in nothing. The beam w lies along
@@ -7,13 +7,13 @@ the nominal diagonal but for its misalignment, two angles towards `sideways` (le
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from gcxform.calibrate.diagonal.readings import FOUR, Leg, LinearTest, Signs, beam, sideways
+from gcxform.calibrate.diagonal.readings import AXES, FOUR, Leg, LinearTest, Signs, beam, sideways
 from gcxform.system.arrays import Floats
 
 
@@ -100,3 +100,29 @@ def simulate_linear(
 def _normalised(vector: Floats) -> Floats:
     unit: Floats = vector / np.linalg.norm(vector)
     return unit
+
+
+# --- files ---
+
+
+def diagonals_csv(legs: Iterable[Leg]) -> str:
+    """Return legs as a file that reads back as the same, up to the rounding of um to mm."""
+    lines = ["diagonal,run,direction,X [mm],Y [mm],Z [mm],deviation [um]"]
+    runs: dict[tuple[Signs, bool], int] = {}
+    for leg in legs:
+        key = leg.signs, leg.forward
+        runs[key] = runs.get(key, 0) + 1
+        head = f"{leg.name},{runs[key]},{'+' if leg.forward else '-'}"
+        for (x, y, z), value in zip(leg.position.tolist(), leg.deviation.tolist(), strict=True):
+            lines.append(f"{head},{x!r},{y!r},{z!r},{value * 1e3!r}")
+    return "\n".join(lines) + "\n"
+
+
+def linear_csv(tests: Iterable[LinearTest]) -> str:
+    """Return runs of one axis as a file."""
+    tests = list(tests)
+    lines = [f"{AXES[tests[0].axis]} [mm],run,deviation [um]"]
+    for run, test in enumerate(tests, 1):
+        for at, value in zip(test.position.tolist(), test.deviation.tolist(), strict=True):
+            lines.append(f"{at!r},{run},{value * 1e3!r}")
+    return "\n".join(lines) + "\n"
