@@ -77,6 +77,7 @@ class Arithmetic:
     local         numbers of the parameters that end with their call, or with the program
     digits        significant digits of a number that may be written; 17 are all there are
     machine       what is known of the parameters that belong to the control
+    null          whether a variable may have no value: `gcxform/dialect/null.py`
     """
 
     operators: Mapping[str, Operator]
@@ -91,6 +92,7 @@ class Arithmetic:
     local: range = range(0)
     digits: int = 17
     machine: MachineParameters = field(default_factory=lambda: MachineParameters())
+    null: bool = False
 
     def owns(self, key: Key) -> bool:
         """Return whether a parameter belongs to programs, and not to the control."""
@@ -371,4 +373,5 @@ MACRO_B = Arithmetic(
         signals=(range(1000, 1200), range(3000, 4000)),
         measured=(range(2001, 3000), range(5061, 5069), range(5201, 5400), range(7001, 8000)),
     ),
+    null=True,
 )

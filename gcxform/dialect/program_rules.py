@@ -122,9 +122,15 @@ class FlowRule:
     arithmetic      how the control computes expressions; None: they are refused
     calls_own_lines M97 calls lines of the same program, up to M99
     lookup          in which files subprograms are looked up
+    macro_levels    how many calls with values may be inside each other; 0: there are none
+    repeats_keep    variables keep what a call did to them when L calls again; None: not known
+    argument_list   "II" if I, J, K may come again; "" where a parameter decides
     """
 
     language: str = ""
     arithmetic: Arithmetic | None = None
     calls_own_lines: bool = False
     lookup: LookupRule = field(default_factory=LookupRule)
+    macro_levels: int = 0
+    repeats_keep: bool | None = None
+    argument_list: str = ""

@@ -17,6 +17,8 @@ TO_THE_END = re.compile(rb";[^\r\n]*")
 NUMBERED = rb"(?:N[ \t]*[0-9.]+[ \t]*)?"
 MODES = rb"M[ \t]*0*(?:98|7[0-3])(?![0-9])"
 CALLS = rb"M[ \t]*0*9[789](?![0-9])"
+WITH_VALUES = rb"G[ \t]*0*6[56](?![0-9])"
+NULL = rb"#[ \t]*0+(?![0-9])"
 COMPUTED = (
     (b"#", rb"G[ \t]*#"),
     (b"#", rb"M[ \t]*#"),
@@ -33,7 +35,14 @@ SIGNS: dict[str, tuple[tuple[bytes, bytes], ...]] = {
         (b"@", rb"@"),
         (b"^", rb"\^"),
     ),
-    "macro-b": ((b"M", CALLS), (b"O", rb"GOTO"), (b"[", rb"WHILE"), (b"[", rb"IF[ \t]*\[")),
+    "macro-b": (
+        (b"M", CALLS),
+        (b"O", rb"GOTO"),
+        (b"[", rb"WHILE"),
+        (b"[", rb"IF[ \t]*\["),
+        (b"G", WITH_VALUES),
+        (b"#", NULL),
+    ),
 }
 """A byte, and what a program with flow has where it has that byte."""
 PROOFS = {
@@ -44,7 +53,9 @@ PROOFS = {
         + b"|".join((MODES, POSITION)),
         re.IGNORECASE | re.MULTILINE,
     ),
-    "macro-b": re.compile(CALLS + rb"|GOTO|WHILE|IF[ \t]*\[", re.IGNORECASE),
+    "macro-b": re.compile(
+        rb"|".join((CALLS, rb"GOTO|WHILE|IF[ \t]*\[", WITH_VALUES, NULL)), re.IGNORECASE
+    ),
 }
 """What that looks like outside of comments."""
 

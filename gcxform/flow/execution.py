@@ -248,11 +248,16 @@ class Execution(RunState):
 
     def edits(self, block: Block) -> list[Edit]:
         """Return the pieces of a block that are written otherwise: its values."""
-        return [
-            (word.value.start, word.value.end, self.written(word))
-            for word in block.words
-            if computed(word)
-        ]
+        return [self._edit(word) for word in block.words if computed(word)]
+
+    def _edit(self, word: Word) -> Edit:
+        """Return a word with its value; one whose value is null is left out."""
+        text = self.written(word)
+        self.acted |= not text
+        if text:
+            return (word.value.start, word.end, text)
+        rest = self.listing.window.line(self.line)[word.end :]
+        return (word.start, word.end + len(rest) - len(rest.lstrip(b" \t")), "")
 
     def becomes_other(self, block: Block) -> bool:
         """Whether a block cannot be judged before it is written out: a computed G or M code."""
@@ -267,7 +272,8 @@ class Execution(RunState):
 
     def _write_changed(self, block: Block, edits: list[Edit]) -> None:
         """Write a block whose expressions have become numbers; one of which nothing is left not."""
-        words = [item for item in bare(block) if isinstance(item, Word)]
+        gone = {start for start, _, new in edits if not new}
+        words = [i for i in bare(block) if isinstance(i, Word) and i.start not in gone]
         active = [i for i in block.items if isinstance(i, Comment) and self._executes(block, i)]
         kept = [new for start, _, new in edits if any(start == i.start for i in _statements(block))]
         if not words and not active and not any(kept):

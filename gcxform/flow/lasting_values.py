@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from gcxform.dialect.arithmetic import Key, NoValueError
+from gcxform.dialect.null import MAYBE
 from gcxform.flow.messages import prints_values, told
 from gcxform.flow.run_state import Edit, RunState
 from gcxform.flow.text import assignment
@@ -31,6 +32,9 @@ class Lasting:
             return ""
         if not self.program.keeps:
             return ""
+        if value is MAYBE:
+            message = f"whether {written(key)} becomes 0 or null is not certain"
+            raise self.program.refusal("GX221", message)
         self.assigned.append((self.program.line, key, value))
         return assignment(key, value, self.program.arithmetic)
 

@@ -21,6 +21,8 @@ from gcxform.modal.reader import WindowReader
 from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statement, Word
 
 CODES_OF_CALLS = frozenset({97, 98, 99, 198})
+CALLS_WITH_VALUES = frozenset({65, 66, 66.1, 67})
+"""G codes that call programs with values, and the end of that."""
 STORED_MODES = frozenset({70, 71, 72, 73})
 
 
@@ -171,9 +173,11 @@ class Listing:
 
 
 def _calls(word: Word) -> bool:
-    """Whether a word is an M code that calls, returns, or stores modes."""
-    value = word.value.value if word.address == "M" and isinstance(word.value, Number) else -1.0
-    return value in CODES_OF_CALLS or value in STORED_MODES
+    """Whether a word is a code that calls, returns, or stores modes."""
+    value = word.value.value if isinstance(word.value, Number) else -1.0
+    if word.address == "G":
+        return value in CALLS_WITH_VALUES
+    return word.address == "M" and (value in CODES_OF_CALLS or value in STORED_MODES)
 
 
 def bare(block: Block) -> list[Word | Statement]:

@@ -1,8 +1,8 @@
 """Fanuc and its relatives: M98, M97 and M99, GOTO, IF and WHILE of macro B.
 
-Programs of a file begin at their O numbers, and the first one is run. Whether the local variables
-of a caller are those of what M98 calls is known in two ways: those that are set on one side have no
-known value on the other. G65 gives variables by letters, which is not resolved.
+Programs of a file begin at their O numbers, and the first one is run. What M98 calls has the local
+variables of its caller (Fanuc macro executor B-62093E-1 p. 32, 30i executor B-63943EN-2 p. 105);
+G65 makes new ones (`gcxform/flow/macro_calls.py`). Modes stay as what was called leaves them.
 """
 
 from __future__ import annotations
@@ -17,38 +17,21 @@ from typing import Any
 
 from lark import Token
 
-from gcxform.dialect.arithmetic import MACRO_B, Arithmetic, NoValueError
+from gcxform.dialect.arithmetic import Arithmetic
 from gcxform.flow.execution import HINT, Execution
 from gcxform.flow.listing import Definition, Listing, bare
+from gcxform.flow.macro_calls import ValueCalls
 from gcxform.flow.numbered_files import begins_program, file_of, first_block, program_number
-from gcxform.flow.run_state import UNKNOWN, Call, whole_number
+from gcxform.flow.relations import RELATIONS
+from gcxform.flow.run_state import Call, whole_number
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import BLANKS, Block, Number, Statement, Word
 
-LOCALS = MACRO_B.local
 LOOPS = ("1", "2", "3")
-NEAR = 1e-6
 SEQUENCE = re.compile(rb"(?:\([^()]*\))*(?:/[1-9]?)?(?:\([^()]*\))*[Nn]([0-9]+)")
 CALLING = frozenset({"M98", "M198", "G65", "G66", "G66.1", "computed"})
 """What calls a program by its number, or may do so."""
 PACKED = 10_000  # P of old controls: a count, and four digits of a program number
-
-
-def _equal(a: float, b: float) -> bool:
-    """Whether numbers are equal. Raises NoValueError for those that almost are."""
-    if a != b and abs(a - b) < NEAR * max(1.0, abs(a), abs(b)):
-        raise NoValueError("the numbers are almost equal: how the control compares is not certain")
-    return a == b
-
-
-RELATIONS = {
-    "EQ": lambda a, b: float(_equal(a, b)),
-    "NE": lambda a, b: float(not _equal(a, b)),
-    "GT": lambda a, b: float(not _equal(a, b) and a > b),
-    "GE": lambda a, b: float(_equal(a, b) or a > b),
-    "LT": lambda a, b: float(not _equal(a, b) and a < b),
-    "LE": lambda a, b: float(_equal(a, b) or a < b),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +52,7 @@ class MacroB(Execution):
         self.twice: set[int] = set()
         self.bounds: list[int] = []
         self.unnumbered: dict[int, int] = {}
+        self.values = ValueCalls(self)
         self.arrange()
 
     # --- which lines belong together ---
@@ -166,6 +150,8 @@ class MacroB(Execution):
             getattr(self, f"_{statement.kind}")(statement)
             return True
         items = bare(block)
+        if items and self.values.levels and _names(items[0], "G65"):
+            return self._call_with_values(block, items)
         codes = {whole_number(i) for i in items if isinstance(i, Word) and i.address == "M"}
         if 98 in codes or (97 in codes and self.dialect.flow_rule.calls_own_lines):
             self._call(block, items, own=97 in codes)
@@ -215,20 +201,35 @@ class MacroB(Execution):
 
     def _call(self, block: Block, items: list[Word | Statement], own: bool) -> None:
         self.refuse_more(items, "MPL")
-        number, times = self.number(block, "P"), self.number(block, "L", 1.0)
-        if not (number % 1 == 0 and times % 1 == 0 and times >= 1):
-            raise self.refusal("GX221", "a call takes a number in P, and a count from 1 in L")
-        target, name = int(number), f"M98 P{number:g}"
+        target, times = self._called(block)
+        name = f"M98 P{target}"
         if own:
-            first, name = self._labelled(target), f"M97 P{number:g}"
+            first, name = self._labelled(target), f"M97 P{target}"
             if self._around(first):
                 raise self.refusal("GX223", f"N{target} stands inside a loop that is not running")
         else:
-            target, times = self._unpacked(target, int(times), block)
+            target, times = self._unpacked(target, times, block)
             first = self._start(target)
-        before = {k: v for k, v in self.parameters.items() if k in LOCALS}
-        self.parameters |= dict.fromkeys(before, UNKNOWN)
-        self.enter(Call(name, self.at, first, int(times), before))
+        self.enter(Call(name, self.at, first, times))
+
+    def _call_with_values(self, block: Block, items: list[Word | Statement]) -> bool:
+        """Call a program with variables of its own; return whether there is one to be called."""
+        number, times = self._called(block)
+        if not self._has(number):
+            return False
+        words = [item for item in items if isinstance(item, Word)]
+        call = self.values.made_by(block, words, times, self.at)
+        call.first = self._start(number)
+        self.enter(call)
+        self.values.give(call)
+        return True
+
+    def _called(self, block: Block) -> tuple[int, int]:
+        """Return number and count of a call. Raises InputError."""
+        number, times = self.number(block, "P"), self.number(block, "L", 1.0)
+        if not (number % 1 == 0 and times % 1 == 0 and times >= 1):
+            raise self.refusal("GX221", "a call takes a number in P, and a count from 1 in L")
+        return int(number), int(times)
 
     def _unpacked(self, number: int, times: int, block: Block) -> tuple[int, int]:
         """Return program and count of a P that may hold both."""
@@ -282,10 +283,8 @@ class MacroB(Execution):
             self._begin_again(call)
             return
         self.calls.pop()
-        kept = {k: v for k, v in self.parameters.items() if k in LOCALS}
-        set_inside = {k for k, v in kept.items() if v == v}
-        self.parameters |= {k: v for k, v in call.locals.items() if k not in set_inside}
-        self.parameters |= dict.fromkeys(set_inside, UNKNOWN)
+        if call.given is not None:
+            self.values.take_back(call)
         self.at = call.back
         if any(word.address == "P" for word in block.words):
             target = self.number(block, "P")
@@ -293,10 +292,8 @@ class MacroB(Execution):
             self._jump(target)
 
     def _begin_again(self, call: Call) -> None:
-        """Execute a subprogram once more; what it has set may or may not be there then."""
-        set_inside = [k for k, v in self.parameters.items() if k in LOCALS and v == v]
-        call.locals |= dict.fromkeys(set_inside, UNKNOWN)
-        self.parameters |= dict.fromkeys(set_inside, UNKNOWN)
+        """Execute a subprogram once more."""
+        self.values.again(call)
         self.changes += 1
         self.at = call.first
 
@@ -375,6 +372,11 @@ def _statement(block: Block) -> Statement | None:
     """Return the flow word of a block."""
     found = (i for i in block.items if isinstance(i, Statement) and i.kind != "assignment")
     return next(found, None)
+
+
+def _names(item: Word | Statement, code: str) -> bool:
+    """Whether an item of a block is a code."""
+    return isinstance(item, Word) and item.address in "GM" and _code(item) == code
 
 
 def _code(word: Word) -> str:

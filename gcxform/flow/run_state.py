@@ -15,6 +15,7 @@ import numpy as np
 
 from gcxform.diagnostics import InputError
 from gcxform.dialect.arithmetic import Arithmetic, Key, NoValueError, whole
+from gcxform.dialect.null import NULL, Null
 from gcxform.flow.listing import CODES_OF_CALLS, STORED_MODES, Listing
 from gcxform.flow.text import DECIMALS, decimal
 from gcxform.modal.expressions.value import Evaluator, LocatedError, parameter_key, settable
@@ -37,7 +38,7 @@ class Call:
     """A call that has not returned: the line it goes on at, and what is put back then.
 
     `times` are the runs that are left, `first` the first line of the subprogram, `name` what
-    called it by.
+    called it by. A call with values has variables of its own: `given` are those that it was given.
     """
 
     name: str
@@ -46,6 +47,7 @@ class Call:
     times: int = 1
     locals: dict[Key, float] = field(default_factory=dict)
     counters: dict[int, int] = field(default_factory=dict)
+    given: dict[Key, float] | None = None
 
 
 class RunState:
@@ -75,7 +77,7 @@ class RunState:
 
     def set(self, values: Mapping[Key, float]) -> None:
         """Give parameters their values."""
-        self.changes += any(self.parameters.get(k) != v for k, v in values.items())
+        self.changes += any(differs(self.parameters.get(k), v) for k, v in values.items())
         self.parameters.update(values)
 
     def put(self, text: bytes, lines: Ints) -> None:
@@ -115,15 +117,20 @@ class RunState:
         for word in block.words:
             if word.address == address:
                 value = word.value
-                return self.value(value.tree) if isinstance(value, Expression) else value.value
+                if not isinstance(value, Expression):
+                    return value.value
+                found = self.value(value.tree)
+                return default if found is NULL else found
         return default
 
     def written(self, word: Word) -> str:
-        """Return the value of a word that is computed, as it is written."""
+        """Return the value of a word that is computed, as it is written; "" for null."""
         assert isinstance(word.value, Expression)
         evaluator = Evaluator(self.arithmetic, self.parameters, in_word=True)
         try:
             value = evaluator.value(word.value.tree)
+            if isinstance(value, Null):
+                return _vanished(value, word)
             length = self.listing.meaning(self.line).is_length(word.address)
             if word.address in self.arithmetic.whole and not length:
                 value = float(whole(value, self.arithmetic.whole_slip))
@@ -154,7 +161,7 @@ class RunState:
 
     def _on_increment(self, word: Word, value: float) -> str:
         """Return a distance as the control rounds it."""
-        inch, said = self._inch(), self.reading.increments
+        inch, said = self.in_inch(), self.reading.increments
         steps = None if said is None else said.per_unit(word.address, inch)
         if said is None or steps is None:
             message = f"{word.address} is computed: to what it is rounded depends on the control"
@@ -164,7 +171,7 @@ class RunState:
         count = math.floor(abs(value) * steps + 0.5)
         return decimal(math.copysign(round(count / steps, DECIMALS), value))
 
-    def _inch(self) -> bool:
+    def in_inch(self) -> bool:
         """Whether the line is in inches, behind the blocks that have been written."""
         fresh, self.seen = self.origin[self.seen :], len(self.origin)
         for lines in (*fresh, np.array([self.line])):
@@ -214,6 +221,19 @@ class RunState:
         """Return a call with its place; it goes on at the line behind that."""
         file, line = self.listing.place(call.back - 1)
         return f"{call.name} at {file}:{line}"
+
+
+def differs(before: float | None, now: float) -> bool:
+    """Whether a parameter has changed; null is not 0."""
+    return before != now or isinstance(before, Null) is not isinstance(now, Null)
+
+
+def _vanished(value: Null, word: Word) -> str:
+    """Return what is written for a word of null, which is nothing. Raises NoValueError."""
+    if not value.certain or word.address == "G":
+        message = f"whether {word.address} is 0 here, or left out as its value is null"
+        raise NoValueError(f"{message}, is not certain", "write the block without it")
+    return ""
 
 
 def computed(word: Word) -> bool:

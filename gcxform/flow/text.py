@@ -5,6 +5,7 @@ from __future__ import annotations
 from decimal import Decimal
 
 from gcxform.dialect.arithmetic import Arithmetic, Key
+from gcxform.dialect.null import Null
 from gcxform.modal.expressions.value import written
 
 DECIMALS = 8
@@ -19,6 +20,8 @@ def decimal(value: float) -> str:
 
 def assignment(key: Key, value: float, arithmetic: Arithmetic) -> str:
     """Return an assignment of a number, in all the digits that the control takes."""
+    if isinstance(value, Null):
+        return f"{written(key)}=#0"
     digits = repr(value) if arithmetic.digits >= 17 else f"{value:.{arithmetic.digits}g}"
     text = f"{Decimal(digits):f}"
     whole, _, rest = text.partition(".")

@@ -38,8 +38,8 @@ MUTATIONS = (
     _computed(
         "a sign is lost",
         "gcxform/modal/expressions/value.py",
-        "-value if children[0]",
-        "value if children[0]",
+        "-value if sign",
+        "value if sign",
     ),
     _computed(
         "operands are swapped",

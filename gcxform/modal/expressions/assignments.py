@@ -20,6 +20,7 @@ import numpy as np
 
 from gcxform.diagnostics import Diagnostic
 from gcxform.dialect.arithmetic import NoValueError, whole
+from gcxform.dialect.null import Null
 from gcxform.modal.expressions.unknown import bare_text, hangs_on, may_be_unknown
 from gcxform.modal.expressions.value import Evaluator, LocatedError, settable
 from gcxform.modal.findings import Findings
@@ -76,6 +77,8 @@ class _Block:
         evaluator = Evaluator(self.arithmetic, self.lines.parameters, in_word=True)
         try:
             value = evaluator.value(word.value.tree)
+            if isinstance(value, Null):
+                raise NoValueError(f"{word.address} is null here", "leave the word out")
             if word.address in self.arithmetic.whole and not self.meaning.is_length(word.address):
                 value = float(whole(value, self.arithmetic.whole_slip))
         except NoValueError as why:

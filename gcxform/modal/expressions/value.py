@@ -14,6 +14,7 @@ from typing import Any
 from lark import Token, Tree
 
 from gcxform.dialect.arithmetic import RS274, Arithmetic, Key, NoValueError, whole
+from gcxform.dialect.null import MAYBE, NULL, Null, as_argument
 from gcxform.syntax.grammar import rule_of, span_of
 from gcxform.syntax.tree import BLANKS, Statement
 
@@ -85,13 +86,19 @@ class Evaluator:
         if rule == "parameter":
             return self._read(self.key(node))
         if rule == "negated":
-            value = self.value(children[1])
-            return -value if children[0] == "-" else value
+            return self._negated(str(children[0]), children[1])
         if rule == "bracketed":
-            return self.value(children[0])
+            return as_argument(self.value(children[0]))
         if rule in ("call", "arctangent"):
             return self._call(rule, str(children[0]).upper(), children[1:])
         return self._operation(*children)
+
+    def _negated(self, sign: str, node: Any) -> float:
+        """Return a value with its sign; whether a word of -null vanishes no manual says."""
+        value = self.value(node)
+        if isinstance(value, Null):
+            return MAYBE if self.in_word else 0.0
+        return -value if sign == "-" else value
 
     def _operation(self, left: Any, operator: Token, right: Any) -> float:
         name = str(operator).upper()
@@ -123,6 +130,8 @@ class Evaluator:
         return whole(self.value(child))
 
     def _read(self, key: Key) -> float:
+        if key == 0 and self.arithmetic.null:
+            return NULL
         value = self.parameters.get(key)
         if value is not None and not math.isnan(value):
             return value

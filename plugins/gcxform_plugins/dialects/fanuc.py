@@ -35,9 +35,13 @@
 | G27, G29, G60 | over, from or past points that the program does not tell: refused |
 | M98 M99 | executed where the program is in the file or in one beside it, which its number names |
 | L of M98 | counts, or the digits of P before four |
-| local variables across M98 | shared or not: known in two ways, so they have no value there |
-| M198 G65 G66 | calls of other programs, or with values: refused |
+| local variables across M98 | shared (macro executor B-62093E-1 p. 32) |
+| G65 | new ones, null but for those given by letter (16i B-63684EN p. 278); four deep |
+| G65 L2 | the second run finds arguments anew or not: refused, or `[control] macro-repeat` |
+| I, J, K again in G65 | list II or not (6008#7): refused, or `[control] argument-list` |
+| M198 G66 | calls of other programs, or at every move: refused |
 | a variable that nothing has set | is null, or is left from before: lost, unless given |
+| a null variable | leaves its word out, is 0 in expressions, and equal to null alone |
 | a computed distance | in mm, rounded to `[input] increment`, which must be given |
 | an assignment beside words | when it acts is not certain: refused |
 | AND OR XOR | known in two ways: refused |
@@ -174,7 +178,7 @@ class Fanuc(gx.Dialect):
         m_order_chosen=True,
         unknown_m=gx.MCode("user", loses_position=True),
     )
-    flow_rule = gx.FlowRule("macro-b", v.MACRO_B, lookup=FILES)
+    flow_rule = gx.FlowRule("macro-b", v.MACRO_B, macro_levels=4, lookup=FILES)
     point_rule = gx.PointRule(required=True, dwell={"X": 1.0, "U": 1.0, "P": 0.001})
     feed_rule = gx.FeedRule(change_clears=True)
     motion_rule = gx.MotionRule(g53_is_rapid=True)

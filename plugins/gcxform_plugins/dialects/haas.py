@@ -30,7 +30,8 @@ refused. What is not named here is as in `fanuc`.
 | G107 G112 G113 G234 G253 to G255 G268 G269 | another frame: refused | manual |
 | G103, G187 | look-ahead, smoothness: change no position | manual |
 | M97 M98 M99 | executed where what they call is found, as Fanuc; P of M98 holds no count | manual |
-| M96 M198, G65 | jumps at an input, other programs, calls with values: refused | manual |
+| G65 | as Fanuc's, nine deep; L keeps what the macro did to its variables; list II | manual |
+| M96 M198 | jumps at an input, other programs: refused | manual |
 | M16 | is M6 | known |
 | M29, M48, M49 | are no tapping mode and no overrides: as any unknown M code | known |
 | G141, G143, G161 to G169, G174, G184 | five axes: refused by name | manual |
@@ -107,7 +108,13 @@ class Haas(Fanuc):
     program_rule = replace(Fanuc.program_rule, number_digits=5)
     text_rule = replace(Fanuc.text_rule, lower_case=True, line_length=256)
     block_rule = replace(Fanuc.block_rule, words=Fanuc.block_rule.words + "UVW")
-    flow_rule = replace(Fanuc.flow_rule, calls_own_lines=True)
+    flow_rule = replace(
+        Fanuc.flow_rule,
+        calls_own_lines=True,
+        macro_levels=9,
+        repeats_keep=True,
+        argument_list="II",
+    )
     point_rule = replace(
         Fanuc.point_rule,
         feed_required=True,

@@ -1,0 +1,65 @@
+"""Calls with values: G65 makes new local variables, and M99 gives the caller its own back.
+
+They are null but for those that the call gives (Fanuc 16i B-63684EN p. 278). On a Haas the
+repetitions of L keep what the first has done to them (96-8000 p. 93); of a Fanuc that is not known,
+so that a setting says it.
+"""
+
+from __future__ import annotations
+
+from gcxform.dialect.arithmetic import MACRO_B, Key
+from gcxform.dialect.null import NULL
+from gcxform.flow.macro_arguments import arguments
+from gcxform.flow.run_state import UNKNOWN, Call, RunState, differs
+from gcxform.syntax.tree import Block, Word
+
+LOCALS = MACRO_B.local
+LOCALS_AT_START, REPEATS = "local-variables", "macro-repeat"
+NO_VALUES = "PLGN"
+"""Addresses of a call that give no values: what is called, and how often."""
+
+
+class ValueCalls:
+    """The calls with values of a program that runs."""
+
+    def __init__(self, run: RunState) -> None:
+        self.run = run
+        self.levels = run.dialect.flow_rule.macro_levels
+        if run.reading.control.get(LOCALS_AT_START) == "null":
+            run.parameters = fresh(run.parameters)
+
+    def made_by(self, block: Block, words: list[Word], times: int, back: int) -> Call:
+        """Return the call that words make. Raises InputError for more of them than may be open."""
+        number = self.run.number(block, "P")
+        name = f"G65 P{number:g}"
+        if sum(call.given is not None for call in self.run.calls) >= self.levels:
+            message = f"{name}: {self.levels} calls with values are inside each other"
+            raise self.run.refusal("GX224", message)
+        given = arguments(self.run, [w for w in words if w.address not in NO_VALUES])
+        before = {k: v for k, v in self.run.parameters.items() if k in LOCALS}
+        return Call(name, back, times=times, locals=before, given=given)
+
+    def give(self, call: Call) -> None:
+        """Make the variables of a call."""
+        self.run.parameters |= fresh(call.given or {})
+        self.run.changes += 1
+
+    def take_back(self, call: Call) -> None:
+        """Give the caller its variables back."""
+        kept = {k: v for k, v in self.run.parameters.items() if k not in LOCALS}
+        self.run.parameters = kept | call.locals
+
+    def again(self, call: Call) -> None:
+        """Begin another repetition: what the one before has changed may have no known value."""
+        said = self.run.reading.control.get(REPEATS)
+        keeps = self.run.dialect.flow_rule.repeats_keep if said is None else said == "keep"
+        if call.given is None or keeps:
+            return
+        first = fresh(call.given)
+        changed = [k for k, v in first.items() if differs(self.run.parameters.get(k), v)]
+        self.run.parameters |= first if said else dict.fromkeys(changed, UNKNOWN)
+
+
+def fresh(given: dict[Key, float]) -> dict[Key, float]:
+    """Return the local variables of a call: null but for those that are given."""
+    return {**dict.fromkeys(LOCALS, NULL), **given}
