@@ -36,6 +36,7 @@ class MachineParameters:
     measured   those that do in any mode and place, in one unit: offsets, results of probes
     hidden     names that have another value where calls and loops are written out
     highest    the highest number; a higher one is an error
+    null       the parameter without a value (`gcxform/dialect/null.py`); None: there is none
     """
 
     outputs: tuple[range, ...] = ()
@@ -44,6 +45,7 @@ class MachineParameters:
     measured: tuple[range, ...] = ()
     hidden: frozenset[str] = frozenset()
     highest: int = 2**31
+    null: int | None = None
 
 
 class NoValueError(Exception):
@@ -77,7 +79,6 @@ class Arithmetic:
     local         numbers of the parameters that end with their call, or with the program
     digits        significant digits of a number that may be written; 17 are all there are
     machine       what is known of the parameters that belong to the control
-    null          whether a variable may have no value: `gcxform/dialect/null.py`
     """
 
     operators: Mapping[str, Operator]
@@ -92,7 +93,6 @@ class Arithmetic:
     local: range = range(0)
     digits: int = 17
     machine: MachineParameters = field(default_factory=lambda: MachineParameters())
-    null: bool = False
 
     def owns(self, key: Key) -> bool:
         """Return whether a parameter belongs to programs, and not to the control."""
@@ -372,6 +372,6 @@ MACRO_B = Arithmetic(
         outputs=(range(1100, 1200), *(range(n, n + 1) for n in (3000, 3003, 3006, 3901, 3902))),
         signals=(range(1000, 1200), range(3000, 4000)),
         measured=(range(2001, 3000), range(5061, 5069), range(5201, 5400), range(7001, 8000)),
+        null=0,
     ),
-    null=True,
 )

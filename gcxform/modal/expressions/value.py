@@ -130,7 +130,7 @@ class Evaluator:
         return whole(self.value(child))
 
     def _read(self, key: Key) -> float:
-        if key == 0 and self.arithmetic.null:
+        if key == self.arithmetic.machine.null:
             return NULL
         value = self.parameters.get(key)
         if value is not None and not math.isnan(value):
