@@ -1,6 +1,8 @@
 """M70 to M73 of LinuxCNC: modes that are stored and come back, written out as plain blocks.
 
-The control restores F and S first and codes after them; motion codes stay as they are. What cannot
+The control restores F and S first, rounded to a tenth and to a whole number, and codes after them;
+motion codes stay as they are. Whether an
+offset of G92 or G52 counts is restored as G92.2 or G92.3, and not how large it is. What cannot
 be said again by its code alone (a tool length, cutter compensation, a path tolerance) is refused
 where it would have to be.
 """
@@ -14,6 +16,18 @@ from gcxform.flow.run_state import RunState
 from gcxform.syntax.tree import Block, Number
 
 UNITS, FEED, SPEED, SPINDLE, MIST, FLOOD = "units", "F", "S", "spindle", "M7", "M8"
+DECIMALS = {FEED: 1, SPEED: 0}
+"""With how many decimals the control writes what it restores."""
+PRESET = "G92"
+COUNTS, COUNTS_NOT = "G92.3", "G92.2"
+PRESETS = {
+    "G92": COUNTS,
+    "G52": COUNTS,
+    COUNTS: COUNTS,
+    "G92.1": COUNTS_NOT,
+    COUNTS_NOT: COUNTS_NOT,
+}
+"""What each code does to whether the offset of G92 counts: LinuxCNC's parameter 5210."""
 RESTORED = ("plane", "distance", "arc-distance", "feed-mode", "frame", "retract")
 """Groups whose codes are written again, with units; those of others must not differ."""
 LEFT = frozenset({"motion", "cycle", "non-modal", "stop", "tool", "modal-store", "output", "user"})
@@ -40,6 +54,7 @@ class StoredModes:
             group: initial[group] for group in (*RESTORED, UNITS) if group in initial
         }
         self.now |= {SPINDLE: "M5", MIST: "", FLOOD: "", "cutter-comp": "G40"}
+        self.now |= {PRESET: COUNTS_NOT}
         self.seen = 0
 
     def enter(self) -> None:
@@ -97,6 +112,8 @@ class StoredModes:
         if name in ("M7", "M8", "M9"):
             self.now |= {MIST: "", FLOOD: ""} if name == "M9" else {name: name}
             return
+        if name in PRESETS:
+            self.now[PRESET] = PRESETS[name]
         code = dialect.codes.get(name) or dialect.m_codes.get(int(float(name[1:])))
         if code is None or code.group in LEFT:
             return
@@ -111,17 +128,18 @@ class StoredModes:
     def _restore(self, stored: Codes) -> None:
         """Write the blocks that restore modes, in the order of the control."""
         now = self._in_force()
-        differ = {group for group in now if now[group] != stored.get(group)}
+        differ = {group for group in now if not _same(group, now[group], stored.get(group))}
         self._refuse_unknown(differ, now, stored)
-        feed = [f"{a}{stored[a]}" for a in (FEED, SPEED) if a in differ]
+        feed = [_rounded(a, stored[a]) for a in (FEED, SPEED) if a in differ]
         codes = [stored[group] for group in RESTORED if group in differ]
         units = [stored[UNITS]] if UNITS in differ else []
-        for words in (units, feed, codes, *self._machine_codes(differ, stored)):
+        preset = [stored[PRESET]] if PRESET in differ else []
+        for words in (units, feed, codes, preset, *self._machine_codes(differ, stored)):
             if words:
                 self.program.write_line(" ".join(words))
 
     def _refuse_unknown(self, differ: set[str], now: Codes, stored: Codes) -> None:
-        known = {*RESTORED, UNITS, SPINDLE, MIST, FLOOD, FEED, SPEED}
+        known = {*RESTORED, UNITS, SPINDLE, MIST, FLOOD, FEED, SPEED, PRESET}
         for group in sorted(differ):
             before = stored.get(group, "")
             if group not in known or (group not in stored):
@@ -143,3 +161,15 @@ class StoredModes:
             if off and on:
                 raise self.program.refusal("GX210", "one of two coolants would go off here")
         return [found, second]
+
+
+def _same(group: str, now: str, stored: str | None) -> bool:
+    """Whether what is in force is what was stored."""
+    if group in DECIMALS and stored is not None:
+        return float(now) == float(stored)
+    return now == stored
+
+
+def _rounded(address: str, number: str) -> str:
+    """Return F or S as the control restores it."""
+    return f"{address}{float(number):.{DECIMALS[address]}f}".removesuffix(".0")

@@ -308,10 +308,13 @@ class OWords(Execution):
             message = "behind a loop with break the control may run this loop once only"
             raise self.refusal("GX223", message, "write it as a while loop")
 
-    def _refuse_after_continue(self) -> None:
-        """Refuse `repeat` behind `continue` in a `do` loop: it may be run too often."""
+    def _refuse_after_continue(self, what: str = "counts this loop wrong") -> None:
+        """Refuse `repeat` and `break` behind `continue` in a `do` loop.
+
+        The interpreter may run a `repeat` too often, and take the next `break` for a `continue`.
+        """
         if self.continued:
-            message = "behind continue in a do loop the control counts this loop wrong"
+            message = f"behind continue in a do loop the control {what}"
             raise self.refusal("GX223", message, "write the do loop as a while loop")
 
     def _endwhile(self, word: OWord) -> None:
@@ -343,6 +346,7 @@ class OWords(Execution):
 
     def _break(self, word: OWord) -> None:
         """Leave a loop; on its way to the end the interpreter notes a `continue` that it passes."""
+        self._refuse_after_continue("may go on with this loop")
         construct = self.construct[self.line]
         self.continued |= construct.kind == "do" and self._has(construct, "continue")
         self._note_left(construct)

@@ -122,6 +122,28 @@ MUTATIONS = (
         "(units, feed, codes,",
         "(feed, codes, units,",
     ),
+    _flow(
+        "F comes back as it was",
+        "gcxform/flow/modes.py",
+        "{FEED: 1, SPEED: 0}",
+        "{FEED: 9, SPEED: 9}",
+    ),
+    _flow("the offset of G92 stays", "gcxform/flow/modes.py", "[stored[PRESET]] if", "[] if"),
+    _flow("G52 is no offset", "gcxform/flow/modes.py", '"G52": COUNTS,', "", AGREES),
+    _flow(
+        "F is restored although it is the same",
+        "gcxform/flow/modes.py",
+        "float(now) == float(stored)",
+        "now == stored",
+        "tests/test_corpus.py::test_case[flow/m72-rounds-feed]",
+    ),
+    _flow(
+        "break behind continue leaves its loop",
+        "gcxform/flow/owords.py",
+        'self._refuse_after_continue("may go on with this loop")',
+        "pass",
+        "tests/test_corpus.py::test_case[flow/do-continue-next-break]",
+    ),
     _flow("a coolant stays on", "gcxform/flow/modes.py", "off = any(", "off = not any("),
     _flow(
         "polar words turn the wrong way",
