@@ -20,9 +20,9 @@ NOT_RESOLVED = (
     "the modes are restored here",
     "one of two coolants would go off",
     "has a value that only the control knows",
-    "is not known after a block that is refused",
+    "is not known here: it was set",
+    "goes where only the machine knows",
     "another unit under a tool length",
-    "#<_value> is not known",
     "the control goes on counting from there",
 )
 """Why programs are refused that the interpreter runs, in the way that its own faults decide."""
