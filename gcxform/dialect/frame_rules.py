@@ -13,9 +13,12 @@ class OffsetRule:
     known_at_start    the work offset of `initial` is in force for certain when a program starts
     names             work offsets that have a second code: the code, and the name of the offset
     g10_offsets       the work offsets that P1, P2 ... of G10 L2 name
-    g10_p0_is_active  P0 of G10 names the one in force
+    g10_tools         the L of G10 that write lengths and radii into the control's tool table
+    g10_p0            what P0 of G10 names: the work offset in force ("active"), or a shift of all
+                      of them ("all"); "": nothing
     g10_needs_p       G10 without P names none; otherwise it is as with P0
-    g10_sets_position G10 L20 makes the present position read what is given
+    g10_l20           what G10 L20 sets: "here" makes the present position read what is given; a
+                      code, such as "G54.1", names the work offsets that are meant; "": nothing
     g10_ignores_g91   under G91, G10, G52 and G92 set what they set under G90
     g10_rotates       R in G10 L2 turns the work offset about Z
     g52_is_g92        G52 and G92 set one and the same shift
@@ -26,9 +29,10 @@ class OffsetRule:
     known_at_start: bool = False
     names: Mapping[str, str] = field(default_factory=dict)
     g10_offsets: tuple[str, ...] = ("G54", "G55", "G56", "G57", "G58", "G59")
-    g10_p0_is_active: bool = False
+    g10_tools: frozenset[int] = frozenset()
+    g10_p0: str = ""
     g10_needs_p: bool = True
-    g10_sets_position: bool = False
+    g10_l20: str = ""
     g10_ignores_g91: bool = False
     g10_rotates: bool = False
     g52_is_g92: bool = False
@@ -44,6 +48,8 @@ class ToolRule:
     lengths_aside          the control's tool table has lengths along X and Y too
     length_axes            the axes along which G43.1 gives a length
     g43_takes_spindle_tool G43 without H takes the length of the tool in the spindle
+    h_stays                H stays in force: G43 without H takes it, and an H by itself is another,
+                           or the number of a radius, as a parameter says
     g49_takes_axes         G49 takes the axis words of its block, and leaves them out
     length_may_move        another length may move the axis by itself; where it stands is then not
                            known
@@ -55,6 +61,7 @@ class ToolRule:
     lengths_aside: bool = False
     length_axes: str = "XYZ"
     g43_takes_spindle_tool: bool = False
+    h_stays: bool = False
     g49_takes_axes: bool = False
     length_may_move: bool = False
     units_spoil_length: bool = False

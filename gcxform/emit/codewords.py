@@ -59,7 +59,7 @@ class CodeWords:
         if only_for_cycles(name, self.source, self.target):
             return
         if self.source is not self.target and code is not None:
-            what = other_in(self.source, self.target, name, code, self.meaning.dwell)
+            what = other_in(self.source, self.target, name, code, self.meaning)
             if what:
                 self._refuse(word, name, what)
         self.draft.literal(lead, text)

@@ -169,7 +169,7 @@ def like(text: str, code: str) -> str:
 
 
 def other_in(
-    source: type[Dialect], target: type[Dialect], name: str, code: Code, dwells: bool
+    source: type[Dialect], target: type[Dialect], name: str, code: Code, meaning: Meaning
 ) -> str:
     """Return what the target cannot say, if a G code means something else there, or nothing."""
     other = target.codes.get(name)
@@ -180,13 +180,21 @@ def other_in(
         code.takes,
     ):
         return name
+    alone = not any(act.slots for act in meaning.acts if act.code == name)
+    stays = source.tool_rule.h_stays, target.tool_rule.h_stays
+    if "H" in code.takes and alone and stays[0] != stays[1]:
+        return f"{name} without H"
     if name in TAPPING:
         return f"{name} with the spindle tied to the feed in the same way"
     if code.act == "home" and stores_home(source) != stores_home(target):
         return f"{name}: it goes to a point of another kind there"
     if code.act == "local" and source.offset_rule.g52_is_g92 != target.offset_rule.g52_is_g92:
         return f"{name} without changing what G92 has set"
-    if dwells and code.group == "non-modal" and not source.point_rule.waits_as(target.point_rule):
+    if (
+        meaning.dwell
+        and code.group == "non-modal"
+        and not source.point_rule.waits_as(target.point_rule)
+    ):
         return "this dwell"
     return ""
 

@@ -38,7 +38,12 @@ class FrameState:
     preset, held  the shift of G92, and what G92.3 would restore
     local         the shift of G52 where it is not that of G92
     tool          mm, from the tip to the reference point; nan where a length is not known
-    tool_name     what the tool vector belongs to: "H3"; "" for none
+    tool_name     what the tool vector belongs to: "H3", "-H3" where it is taken off; "" for none
+    number        the H in force, as part of such a name; "" where no block has stated one.
+                  `lost_numbers` counts those that only the control knows
+    given         how often G10 has set each work offset, and all of them at once (""), so that
+                  zeros that are not known have names of their own
+    written       how often G10 has written each tool into the control's table
     in_spindle    number of the tool, -1 where not known; `changes` counts the tool changes
     turns         rotation, scaling and mirror of the program, the innermost first
     polar, diameter   G16 and G7 are in force
@@ -58,6 +63,10 @@ class FrameState:
     local: Vector = ()
     tool: tuple[float, float, float] = NO_TOOL
     tool_name: str = ""
+    number: str = ""
+    lost_numbers: int = 0
+    given: Mapping[str, int] = field(default_factory=dict)
+    written: Mapping[int, int] = field(default_factory=dict)
     in_spindle: int = -1
     changes: int = 0
     turns: tuple[tuple[str, Turn], ...] = ()
@@ -104,7 +113,21 @@ class FrameState:
 
     def with_zero(self, work: str, zero: Vector) -> FrameState:
         """Return the state with the zero of a work offset elsewhere."""
-        return replace(self, zeros={**self.zeros, work: zero})
+        return replace(self, zeros={**self.zeros, work: zero}, given=self._given_anew(work))
+
+    def shifted(self) -> FrameState:
+        """Return the state with the zeros of all work offsets elsewhere, nobody knows where."""
+        return replace(self, zeros={}, given=self._given_anew(""))
+
+    def _given_anew(self, work: str) -> Mapping[str, int]:
+        return {**self.given, work: self.given.get(work, 0) + 1}
+
+    def _unknown_zero(self) -> str:
+        """Return the name of the zero in force where it is not known: no other has the same."""
+        times = self.given.get(self.work, 0) + self.given.get("", 0)
+        if not times:
+            return self.work
+        return f"{self.work} as set by G10" + (f" ({times})" if times > 1 else "")
 
     def in_work(self, work: str) -> FrameState:
         """Return the state in another work offset."""
@@ -121,7 +144,7 @@ class FrameState:
     def frame(self) -> Frame:
         """Return the frame in force."""
         zero = self.zero_of(self.work)
-        away = self.work if self.work != self.first else f"{self.work} as set by G10"
+        away = self._unknown_zero()
         origin = [self.first if isfinite(place) else away for place in zero]
         shift = [place if isfinite(place) else 0.0 for place in zero]
         assert self.axes[:3] == "XYZ"

@@ -46,6 +46,9 @@ class Reading:
     rotary        the letters of the rotary axes of the machine; "" where that is not known
     open_pecks    whether a cycle may be read whose way back between pecks is a parameter that is
                   not given: where it then goes up to is nan. Its block must stay as it is
+    tables_stay   whether a G10 may be read that writes into the control's tool table: its block
+                  stays as it is, on the same control
+    crosses       whether the program is to be written for another control
     parameters    values of parameters before the first block, by number ("100") or name ("<a>")
     subprograms   folders in which subprograms are looked up, behind that of the program
     """
@@ -64,6 +67,8 @@ class Reading:
     inert_m: frozenset[int] = frozenset()
     rotary: str = ""
     open_pecks: bool = False
+    tables_stay: bool = True
+    crosses: bool = False
     subprograms: tuple[Path, ...] = ()
 
     def __post_init__(self) -> None:

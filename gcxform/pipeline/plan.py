@@ -42,7 +42,7 @@ from gcxform.stamps.comment import stamps_in
 from gcxform.stamps.writing import comment_line
 from gcxform.syntax.source import Source
 from gcxform.system.limits import Limits
-from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY, NO_CYCLES
+from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY, NO_CYCLES, WORKPIECE_FRAME
 
 ARC_ROUNDING = 2.0  # of the last decimal: what rounding ends and centre can add along an arc
 CENTRE_ROUNDING = 0.003  # mm: what rounding moves a centre by depends on the contour's corners
@@ -198,7 +198,10 @@ class Plan:
         """What is known of programs before they are read, with what the machine file says."""
         reading = self.reading if self.machine is None else self.reading.on(self.machine)
         expands = any(NO_CYCLES in step.ensures for step in self.path_passes)
-        return replace(reading, open_pecks=self.source is self.target and not expands)
+        same = self.source is self.target
+        folds = any(WORKPIECE_FRAME in step.ensures for step in self.path_passes)
+        open_pecks, tables_stay = same and not expands, same and not folds
+        return replace(reading, open_pecks=open_pecks, tables_stay=tables_stay, crosses=not same)
 
     def reading_at_start(self, axes: str) -> Reading:
         """Return what is known at the start; where only programmed words are written, 0 for axes.

@@ -212,15 +212,15 @@ MUTATIONS = (
     Mutation(
         "cycles: two controls have one and the same parameter of pecks",
         "gcxform/pipeline/plan.py",
-        "open_pecks=self.source is self.target and not expands",
-        "open_pecks=not expands",
+        "same and not expands, same and not folds",
+        "not expands, same and not folds",
         "tests/test_corpus.py::test_case[dialects/across/pecks-for-haas]",
     ),
     Mutation(
         "cycles: pecks that are not known are expanded",
         "gcxform/pipeline/plan.py",
-        "open_pecks=self.source is self.target and not expands",
-        "open_pecks=self.source is self.target",
+        "same and not expands, same and not folds",
+        "same, same and not folds",
         "tests/test_corpus.py::test_case[bad/gx215-cycle]",
     ),
 )

@@ -9,6 +9,8 @@ import numpy as np
 from gcxform.modal.frame_state import NO_TOOL, FrameState
 from gcxform.modal.frames.act import ActError, Asked
 
+BEFORE = "the H before the program"
+
 
 def change_tool(state: FrameState, asked: Asked) -> FrameState:
     """M6: the tool that T has named is in the spindle."""
@@ -48,18 +50,48 @@ def set_tool(state: FrameState, asked: Asked) -> FrameState:
 
 def length(state: FrameState, asked: Asked) -> FrameState:
     """G43 H: the length of a tool of the table."""
-    return state.with_tool(*_tool_vector(state, asked, 1.0))
+    return _with_length(state, asked, 1.0)
 
 
 def length_negative(state: FrameState, asked: Asked) -> FrameState:
     """G44 H: the length of a tool of the table, taken off."""
-    return state.with_tool(*_tool_vector(state, asked, -1.0))
+    return _with_length(state, asked, -1.0)
+
+
+def _with_length(state: FrameState, asked: Asked, sign: float) -> FrameState:
+    """Return the state with a length in force, and the H that says which."""
+    if "H" in asked.words:
+        state = _with_number(state, asked.words["H"])
+    return state.with_tool(*_tool_vector(state, asked, sign))
+
+
+def _with_number(state: FrameState, number: float) -> FrameState:
+    """Return the state with an H in force; one that is not known has a name of its own."""
+    if not np.isnan(number):
+        return replace(state, number=f"H{number:g}")
+    lost = state.lost_numbers + 1
+    return replace(state, number=f"the tool that H names ({lost})", lost_numbers=lost)
+
+
+def length_number(state: FrameState, asked: Asked) -> FrameState:
+    """H by itself: another length, or another radius and the same length: a parameter decides."""
+    number = asked.words["H"]
+    if number % 1 > 0 or number < 0:
+        raise ActError("GX213", "H is not a number of a tool")
+    before = state.number.rpartition(" or ")[2]
+    state = _with_number(state, number)
+    state = replace(state, number=f"{state.number} or {before or BEFORE}")
+    if not state.tool_name:
+        return state
+    sign = "-" * state.tool_name.startswith("-")
+    return state.with_tool((*state.tool[:2], np.nan), sign + state.number)
 
 
 def length_add(state: FrameState, asked: Asked) -> FrameState:
     """G43.2 H: the length of a tool more."""
     if "H" not in asked.words:
         raise ActError("GX213", f"{asked.code} needs an H word")
+    state = _with_number(state, asked.words["H"])
     vector, name = _tool_vector(state, asked, 1.0)
     total = np.array(state.tool) + np.array(vector)
     return state.with_tool(tuple(total.tolist()), f"{state.tool_name}+{name}")
@@ -69,28 +101,45 @@ def _tool_vector(
     state: FrameState, asked: Asked, sign: float
 ) -> tuple[tuple[float, float, float], str]:
     """Return the vector of a tool, nan along Z where its length is not known, and its name."""
-    number = asked.words.get("H", np.nan)
-    if "H" in asked.words and np.isnan(number):
-        return _unknown_tool(state, asked, "the tool that H names")
-    if asked.dialect.tool_rule.g43_takes_spindle_tool and not number > 0:
-        if number < 0:
-            raise ActError("GX213", "H is not a number of a tool")
-        if state.in_spindle < 1:
-            return _unknown_tool(state, asked)
-        number = float(state.in_spindle)
-    elif np.isnan(number):
-        raise ActError("GX213", f"{asked.code} needs an H word")
-    if number % 1 or number < 0:
-        raise ActError("GX213", "H is not a number of a tool")
+    number = _tool_number(state, asked)
+    if np.isnan(number) and "H" in asked.words:
+        return _unknown_tool(state, asked, state.number)
+    if np.isnan(number) and asked.dialect.tool_rule.h_stays:
+        return _unknown_length((state.number or BEFORE) + _table(state), sign)
+    if np.isnan(number):
+        return _unknown_tool(state, asked)
     if number == 0:
         return NO_TOOL, ""
     tool = asked.reading.tools.get(int(number))
-    if tool is None:
-        if asked.reading.tools and asked.dialect.tool_rule.g43_takes_spindle_tool:
-            raise ActError("GX213", f"the tool table has no tool {number:g}")
-        return (0.0, 0.0, np.nan), f"H{number:g}"
+    if tool is None and asked.reading.tools and asked.dialect.tool_rule.g43_takes_spindle_tool:
+        raise ActError("GX213", f"the tool table has no tool {number:g}")
+    times = state.written.get(int(number), 0)
+    if tool is None or times:
+        return _unknown_length(f"H{number:g}" + f" as set by G10 ({times})" * bool(times), sign)
     x, y, z = tool.vector
-    return (sign * x, sign * y, sign * z), f"H{number:g}"
+    return (sign * x, sign * y, sign * z), f"H{number:g}" if sign > 0 else f"-H{number:g}"
+
+
+def _tool_number(state: FrameState, asked: Asked) -> float:
+    """Return the number of the tool whose length is meant, nan where no block has said which."""
+    tools = asked.dialect.tool_rule
+    number = asked.words.get("H", np.nan)
+    if number % 1 > 0 or number < 0:
+        raise ActError("GX213", "H is not a number of a tool")
+    if "H" in asked.words and np.isnan(number):
+        return number
+    if tools.g43_takes_spindle_tool and not number > 0:
+        return float(state.in_spindle) if state.in_spindle >= 1 else np.nan
+    if np.isnan(number) and not tools.h_stays:
+        raise ActError("GX213", f"{asked.code} needs an H word")
+    if np.isnan(number) and state.number[1:].isdigit():
+        return float(state.number[1:])
+    return number
+
+
+def _unknown_length(name: str, sign: float) -> tuple[tuple[float, float, float], str]:
+    """Return the vector and the name of a tool of unknown length: taken off it is another one."""
+    return (0.0, 0.0, np.nan), name if sign > 0 else f"-{name}"
 
 
 def _unknown_tool(
@@ -105,7 +154,26 @@ def _unknown_tool(
     across = np.nan if aside else 0.0
     if state.changes:
         name += f" after tool change {state.changes}"
-    return (across, across, np.nan), name
+    return (across, across, np.nan), name + _table(state)
+
+
+def _table(state: FrameState) -> str:
+    """Return which state of the tool table a length is of: nothing for that before the program."""
+    times = sum(state.written.values())
+    return f", as set by G10 ({times})" if times else ""
+
+
+def written(state: FrameState, asked: Asked) -> FrameState:
+    """G10 of a tool: what it sets is added to what is not known, and when it acts is not either."""
+    number = asked.words.get("P", np.nan)
+    if not number >= 1 or number % 1:
+        raise ActError("GX213", "P is not a number of a tool")
+    times = {**state.written, int(number): state.written.get(int(number), 0) + 1}
+    state = replace(state, written=times)
+    if not state.tool_name:
+        return state
+    name = f"{state.tool_name}, after G10 ({sum(times.values())})"
+    return state.with_tool((*state.tool[:2], np.nan), name)
 
 
 def length_vector(state: FrameState, asked: Asked) -> FrameState:

@@ -37,7 +37,7 @@ LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar",
 FRAMELESS = frozenset({"change-tool", "set-tool", "user-code", "store-home"})
 LENGTHENED = frozenset(
     {
-        *("length", "length-negative", "length-vector", "length-add", "no-length"),
+        *("length", "length-negative", "length-vector", "length-add", "length-number", "no-length"),
         *("vectors", "no-vectors"),
     }
 )

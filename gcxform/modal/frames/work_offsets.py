@@ -8,6 +8,7 @@ import numpy as np
 
 from gcxform.modal.frame_state import FrameState, rotation
 from gcxform.modal.frames.act import ActError, Asked
+from gcxform.modal.frames.tool_lengths import written
 from gcxform.toolpath.frames import Vector
 
 
@@ -43,29 +44,41 @@ def work(state: FrameState, asked: Asked) -> FrameState:
 
 
 def set_work(state: FrameState, asked: Asked) -> FrameState:
-    """G10: work offsets (L2, L20) and tools (L1, L10, L11)."""
+    """G10: work offsets (L2, L20) and tools (L1, L10 to L13)."""
     kind = asked.words.get("L", np.nan)
-    if kind in (1, 10, 11):
+    if kind in asked.dialect.offset_rule.g10_tools:
         return _set_tool(state, asked, int(kind))
     if kind not in (2, 20):
         raise ActError("GX213", "this G10 writes something into the control that is not followed")
-    turns = kind == 2 and asked.dialect.offset_rule.g10_rotates
+    rule = asked.dialect.offset_rule
+    if asked.reading.crosses and (kind == 20 or asked.words.get("P") == 0):
+        message = f"G10 L{kind:g} {'with P0 ' * (kind == 2)}sets other offsets on other controls"
+        raise ActError("GX213", message, "set the work offset by its number, with L2")
+    turns = kind == 2 and rule.g10_rotates
     for address in asked.written:
         if address not in asked.axes and address not in ("LPR" if turns else "LP"):
             raise ActError("GX213", f"{address} has no meaning in G10 L{kind:g}")
-    name = _named_work(state, asked)
-    if kind == 2:
-        return _set_zero(state, asked, name)
-    return _set_zero_here(state, asked, name)
+    if kind == 2 and rule.g10_p0 == "all" and asked.words.get("P") == 0:
+        return state.shifted()
+    name = _named_work(asked, state)
+    if kind == 20 and rule.g10_l20 == "here":
+        return _set_zero_here(state, asked, name)
+    return _set_zero(state, asked, name)
 
 
-def _named_work(state: FrameState, asked: Asked) -> str:
-    number = asked.words.get("P", np.nan if asked.dialect.offset_rule.g10_needs_p else 0.0)
-    if asked.words.get("L") == 20 and not asked.dialect.offset_rule.g10_sets_position:
-        raise ActError("GX213", "G10 L20 sets other offsets on this control")
-    if number == 0 and asked.dialect.offset_rule.g10_p0_is_active:
+def _named_work(asked: Asked, state: FrameState) -> str:
+    """Return the work offset that P names."""
+    rule = asked.dialect.offset_rule
+    number = asked.words.get("P", np.nan if rule.g10_needs_p else 0.0)
+    if asked.words["L"] == 20 and not rule.g10_l20:
+        raise ActError("GX213", "this control has no G10 L20")
+    if asked.words["L"] == 20 and rule.g10_l20 != "here":
+        if number % 1 or not number >= 1:
+            raise ActError("GX213", "P names no work offset", f"P1 is {rule.g10_l20} P1")
+        return f"{rule.g10_l20} P{number:g}"
+    if number == 0 and rule.g10_p0 == "active":
         return state.work
-    names = [*asked.dialect.offset_rule.g10_offsets]
+    names = rule.g10_offsets
     if not (number % 1 == 0 and 1 <= number <= len(names)):
         raise ActError("GX213", "P names no work offset", "P1 is G54")
     return names[int(number) - 1]
@@ -113,14 +126,20 @@ def _set_zero_here(state: FrameState, asked: Asked, name: str) -> FrameState:
 
 
 def _set_tool(state: FrameState, asked: Asked, kind: int) -> FrameState:
-    """G10 L1: a tool in the table; what is in use changes only with the next G43."""
-    if kind != 1:
-        raise ActError("GX213", f"G10 L{kind} sets a tool length from where the axes stand")
-    raise ActError(
-        "GX213",
-        "G10 L1 writes the tool table of the control",
-        "give the tool its length in the machine file, and leave this block out",
-    )
+    """G10 of a tool: the block stays as it is, and what it has written is not known."""
+    rule = asked.dialect.offset_rule
+    if not asked.reading.tables_stay:
+        raise ActError(
+            "GX213",
+            f"G10 L{kind} writes the tool table of the control",
+            "give the tool its length in the machine file, and leave this block out",
+        )
+    if asked.incremental and not rule.g10_ignores_g91:
+        message = f"under G91, G10 L{kind} adds to what the table has"
+        raise ActError("GX213", message, "write G90 before it")
+    if "R" in asked.written and rule.g10_rotates:
+        raise ActError("GX213", f"R in G10 L{kind} is a radius, and an angle in G10 L2")
+    return written(state, asked)
 
 
 # --- G52 and G92 ---

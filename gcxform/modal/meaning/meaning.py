@@ -64,6 +64,7 @@ ACT_ORDER = (
     "length-negative",
     "length-vector",
     "length-add",
+    "length-number",
     "no-length",
     "vectors",
     "no-vectors",

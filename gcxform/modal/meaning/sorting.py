@@ -364,10 +364,21 @@ def _offset_word(dialect: type[Dialect], meaning: Meaning) -> set[str]:
     return set("D") if dialect.cutter_comp.stored or "D" in takes else set()
 
 
+def _length_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> None:
+    """Turn an H that no code has taken into an act and an event, where it stays in force."""
+    if not dialect.tool_rule.h_stays or "H" not in meaning.slots:
+        return
+    word = next(word for word in shape.block.words if word.address == "H")
+    taken = (("H", meaning.slots.pop("H")),)
+    meaning.acts.append(Act("length-number", "H", taken, word.start, word.end - word.start))
+    meaning.events.append(EventShape(46, "H", taken))
+
+
 def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
     """Give the remaining words to motion, feed, spindle and tool; what is left over is refused."""
     slots = meaning.slots
     _spindle_number(shape, dialect, meaning)
+    _length_number(shape, dialect, meaning)
     for address, order in (("S", 10), ("T", 20)):
         if address in slots:
             event = EventShape(order, address, ((address, slots[address]),))

@@ -42,8 +42,27 @@ def compensation(lines: Lines, modes: Modes) -> tuple[Small, Floats]:
 def _named_tools(lines: Lines) -> Floats:
     """Return the number (live,) of the offset or tool that G41 takes on each line.
 
-    It is the D word where that stays in force, else the tool in the spindle.
+    It is the D word where that stays in force, else the tool in the spindle. Once G10 has written
+    into the tool table, nothing is known of it.
     """
+    return np.where(_written_anew(lines), np.nan, _named(lines))
+
+
+def _written_anew(lines: Lines) -> Flags:
+    """Return the lines (live,) before which G10 has written into the control's tool table."""
+    kinds = lines.dialect.offset_rule.g10_tools
+    written = constant(bool(lines.state.frames.written), lines.live, np.bool_).copy()
+    for line in np.flatnonzero(lines.flag("presets")).tolist() if kinds else ():
+        meaning = lines.table.meanings[int(lines.shape[line])]
+        for act in meaning.acts:
+            slot = dict(act.slots).get("L") if act.name == "set-work" else None
+            if slot is not None and lines.window.value[int(lines.first[line]) + slot] in kinds:
+                written[line:] = True
+    return written
+
+
+def _named(lines: Lines) -> Floats:
+    """Return the number (live,) of the offset or tool by the words of the program."""
     state = lines.state
     if lines.dialect.cutter_comp.stored:
         stored = _carried(lines, "D", state.stored)

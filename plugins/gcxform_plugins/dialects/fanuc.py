@@ -20,6 +20,10 @@
 | M codes listed in `[control] inert-m` | move no axis and set no variable |
 | G41, G42 | D stays in force; its radius is the machine file's, D0 is none |
 | G41, G42, G40 with an arc | refused: alarm 34 |
+| G43 without H | takes the H that is in force |
+| H by itself | another length, or the radius of G41: parameter 5001 decides; Z is not known |
+| G10 L2 P0, L20 | shifts all work offsets; sets G54.1 P1, P2 ... |
+| G10 L1, L10 to L13 | kept; the lengths and radii of tools are not known from there on |
 | tool change | moves axes: positions are unknown after it |
 | canned cycles | R, Z, P, Q stay until the cycle mode ends; K0 stores them without drilling |
 | G73, G83 between pecks | parameters 5114, 5115: must be given, unless the blocks are copied |
@@ -90,6 +94,7 @@ FILES = gx.LookupRule(
     any_case=True,
     by_name=True,
 )
+TOOL_TABLE = frozenset((1, 10, 11, 12, 13))
 CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, stores=True, repeats="K")
 
 
@@ -184,6 +189,7 @@ class Fanuc(gx.Dialect):
     motion_rule = gx.MotionRule(g53_is_rapid=True)
     arc_rule = gx.ArcRule(absolute=0.01)
     cutter_comp = gx.CutterComp(stored=True)
-    tool_rule = gx.ToolRule(length_may_move=True)
+    offset_rule = gx.OffsetRule(g10_l20="G54.1", g10_tools=TOOL_TABLE, g10_p0="all")
+    tool_rule = gx.ToolRule(length_may_move=True, h_stays=True)
     tip_rule = gx.TipRule(codes={"G43.4": "G43"}, vector_codes={"G43.5": "G43"})
     cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE

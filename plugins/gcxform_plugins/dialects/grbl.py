@@ -83,9 +83,9 @@ class Grbl(gx.Dialect):
     )
     offset_rule = gx.OffsetRule(
         known_at_start=True,
-        g10_p0_is_active=True,
+        g10_p0="active",
         g10_needs_p=False,
-        g10_sets_position=True,
+        g10_l20="here",
         g10_ignores_g91=True,
     )
     tool_rule = gx.ToolRule(length_axes="Z", g49_takes_axes=True)

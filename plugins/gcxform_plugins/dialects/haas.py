@@ -18,6 +18,8 @@ refused. What is not named here is as in `fanuc`.
 | start and end radius | 0.001 inch is said of alarm 303: taken as 0.01 mm | known |
 | M5 M9 M89, M0 M1 M2 M30 | act after the motion of their block | known |
 | G154, G110 to G129 | more work offsets: as Fanuc's G54.1 | manual |
+| G10 L20 | sets G154 P1, P2 ... | manual |
+| G10 L10 to L13 | as Fanuc's: lengths and radii of tools are not known from there on | manual |
 | G28 | without axis words every axis goes home at once | manual |
 | a tool length behind G28 | cancelled, or not: it says both, so that it is not known | manual |
 | G52, G92 | Setting 33: refused unless `[control] g52 = "fanuc"` says that it is FANUC | manual |
@@ -45,7 +47,7 @@ from typing import ClassVar
 
 import gcxform as gx
 from gcxform import vocabulary as v
-from gcxform_plugins.dialects.fanuc import Fanuc
+from gcxform_plugins.dialects.fanuc import TOOL_TABLE, Fanuc
 
 # fmt: off
 NOT_HERE = frozenset((
@@ -127,6 +129,8 @@ class Haas(Fanuc):
     offset_rule = replace(
         Fanuc.offset_rule,
         names={code: f"G154 P{int(code[1:]) - 109}" for code in MORE_OFFSETS},
+        g10_l20="G154",
+        g10_tools=TOOL_TABLE - {1},
         g52_known=False,
         mirrors_at_zero=True,
     )

@@ -223,8 +223,9 @@ class LinuxCNC(gx.Dialect):
     offset_rule = gx.OffsetRule(
         known_at_start=True,
         g10_offsets=(*gx.Dialect.offset_rule.g10_offsets, "G59.1", "G59.2", "G59.3"),
-        g10_p0_is_active=True,
-        g10_sets_position=True,
+        g10_tools=frozenset((1, 10, 11)),
+        g10_p0="active",
+        g10_l20="here",
         g10_ignores_g91=True,
         g10_rotates=True,
         g52_is_g92=True,
