@@ -20,6 +20,7 @@ from gcxform.modal.meaning.meaning import (
     Meaning,
     Refusal,
 )
+from gcxform.modal.meaning.numbered import code_of, length_number, offset_word, spindle_number
 from gcxform.syntax.shapes import CODES, Shape
 from gcxform.syntax.tree import Comment, Expression, Mark, Number, Statement, Word
 
@@ -130,20 +131,13 @@ def _stands_alone(item: Statement, shape: Shape) -> bool:
     )
 
 
-def _code_of(word: Word) -> str:
-    """Return `G54.1` or `M3` for a code word as written; `G01` is `G1`."""
-    assert isinstance(word.value, Number)
-    value = round(word.value.value, 6)
-    return f"{word.address}{value:g}"
-
-
 def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
     """Sort the G codes into their groups."""
     owners: dict[str, Word] = {}
     for word in shape.block.words:
         if word.address != "G" or not isinstance(word.value, Number):
             continue
-        name = _code_of(word)
+        name = code_of(word)
         code = dialect.codes.get(name)
         width = word.end - word.start
         if code is None:
@@ -160,7 +154,7 @@ def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
                 "GX202",
                 word.start,
                 width,
-                f"{name} and {_code_of(owners[code.group])} are of one modal group",
+                f"{name} and {code_of(owners[code.group])} are of one modal group",
             )
         owners[code.group] = word
         meaning.groups[code.group] = name
@@ -203,7 +197,7 @@ def _g_act(
     taken: tuple[tuple[str, int], ...],
 ) -> Iterator[Refusal]:
     """Note what a code does to the frame; refuse it beside a motion that wants its words."""
-    name, width = _code_of(word), word.end - word.start
+    name, width = code_of(word), word.end - word.start
     meaning.acts.append(Act(code.act, name, taken, word.start, width))
     if code.act == "length-add" and any(axis in meaning.slots for axis in dialect.axes):
         yield Refusal("GX202", word.start, width, f"{name} takes H or axis words, not both")
@@ -251,7 +245,7 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
     for word in shape.block.words:
         if word.address != "M" or not isinstance(word.value, Number):
             continue
-        name, width = _code_of(word), word.end - word.start
+        name, width = code_of(word), word.end - word.start
         code = dialect.m_codes.get(int(word.value.value), dialect.block_rule.unknown_m)
         if code is None or word.value.value % 1:
             yield Refusal("GX201", word.start, width, f"{dialect.name} has no code {name}")
@@ -286,16 +280,6 @@ def _too_many(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
         if most:
             message = f"{dialect.name} takes {most} M words in a block"
             yield Refusal("GX219", word.start, word.end - word.start, message)
-
-
-def _spindle_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> None:
-    """Turn a word `$` into an event beside what turns a spindle; elsewhere it is left over."""
-    if "$" not in meaning.slots or not dialect.block_rule.spindle_words:
-        return
-    coded = [w for w in shape.block.words if w.address in CODES and isinstance(w.value, Number)]
-    codes = {_code_of(word) for word in coded}
-    if dialect.block_rule.spindle_words & {*codes, *meaning.slots}:
-        meaning.events.append(EventShape(9, "$", (("$", meaning.slots.pop("$")),)))
 
 
 def only_for_cycles(name: str, source: type[Dialect], target: type[Dialect]) -> bool:
@@ -334,7 +318,7 @@ def _bars_comp(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> tuple[
     for word in shape.block.words:
         if word.address == "M" and isinstance(word.value, Number):
             code = dialect.m_codes.get(int(word.value.value), dialect.block_rule.unknown_m)
-            sorted_codes += [(_code_of(word), code.group)] if code else []
+            sorted_codes += [(code_of(word), code.group)] if code else []
     rule = dialect.cutter_comp
     before = [name for name, group in sorted_codes if group in rule.before]
     after = [name for name, group in sorted_codes if group in rule.after and name != "G4"]
@@ -350,35 +334,11 @@ def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
             yield Refusal("GX203", item.start, item.end - item.start, message)
 
 
-def _offset_word(dialect: type[Dialect], meaning: Meaning) -> set[str]:
-    """Return D if it belongs to cutter compensation; it is told as an event, like G41 and G42."""
-    code = meaning.groups.get("cutter-comp", "G40")
-    named = (("D", meaning.slots["D"]),) if "D" in meaning.slots else ()
-    if code != "G40":
-        meaning.events.append(EventShape(45, code, named))
-    elif dialect.cutter_comp.stored and named:
-        meaning.events.append(EventShape(45, "D", named))
-    takes = dialect.codes[code].takes if code in dialect.codes else ""
-    if named and "D" in dialect.codes[code].lengths:
-        meaning.lengths.append((code, *named[0]))
-    return set("D") if dialect.cutter_comp.stored or "D" in takes else set()
-
-
-def _length_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> None:
-    """Turn an H that no code has taken into an act and an event, where it stays in force."""
-    if not dialect.tool_rule.h_stays or "H" not in meaning.slots:
-        return
-    word = next(word for word in shape.block.words if word.address == "H")
-    taken = (("H", meaning.slots.pop("H")),)
-    meaning.acts.append(Act("length-number", "H", taken, word.start, word.end - word.start))
-    meaning.events.append(EventShape(46, "H", taken))
-
-
 def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
     """Give the remaining words to motion, feed, spindle and tool; what is left over is refused."""
     slots = meaning.slots
-    _spindle_number(shape, dialect, meaning)
-    _length_number(shape, dialect, meaning)
+    spindle_number(shape, dialect, meaning)
+    length_number(shape, dialect, meaning)
     for address, order in (("S", 10), ("T", 20)):
         if address in slots:
             event = EventShape(order, address, ((address, slots[address]),))
@@ -388,7 +348,7 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
     if meaning.dwell and meaning.axes and set(dialect.point_rule.dwell) & set(dialect.axes):
         yield Refusal("GX203", 0, len(shape.block.text), "a dwell and axis words in one block")
     motion = {*meaning.axes, *meaning.centres, *"FNRST", dialect.arc_rule.turns}
-    motion |= _offset_word(dialect, meaning)
+    motion |= offset_word(dialect, meaning)
     for word in shape.block.words:
         address = word.address
         if (lacking := _lacking(word, dialect)) is not None:
