@@ -18,13 +18,14 @@ NAMES = ("fanuc", "grbl", "haas", "linuxcnc")
 TOLD = (*NAMES, "heidenhain")  # which real programs tell
 OURS = {"sinumerik": "siemens"}
 """What we call dialects that the collection calls otherwise."""
+LARGE = 1 << 17  # bytes; a larger program says no more of its dialect than others
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_generated_programs_may_be_in_their_dialect(name: str) -> None:
-    guesses = [gx.guess_dialect(program(Random(seed).randint, Options(name))) for seed in range(60)]
+    guesses = [gx.guess_dialect(program(Random(seed).randint, Options(name))) for seed in range(40)]
     right = sum(name in guess.dialects for guess in guesses)
-    assert right >= 57, Counter(guess.dialects for guess in guesses)
+    assert right >= 38, Counter(guess.dialects for guess in guesses)
 
 
 @pytest.mark.parametrize(
@@ -71,7 +72,7 @@ def manifest() -> list[dict[str, str]]:
         return []
     with file.open() as stream:
         rows = [row for row in csv.DictReader(stream) if (BESIDE / row["path"]).is_file()]
-    return [row for row in rows if row["role"] == "program" and int(row["bytes"]) < 1 << 20]
+    return [row for row in rows if row["role"] == "program" and int(row["bytes"]) < LARGE]
 
 
 @pytest.mark.skipif(not manifest(), reason="the collection of real programs is absent")
