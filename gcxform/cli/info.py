@@ -30,9 +30,9 @@ from gcxform.plugin.registry import default_registry
 from gcxform.stamps.chain import told
 from gcxform.stamps.comment import stamps_in
 from gcxform.syntax.scan import Window
-from gcxform.syntax.shapes import CODES, Shape
+from gcxform.syntax.shapes import Shape
 from gcxform.syntax.source import Source
-from gcxform.syntax.tree import Comment, Expression, Number, Statement
+from gcxform.syntax.tree import CODES, Comment, Expression, Number, Statement
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 FIRST = 10  # lines that are shown of those that are refused

@@ -9,8 +9,14 @@ halves and of negative numbers) has no value here.
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable, Mapping
+<<<<<<< HEAD
 from dataclasses import dataclass, field
+=======
+from dataclasses import dataclass
+from typing import Any
+>>>>>>> 9e35e4e (Lines with comments and expressions share shapes: lark reads one line of each outline, and what they compute is compiled)
 
 import numpy as np
 
@@ -24,6 +30,12 @@ Key = int | str
 """What names a parameter: its number, or its name in small letters without blanks."""
 Operator = Callable[[float, float], float]
 Function = Callable[..., float]
+COLUMNS: dict[Function, Callable[..., Any]] = {
+    operator.mul: operator.mul,
+    operator.add: operator.add,
+    operator.sub: operator.sub,
+}
+"""Functions that are the same, bit by bit, for every element of arrays; nan: it has no value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,6 +162,9 @@ def _divide(a: float, b: float) -> float:
     return a / b
 
 
+COLUMNS[_divide] = lambda a, b: np.where(b == 0, np.nan, np.divide(a, b))
+
+
 def _modulo(a: float, b: float) -> float:
     """Return what is left of a, never negative."""
     if b == 0:
@@ -192,7 +207,15 @@ def _radians(a: float) -> np.longdouble:
 
 def _turning(function: Callable[[np.longdouble], np.longdouble]) -> Function:
     """Return a function of an angle in degrees."""
-    return lambda a: float(function(_radians(a)))
+
+    def turning(a: float) -> float:
+        return float(function(_radians(a)))
+
+    def columns(a: Any) -> Any:
+        return function(a.astype(np.longdouble) * PI / 180).astype(np.float64)
+
+    COLUMNS[turning] = columns
+    return turning
 
 
 def _angle(function: Callable[[np.longdouble], np.longdouble], name: str) -> Function:
@@ -239,11 +262,11 @@ SIGNAL_NAMES = frozenset(
 RS274 = Arithmetic(
     operators={
         "**": _power,
-        "*": lambda a, b: a * b,
+        "*": operator.mul,
         "/": _divide,
         "MOD": _modulo,
-        "+": lambda a, b: a + b,
-        "-": lambda a, b: a - b,
+        "+": operator.add,
+        "-": operator.sub,
         "EQ": lambda a, b: float(_equal(a, b)),
         "NE": lambda a, b: float(not _equal(a, b)),
         "GT": lambda a, b: float(a > b),
@@ -337,11 +360,11 @@ def _pole(a: float) -> float:
 
 MACRO_B = Arithmetic(
     operators={
-        "*": lambda a, b: a * b,
+        "*": operator.mul,
         "/": _divide,
         "MOD": _whole_modulo,
-        "+": lambda a, b: a + b,
-        "-": lambda a, b: a - b,
+        "+": operator.add,
+        "-": operator.sub,
     },
     functions={
         "ABS": abs,

@@ -14,8 +14,8 @@ from gcxform.machine.machine import SWITCHES
 from gcxform.modal.expressions.value import key_set, sets_number, written
 from gcxform.modal.meaning.meaning import FRAMING, Meaning
 from gcxform.modal.meaning.sorting import only_for_cycles
-from gcxform.syntax.shapes import CODES, Shape
-from gcxform.syntax.tree import BLANKS, Item, Mark, Number, Statement, Word
+from gcxform.syntax.shapes import Shape
+from gcxform.syntax.tree import BLANKS, CODES, Item, Mark, Number, Statement, Word
 from gcxform.toolpath.path import Event
 
 STATED: Mapping[str, tuple[str, Mapping[int, str] | tuple[str, ...]]] = {
@@ -222,6 +222,15 @@ def comment_in(target: type[Dialect], text: str) -> str:
     if target.text_rule.comments.startswith("("):
         return "(" + inner.replace("(", "[").replace(")", "]") + ")"
     return ";" + inner
+
+
+def passive_comment(source: type[Dialect], target: type[Dialect], text: str) -> str:
+    """Return a comment that the source does not execute, as one that the target does not either."""
+    if target.text_rule.executes(text):
+        text = f"{text[0]}-{text[1:]}"
+    if source is not target:
+        text = text.translate({ord(each): "-" for each in target.text_rule.acts_anywhere})
+    return comment_in(target, text)
 
 
 def slash_of(shape: Shape) -> bytes:

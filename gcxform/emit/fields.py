@@ -83,6 +83,17 @@ class Copied:
 
 
 @dataclass(frozen=True, slots=True)
+class CopiedText:
+    """The text in a slot of the source line: a comment, an expression, an assignment.
+
+    `comment`: it is a comment, to be written as those of another dialect.
+    """
+
+    slot: int
+    comment: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Computed:
     """A word with the number that an expression in a slot of the source line is worth."""
 
@@ -130,7 +141,7 @@ class FeedWord:
     gap: bytes
 
 
-Field = Literal | Copied | Computed | Converted | Axis | CycleWord | Centre | FeedWord
+Field = Literal | Copied | CopiedText | Computed | Converted | Axis | CycleWord | Centre | FeedWord
 
 
 class CycleWords:

@@ -55,6 +55,24 @@ class Renderer:
         start, end = self.window.number_start[number], self.window.number_end[number]
         self._bytes_between(start, end)
 
+    def copied_text(self, lines: Ints, slot: int) -> None:
+        """Add texts as they stand in the source lines."""
+        self.copied(lines, slot)
+        self._begun[:] = True
+
+    def texts(self, lines: Ints, slot: int) -> list[str]:
+        """Return the texts in a slot of source lines."""
+        number = self.window.first_number[lines] + slot
+        ends = zip(self.window.number_start[number], self.window.number_end[number], strict=True)
+        return [self.window.text[int(a) : int(b)].decode("latin-1") for a, b in ends]
+
+    def said(self, texts: list[bytes]) -> None:
+        """Add texts, one for each row."""
+        width = max(map(len, texts))
+        padded = b"".join(text.ljust(width, b"\0") for text in texts)
+        self._parts.append(np.frombuffer(padded, np.uint8).reshape(-1, width))
+        self._begun[:] = True
+
     def _bytes_between(self, start: Ints, end: Ints) -> None:
         width = int((end - start).max(initial=0))
         text = np.frombuffer(self.window.text, np.uint8)

@@ -20,6 +20,7 @@ from gcxform.emit.expressible import (
     left_out,
     needs_assignment,
     own_gap,
+    passive_comment,
     unsaid_words,
 )
 from gcxform.emit.fields import (
@@ -28,6 +29,7 @@ from gcxform.emit.fields import (
     Computed,
     Converted,
     Copied,
+    CopiedText,
     CycleWords,
     Feed,
     FeedWord,
@@ -39,8 +41,8 @@ from gcxform.emit.fields import (
 from gcxform.emit.manner import Manner
 from gcxform.modal.meaning.meaning import DRILL_WORDS, Meaning
 from gcxform.modal.meaning.sorting import program_number_fits
-from gcxform.syntax.shapes import CODES, Shape
-from gcxform.syntax.tree import Comment, Expression, Item, Mark, Number, Statement, Word
+from gcxform.syntax.shapes import Shape
+from gcxform.syntax.tree import CODES, Comment, Expression, Item, Mark, Number, Statement, Word
 
 PLANE_AXES = ("XY", "ZX", "YZ")
 OFFSETS = {"X": "I", "Y": "J", "Z": "K"}
@@ -107,11 +109,11 @@ class TemplateWriter:
         slot = 0
         for item in self.shape.block.items:
             if isinstance(item, Comment):
-                self.draft.literal(self.gap if self.draft.fields else b"", self._comment(item))
+                self._comment(item, self.gap if self.draft.fields else b"")
             elif isinstance(item, Word) and item.address not in CODES:
                 if item.address == "N":
                     self._copy(item, b"", slot)
-                slot += isinstance(item.value, Number)
+                slot += 1
         return tuple(self.draft.fields)
 
     def _rest(self) -> None:
@@ -137,7 +139,7 @@ class TemplateWriter:
             if self.text[item.start] == ";":
                 self._rest()
             if self.key.role not in (Role.MIDDLE, Role.LAST):
-                self.draft.literal(lead, self._comment(item))
+                self._comment(item, lead)
         elif isinstance(item, Mark):
             self._mark(item, lead)
         elif self.key.role not in (Role.MIDDLE, Role.LAST):
@@ -148,7 +150,11 @@ class TemplateWriter:
         crossing = self.source is not self.target
         if crossing and item.kind != "assignment":
             self.draft.refuse(item, item.kind.replace("_", " "))
-        if not crossing or lasts_in(item, self.target):
+        slot = self._text_slot(item)
+        if (not crossing or lasts_in(item, self.target)) and slot >= 0:
+            self.draft.literal(lead, "")
+            self.draft.fields.append(CopiedText(slot))
+        elif not crossing or lasts_in(item, self.target):
             self.draft.literal(lead, self.text[item.start : item.end])
         elif lost := needs_assignment(item, self.source, self.target):
             self.draft.refuse(item, lost)
@@ -158,13 +164,26 @@ class TemplateWriter:
         if self.source is not self.target:
             self.draft.refuse(item, name)
 
-    def _comment(self, item: Comment) -> str:
+    def _comment(self, item: Comment, lead: bytes) -> None:
+        """Write a comment."""
+        slot = self._text_slot(item)
+        if slot >= 0:
+            self.draft.literal(lead, "")
+            self.draft.fields.append(CopiedText(slot, self.source is not self.target))
+        else:
+            self.draft.literal(lead, self._comment_text(item))
+
+    def _text_slot(self, item: Item | Expression) -> int:
+        """Return the slot that has the text of an item, or of a value; -1: all lines have this."""
+        layout = self.shape.layout
+        return -1 if layout is None else layout.slot_of.get((item.start, item.end), -1)
+
+    def _comment_text(self, item: Comment) -> str:
         text = self.text[item.start : item.end]
-        executed = self.source.text_rule.executes(text)
-        if executed and self.source is not self.target and not self.target.text_rule.executes(text):
+        if not self.source.text_rule.executes(text):
+            return passive_comment(self.source, self.target, text)
+        if self.source is not self.target and not self.target.text_rule.executes(text):
             self.draft.raise_at(item, f"{self.target.name} does not execute this comment")
-        if not executed and self.target.text_rule.executes(text):
-            text = f"{text[0]}-{text[1:]}"
         if self.source is not self.target:
             text = text.translate({ord(each): "-" for each in self.target.text_rule.acts_anywhere})
         return comment_in(self.target, text)
@@ -242,11 +261,14 @@ class TemplateWriter:
             self.draft.literal(lead, "")
             self.draft.fields.append(Computed(word.address, slot))
             return
-        if word.address in CODES or not isinstance(word.value, Number):
+        if isinstance(word.value, Expression) and self._text_slot(word.value) >= 0:
+            self.draft.literal(lead, self.draft.said(word.start, word.value.start))
+            self.draft.fields.append(CopiedText(slot))
+        elif word.address in CODES or not isinstance(word.value, Number):
             self.draft.literal(lead, self.draft.said(word.start, word.end))
-            return
-        self.draft.literal(lead, self.draft.said(word.start, word.value.start))
-        self.draft.fields.append(Copied(slot))
+        else:
+            self.draft.literal(lead, self.draft.said(word.start, word.value.start))
+            self.draft.fields.append(Copied(slot))
 
     # --- what the piece needs ---
 

@@ -16,13 +16,20 @@ from numpy.typing import NDArray
 
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import INCH
-from gcxform.emit.expressible import CannotSayError, event_text, gaps_between, slash_of
+from gcxform.emit.expressible import (
+    CannotSayError,
+    event_text,
+    gaps_between,
+    passive_comment,
+    slash_of,
+)
 from gcxform.emit.fields import (
     Axis,
     Centre,
     Computed,
     Converted,
     Copied,
+    CopiedText,
     CycleWord,
     Feed,
     Field,
@@ -203,6 +210,8 @@ class Writing:
             renderer.literal(field.text)
         elif isinstance(field, Copied):
             renderer.copied(self.pieces.line[members], field.slot)
+        elif isinstance(field, CopiedText):
+            self._copied_text(field, self.pieces.line[members], renderer)
         elif isinstance(field, Computed):
             self._computed(field, self.pieces.line[members], renderer)
         elif isinstance(field, Converted):
@@ -233,6 +242,17 @@ class Writing:
             everywhere = np.ones(len(rows), np.bool_)
             point = manner.target.point_rule.required
             renderer.number(field.gap, "F", whole, decimals, everywhere, point)
+
+    def _copied_text(self, field: CopiedText, lines: Ints, renderer: Renderer) -> None:
+        """Write texts of the source; comments as those of the target."""
+        if not field.comment:
+            renderer.copied_text(lines, field.slot)
+            return
+        source, target = self.task.manner.source, self.task.manner.target
+        texts = [
+            passive_comment(source, target, text) for text in renderer.texts(lines, field.slot)
+        ]
+        renderer.said([text.encode("latin-1") for text in texts])
 
     def _computed(self, field: Computed, lines: Ints, renderer: Renderer) -> None:
         """Write what expressions are worth as plain numbers, to the last bit."""

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.modal.meaning.meaning import Refusal
+from gcxform.modal.meaning.sorting import meaning_of
 from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.syntax.scan import Window
+from gcxform.syntax.shapes import Shape, slots_of
 
 
 class Findings:
@@ -39,10 +42,21 @@ class Findings:
 
     def add_refusal(self, line: int) -> None:
         """Add what is wrong with the shape of a line."""
-        refusal = self.table.meanings[int(self.window.shape[line])].refusal
-        assert refusal is not None
+        refusal = self._refusal(line)
         where = self.location(line, refusal.column + 1, refusal.width)
         self.found.append((line, Diagnostic(refusal.code, refusal.message, where, refusal.hint)))
+
+    def _refusal(self, line: int) -> Refusal:
+        """Return what is wrong with a line, at its place there: other lines have other numbers."""
+        shape = self.table.shapes.shapes[int(self.window.shape[line])]
+        if not shape.own:
+            block = self.table.shapes.grammar.parse(self.window.line(line).decode("latin-1"))
+            alone = Shape(block, tuple(slots_of(block)), True)
+            if (refusal := meaning_of(alone, self.table.dialect).refusal) is not None:
+                return refusal
+        refusal = self.table.meanings[int(self.window.shape[line])].refusal
+        assert refusal is not None
+        return refusal
 
     def location(self, line: int, column: int, width: int) -> Location:
         """Return a place in a line of the window."""

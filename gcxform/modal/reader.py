@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 from gcxform.dialect.dialect import Dialect
 from gcxform.modal.meaning.tables import MeaningTable
+from gcxform.syntax.outlines import Comments
 from gcxform.syntax.scan import Window, scan
 from gcxform.syntax.shapes import Shape, ShapeTable
 from gcxform.syntax.source import Source
@@ -58,7 +59,9 @@ class WindowReader:
 
 def new_table(dialect: type[Dialect]) -> MeaningTable:
     """Return the table of the meanings of shapes of which none is known yet."""
-    return MeaningTable(ShapeTable(dialect.load_grammar()), dialect)
+    rule = dialect.text_rule
+    comments = Comments(rule.comments, rule.active_comments)
+    return MeaningTable(ShapeTable(dialect.load_grammar(), comments), dialect)
 
 
 def windows_of(source: Source, dialect: type[Dialect]) -> Iterator[tuple[Window, WindowReader]]:

@@ -18,14 +18,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gcxform.syntax.numerals import LONGEST, TEN_TO, Digits
+from gcxform.syntax.outlines import outline
 from gcxform.syntax.shapes import OWN, NumberColumns, ShapeTable
 from gcxform.system.arrays import Bytes, Flags, Floats, Ints
 from gcxform.system.distinct import distinct
 
 LETTER, DIGIT, POINT, SIGN, BLANK, END, CODE, OTHER = 0, 1, 2, 3, 4, 5, 6, 7
-LONGEST = 8  # digits on either side of the point: together exact in 64 bits
 TEN_TO_INT = 10 ** np.arange(LONGEST + 1)
-TEN_TO = 10.0 ** np.arange(LONGEST + 1)
 EXACT = 2**53  # the mantissa of a number read here is exact as a double
 
 
@@ -147,7 +147,7 @@ def _runs(text: bytes, raw: Bytes, kind: Bytes) -> _Runs:
     whole = split - first
     plain &= (whole <= LONGEST) & (fraction <= LONGEST) & (whole + fraction > 0)
     plain &= (before == LETTER) | (before == CODE)
-    digits = _Digits(text)
+    digits = Digits(text)
     mantissa = digits.before(split, whole) * TEN_TO_INT[np.minimum(fraction, LONGEST)]
     mantissa += digits.before(end, fraction)
     plain &= mantissa < EXACT
@@ -167,40 +167,6 @@ def _points(kind: Bytes, numeric: Flags, first: Ints, start: Ints, end: Ints) ->
     inner = signs[(signs > 0) & numeric[signs - 1]]
     good[np.searchsorted(start, inner, side="right") - 1] = False
     return point, good
-
-
-class _Digits:
-    """Reads the digits that stand before given offsets, a whole column at once.
-
-    Four or eight bytes are loaded as one integer and their digits summed in pairs, then in fours.
-    """
-
-    def __init__(self, text: bytes) -> None:
-        self.padded = b"0" * LONGEST + text
-
-    def before(self, end: Ints, count: Ints) -> Ints:
-        """Return the values of the `count` (at most 8) digits before the offsets `end`."""
-        if int(count.max(initial=0)) <= 4:
-            return self._four(end, count)
-        octets = np.ndarray((len(self.padded) - 7,), "<u8", self.padded, strides=(1,))
-        word = octets[end] ^ np.uint64(0x3030303030303030)
-        shift = ((8 - np.clip(count, 0, 8)) * 8).astype(np.uint64)
-        word = np.where(shift < 64, (word >> (shift & 63)) << (shift & 63), np.uint64(0))
-        word = (word & np.uint64(0x0F0F0F0F0F0F0F0F)) * np.uint64(2561) >> np.uint64(8)
-        word = (word & np.uint64(0x00FF00FF00FF00FF)) * np.uint64(6553601) >> np.uint64(16)
-        word = (word & np.uint64(0x0000FFFF0000FFFF)) * np.uint64(42949672960001)
-        return (word >> np.uint64(32)).astype(np.int64)
-
-    def _four(self, end: Ints, count: Ints) -> Ints:
-        quads = np.ndarray((len(self.padded) - 3,), "<u4", self.padded, strides=(1,))
-        word = quads[end + 4] & KEEP_LAST[count]
-        word = (word & np.uint32(0x0F0F0F0F)) * np.uint32(2561) >> np.uint32(8)
-        word = (word & np.uint32(0x00FF00FF)) * np.uint32(6553601) >> np.uint32(16)
-        return word.astype(np.int64)
-
-
-KEEP_LAST = np.array([0, 0xFF000000, 0xFFFF0000, 0xFFFFFF00, 0xFFFFFFFF], np.uint32)
-"""Masks for the last 0 ... 4 of four bytes."""
 
 
 def _lines_by_themselves(kind: Bytes, runs: _Runs, following: Ints) -> Ints:
@@ -223,15 +189,26 @@ def _shapes(
     """Return the shape of each line and the number columns."""
     start, end = lines
     keys = _reduced(raw, kind, runs, end).split(b"\n")[: len(start)]
+    odd, found, outlined = own, None, np.empty(0, np.int64)
+    if table.comments is not None and len(own):
+        found = outline(text, own, start, end, table.comments)
+        outlined = table.outlined(found, text, start, end)
+        has_shape = outlined >= 0
+        for nth in np.flatnonzero(has_shape).tolist():
+            keys[int(found.lines[nth])] = found.keys[nth]
+        own = np.setdiff1d(own, found.lines[has_shape], assume_unique=True)
     for line in own.tolist():
         keys[line] = OWN + text[int(start[line]) : int(end[line])]
     shape = table.look_up(keys, text, start, end)
     slots = ~runs.is_code
-    first = _first_numbers(table, shape, own, runs.start[slots], start)
+    first = _first_numbers(table, shape, odd, runs.start[slots], start)
     value = runs.mantissa[slots] / TEN_TO[np.clip(runs.decimals[slots], 0, LONGEST)]
     np.negative(value, out=value, where=runs.negative[slots])
     columns = (first, value, runs.decimals[slots], runs.start[slots], runs.end[slots])
-    return shape, table.append_own(shape, own, columns, start)
+    columns = table.append_own(shape, own, columns, start)
+    if found is not None:
+        columns = table.append_outlined(outlined, found, columns, start)
+    return shape, columns
 
 
 def _first_numbers(

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 BLANKS = str.maketrans("", "", " \t")
+CODES = frozenset("GMO")
+"""Addresses whose number is a code: it stays in the shape of a block."""
 COMPUTED = -2
 """Stands for the decimals of a value that is computed; -1 is a number without a point."""
 

@@ -1,8 +1,13 @@
 """Reading loses nothing, and reading by shapes is reading by the grammar."""
 
+import math
+from collections.abc import Iterator
+from typing import Any
+
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from lark import Token
 
 import gcxform as gx
 from gcxform.plugin.registry import default_registry
@@ -10,9 +15,19 @@ from gcxform.proof.verify import WindowReader
 from gcxform.syntax.scan import Window
 from gcxform.syntax.shapes import Shape, instantiate, slots_of
 from gcxform.syntax.source import Source
-from gcxform.syntax.tree import Block, Expression, Statement, Word, print_block
+from gcxform.syntax.tree import (
+    COMPUTED,
+    Block,
+    Comment,
+    Expression,
+    Number,
+    Statement,
+    Word,
+    print_block,
+)
 from gcxform.testing.strategies import lines_of_bytes, programs
 
+NAN = math.nan
 DIALECTS = ("fanuc", "grbl", "haas", "linuxcnc")
 in_every_dialect = pytest.mark.parametrize("name", DIALECTS)
 
@@ -51,11 +66,81 @@ def check_line(window: Window, line: int, reader: WindowReader) -> None:
     alone = reader.shapes.grammar.parse(text)
     assert print_block(alone) == text
     shape = reader.shapes.shapes[int(window.shape[line])]
+    if shape.layout is not None:
+        check_outline(window, line, shape, alone)
+        return
     assert described(instantiate(shape, text, spans_of(window, line, shape))) == described(alone)
     first = int(window.first_number[line])
     for number, slot in enumerate(slots_of(alone), first):
         assert float(window.value[number]).hex() == slot.value.hex(), (text, slot)
         assert int(window.decimals[number]) == slot.decimals, (text, slot)
+
+
+def check_outline(window: Window, line: int, shape: Shape, alone: Block) -> None:
+    """Compare a line that has an outline with its own tree: its items, and what is in its slots."""
+    assert outlined(shape.block) == outlined(alone)
+    slots: list[tuple[int, int, float, int]] = [
+        (slot.start, slot.end, slot.value, slot.decimals) for slot in slots_of(alone)
+    ]
+    slots += [(i.start, i.end, NAN, COMPUTED) for i in alone.items if isinstance(i, Comment)]
+    for token in operands_of(alone):
+        number = Number(token.start_pos, token.end_pos, str(token))
+        slots.append((number.start, number.end, number.value, number.decimals))
+    slots += [(i.start, i.end, NAN, COMPUTED) for i in alone.items if isinstance(i, Statement)]
+    first, start = int(window.first_number[line]), int(window.start[line])
+    assert len(slots) == len(shape.layout or ())
+    for number, (begin, end, value, decimals) in enumerate(slots, first):
+        assert (window.number_start[number] - start, window.number_end[number] - start) == (
+            begin,
+            end,
+        )
+        assert float(window.value[number]).hex() == value.hex(), (alone.text, value)
+        assert int(window.decimals[number]) == decimals
+
+
+def outlined(block: Block) -> list[tuple[object, ...]]:
+    """Return what a tree says, but for the numbers that may differ and the texts of comments."""
+    items: list[tuple[object, ...]] = [(block.error,)]
+    for item in block.items:
+        if isinstance(item, Word) and isinstance(item.value, Expression):
+            items.append((item.address, structure(item.value.tree)))
+        elif isinstance(item, Word):
+            code = (
+                float(item.value.value)
+                if item.address in "GMO"
+                else math.copysign(1.0, item.value.value)
+            )
+            items.append((item.address, code))
+        elif isinstance(item, Statement):
+            items.append((item.kind, structure(item.tree)))
+        else:
+            begin = block.text[item.start] if isinstance(item, Comment) else ""
+            items.append((type(item).__name__, getattr(item, "kind", begin)))
+    return items
+
+
+def structure(node: Any, named: bool = False) -> object:
+    """Return a tree without the numbers that are no names of parameters."""
+    if isinstance(node, Token):
+        return "number" if node.type.endswith("NUMBER") and not named else str(node)
+    name = str(node.data)
+    return name, *(structure(child, name.endswith("parameter")) for child in node.children)
+
+
+def operands_of(block: Block) -> list[Token]:
+    """Return the numbers in the expressions of a block that are no names of parameters."""
+    trees = [word.value.tree for word in block.words if isinstance(word.value, Expression)]
+    trees += [item.tree for item in block.items if isinstance(item, Statement)]
+
+    def numbers(node: Any, named: bool) -> Iterator[Token]:
+        if isinstance(node, Token):
+            if node.type.endswith("NUMBER") and not named:
+                yield node
+            return
+        for child in node.children:
+            yield from numbers(child, str(node.data).endswith("parameter"))
+
+    return [token for tree in trees for token in numbers(tree, False)]
 
 
 def check_program(program: bytes, name: str) -> None:
@@ -81,6 +166,49 @@ def test_shapes_say_what_the_grammar_says_of_any_bytes(name: str, program: bytes
 @given(data=st.data())
 def test_shapes_say_what_the_grammar_says_of_programs(name: str, data: st.DataObject) -> None:
     check_program(data.draw(programs(name)), name)
+
+
+COMPUTING = (
+    *(
+        "G1",
+        "G01",
+        "m3",
+        "X1",
+        "Y-2.5",
+        "Z+.5",
+        "F100",
+        "N10",
+        "P1 2",
+        "X 3",
+        "G 1",
+        "O1",
+        "/",
+        "%",
+    ),
+    *(
+        "X#1",
+        "Y-#2",
+        "Z#<a>",
+        "Z-#<b 1>",
+        "X[#1+2.5]",
+        "Y[-[3*#2]]",
+        "A[2**-.5]",
+        "X#[1+1]",
+        "X##1",
+    ),
+    *("#1=2", "#2 = -[#1/4.]", "#<a>=[1 LT 2.5]", "#<b2>=SIN[30]", "#3=ATAN[1]/[2]", "#4=#5"),
+    *("(wall 3)", "(a (b)", "()", "(MSG, hello 3)", "( debug,#1)", ";tail 5", "; (odd", "(\xe9 7)"),
+    *("[", "]", "(", ")", "#", "=", "<", ">", "1", ".", "123456789", "1.2.3", "o1 if [1]", "G#1"),
+)
+"""Pieces of lines with comments, parameters and expressions, and what breaks them."""
+
+
+@in_every_dialect
+@given(lines=st.lists(st.lists(st.sampled_from(COMPUTING), max_size=5), min_size=1, max_size=8))
+@example([["X[#1+2.5]", "(wall 3)"], ["X[#1+12.]", "(w)"], [";tail 5"], ["(wall 3)"]])
+@pytest.mark.parametrize("gap", ["", " "])
+def test_outlines_say_what_the_grammar_says(name: str, gap: str, lines: list[list[str]]) -> None:
+    check_program("\n".join(gap.join(line) for line in lines).encode("latin-1"), name)
 
 
 @in_every_dialect

@@ -1,7 +1,8 @@
 """Executes what a window computes: its assignments, and the values of words that are expressions.
 
-This is done line by line, in the order of execution, for the lines that compute something and for
-no others; the rest of the interpreter then finds numbers where the program has expressions.
+This is done in the order of execution, for the lines that compute something and for no others; the
+rest of the interpreter then finds numbers where the program has expressions. Lines between which no
+parameter changes are computed as columns (`compiled.py`), others one by one.
 
 No value is guessed. One that only the machine knows is nan and makes lost what it goes into
 (`unknown.py`); what the control would stop at is refused. Assignments leave their parameters to the
@@ -21,14 +22,18 @@ import numpy as np
 from gcxform.diagnostics import Diagnostic
 from gcxform.dialect.arithmetic import NoValueError, whole
 from gcxform.dialect.null import Null
+from gcxform.modal.expressions.compiled import NoColumnError
+from gcxform.modal.expressions.functions import computed_in, functions_of
 from gcxform.modal.expressions.unknown import bare_text, hangs_on, may_be_unknown
 from gcxform.modal.expressions.value import Evaluator, LocatedError, settable
 from gcxform.modal.findings import Findings
 from gcxform.modal.lines import Assigned, Lines, Unknown
+from gcxform.modal.meaning.meaning import Meaning
 from gcxform.syntax.tree import Expression, Statement, Word
-from gcxform.system.arrays import Floats
+from gcxform.system.arrays import Floats, Ints
 
 UNKNOWN = float("nan")
+FEW = 8  # lines for which columns do not pay
 
 
 def compute(lines: Lines) -> None:
@@ -40,12 +45,61 @@ def compute(lines: Lines) -> None:
     if not len(having) or lines.dialect.flow_rule.arithmetic is None:
         return
     value = lines.window.value.copy()
-    for line in having.tolist():
-        _Block(lines, line, value).execute()
+    shapes = lines.shape[having]
+    writes = np.array([_writes(meaning) for meaning in lines.table.meanings], np.bool_)[shapes]
+    for stretch in np.split(having, np.flatnonzero(writes | np.append(False, writes[:-1]))):
+        columns = stretch if len(stretch) < FEW else _columns(lines, stretch, value)
+        for line in columns.tolist():
+            _execute(lines, line, value)
         if len(lines.findings.found) >= Findings.enough:
             break
     lines.findings.raise_if_any()
     lines.window = replace(lines.window, value=value)
+
+
+def _writes(meaning: Meaning) -> bool:
+    """Whether blocks of a shape change parameters."""
+    return bool(meaning.assignments) or meaning.runs_macro
+
+
+def _columns(lines: Lines, stretch: Ints, value: Floats) -> Ints:
+    """Compute lines between which no parameter changes; return those that have to be looked at."""
+    left = []
+    order = stretch[np.argsort(lines.shape[stretch], kind="stable")]
+    for same in np.split(order, np.flatnonzero(np.diff(lines.shape[order])) + 1):
+        functions = functions_of(lines.table, int(lines.shape[same[0]]))
+        first = lines.first[same]
+        try:
+            if functions is None:
+                raise NoColumnError
+            operands = [value[first + slot] for slot in range(functions.slots)]
+            found = [(k, word(lines.parameters, operands)) for k, word in functions.words]
+        except NoColumnError:
+            left.append(same)
+            continue
+        for slot, computed in found:
+            value[first + slot] = computed
+    return np.sort(np.concatenate(left)) if left else stretch[:0]
+
+
+def _execute(lines: Lines, line: int, value: Floats) -> None:
+    """Compute one line: its words, then its assignments, which take effect together."""
+    functions = functions_of(lines.table, int(lines.shape[line]))
+    first = int(lines.first[line])
+    try:
+        if functions is None:
+            raise NoColumnError
+        row = value[first : first + functions.slots].tolist()
+        found = [(slot, word(lines.parameters, row)) for slot, word in functions.words]
+        made = [(key, result(lines.parameters, row)) for key, result in functions.assigned]
+    except NoColumnError:
+        _Block(lines, line, value).execute()
+        return
+    for slot, computed in found:
+        value[first + slot] = computed
+    lines.parameters.update(made)
+    at = lines.window.first_line + line
+    lines.assigned += [Assigned(at, key, result) for key, result in made]
 
 
 class _Block:
@@ -58,13 +112,17 @@ class _Block:
         self.value = value
         self.arithmetic = lines.dialect.flow_rule.arithmetic
         self.meaning = lines.table.meanings[int(lines.shape[line])]
+        self.expressions, self.assignments = self.meaning.expressions, self.meaning.assignments
+        shapes = lines.table.shapes
+        if shapes.shapes[int(lines.shape[line])].layout is not None:  # it has other numbers
+            self.expressions, self.assignments = computed_in(shapes.grammar.parse(self._text))
 
     def execute(self) -> None:
         """Compute the words, then the assignments; these take effect together, at the end."""
         first = int(self.lines.first[self.line])
-        for slot, word in self.meaning.expressions:
+        for slot, word in self.expressions:
             self.value[first + slot] = self._word(word)
-        changes = [self._assigned(statement) for statement in self.meaning.assignments]
+        changes = [self._assigned(statement) for statement in self.assignments]
         made = [change for change in changes if change is not None]
         self.lines.parameters.update({each.key: each.value for each in made})
         self.lines.assigned += made

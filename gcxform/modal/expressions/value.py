@@ -126,7 +126,7 @@ class Evaluator:
         if isinstance(child, Token) and str(child).startswith("<"):
             if not self.arithmetic.named:
                 raise NoValueError("this dialect has no parameters with names", code="GX206")
-            return str(child)[1:-1].translate(BLANKS).lower()
+            return _name(child)
         return whole(self.value(child))
 
     def _read(self, key: Key) -> float:
@@ -158,6 +158,22 @@ class Evaluator:
                 f"only the control knows whether {written(key)} exists", code="GX220", lost=True
             )
         return 0.0
+
+
+def _name(token: Token) -> str:
+    """Return the name of a parameter: blanks and case do not count."""
+    return str(token)[1:-1].translate(BLANKS).lower()
+
+
+def parameter_of(node: Any) -> Key | None:
+    """Return which parameter a node names; None where it is computed which."""
+    child = node.children[0]
+    if not isinstance(child, Token):
+        return None
+    if str(child).startswith("<"):
+        return _name(child)
+    value = float(str(child).translate(BLANKS))
+    return int(value) if value == int(value) else None
 
 
 def key_set(statement: Statement) -> Key | None:

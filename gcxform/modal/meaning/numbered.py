@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from gcxform.dialect.dialect import Dialect
 from gcxform.modal.meaning.meaning import Act, EventShape, Meaning
-from gcxform.syntax.shapes import CODES, Shape
-from gcxform.syntax.tree import Number, Word
+from gcxform.syntax.shapes import Shape
+from gcxform.syntax.tree import CODES, Number, Word
 
 
 def code_of(word: Word) -> str:

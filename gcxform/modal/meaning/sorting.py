@@ -21,8 +21,8 @@ from gcxform.modal.meaning.meaning import (
     Refusal,
 )
 from gcxform.modal.meaning.numbered import code_of, length_number, offset_word, spindle_number
-from gcxform.syntax.shapes import CODES, Shape
-from gcxform.syntax.tree import Comment, Expression, Mark, Number, Statement, Word
+from gcxform.syntax.shapes import Shape
+from gcxform.syntax.tree import CODES, Comment, Expression, Mark, Number, Statement, Word
 
 CENTRE = "IJK"
 COMMENT = 0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -140,6 +142,7 @@ class MeaningTable:
         self.shapes = shapes
         self.dialect = dialect
         self.meanings: list[Meaning] = []
+        self.functions: dict[int, Any] = {}  # of shapes that compute something, once made
         self.groups: Small = np.empty((0, len(COLUMNS)), np.int8)
         self.flags: Flags = np.empty((0, len(FLAGS)), np.bool_)
         self.slots: NDArray[np.int16] = np.empty((0, 26), np.int16)

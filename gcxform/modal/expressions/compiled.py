@@ -1,0 +1,122 @@
+"""Expressions as functions: made once for each outline, and called with numbers or whole columns.
+
+An expression of an outline is the same on all its lines but for its numbers. What is made of it
+here takes the parameters and these numbers, for one line or, as arrays, for many lines between
+which no parameter changes.
+
+It has a value or it has none: whatever `Evaluator` would refuse, or do in a way of its own, is
+`NoColumnError` here, and the line is computed again by `Evaluator`, whose errors have a place. So
+there is one definition of what is refused. Both use the functions of the same `Arithmetic`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from lark import Token
+
+from gcxform.dialect.arithmetic import COLUMNS, Arithmetic, Key, NoValueError
+from gcxform.dialect.null import Null
+from gcxform.modal.expressions.value import parameter_of
+from gcxform.syntax.grammar import rule_of, span_of
+
+Parameters = Mapping[Key, float]
+Operands = Sequence[Any]
+"""Numbers by slot: floats, or arrays of one length."""
+Compiled = Callable[[Parameters, Operands], Any]
+
+
+class NoColumnError(Exception):
+    """A value that is not found in this way."""
+
+
+class Compiler:
+    """Makes functions of the expressions of one outline; `slot_of` finds the slots of numbers."""
+
+    def __init__(
+        self, arithmetic: Arithmetic, slot_of: Mapping[tuple[int, int], int], in_word: bool
+    ) -> None:
+        self.arithmetic = arithmetic
+        self.slot_of = slot_of
+        self.in_word = in_word
+
+    def compiled(self, node: Any) -> Compiled:
+        """Return the function of an expression; it raises NoColumnError."""
+        if isinstance(node, Token):
+            slot = self.slot_of[span_of(node)]
+            return lambda _, operands: operands[slot]
+        rule, children = rule_of(node), node.children
+        if rule == "parameter":
+            return self._parameter(node)
+        if rule == "bracketed":
+            return self.compiled(children[0])
+        if rule == "negated":
+            inner = self.compiled(children[1])
+            return inner if children[0] == "+" else lambda p, o: -inner(p, o)
+        if rule in ("call", "arctangent"):
+            return self._call(rule, str(children[0]).upper(), children[1:])
+        return self._operation(*children)
+
+    def _parameter(self, node: Any) -> Compiled:
+        key = parameter_of(node)
+        if key is None or (isinstance(key, str) and not self.arithmetic.named):
+            return _refused
+
+        def read(parameters: Parameters, _: Operands) -> float:
+            value = parameters.get(key, np.nan)
+            if value != value or isinstance(value, Null):
+                raise NoColumnError
+            return value
+
+        return read
+
+    def _operation(self, left: Any, operator: Token, right: Any) -> Compiled:
+        function = self.arithmetic.operators.get(str(operator).upper())
+        if function is None:
+            return _refused
+        return _applied(function, (self.compiled(left), self.compiled(right)))
+
+    def _call(self, rule: str, name: str, arguments: list[Any]) -> Compiled:
+        function = self.arithmetic.functions.get(name + "/" * (rule == "arctangent"))
+        wrong = rule == "call" and len(arguments) != 1 + (name == "POW")
+        if function is None or wrong or (self.in_word and name in self.arithmetic.not_in_words):
+            return _refused
+        return _applied(function, tuple(self.compiled(each) for each in arguments))
+
+
+def _refused(_: Parameters, __: Operands) -> Any:
+    raise NoColumnError
+
+
+def _applied(function: Callable[..., Any], arguments: tuple[Compiled, ...]) -> Compiled:
+    """Return a function of functions, whose result is finite."""
+
+    def apply(parameters: Parameters, operands: Operands) -> Any:
+        values = [each(parameters, operands) for each in arguments]
+        try:
+            if not any(isinstance(value, np.ndarray) for value in values):
+                result = function(*values)
+                if not -np.inf < result < np.inf:
+                    raise NoColumnError
+                return result
+            return _column(function, values)
+        except (NoValueError, ArithmeticError, ValueError):
+            raise NoColumnError from None
+
+    return apply
+
+
+def _column(function: Callable[..., Any], values: list[Any]) -> Any:
+    """Return a function of whole columns. Raises NoColumnError, or what the function raises."""
+    whole = COLUMNS.get(function)
+    if whole is not None:
+        with np.errstate(all="ignore"):
+            result = whole(*values)
+    else:
+        columns = [each.tolist() for each in np.broadcast_arrays(*values)]
+        result = np.array([function(*each) for each in zip(*columns, strict=True)])
+    if not np.isfinite(result).all():
+        raise NoColumnError
+    return result
