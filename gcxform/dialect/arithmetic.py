@@ -11,12 +11,8 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable, Mapping
-<<<<<<< HEAD
 from dataclasses import dataclass, field
-=======
-from dataclasses import dataclass
 from typing import Any
->>>>>>> 9e35e4e (Lines with comments and expressions share shapes: lark reads one line of each outline, and what they compute is compiled)
 
 import numpy as np
 

@@ -92,7 +92,7 @@ class _Scan:
         self._refuse((self.raw <= TAIL) | (self.raw == 13))
         self.opened = np.flatnonzero(self.raw == 40)
         self.inside = self._comments()
-        self._angles()
+        self.named = self._angles()
         self._executed()
 
     def _refuse(self, wrong: Flags) -> None:
@@ -127,13 +127,13 @@ class _Scan:
             self.opened = np.union1d(self.opened, signs[first])
         return inside
 
-    def _angles(self) -> None:
-        """Take digits in names of parameters for letters."""
-        self.named = np.zeros(len(self.raw), np.bool_)
-        if b"<" in self.text or b">" in self.text:
-            depth = self._depth(60, 62)
-            self.named = depth > 0
-            self._refuse(((depth < 0) | (depth > 1)) | (self.named & self.inside))
+    def _angles(self) -> Flags:
+        """Return which bytes belong to names of parameters, whose digits are letters."""
+        if b"<" not in self.text and b">" not in self.text:
+            return np.zeros(len(self.raw), np.bool_)
+        depth = self._depth(60, 62)
+        self._refuse(((depth < 0) | (depth > 1)) | ((depth > 0) & self.inside))
+        return np.asarray(depth > 0)
 
     def _executed(self) -> None:
         """Leave lines with comments that the control executes to lark."""

@@ -4,8 +4,8 @@ lark reads some ten thousand lines a second, a finishing program has a million. 
 reduced to its **shape**: its text with each number replaced by `#`, except the numbers that are
 codes (G, M, O). lark parses one line of each shape, once; all lines of that shape have its tree,
 with the numbers taken from the columns. This file finds numbers and shapes with whole-array
-operations and decides nothing about the language: a line that is not made of letters, numbers and
-blanks alone, or whose numbers are not plain, goes to lark by itself.
+operations and decides nothing about the language. A line that is not made of letters, numbers and
+blanks alone has an outline instead (`outlines.py`), or goes to lark by itself.
 
     N10 G1 X1.5 Y-2.      shape  N# G1 X# Y#      numbers  10  1.5  -2.
 
