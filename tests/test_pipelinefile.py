@@ -343,7 +343,7 @@ def test_all_steps_of_a_chain_are_looked_at() -> None:
 def test_the_schema_of_pipelines() -> None:
     found = schema("pipeline", REGISTRY)
     json.dumps(found)
-    sections = {"format", "input", "machine", "budget", "output", "limits", "pass"}
+    sections = {"format", "input", "entry", "machine", "budget", "output", "limits", "pass"}
     assert set(found["properties"]) == sections
     steps = {
         step["properties"]["use"]["const"]: step

@@ -9,10 +9,7 @@ from __future__ import annotations
 
 from gcxform.catalogue import flow, machines, reading, usage, writing
 
-CATALOGUE: dict[str, tuple[str, str]] = {
-    **reading.CODES,
-    **flow.CODES,
-    **machines.CODES,
-    **writing.CODES,
-    **usage.CODES,
-}
+PARTS = (reading, flow, machines, writing, usage)
+CATALOGUE: dict[str, tuple[str, str]] = dict(
+    sorted(entry for part in PARTS for entry in part.CODES.items())
+)

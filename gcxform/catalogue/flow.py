@@ -37,12 +37,12 @@ CODES: dict[str, tuple[str, str]] = {
         "Only a subprogram, which nothing in this file calls",
         "What is transformed is what the control executes when it runs this file. A subprogram "
         "that nothing in the file calls is not executed, so it would be left as it is, and what it "
-        "does depends on who calls it. Put it into the file of the program that calls it, and "
-        "transform that. Beside a program that moves, such subprograms are kept as they stand, "
-        "behind its end, with those that they call; the certificate says how many. Where a step "
-        "turns positions into others (volumetric, rtcp), a second program that moves is refused in "
-        "a file of a control that runs programs by their numbers: it would stay as it is, and the "
-        "stamp would say otherwise. Give each program a file of its own.",
+        "does depends on who calls it. Transform the program that calls it: subprograms are looked "
+        "up in the files beside it. Beside a program that moves, such subprograms are kept as they "
+        "stand, behind its end, with those that they call; the certificate says how many. Where a "
+        "step turns positions into others (volumetric, rtcp), a second program that moves is "
+        "refused in a file of a control that runs programs by their numbers: it would stay as it "
+        "is, and the stamp would say otherwise. Give each program a file of its own.",
     ),
     "GX227": (
         "Which file the subprogram is in is not certain",
@@ -51,5 +51,13 @@ CODES: dict[str, tuple[str, str]] = {
         "number in it is the one that is called, or if there is none in it and its name says so. "
         "Two files that differ, one that holds another number, one that cannot be read and a link "
         "out of its folder are refused: move what is not meant to another folder.",
+    ),
+    "GX228": (
+        "A subprogram by itself, of whose call something is not known",
+        "The file is a subprogram that another program calls. What it does depends on the modes "
+        "and the positions that its caller leaves, and here something is written that would depend "
+        "on them. The file is kept as it stands, which the certificate says too. Say how it is "
+        'called: `modes = "G91 G21 G94"`, `start`, `feed` and `parameters` in [entry], or --entry '
+        "for the modes; or transform the program that calls it, which finds it beside itself.",
     ),
 }

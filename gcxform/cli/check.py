@@ -21,6 +21,7 @@ from gcxform.config.to_fill_in import told_open
 from gcxform.contract.passes import Pass
 from gcxform.diagnostics import PRINTED_AT_MOST, Diagnostic, InputError, Severity, UsageError
 from gcxform.flow.straightened import located, written_out
+from gcxform.flow.subprogram_file import is_subprogram
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.program_end import Ending
 from gcxform.modal.reader import windows_of
@@ -165,7 +166,8 @@ def speaks_against(
     """Return why a program is refused, or warnings; `taken` gets what was assumed on the way."""
     taken = [] if taken is None else taken
     try:
-        found = list(_first(_reading(pipeline, source, taken)))
+        alone = not pipeline.copies and is_subprogram(source, pipeline.read_as)
+        found = [] if alone else list(_first(_reading(pipeline, source, taken)))
         return found or _refusals(pipeline, source, taken)
     except UsageError as error:  # of a pass that was told of a machine on trial
         return list(error.diagnostics)

@@ -51,6 +51,21 @@ class Emitted:
     source: Ints
     nth: Ints
 
+    def leaving(
+        self, codes: tuple[str, ...], window: Window, table: MeaningTable, live: int
+    ) -> Emitted:
+        """Return the text with codes in a block before the one with which the program ends."""
+        ends = table.flag("ends", window.shape[:live])
+        if not ends.any():
+            return self
+        line = window.first_line + int(np.argmax(ends))
+        lines = self.text.splitlines(keepends=True)
+        at = int(np.flatnonzero(self.source == line)[-1])
+        end = b"\r\n" if lines[at - 1 if at else at].endswith(b"\r\n") else b"\n"
+        lines.insert(at, " ".join(codes).encode() + end)
+        source, nth = np.insert(self.source, at, line), np.insert(self.nth, at, 0)
+        return Emitted(b"".join(lines), source, nth)
+
     def framed(self, frame: Frame, first: bool, last: bool) -> Emitted:
         """Return the text with the percent signs that go before and behind a whole program."""
         text, before, behind = frame.put(self.text, first, last)

@@ -159,10 +159,10 @@ class MacroB(Execution):
         if 99 in codes and self.calls:
             self._return(block, items)
             return True
-        if codes == {99} and len(items) == 1:
-            message = "M99 outside a call: this is a subprogram, or a program that begins anew"
-            hint = "transform the program that calls it, with this one in the same file"
-            raise self.refusal("GX226", message, hint)
+        if 99 in codes:
+            line = self.listing.place(self.line)[1]
+            what = f"M99 in line {line} stands in no call: it returns, or begins the program anew"
+            self.assumed[what] = None
         return False
 
     # --- subprograms ---

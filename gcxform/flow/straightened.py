@@ -45,6 +45,7 @@ def written_out(
     keeps = target is not None
     run = _executed(source, dialect, reading, keeps)
     if not run.acted and not (assigns and run.lasting.assigned):
+        source.assumed = tuple(run.assumed)
         return source
     lines = np.concatenate([np.empty(0, np.int64), *run.origin])
     found = WrittenOut(source, b"".join(run.text), lines, run.assumed, run.listing.files)

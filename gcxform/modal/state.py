@@ -26,6 +26,22 @@ UNKNOWN_SPINDLE = 3
 
 
 @dataclass(frozen=True, slots=True)
+class Entry:
+    """In which state a subprogram that stands in a file by itself is called; all else is unknown.
+
+    modes       codes in force, "G91"; at most one of a modal group
+    start       position of axes, mm or degrees
+    feed        feed in effect, in the unit of the program
+    parameters  values of parameters, by number or name
+    """
+
+    modes: tuple[str, ...] = ()
+    start: Mapping[str, float] = field(default_factory=dict)
+    feed: float | None = None
+    parameters: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
 class Reading:
     """What a program does not say of itself.
 
@@ -51,6 +67,7 @@ class Reading:
     crosses       whether the program is to be written for another control
     parameters    values of parameters before the first block, by number ("100") or name ("<a>")
     subprograms   folders in which subprograms are looked up, behind that of the program
+    entry         how a subprogram is called that stands in a file by itself
     """
 
     start: Mapping[str, float] = field(default_factory=dict)
@@ -70,6 +87,7 @@ class Reading:
     tables_stay: bool = True
     crosses: bool = False
     subprograms: tuple[Path, ...] = ()
+    entry: Entry = field(default_factory=Entry)
 
     def __post_init__(self) -> None:
         """Take what a caller may write for what it means; refuse all else. Raises UsageError."""

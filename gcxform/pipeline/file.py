@@ -76,6 +76,18 @@ class InputSpec:
 
 
 @dataclass(frozen=True)
+class EntrySpec:
+    """The section `[entry]`: how a subprogram is called that stands in a file by itself."""
+
+    modes: Annotated[str, Option("codes in force where it is called, such as G91 G21 G94")] = ""
+    start: Annotated[Coordinates, Option("where the axes are then")] = field(default_factory=dict)
+    feed: Annotated[float | None, Option("the feed then, in units per minute", above=0.0)] = None
+    parameters: Annotated[ParameterValues, Option("values of parameters then")] = field(
+        default_factory=dict
+    )
+
+
+@dataclass(frozen=True)
 class OutputSpec:
     """The section `[output]`: how the program is written."""
 
@@ -92,7 +104,7 @@ class OutputSpec:
 
 @dataclass(frozen=True)
 class PipelineSpec:
-    """A pipeline as written: input, machine file, budget (mm), growth, passes, output, limits.
+    """A pipeline as written: input, entry, machine file, budget (mm), growth, passes, output.
 
     `warnings` is what is odd in it, and no error; `open` has the places of values in `[input]` that
     are left to be filled in.
@@ -108,6 +120,7 @@ class PipelineSpec:
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)
     limits: Limits | None = None
     open: Open = field(default_factory=dict, compare=False)
+    entry: EntrySpec = field(default_factory=EntrySpec)
 
 
 @dataclass(frozen=True)
@@ -131,6 +144,7 @@ class _BudgetSection:
 
 SECTIONS: Final[Mapping[str, type]] = {
     "input": InputSpec,
+    "entry": EntrySpec,
     "machine": _MachineSection,
     "budget": _BudgetSection,
     "output": OutputSpec,
@@ -166,6 +180,7 @@ def _spec(reader: _Reader, path: Path) -> PipelineSpec:
         output=reader.section("output", OutputSpec) or OutputSpec(),
         file=path,
         warnings=tuple(reader.doubts()),
+        entry=reader.section("entry", EntrySpec) or EntrySpec(),
     )
     reader.check_dialects(spec)
     if budget and budget.deviation is None and budget.growth is None:

@@ -14,8 +14,9 @@ from gcxform.config import arguments
 from gcxform.config.to_fill_in import told_open
 from gcxform.diagnostics import InputError, UsageError
 from gcxform.dialect.dialect import Dialect, NumberFormat
+from gcxform.flow.subprogram_file import is_subprogram
 from gcxform.machine.file import load_machine
-from gcxform.modal.state import Reading
+from gcxform.modal.state import Entry, Reading
 from gcxform.pipeline.certificate import Certificate
 from gcxform.pipeline.certify import certificate
 from gcxform.pipeline.chain_text import chain_doubts, parse_chain
@@ -23,6 +24,7 @@ from gcxform.pipeline.file import PipelineSpec, load
 from gcxform.pipeline.output import Output, Sink
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.run import Progress, Run
+from gcxform.pipeline.subprogram import run_subprogram
 from gcxform.plugin.registry import Registry, default_registry
 from gcxform.syntax.source import Source, program_of
 from gcxform.system.limits import in_force
@@ -136,11 +138,13 @@ class Pipeline(Plan):
         What was handed over is to be thrown away if an error is raised.
         """
         arguments.chosen("verify", verify, VERIFY)
-        out = Output(sink, source_map)
+        out, tell = Output(sink, source_map), progress or (lambda size: None)
         with in_force(self.limits):
+            if not self.copies and is_subprogram(source, self.read_as):
+                return run_subprogram(self, source, sink, verify, source_map, tell)
             run = Run(self, source, verify)
             try:
-                run.over(out, progress or (lambda size: None))
+                run.over(out, tell)
             except InputError as error:
                 raise InputError(tuple(told_open(error.diagnostics, self.to_fill_in))) from None
             run.check_growth(out)
@@ -163,7 +167,7 @@ def _numbers(target: type[Dialect], spec: PipelineSpec) -> tuple[NumberFormat, d
 
 
 def _reading(source: type[Dialect], spec: PipelineSpec) -> Reading:
-    given = spec.input
+    given, said = spec.input, spec.entry
     return Reading(
         dict(given.start),
         given.increment,
@@ -173,4 +177,5 @@ def _reading(source: type[Dialect], spec: PipelineSpec) -> Reading:
         given.feed_increment,
         dict(given.parameters),
         subprograms=given.subprograms,
+        entry=Entry(tuple(said.modes.split()), dict(said.start), said.feed, dict(said.parameters)),
     )

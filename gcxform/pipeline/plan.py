@@ -34,6 +34,7 @@ from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.dialect.dialect import LINEAR, MOST_DECIMALS, ROTARY, Dialect, NumberFormat
 from gcxform.emit.manner import Manner
 from gcxform.machine.machine import Machine
+from gcxform.modal.meaning.tables import GROUPS
 from gcxform.modal.state import Reading
 from gcxform.pipeline.chain import check_chain, facts_after
 from gcxform.plugin.registry import dialect_of
@@ -91,6 +92,7 @@ class Plan:
         for name, value in self._taken().items():
             object.__setattr__(self, name, value)
         self._check_target()
+        self._check_entry()
         check_chain(self.path_passes)
         for step in self.path_passes:
             step.begin(self.context)
@@ -128,6 +130,16 @@ class Plan:
         """Refuse to write, or to change the text of, programs that are only read."""
         if not self.copies or self.passes:
             check_written(self.target)
+
+    def _check_entry(self) -> None:
+        """Refuse modes of `[entry]` that are none of the dialect, or two of one group."""
+        groups: set[str] = set()
+        for mode in self.reading.entry.modes:
+            code = self.source.codes.get(mode)
+            if code is None or code.group not in GROUPS or code.group in groups:
+                message = f"modes: {mode!r} is no mode of {self.source.name}, or one of two"
+                raise UsageError.one("GX707", message, hint='modes = "G90 G21 G94" in [entry]')
+            groups.add(code.group)
 
     def _check_budget(self) -> None:
         """Refuse a budget that the steps cannot keep, and steps without bound or budget."""

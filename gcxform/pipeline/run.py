@@ -63,10 +63,13 @@ class Stages:
 
 
 class Run:
-    """One run: its readers, writer and verifier."""
+    """One run: its readers, writer and verifier; `leaves` are codes to be stated at its end."""
 
-    def __init__(self, plan: Plan, source: Source, verify: str) -> None:
+    def __init__(
+        self, plan: Plan, source: Source, verify: str, leaves: tuple[str, ...] = ()
+    ) -> None:
         self.plan = plan
+        self.leaves = leaves
         self.marks = plan.marks(source)
         self.heads = self._heads()
         self.source = source
@@ -269,6 +272,8 @@ class Run:
         assert self.stages is not None
         emitted = self.stages.emitter.emit(one.window, one.table, one.read, one.path)
         emitted = emitted.framed(self.frame, first, last)
+        if self.leaves:
+            emitted = emitted.leaving(self.leaves, one.window, one.table, one.read.live)
         if self.heads is None:
             return emitted
         text, kept = self.heads.edit(emitted.text)

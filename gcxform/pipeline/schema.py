@@ -19,6 +19,7 @@ _JSON_TYPES: Final[Mapping[str, str | list[str]]] = {
     "three lengths": ["array", "string", "object"],
     "coordinates by axis letter": "object",
     "list of lines": "array",
+    "list of folders": "array",
     "numbers by parameter": "object",
     "true or false": "boolean",
     "whole number": "integer",

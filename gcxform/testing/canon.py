@@ -136,6 +136,8 @@ AFTER_M: Mapping[int, bool] = {
 }
 """Whether an M code acts after the motion of its block; of M5 and M9 controls differ."""
 ENDS = frozenset({2, 30})
+RETURNS = frozenset({99})
+"""What ends a program that stands in no call, on controls whose programs call each other."""
 CALLS = frozenset({98, 99})
 STOPPED_BY: Mapping[int, int] = {3: 5, 4: 5, 7: 9, 8: 9, 48: 49, 49: 48}
 ACTS_OF_M: Mapping[str, tuple[str, str]] = {

@@ -171,7 +171,7 @@ def _m_code(number: int, code: MCode) -> Iterator[str]:
         yield f"is of the group {code.group!r}; it is one of {group!r}"
     if code.after != canon.AFTER_M.get(number, code.after):
         yield f"acts {'before' if code.after else 'after'} the motion of its block on all controls"
-    if code.ends != (number in canon.ENDS):
+    if code.ends != (number in canon.ENDS) and number not in canon.RETURNS:
         yield f"{'ends' if code.ends else 'does not end'} the program here, as nowhere else"
     if number in canon.CALLS and not code.barrier:
         yield "calls a program and is no barrier"

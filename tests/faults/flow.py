@@ -14,6 +14,30 @@ def _flow(name: str, file: str, old: str, new: str, tests: str = CASES) -> Mutat
 
 MUTATIONS = (
     _flow(
+        "a caller finds other modes behind a subprogram",
+        "gcxform/pipeline/subprogram.py",
+        "if codes := _left_otherwise(run):",
+        "if codes := ():",
+    ),
+    _flow(
+        "a caller finds another motion behind a subprogram",
+        "gcxform/pipeline/subprogram.py",
+        "if lost:",
+        "if False:",
+    ),
+    _flow(
+        "the modes of a caller are taken for the usual ones",
+        "gcxform/pipeline/subprogram.py",
+        "if uses.any():",
+        "if False:",
+    ),
+    _flow(
+        "[entry] is not read",
+        "gcxform/pipeline/subprogram.py",
+        "{**dialect.initial, **groups}",
+        "dialect.initial",
+    ),
+    _flow(
         "a file with another number is taken",
         "gcxform/flow/numbered_files.py",
         "number in numbers or (",

@@ -90,6 +90,9 @@ _READING = (
 )
 
 
+ENTRY = click.option(
+    "--entry", metavar="CODES", help="Modes in which a subprogram is called: 'G91 G21'."
+)
 _STAMPS = (
     click.option("--no-stamp", is_flag=True, help="Write no comment that says what was done."),
     click.option("--again", is_flag=True, help="Run on stamped programs too."),
@@ -106,6 +109,6 @@ def reading_options(command: Command) -> Command:
 def pipeline_options(command: Command) -> Command:
     """Add the options that make a pipeline."""
     command = reading_options(command)
-    for option in (*reversed(_STAMPS), TO, FROM, *reversed(_PIPELINE)):
+    for option in (*reversed(_STAMPS), ENTRY, TO, FROM, *reversed(_PIPELINE)):
         command = option(command)
     return command

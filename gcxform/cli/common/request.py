@@ -38,6 +38,7 @@ class Asked:
     units: str | None = None
     parameters: str | None = None
     subprograms: tuple[str, ...] = ()
+    entry: str | None = None
     budget: str | None = None
     growth: str | None = None
     decimals: str | None = None
@@ -67,6 +68,8 @@ class Asked:
         registry = registry or default_registry()
         spec = self._spec(registry)
         output = replace(spec.output, stamp=spec.output.stamp and not self.no_stamp)
+        if self.entry is not None:
+            spec = replace(spec, entry=replace(spec.entry, modes=self.entry))
         spec = self._limited(replace(spec, input=self._merged(spec.input), output=output))
         machine = Path(self.machine) if self.machine else None
         return Pipeline.of_spec(spec, registry, self.dialect or "", self.to or "", machine)

@@ -170,7 +170,7 @@ class Fanuc(gx.Dialect):
         19: gx.MCode("spindle"),
         29: gx.MCode("tapping"),
         **{code: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL") for code in (98, 198)},
-        99: gx.MCode("stop", after=True, barrier=v.CALL, takes="PL"),
+        99: gx.MCode("stop", after=True, ends=True, takes="P"),
     }
     chosen: ClassVar[Mapping[str, str]] = {
         "G43": "a tool length is along Z (parameter 5001)",

@@ -1,0 +1,201 @@
+"""A subprogram by itself: a file that another program calls, read from the state of its call.
+
+What that state is `[entry]` says; what it does not say is unknown. What is written must leave the
+state that the source leaves, so modes that the passes have changed are stated again before the
+return. Where what is written would depend on what is not known the file is kept, byte for byte, if
+no pass turns positions into others: whoever calls it finds what it was. The certificate says so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from gcxform.diagnostics import Diagnostic, InputError, Location, Severity
+from gcxform.dialect.dialect import Dialect
+from gcxform.flow.straightened import located
+from gcxform.modal.meaning.tables import COLUMNS, GROUPS, code_of
+from gcxform.modal.reader import windows_of
+from gcxform.modal.state import State
+from gcxform.pipeline.certificate import Certificate
+from gcxform.pipeline.certify import certificate
+from gcxform.pipeline.output import Output, Sink
+from gcxform.pipeline.plan import Plan
+from gcxform.pipeline.run import Progress, Run
+from gcxform.syntax.source import Source
+
+USES = {
+    "units": "XYZUVWIJKRQF",
+    "distance": "XYZABCUVW",
+    "feed-mode": "F",
+    "plane": "IJKR",
+}
+"""The modal groups on which a block depends that has one of these addresses."""
+STATED_AGAIN = ("units", "plane", "distance", "feed-mode", "arc-distance")
+LAST_OF_TEXT = "GX2"
+HINT = "transform the program that calls it: it is looked up beside that"
+
+
+@dataclass
+class Held:
+    """The text of a run and its source map, until it is known whether they are handed on."""
+
+    parts: list[bytes] = field(default_factory=list)
+    lines: list[int] = field(default_factory=list)
+
+
+def run_subprogram(
+    plan: Plan,
+    source: Source,
+    sink: Sink,
+    verify: str,
+    source_map: list[int] | None,
+    progress: Progress,
+) -> Certificate:
+    """Run a plan on a file that is a subprogram by itself. Raises GcxformError."""
+    if plan.marks(source).changes or any(step.demands.folds for step in plan.path_passes):
+        message = "this file is a subprogram: where its caller stands is not known here"
+        raise InputError.one("GX226", message, hint=HINT)
+    held, again = Held(), "on" if verify == "off" else verify
+    try:
+        done = _entered(plan, source, again, held)
+    except InputError as why:
+        if plan.source is not plan.target or why.diagnostics[0].code < LAST_OF_TEXT:
+            raise
+        held = Held()
+        done = _kept(plan, source, verify, held, why.diagnostics[0])
+    if source_map is not None:
+        source_map += held.lines
+    for part in held.parts:
+        sink(part)
+    progress(source.size)
+    return done
+
+
+def _entered(plan: Plan, source: Source, verify: str, held: Held) -> Certificate:
+    """Transform a subprogram from the state of its call. Raises InputError where that is open."""
+    plan = at_entry(plan)
+    run, out = _done(plan, source, verify, Held())
+    if codes := _left_otherwise(run):
+        run, out = _done(plan, source, verify, held, codes)
+        if _left_otherwise(run):
+            raise _open("the modes that it leaves cannot be restored", Location(source.name))
+    else:
+        run, out = _done(plan, source, verify, held)
+    found = certificate(run, out)
+    said = " ".join(plan.reading.entry.modes) or "no mode of it is given"
+    found.assumed.append(f"this is a subprogram, and is entered in a state of which {said}")
+    return found
+
+
+def at_entry(plan: Plan) -> Plan:
+    """Return a plan for programs that begin where `[entry]` says. Raises InputError."""
+    if plan.source is not plan.target:
+        message = "this file is a subprogram, and is not translated by itself"
+        raise InputError.one("GX226", message, hint=HINT)
+    entry, reading = plan.reading.entry, plan.reading
+    dialect = _begun(plan.source, entry.modes)
+    reading = replace(
+        reading,
+        start={**reading.start, **entry.start},
+        feed=reading.feed if entry.feed is None else entry.feed,
+        parameters={**reading.parameters, **entry.parameters},
+        units="",
+    )
+    return replace(plan, source=dialect, target=dialect, reading=reading)
+
+
+def _begun(dialect: type[Dialect], modes: tuple[str, ...]) -> type[Dialect]:
+    """Return a dialect whose programs begin in modes, and otherwise in its own."""
+    groups = {dialect.codes[code].group: code for code in modes}
+    return type(dialect.__name__, (dialect,), {"initial": {**dialect.initial, **groups}})
+
+
+def _done(
+    plan: Plan, source: Source, verify: str, held: Held, leaves: tuple[str, ...] = ()
+) -> tuple[Run, Output]:
+    """Run once over the file, in one window. `leaves` are the codes to be stated at its end."""
+    run = Run(plan, source, verify, leaves)
+    _refuse_unknown(run, plan)
+    out = Output(held.parts.append, held.lines)
+    run.over(out, lambda size: None, source.size + 1)
+    run.check_growth(out)
+    return run, out
+
+
+def _kept(plan: Plan, source: Source, verify: str, held: Held, why: Diagnostic) -> Certificate:
+    """Keep a file as it stands, but for passes that change text."""
+    run, out = _run_of_text(plan, source, verify, held)
+    found = certificate(run, out)
+    steps = " | ".join(step.name for step in plan.path_passes) or plan.target.name
+    found.not_checked.append(f"{steps}: the subprogram is kept as it stands, because {why.message}")
+    message = f"kept as it stands, a subprogram by itself: {why.message}"
+    found.warnings.append(replace(why, code="GX228", message=message, severity=Severity.WARNING))
+    return found
+
+
+def _run_of_text(plan: Plan, source: Source, verify: str, held: Held) -> tuple[Run, Output]:
+    only: Any = replace(plan, passes=plan.text_passes, budget=None)
+    run, out = Run(only, source, verify), Output(held.parts.append, held.lines)
+    run.over(out, lambda size: None)
+    return run, out
+
+
+# --- what is not known ---
+
+
+def _refuse_unknown(run: Run, plan: Plan) -> None:
+    """Raise InputError for a block that depends on a mode that nobody has said."""
+    said = {plan.source.codes[code].group for code in plan.reading.entry.modes}
+    for window, reader in windows_of(run.source, run.dialect):
+        table = reader.table
+        table.update()
+        found = {}
+        for group, letters in USES.items():
+            if group in said:
+                continue
+            stated = table.groups[window.shape, COLUMNS.index(group)] >= 0
+            columns = [ord(letter) - ord("A") for letter in letters]
+            uses = (table.slots[window.shape][:, columns] >= 0).any(axis=1)
+            uses &= ~np.logical_or.accumulate(stated)
+            if uses.any():
+                found[group] = int(np.argmax(uses))
+            elif stated.any():
+                said.add(group)
+        if found:
+            line = min(found.values())
+            where = Location(run.source.name, window.first_line + line + 1)
+            text = window.line(line).decode("latin-1")
+            where = replace(where, text=text, width=max(1, len(text)))
+            message = f"its {' and '.join(found)} are those of its caller"
+            raise located(_open(message, where), run.source)
+
+
+def _left_otherwise(run: Run) -> tuple[str, ...]:
+    """Return the codes of modes in which the output leaves its caller, and the source does not.
+
+    Raises InputError for what a code alone does not restore.
+    """
+    assert run.stages is not None
+    assert run.stages.verifier is not None
+    before, after = run.stages.interpreter.state, run.stages.verifier.interpreter.state
+    other = [g for g in GROUPS if before.groups[g] != after.groups[g]]
+    lost = [group for group in other if group not in STATED_AGAIN]
+    lost += [name for name, value in before.memory.items() if after.memory[name] != value]
+    lost += ["feed"] * (not _same_feed(before, after) and "units" not in other)
+    if lost:
+        message = f"its caller would find another {' and '.join(lost)} behind it"
+        raise _open(message, Location(run.source.name))
+    return tuple(code_of(group, before.groups[group]) for group in other)
+
+
+def _same_feed(one: State, other: State) -> bool:
+    values = one.feed * one.feed_unit, other.feed * other.feed_unit
+    return bool(np.isclose(*values, rtol=1e-9, atol=0.0, equal_nan=True))
+
+
+def _open(message: str, where: Location) -> InputError:
+    hint = 'say how it is called: modes = "G90 G21 G94" in [entry], with the codes in force there'
+    return InputError.one("GX228", message, where, hint)
