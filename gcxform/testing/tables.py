@@ -173,7 +173,7 @@ def _m_code(number: int, code: MCode) -> Iterator[str]:
         yield f"acts {'before' if code.after else 'after'} the motion of its block on all controls"
     if code.ends != (number in canon.ENDS) and number not in canon.RETURNS:
         yield f"{'ends' if code.ends else 'does not end'} the program here, as nowhere else"
-    if number in canon.CALLS and not code.barrier:
+    if number in canon.CALLS and not (code.barrier or code.ends):
         yield "calls a program and is no barrier"
 
 
