@@ -13,7 +13,7 @@ from gcxform.cli import VERBS
 from gcxform.cli.calibration.plan import centres, plan
 from gcxform.cli.calibration.rotary_axes import ballbar, bundle, rotary
 from gcxform.cli.calibration.shared import about, path_of, write
-from gcxform.cli.common.options import ABOVE_NOTHING
+from gcxform.cli.common.options import ABOVE_NOTHING, above_nothing, one_of
 from gcxform.cli.common.outputs import STDOUT, check_places
 from gcxform.diagnostics import UsageError
 
@@ -58,24 +58,14 @@ command.add_command(centres)
 )
 @click.option("--plain", is_flag=True, help="The four lengths alone: squareness.")
 @click.option("--linear", metavar="FILE", multiple=True, help="Direct linear tests of an axis.")
-@click.option(
-    "--noise",
-    type=ABOVE_NOTHING,
-    default="1 um",
-    show_default=True,
-    help="Standard deviation of one step; with --plain of one length.",
-)
+@above_nothing("--noise", "1 um", "Standard deviation of one step; with --plain of one length.")
 @click.option(
     "--linear-noise",
     type=ABOVE_NOTHING,
     help="Standard deviation of a reading of a linear test.  [default: as --noise]",
 )
-@click.option(
-    "--misalignment",
-    type=click.Choice(["free", "none"]),
-    default="free",
-    show_default=True,
-    help="Whether the beams may be off their diagonals.",
+@one_of(
+    "--misalignment", words=["free", "none"], help="Whether the beams may be off their diagonals."
 )
 @click.option(
     "-o",

@@ -12,6 +12,7 @@ import numpy as np
 
 from gcxform.cli import VERBS
 from gcxform.cli.common.failures import say
+from gcxform.cli.common.options import one_of
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
 from gcxform.config.toml_text import did_you_mean
 from gcxform.contract.options import Argument, build, describe
@@ -47,11 +48,9 @@ def command() -> None:
 @click.option(
     "--kind", type=click.Choice(list(converting.KINDS)), help="Fit a model of this kind first."
 )
-@click.option(
+@one_of(
     "--backlash",
-    type=click.Choice(["keep", "mean"]),
-    default="keep",
-    show_default=True,
+    words=["keep", "mean"],
     help="Of a table with backlash: keep it, or take the mean of both directions.",
 )
 @click.option("--order", default=AXES, show_default=True, help="Axes from workpiece to tool.")

@@ -16,8 +16,8 @@ MUTATIONS = (
     Mutation(
         "tips: what rounded angles do to them is not counted",
         CUTTING,
-        "        if not self.to_axes:\n            far = far",
-        "        if self.to_axes:\n            far = far",
+        "return far if self.to_axes else far",
+        "return far if not self.to_axes else far",
         WITHIN,
     ),
     Mutation(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from gcxform.cli.calibration.shared import check_axis, path_of, write
-from gcxform.cli.common.options import ABOVE_NOTHING, LENGTH, THREE_LENGTHS
+from gcxform.cli.common.options import LENGTH, THREE_LENGTHS, above_nothing, one_of
 from gcxform.cli.common.outputs import STDOUT, check_places
 from gcxform.cli.common.request import Asked
 from gcxform.diagnostics import FileError, UsageError
@@ -55,39 +55,17 @@ _OUTPUT = click.option(
     show_default=True,
     help="How far table and probe may lean, from Z and each other.",
 )
-@click.option(
-    "--linear",
-    type=click.Choice(["differences", "none"]),
-    default="differences",
-    show_default=True,
-    help="Which errors of the linear axes are unknown.",
+@one_of(
+    "--linear", words=["differences", "none"], help="Which errors of the linear axes are unknown."
 )
-@click.option(
-    "--noise",
-    type=ABOVE_NOTHING,
-    default="2 um",
-    show_default=True,
-    help="Standard deviation of a coordinate of a centre.",
-)
+@above_nothing("--noise", "2 um", "Standard deviation of a coordinate of a centre.")
 @click.option(
     "-o", "--output", metavar="FILE", default=STDOUT, help="The poses.  [default: stdout]"
 )
 @click.option("--program", metavar="FILE", help="Write the program that probes them.")
-@click.option(
-    "-t",
-    "--to",
-    "dialect",
-    type=click.Choice(["linuxcnc", "fanuc"]),
-    default="linuxcnc",
-    show_default=True,
-    help="The control of the program.",
-)
-@click.option(
-    "--radius", type=ABOVE_NOTHING, default="15 mm", show_default=True, help="Of ball and stylus."
-)
-@click.option(
-    "--clearance", type=ABOVE_NOTHING, default="5 mm", show_default=True, help="Around a touch."
-)
+@one_of("-t", "--to", "dialect", words=["linuxcnc", "fanuc"], help="The control of the program.")
+@above_nothing("--radius", "15 mm", "Of ball and stylus.")
+@above_nothing("--clearance", "5 mm", "Around a touch.")
 @click.option("--after-touch", metavar="BLOCK", help="A block of the program that stores a touch.")
 def plan(
     machine: str,

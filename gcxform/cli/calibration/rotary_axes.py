@@ -9,7 +9,7 @@ import click
 
 from gcxform import plot
 from gcxform.cli.calibration.shared import NOISE, Files, Found, found_options, hand_out, path_of
-from gcxform.cli.common.options import ABOVE_NOTHING, TWO_LENGTHS
+from gcxform.cli.common.options import TWO_LENGTHS, above_nothing, one_of
 from gcxform.cli.common.request import Asked
 
 _BALLS = """
@@ -90,11 +90,9 @@ not.
 @click.command("bundle", epilog=_POSES, short_help="Balls at any poses: all rotary axes at once.")
 @click.option("-m", "--machine", metavar="FILE", required=True, help="The machine as believed.")
 @click.option("--tool", metavar="N", type=int, help="The probe: X, Y, Z are then of the axes.")
-@click.option(
+@one_of(
     "--linear",
-    type=click.Choice(["differences", "none", "absolute"]),
-    default="differences",
-    show_default=True,
+    words=["differences", "none", "absolute"],
     help="Which errors of the linear axes are unknown.",
 )
 @found_options(NOISE, "2 um")
@@ -160,9 +158,7 @@ and --noise is that of an eccentricity.
     default="0,0",
     help="How far the spindle ball is off the spindle.  [default: 0,0, with a warning]",
 )
-@click.option(
-    "--bar", type=ABOVE_NOTHING, default="100 mm", show_default=True, help="Length of the bar."
-)
+@above_nothing("--bar", "100 mm", "Length of the bar.")
 @found_options("Standard deviation of a reading.", "1 um")
 def ballbar(
     data: str,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Final, TypeVar
 
 import click
@@ -34,6 +34,18 @@ ABOVE_NOTHING: Final = Typed("LENGTH", "Length", Option(above=0))
 SCATTER: Final = Typed("LENGTH", "Length", Option(at_least=0))
 TWO_LENGTHS: Final = Typed("X,Y", "Pair")
 THREE_LENGTHS: Final = Typed("X,Y,Z", "Vector")
+
+
+def above_nothing(name: str, default: str, help: str) -> Callable[[Command], Command]:
+    """Return an option for a length above nothing that need not be given."""
+    return click.option(name, type=ABOVE_NOTHING, default=default, show_default=True, help=help)
+
+
+def one_of(*names: str, words: Sequence[str], help: str) -> Callable[[Command], Command]:
+    """Return an option for one of some words, of which the first is the default."""
+    kind = click.Choice(words)
+    return click.option(*names, type=kind, default=words[0], show_default=True, help=help)
+
 
 FROM = click.option("-f", "--from", "dialect", metavar="DIALECT", help="Dialect of the program.")
 TO = click.option("-t", "--to", metavar="DIALECT", help="Dialect to write.  [default: as read]")

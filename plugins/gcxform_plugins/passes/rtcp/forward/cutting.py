@@ -114,7 +114,7 @@ class Cutting:
         return np.flatnonzero(self.cuts & (way > 0.0) & ~self.place.off)
 
     def _worst(self, rows: Ints, count: Ints) -> Floats:
-        """Return how far (mm) the tip can leave its line in any piece of rows."""
+        """Return how far (mm) the tip can be off in any of the pieces, `count` of each of rows."""
         row = np.repeat(rows, count)
         first = np.cumsum(count) - count
         pieces = np.zeros(len(self.path), np.int64)
@@ -123,17 +123,19 @@ class Cutting:
         start = np.empty_like(end)
         start[1:] = end[:-1]
         start[first] = self.start[rows]
-        far = self.way.leaving((start, end), row)
-        if not self.to_axes:
-            far = far + self._astray(pieces, end, row, first)
-        return np.asarray(np.maximum.reduceat(far, first))
+        return np.asarray(np.maximum.reduceat(self._off((start, end), pieces, row), first))
 
-    def _astray(self, pieces: Ints, end: Floats, row: Ints, first: Ints) -> Floats:
+    def _off(self, sides: tuple[Floats, Floats], pieces: Ints, row: Ints) -> Floats:
+        """Return how far (n,) mm the tip can leave its line in pieces between two sides."""
+        far = self.way.leaving(sides, row)
+        return far if self.to_axes else far + self._astray(pieces, sides[1], row)
+
+    def _astray(self, pieces: Ints, end: Floats, row: Ints) -> Floats:
         """Return how far (n,) mm rounded angles take the tip astray, at either end of pieces."""
         middle, last = self._middle(pieces, row)
         there = self._apart(np.where(last, self.path.end[row], middle), end, row)
         self._check_astray(there, row)
-        before = np.append(0.0, there[:-1])
+        before, first = np.append(0.0, there[:-1]), np.flatnonzero(np.diff(row, prepend=-1))
         before[first] = self._apart(self.path.start[row[first]], self.start[row[first]], row[first])
         return np.asarray(np.maximum(before, there))
 

@@ -278,21 +278,12 @@ class Moving(Cutting):
 
     # --- pieces ---
 
-    def _worst(self, rows: Ints, count: Ints) -> Floats:
-        """Return how far (mm) the tip, and in its proportion the tool axis, can be off."""
-        row = np.repeat(rows, count)
-        first = np.cumsum(count) - count
-        pieces = np.zeros(len(self.path), np.int64)
-        pieces[rows] = count
-        end = self._cut(pieces, row)
-        start = np.empty_like(end)
-        start[1:] = end[:-1]
-        start[first] = self.start[rows]
+    def _off(self, sides: tuple[Floats, Floats], pieces: Ints, row: Ints) -> Floats:
+        """Return how far (n,) mm the tip, and in its proportion the tool axis, can be off."""
         part = self._parts(pieces, row)
-        begin = part - 1.0 / np.repeat(count, count)
-        moved = self._moved(start, row, begin, after=True), self._moved(end, row, part)
-        far = self._far((start, end), moved, row)
-        return np.asarray(np.maximum.reduceat(far, first))
+        begin = part - 1.0 / pieces[row]
+        moved = self._moved(sides[0], row, begin, after=True), self._moved(sides[1], row, part)
+        return self._far(sides, moved, row)
 
     def _far(self, source: tuple[Floats, ...], target: tuple[Floats, ...], row: Ints) -> Floats:
         """Return how far (n,) mm the tips of both machines are from one another in pieces."""
