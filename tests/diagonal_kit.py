@@ -9,6 +9,7 @@ import numpy as np
 from step_diagonal_kit import simulate_linear, simulate_step_diagonal
 
 from gcxform.calibrate.diagonal.readings import Diagonals, LinearTest, step_diagonals
+from gcxform.calibrate.diagonal.reframe import slopes_of, turn_of
 from gcxform.calibrate.diagonal.step_diagonal import Assumed
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 from gcxform.errormodel.model_file import load_model
@@ -65,3 +66,26 @@ def turned(model: AxisFunctions, turn: Sequence[float]) -> AxisFunctions:
         point[:, k] = function.position
         axes.append(AxisFunction(function.position, function.values + np.cross(turn, point)))
     return AxisFunctions((axes[0], axes[1], axes[2]))
+
+
+# --- the end-point frame ---
+
+
+def reframed(model: AxisFunctions) -> AxisFunctions:
+    """Return a model in the end-point frame; it must have all three axes."""
+    x, y, z = model.axes
+    assert x is not None
+    assert y is not None
+    assert z is not None
+    functions = (x, y, z)
+    ends = [(f.values[-1] - f.values[0]) / (f.position[-1] - f.position[0]) for f in functions]
+    added = slopes_of(turn_of(np.array(ends)))
+    x, y, z = (_moved(f, rate) for f, rate in zip(functions, added, strict=True))
+    return AxisFunctions((x, y, z), model.order)
+
+
+def _moved(function: AxisFunction, rate: Floats) -> AxisFunction:
+    """Return a function that begins at zero, with slopes (3,) in mm per mm added."""
+    along = function.position - function.position[0]
+    values = function.values - function.values[0] + along[:, None] * rate
+    return AxisFunction(function.position, values)

@@ -16,6 +16,7 @@ from diagonal_kit import (
     linear,
     published,
     readings,
+    reframed,
     turned,
     values,
 )
@@ -23,11 +24,10 @@ from gcxform_plugins.formats.lddm import Lddm
 from step_diagonal_kit import simulate_linear, simulate_step_diagonal, step_positions
 
 from gcxform.calibrate.diagonal.readings import step_diagonals
-from gcxform.calibrate.diagonal.reframe import reframed
 from gcxform.calibrate.diagonal.slopes import together, worded
 from gcxform.calibrate.diagonal.step_diagonal import Assumed, identify, misalignment_gain, solved
 from gcxform.calibrate.solution import plausible
-from gcxform.diagnostics import InputError, UsageError
+from gcxform.diagnostics import InputError
 from gcxform.errormodel.functions import AxisFunctions
 from gcxform.errormodel.model_file import load_model
 
@@ -219,12 +219,6 @@ def test_v9_the_readings_of_a_turned_machine_give_the_same_model():
     moved = turned(published(), np.array([30e-6, -20e-6, 50e-6]))
     measured = step_diagonals(simulate_step_diagonal(moved, LOW, TRAVEL, 10))
     assert apart(identify(measured, assumed=ALIGNED).model(), published()) <= 1e-12
-
-
-def test_the_frame_needs_all_axes():
-    x, y, _ = published().axes
-    with pytest.raises(UsageError, match="all three axes"):
-        reframed(AxisFunctions((x, y, None)))
 
 
 # --- covariance ---

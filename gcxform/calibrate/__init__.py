@@ -2,7 +2,7 @@
 
     csv_text.py                 tables: units in the header, places of faults
     diagonal/readings.py        readings along the body diagonals, and linear tests
-    diagonal/file.py            the same from CSV files, and back
+    diagonal/file.py            the same from CSV files
     diagonal/equations.py       what a reading says about the errors of the axes
     solution.py                 weighted least squares that knows what it cannot tell
     diagonal/step_diagonal.py   sequential step diagonal: the nine functions

@@ -30,9 +30,12 @@ class ErrorFormat(ABC):
     control: ClassVar[str] = ""
 
     @classmethod
-    @abstractmethod
     def recognises(cls, path: Path) -> bool:
-        """Return whether the file or directory is meant to be of this format; raise nothing."""
+        """Return whether the file or directory is meant to be of this format; raise nothing.
+
+        A file is, unless a format says otherwise, where its name ends in one of the `suffixes`.
+        """
+        return path.suffix.lower() in cls.suffixes and path.is_file()
 
     @abstractmethod
     def read(self, path: Path) -> ErrorModel:

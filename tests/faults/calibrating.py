@@ -122,20 +122,6 @@ MUTATIONS = (
         "    return slopes\n",
         "    return np.triu(slopes)\n",
     ),
-    _calibrate(
-        "gcxform/calibrate/diagonal/reframe.py",
-        "a frame turns about machine zero",
-        "along = function.position - function.position[0]",
-        "along = function.position",
-        ROUND_TRIP,
-    ),
-    _calibrate(
-        "gcxform/calibrate/diagonal/reframe.py",
-        "the low corner is not zero",
-        "function.values - function.values[0]",
-        "function.values",
-        ROUND_TRIP,
-    ),
     # what is observable, what is refused
     _calibrate(
         "gcxform/calibrate/diagonal/step_diagonal.py",

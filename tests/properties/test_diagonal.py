@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from diagonal_kit import apart, turned, values
+from diagonal_kit import apart, reframed, turned, values
 from hypothesis import given
 from hypothesis import strategies as st
 from step_diagonal_kit import diagonals_csv, linear_csv, simulate_linear, simulate_step_diagonal
@@ -12,7 +12,6 @@ from step_diagonal_kit import diagonals_csv, linear_csv, simulate_linear, simula
 from gcxform.calibrate.diagonal.file import parse_diagonals, parse_linear
 from gcxform.calibrate.diagonal.plain_diagonal import squareness
 from gcxform.calibrate.diagonal.readings import plain_diagonals, step_diagonals
-from gcxform.calibrate.diagonal.reframe import reframed
 from gcxform.calibrate.diagonal.step_diagonal import Assumed, identify
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 

@@ -14,8 +14,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from gcxform.diagnostics import UsageError
-from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 from gcxform.system.arrays import Floats
 
 FRAME = (
@@ -39,22 +37,3 @@ def slopes_of(turn: Floats) -> Floats:
     """Return the slopes (..., 3, 3) that a turn (..., 3) in rad gives: theta x u of each axis u."""
     slopes: Floats = np.cross(turn[..., None, :], np.eye(3))
     return slopes
-
-
-def reframed(model: AxisFunctions) -> AxisFunctions:
-    """Return a model in the end-point frame; it must have all three axes. Raises UsageError."""
-    x, y, z = model.axes
-    if x is None or y is None or z is None:
-        raise UsageError.one("GX422", "the end-point frame needs the functions of all three axes")
-    functions = (x, y, z)
-    ends = [(f.values[-1] - f.values[0]) / (f.position[-1] - f.position[0]) for f in functions]
-    added = slopes_of(turn_of(np.array(ends)))
-    x, y, z = (_moved(f, rate) for f, rate in zip(functions, added, strict=True))
-    return AxisFunctions((x, y, z), model.order)
-
-
-def _moved(function: AxisFunction, rate: Floats) -> AxisFunction:
-    """Return a function that begins at zero, with slopes (3,) in mm per mm added."""
-    along = function.position - function.position[0]
-    values = function.values - function.values[0] + along[:, None] * rate
-    return AxisFunction(function.position, values)

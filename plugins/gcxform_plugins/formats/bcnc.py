@@ -30,11 +30,6 @@ class BcncProbe(gx.ErrorFormat):
     suffixes: ClassVar[tuple[str, ...]] = (".probe",)
     control: ClassVar[str] = "bCNC levels a program with it itself"
 
-    @classmethod
-    def recognises(cls, path: Path) -> bool:
-        """Return whether the name ends in .probe."""
-        return path.suffix.lower() in cls.suffixes and path.is_file()
-
     def read(self, path: Path) -> gx.Lattice:
         """Return the height map of the points."""
         rows = gx.text_rows(path)

@@ -37,11 +37,6 @@ class RenishawRtl(gx.ErrorFormat):
     name: ClassVar[str] = "renishaw-rtl"
     suffixes: ClassVar[tuple[str, ...]] = (".rtl",)
 
-    @classmethod
-    def recognises(cls, path: Path) -> bool:
-        """Return whether the name ends in .rtl, or the file begins as they do."""
-        return path.suffix.lower() in cls.suffixes and path.is_file()
-
     def read(self, path: Path) -> gx.PitchTables:
         """Return the mean errors of the axis, forward and reverse."""
         sections = _sections(path)

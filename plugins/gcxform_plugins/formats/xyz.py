@@ -27,11 +27,6 @@ class Xyz(gx.ErrorFormat):
     suffixes: ClassVar[tuple[str, ...]] = (".xyz",)
     control: ClassVar[str] = "UGS and bCNC level a program with it themselves"
 
-    @classmethod
-    def recognises(cls, path: Path) -> bool:
-        """Return whether the name ends in .xyz."""
-        return path.suffix.lower() in cls.suffixes and path.is_file()
-
     def read(self, path: Path) -> gx.Lattice:
         """Return the height map of the points."""
         rows = gx.text_rows(path)
