@@ -175,6 +175,13 @@ CODES: dict[str, tuple[str, str]] = {
         "that begin and end compensation must stay whole. Put the pass `cutter-comp` before: then "
         "there is the path of the centre, and no compensation in the control.",
     ),
+    "GX234": (
+        "A program for a lathe",
+        "A block has what only lathes of this control have: G50 or G92 with S, which limits the "
+        "spindle; G70 to G76 with U, W or P and Q, which repeat a contour; U or W as a step. On "
+        "a lathe X is a diameter, and G90, G92 and G94 may be cycles, so that all the rest would "
+        "be misread too. Programs for lathes of this kind are not read.",
+    ),
     "GX240": (
         "A program that has been turned into commands already",
         "A comment in the program says that a run has turned its positions into others: into "

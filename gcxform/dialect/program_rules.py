@@ -78,6 +78,7 @@ class BlockRule:
     unknown_m         what an M code outside `m_codes` is; None: it is refused
     m_first           M codes that may move axes do so before the motion of their block, for certain
     m_order_chosen    the machine decides when an M code beside a move acts, so that it is assumed
+    mill              blocks that only lathes have, such as G50 S or G71 P Q, are refused as such
     spindle_words     codes, and S, beside which a word `$` says which spindle is meant
     """
 
@@ -90,6 +91,7 @@ class BlockRule:
     unknown_m: MCode | None = None
     m_first: bool = False
     m_order_chosen: bool = False
+    mill: bool = False
     spindle_words: frozenset[str] = frozenset()
 
 

@@ -11,6 +11,7 @@ from gcxform.dialect.arithmetic import Key
 from gcxform.dialect.dialect import INCH, LINEAR, Dialect
 from gcxform.modal.columns import fill
 from gcxform.modal.findings import Findings
+from gcxform.modal.meaning.lathe import LATHE
 from gcxform.modal.meaning.tables import (
     COLUMNS,
     CYCLES,
@@ -126,9 +127,16 @@ class Lines:
         """Raise InputError for what can be seen without numbers."""
         self._deleted_blocks()
         self._lone_line_ends()
-        for line in np.flatnonzero(self.flag("wrong")).tolist():
+        wrong = np.flatnonzero(self.flag("wrong")).tolist()
+        lathe = [line for line in wrong if self._refusal_code(line) == LATHE]
+        for line in lathe[:1] or wrong:  # one sign of a lathe explains all the others
             self.findings.add_refusal(line)
         self.findings.raise_if_any()
+
+    def _refusal_code(self, line: int) -> str:
+        """Return the code with which a line is refused by its shape."""
+        refusal = self.table.meanings[int(self.shape[line])].refusal
+        return refusal.code if refusal is not None else ""
 
     def _live(self) -> int:
         """Return how many lines the control executes before the program ends."""

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.dialect import LINEAR, Dialect
 from gcxform.modal.meaning.choices import choices_of
+from gcxform.modal.meaning.lathe import lathe_signs
 from gcxform.modal.meaning.meaning import (
     ACT_ORDER,
     DRILL_WORDS,
@@ -45,6 +46,7 @@ def _read(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Re
     if shape.block.error is not None:
         column, message = shape.block.error
         yield Refusal("GX101", column - 1, 1, f"this is not {dialect.name} G-code: {message}")
+    yield from lathe_signs(shape, dialect)
     yield from _items(shape, dialect, meaning)
     yield from _g_codes(shape, dialect, meaning)
     yield from _m_codes(shape, dialect, meaning)

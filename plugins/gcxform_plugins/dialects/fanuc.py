@@ -36,6 +36,7 @@
 | G31 | ends at its target at the latest; the axes named then stand nowhere known |
 | G36, G37 | measure a tool and write its offset: refused |
 | G33, G34, G63 | threads and taps with a feed whose meaning changes: refused |
+| G50 S, G92 S, G71 P Q and their like | are of lathes: the program is refused as one (GX234) |
 | G27, G29, G60 | over, from or past points that the program does not tell: refused |
 | M98 M99 | executed where the program is in the file or in one beside it, which its number names |
 | L of M98 | counts, or the digits of P before four |
@@ -180,6 +181,7 @@ class Fanuc(gx.Dialect):
     text_rule = gx.TextRule(lower_case=False)
     block_rule = gx.BlockRule(
         last_code_wins=True,
+        mill=True,
         m_order_chosen=True,
         unknown_m=gx.MCode("user", loses_position=True),
     )
