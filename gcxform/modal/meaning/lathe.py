@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from gcxform.dialect.dialect import Dialect
 from gcxform.modal.meaning.meaning import Refusal
 from gcxform.modal.meaning.numbered import code_of
-from gcxform.syntax.shapes import CODES, Shape
-from gcxform.syntax.tree import Number, Word
+from gcxform.syntax.shapes import Shape
+from gcxform.syntax.tree import CODES, Number, Word
 
 TURNING = frozenset(f"G{number}" for number in range(70, 77))
 """Cycles that repeat a contour, from P to Q, with what U and W leave for finishing."""
