@@ -37,10 +37,8 @@ MEANINGS: Final[Mapping[Question, str]] = {
     ("input", "block-delete"): 'whether blocks with a slash run: "execute" or "skip"',
     ("input", "units"): 'units before the first G20 or G21: "mm" or "in"',
     ("input", "parameters"): "what a parameter is worth that the program reads and does not set",
-    (
-        "tool",
-        "length",
-    ): "from the gauge point of the spindle to the tip, mm: what H calls",
+    ("control", "inert-m"): "which of these M codes move no axis and set no variable: [20, 21]",
+    ("tool", "length"): "from the gauge point of the spindle to the tip, mm: what H calls",
     ("tool", "radius"): "mm: what D calls, half of it where the control has diameters",
     ("work-offset",): "the zero of the work offset in the machine, as the page of offsets has it",
     ("home",): "the reference point in the machine, mm or degrees",

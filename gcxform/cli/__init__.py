@@ -33,7 +33,7 @@ VERBS: Final = {
     "resume": "Print the blocks that make a restart at a line safe.",
     "calibrate": "Turn measurements of a machine into its error model.",
     "simulate": "Test a machine with known errors, before and after compensation.",
-    "machine": "Show the rotary axes of a machine, or take them over from a control.",
+    "machine": "Write a machine file for programs, show its rotary axes, or import them.",
     "show": "Draw an error model, or the error along the path of a program.",
     "table": "Convert error tables from one format to another, or show one.",
     "list": "List what is installed, or the options of one thing.",

@@ -11,10 +11,12 @@ import click
 
 from gcxform import plot
 from gcxform.cli import VERBS, equip
+from gcxform.cli.common import options
 from gcxform.cli.common.derived_options import built, help_of, metavar_of
 from gcxform.cli.common.failures import warn
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
 from gcxform.cli.common.request import Asked
+from gcxform.cli.program.new_machine import Places, write_new
 from gcxform.contract.options import OptionDoc, describe
 from gcxform.diagnostics import Location, UsageError
 from gcxform.machine.chain import Chain, chain_of
@@ -84,6 +86,32 @@ def _chain(asked: Asked, number: int | None) -> tuple[Chain, Machine]:
         message = f"{machine.name} has no tool {number}"
         raise UsageError.one("GX707", message, Location("--tool"), f"known: {known}")
     return chain_of(machine, machine.tools[number]), machine
+
+
+# --- from programs ---
+
+
+@command.command("new")
+@options.FROM
+@click.option("-x", "--chain", metavar="CHAIN", help="What is to be done.  [default: any passes]")
+@click.option(
+    "-o", "--output", metavar="FILE", default=STDOUT, help="The machine file.  [default: stdout]"
+)
+@click.option("-p", "--pipeline", metavar="FILE", help="A pipeline file for the rest.")
+@click.argument("programs", metavar="PROGRAM...", nargs=-1, required=True)
+def new(
+    programs: tuple[str, ...],
+    dialect: str | None,
+    chain: str | None,
+    output: str,
+    pipeline: str | None,
+) -> None:
+    """Write a machine file with what programs need, to be filled in.
+
+    Programs are files, or folders of them. Each setting says how many programs need it; "?" stands
+    for what is to be filled in. Where FILE is there already, what is new is added to it.
+    """
+    write_new(programs, dialect, chain, Places(output, pipeline))
 
 
 # --- from controls ---

@@ -97,7 +97,7 @@ class Visit:
 
     def __init__(self, pipeline: Pipeline, source: Source, look: Look) -> None:
         self.pipeline, self.source, self.look = pipeline, source, look
-        self.used: Used = used_by(source, pipeline.source)
+        self.used: Used = used_by(source, pipeline.source, pipeline.machine_reading)
         self.so_far = Missing()
         self.tried_where_lost = False
 
@@ -274,4 +274,6 @@ def _without(source: Source, lines: set[int]) -> Source:
     for number, line in enumerate(b"".join(source.windows()).splitlines(keepends=True), 1):
         text = line.rstrip(b"\r\n")
         kept.append(b" " * len(text) + line[len(text) :] if number in lines else line)
-    return Source.of_bytes(b"".join(kept), source.name)
+    blanked = Source.of_bytes(b"".join(kept), source.name)
+    blanked.folder, blanked.suffix = source.folder, source.suffix
+    return blanked

@@ -3,34 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from gcxform.catalogue.questions import Question
+from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.dialect import LINEAR, Dialect
+from gcxform.flow.straightened import written_out
 from gcxform.modal.meaning.meaning import Act, Meaning
 from gcxform.modal.reader import windows_of
+from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source
 
-Lines = dict[str, int]
-"""The line, from 1, on which something is first used, by its name."""
+Places = dict[str, Location]
+"""Where something is first used, by its name."""
 LENGTHS = frozenset({"length", "length-negative", "length-add", "vectors"})
 ANY = "*"
 
 
 @dataclass
 class Used:
-    """What a program names of its machine, as machine files call it; executed or not."""
+    """What a program names of its machine, as machine files call it.
+
+    `own_codes` are M codes that the dialect does not have; `of_home` are the axes that go there.
+    """
 
     first_offset: str = "G54"
-    offsets: Lines = field(default_factory=dict)
-    lengths: Lines = field(default_factory=dict)
-    radii: Lines = field(default_factory=dict)
-    homes: Lines = field(default_factory=dict)
-    user_codes: Lines = field(default_factory=dict)
+    offsets: Places = field(default_factory=dict)
+    lengths: Places = field(default_factory=dict)
+    radii: Places = field(default_factory=dict)
+    homes: Places = field(default_factory=dict)
+    own_codes: Places = field(default_factory=dict)
     axes: str = "XYZ"
+    of_home: dict[str, str] = field(default_factory=dict)
 
     def named(self, question: Question) -> Iterator[Question]:
         """Yield the questions that one of all tools, or of a place, stands for in this program."""
@@ -39,55 +47,75 @@ class Used:
             numbers = self.radii if key == ["radius"] else self.lengths
             yield from ((table, number, *key) for number in numbers)
         elif table in ("work-offset", "home"):
-            of_table = self.offsets or {self.first_offset: 0}
-            if table == "home":
-                of_table = self.homes
-            names = list(of_table) if name == ANY else [name]
-            yield from ((table, one, axis) for one in names for axis in self.axes)
+            known = list(self.offsets) or [self.first_offset]
+            known = list(self.homes) if table == "home" else known
+            for one in known if name == ANY else [name]:
+                yield from ((table, one, axis) for axis in self.of_home.get(one, self.axes))
         else:
             yield question
 
 
-def used_by(source: Source, dialect: type[Dialect]) -> Used:
-    """Return what a program uses of its machine, as far as numbers are written there."""
+def used_by(source: Source, dialect: type[Dialect], reading: Reading) -> Used:
+    """Return what a program uses of its machine, and what it calls, as far as that is written."""
     used = Used(dialect.initial["frame"])
     used.axes = "".join(axis for axis in source.axes(dialect.axes) if axis in LINEAR)
     if dialect.translator is not None:
         return used
+    with suppress(InputError):  # as it stands, then
+        source = written_out(source, dialect, reading)
     for window, reader in windows_of(source, dialect):
         reader.table.update()
         for number in np.unique(window.shape).tolist():
             meaning = reader.table.meanings[number]
-            if meaning.acts or meaning.compensates or "D" in meaning.slots:
-                _look(used, dialect, window, meaning, np.flatnonzero(window.shape == number))
+            if meaning.acts or meaning.lost_by or "D" in meaning.slots:
+                for line in np.flatnonzero(window.shape == number).tolist():
+                    _look(used, dialect, _Block(source, window, meaning, line))
     return used
 
 
-def _look(
-    used: Used, dialect: type[Dialect], window: Window, meaning: Meaning, lines: np.ndarray
-) -> None:
-    """Note what the lines of one shape use."""
-    for line in lines.tolist():
-        at = window.first_line + line + 1
-        values = window.value[int(window.first_number[line]) :]
-        for act in meaning.acts:
-            words = {letter: float(values[slot]) for letter, slot in act.slots}
-            _act(used, dialect, act, words, at)
-        radius = float(values[meaning.slots["D"]]) if "D" in meaning.slots else 0.0
-        if meaning.compensates and not meaning.is_length("D") and radius > 0:
-            used.radii.setdefault(f"{radius:g}", at)
+@dataclass(frozen=True)
+class _Block:
+    """A line of a window."""
+
+    source: Source
+    window: Window
+    meaning: Meaning
+    line: int
+
+    def value(self, slot: int) -> float:
+        """Return a number of the line."""
+        return float(self.window.value[int(self.window.first_number[self.line]) + slot])
+
+    @property
+    def place(self) -> Location:
+        """Where it stands."""
+        line = self.window.first_line + self.line + 1
+        return self.source.shown(Location(self.source.name, line))
 
 
-def _act(used: Used, dialect: type[Dialect], act: Act, words: dict[str, float], line: int) -> None:
-    """Note what one code uses; `words` are those that it takes."""
+def _look(used: Used, dialect: type[Dialect], block: _Block) -> None:
+    """Note what a block uses."""
+    meaning = block.meaning
+    for act in meaning.acts:
+        _act(used, dialect, act, block)
+    number = block.value(meaning.slots["D"]) if "D" in meaning.slots else 0.0
+    if meaning.compensates and not meaning.is_length("D") and number > 0:
+        used.radii.setdefault(f"{number:g}", block.place)
+    for code in meaning.lost_by - {-1}:
+        used.own_codes.setdefault(str(code), block.place)
+
+
+def _act(used: Used, dialect: type[Dialect], act: Act, block: _Block) -> None:
+    """Note what one code of a block uses."""
+    words = {letter: block.value(slot) for letter, slot in act.slots}
     if act.name == "work":
         name = dialect.offset_rule.names.get(act.code, act.code)
         named = [f" {letter}{value:.0f}" for letter, value in words.items()]
-        used.offsets.setdefault(name + "".join(named), line)
+        used.offsets.setdefault(name + "".join(named), block.place)
     elif act.name in LENGTHS and words.get("H", 0.0) > 0:
-        used.lengths.setdefault(f"{words['H']:g}", line)
+        used.lengths.setdefault(f"{words['H']:g}", block.place)
     elif act.name == "home":
-        second = f" P{words['P']:.0f}" if "P" in words else ""
-        used.homes.setdefault(act.code + second, line)
-    elif act.name == "user-code":
-        used.user_codes.setdefault(act.code, line)
+        name = act.code + (f" P{words['P']:.0f}" if "P" in words else "")
+        axes = used.of_home.get(name, "") + (block.meaning.axes or used.axes)
+        used.of_home[name] = "".join(axis for axis in LINEAR if axis in axes)
+        used.homes.setdefault(name, block.place)

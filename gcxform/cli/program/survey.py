@@ -1,0 +1,163 @@
+"""What the programs of a shop need of their machine: which settings, and how many programs each.
+
+A program needs a setting that it is refused without, be it read for the passes that are named or
+for any pass that keeps positions; it uses a work offset, a tool or a reference point that it names,
+which passes in the coordinates of the machine need.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final, NamedTuple
+
+from gcxform.catalogue.questions import PIPELINE, Question
+from gcxform.cli.program.missing import Look, Visit
+from gcxform.cli.program.used import ANY, Used
+from gcxform.diagnostics import FileError, Location, UsageError
+from gcxform.dialect.dialect import Dialect
+from gcxform.flow.subprogram_file import is_subprogram
+from gcxform.guess import guess_dialect
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.syntax.source import Source
+
+NO_PROGRAMS: Final = re.compile(
+    r".*\.(toml|json|csv|md|pdf|docx?|xlsx?|png|jpe?g|gif|bmp|svg|html?|zip|stl|ste?p|ig[es]+|dxf|dwg"
+    r"|py|bak|tbl)",
+    re.IGNORECASE,
+)
+"""Names of files in a folder that are none; what is named itself is read whatever its name is."""
+INERT: Final = ("control", "inert-m")
+LEFT_SHOWN: Final = 20
+
+
+@dataclass
+class Tally:
+    """In which programs something is found, and the place of the first."""
+
+    programs: set[str] = field(default_factory=set)
+    first: Location | None = None
+
+    def add(self, program: str, where: Location | None) -> None:
+        """Count a program."""
+        self.programs.add(program)
+        self.first = self.first or where
+
+    def said(self, of: int) -> str:
+        """Return it in words that follow a verb."""
+        first = "" if self.first is None else f", e.g. {Path(self.first.file).name}"
+        line = f":{self.first.line}" if self.first is not None and self.first.line else ""
+        return f"by {len(self.programs)} of {of} program{'s' * (of > 1)}{first}{line}"
+
+
+@dataclass
+class Survey:
+    """What a number of programs need, what they use, and what no setting helps."""
+
+    programs: int = 0
+    subprograms: int = 0
+    needed: dict[Question, Tally] = field(default_factory=dict)
+    used: dict[Question, Tally] = field(default_factory=dict)
+    own_codes: dict[str, Tally] = field(default_factory=dict)
+    refused: dict[tuple[str, str], Tally] = field(default_factory=dict)
+
+    def add(self, source: Source, pipelines: Sequence[Pipeline], look: Look) -> None:
+        """Take a program into account; a subprogram counts with those that call it."""
+        if is_subprogram(source, pipelines[0].source):
+            self.subprograms += 1
+            return
+        visits = [Visit(pipeline, source, look) for pipeline in pipelines]
+        found = [visit.run(look(visit.pipeline, source)) for visit in visits]
+        self.programs += 1
+        self._uses(source.name, visits[0].used)
+        for cause in (cause for each in found for cause in each.causes.values()):
+            for question in cause.asks:
+                tally = self.needed.setdefault(question, Tally())
+                tally.add(source.name, cause.found[0].where)
+        for cause in found[0].causes.values():
+            if not cause.asks:
+                key = cause.found[0].code, cause.found[0].message
+                self.refused.setdefault(key, Tally()).add(source.name, cause.found[0].where)
+
+    def _uses(self, program: str, used: Used) -> None:
+        whole: tuple[tuple[Question, dict[str, Location]], ...] = (
+            (("work-offset", ANY, "X"), used.offsets),
+            (("tool", ANY, "length"), used.lengths),
+            (("tool", ANY, "radius"), used.radii),
+            (("home", ANY, "X"), used.homes),
+        )
+        for question, places in whole:
+            for one in used.named(question) if places else ():
+                self.used.setdefault(one, Tally()).add(program, places.get(one[1]))
+        for code, where in used.own_codes.items():
+            self.own_codes.setdefault(code, Tally()).add(program, where)
+
+    # --- in words ---
+
+    def asked(self) -> list[Question]:
+        """Return all questions: those of the pipeline file, of the control, and the rest."""
+        order = (PIPELINE, "control", "home", "work-offset", "tool")
+        found = dict.fromkeys([*self.needed, *self.used])
+        if self.own_codes:
+            found[INERT] = None
+        return sorted(found, key=lambda q: (order.index(q[0]), _by_number(q[1]), q[2:]))
+
+    def notes(self) -> dict[Question, str]:
+        """Return who asks, by question."""
+        notes = {q: f"used {t.said(self.programs)}" for q, t in self.used.items()}
+        notes |= {q: f"needed {t.said(self.programs)}" for q, t in self.needed.items()}
+        codes = [f"M{c} {t.said(self.programs)}" for c, t in self.own_codes.items()]
+        return notes | {INERT: f"used: {'; '.join(codes)}"}
+
+    def left(self) -> Iterator[str]:
+        """Yield what no setting helps, in words, the commonest first."""
+        common = sorted(self.refused.items(), key=lambda each: -len(each[1].programs))
+        for (code, message), tally in common[:LEFT_SHOWN]:
+            yield f"{code} {tally.said(self.programs)}: {message}"
+        if len(common) > LEFT_SHOWN:
+            yield f"... and {len(common) - LEFT_SHOWN} more"
+
+
+def _by_number(name: str) -> tuple[int, str]:
+    return (int(name), "") if name.isdecimal() else (0, name)
+
+
+class Programs(NamedTuple):
+    """Programs, the dialect that fits them, and files in which no dialect fits."""
+
+    dialect: str
+    files: list[Path]
+    others: list[Path]
+
+
+def files_of(paths: Iterable[str]) -> list[Path]:
+    """Return the files that are named, and those of folders; raises FileError for none."""
+    found: list[Path] = []
+    for path in map(Path, paths):
+        inside = sorted(each for each in path.rglob("*") if each.is_file()) if path.is_dir() else []
+        named = [each for each in inside if not NO_PROGRAMS.fullmatch(each.name)]
+        found += [each for each in named if not each.name.startswith(".")] or [path]
+    if empty := next((path for path in found if path.is_dir()), None):
+        raise FileError.one("GX901", f"there are no programs in {empty}")
+    return found
+
+
+def dialect_of(files: Iterable[Path], known: Mapping[str, type[Dialect]]) -> Programs:
+    """Return in which dialect files are best read together. Raises UsageError for several."""
+    scores: Counter[str] = Counter()
+    programs: list[Path] = []
+    others: list[Path] = []
+    for path in files:
+        guess = guess_dialect(path, known)
+        (programs if guess.dialects else others).append(path)
+        for name in guess.evidence if guess.dialects else ():
+            scores[name] += guess.score(name)  # type: ignore[assignment]
+    best = [name for name in scores if scores[name] == max(scores.values())]
+    if len(best) != 1:
+        several = f"{' or '.join(sorted(best))} fit as well" if best else "none fits"
+        message = f"which dialect are the programs in? {several}"
+        raise UsageError.one("GX722", message, hint="-f fanuc; `gcxform list dialects`")
+    return Programs(best[0], programs, others)
