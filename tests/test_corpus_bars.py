@@ -14,7 +14,7 @@ import grbl_rules
 
 import corpus
 
-LEAST = {"fanuc": (5, 4), "grbl": (38, 37), "haas": (7, 6), "linuxcnc": (54, 37)}
+LEAST = {"fanuc": (8, 4), "grbl": (38, 37), "haas": (7, 6), "linuxcnc": (59, 42)}
 """What goes through already, in each chain: it may not become less."""
 
 

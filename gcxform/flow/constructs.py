@@ -11,7 +11,7 @@ from gcxform.flow.execution import HINT, Execution
 from gcxform.flow.listing import bare
 from gcxform.flow.run_state import whole_number
 from gcxform.syntax.grammar import is_comment
-from gcxform.syntax.tree import BLANKS, Statement, Word
+from gcxform.syntax.tree import BLANKS, Block, Mark, Statement, Word
 
 ORDERS = {
     "sub": ("sub", "endsub"),
@@ -74,6 +74,8 @@ class Constructs:
             self.program.line = line
             block = self.program.listing.block(line)
             items = bare(block) if self.program.stands(block) else []
+            if scope.startswith("sub ") and _is_name(block):
+                raise self._misfit("the name of a program stands inside a subprogram")
             if len(items) == 1 and isinstance(items[0], Word) and items[0].address == "O":
                 number = whole_number(items[0])
                 self.labels.setdefault(-1 if number is None else number, []).append(line)
@@ -139,3 +141,8 @@ class Constructs:
 
     def _misfit(self, message: str) -> Exception:
         return self.program.refusal("GX223", message)
+
+
+def _is_name(block: Block) -> bool:
+    """Whether a line is an O-word with a name and nothing behind it."""
+    return any(isinstance(i, Mark) and i.kind == "program_name" for i in block.items)

@@ -21,6 +21,8 @@ from gcxform.syntax.tree import Block, Word
 
 FIRST = 5420
 RADIUS, ANGLE = "@", "^"
+ZERO = 1e-6
+"""A radius, in the unit of the program, at which rounding alone may say what the angle is."""
 AXES_OF_PLANE = frozenset("XY")
 
 
@@ -69,15 +71,18 @@ class Places:
         words = {w.address: w for w in block.words if w.address in (RADIUS, ANGLE)}
         if not words:
             return []
-        self._refuse(block, [*words.values()])
-        x, y = self._point(block, words)
+        incremental = self._refuse(block, [*words.values()])
+        x, y = self._step(block, words) if incremental else self._point(block, words)
         first, *rest = sorted(words.values(), key=lambda word: word.start)
         return [(first.start, first.end, f"X{decimal(x)} Y{decimal(y)}")] + [
             (word.start, word.end, "") for word in rest
         ]
 
-    def _refuse(self, block: Block, words: list[Word]) -> None:
-        """Refuse polar words that the control does not take, or that are not resolved."""
+    def _refuse(self, block: Block, words: list[Word]) -> bool:
+        """Refuse polar words that the control does not take, or that are not resolved.
+
+        Return whether they count from where the axes stand.
+        """
         place = words[0].start, words[0].end
         if any(word.address in AXES_OF_PLANE for word in block.words):
             raise self.program.refusal("GX203", "X or Y beside polar words", place=place)
@@ -90,21 +95,35 @@ class Places:
             raise self.program.refusal("GX203", "polar words are of G17 alone", place=place)
         named = groups.get("distance")
         incremental = named == "G91" if named else bool(state.groups["distance"])
-        if incremental or state.frames.diameter or "units" in groups or "frame" in groups:
-            message = "polar words are resolved in G90 and G8, in the unit and frame before"
+        if state.frames.diameter or "units" in groups or "frame" in groups:
+            message = "polar words are resolved in G8, in the unit and frame before"
             raise self.program.refusal("GX210", message, place=place)
+        return incremental
 
     def _point(self, block: Block, words: dict[str, Word]) -> tuple[float, float]:
+        """Return the point that polar words name; one of them that is missing is as before."""
         radius = self.program.number(block, RADIUS)
         angle = self.program.number(block, ANGLE)
         if len(words) < 2:
-            here = self.words()
-            x, y = here["X"], here["Y"]
-            if math.isnan(x + y) or (ANGLE not in words and math.hypot(x, y) == 0.0):
-                word = next(iter(words.values()))
-                message = f"{word.address} alone needs a point away from the zero to start from"
-                raise self.program.refusal("GX220", message, place=(word.start, word.end))
+            x, y = self._here(words, ANGLE not in words)
             radius = math.hypot(x, y) if RADIUS not in words else radius
             angle = math.degrees(math.atan2(y, x)) if ANGLE not in words else angle
         turned = math.radians(angle)
         return radius * math.cos(turned), radius * math.sin(turned)
+
+    def _step(self, block: Block, words: dict[str, Word]) -> tuple[float, float]:
+        """Return the way in G91: to the radius and the angle of here, with the words added."""
+        x, y = self._here(words, True)
+        radius = math.hypot(x, y) + self.program.number(block, RADIUS, 0.0)
+        turned = math.atan2(y, x) + math.radians(self.program.number(block, ANGLE, 0.0))
+        return radius * math.cos(turned) - x, radius * math.sin(turned) - y
+
+    def _here(self, words: dict[str, Word], has_angle: bool) -> tuple[float, float]:
+        """Return X and Y of where the axes stand; `has_angle`: refuse the zero, which has none."""
+        here = self.words()
+        x, y = here["X"], here["Y"]
+        if math.isnan(x + y) or (has_angle and math.hypot(x, y) < ZERO):
+            word = next(iter(words.values()))
+            message = f"{word.address} needs a point away from the zero to start from"
+            raise self.program.refusal("GX220", message, place=(word.start, word.end))
+        return x, y

@@ -172,8 +172,27 @@ MUTATIONS = (
     _flow(
         "polar words turn the wrong way",
         "gcxform/flow/places.py",
+        "math.cos(turned), radius * math.sin(turned)\n",
+        "math.cos(turned), -radius * math.sin(turned)\n",
+    ),
+    _flow(
+        "polar words in G91 forget the angle of here",
+        "gcxform/flow/places.py",
+        "turned = math.atan2(y, x) + math.radians",
+        "turned = math.radians",
+    ),
+    _flow(
+        "polar words in G91 lead to a point",
+        "gcxform/flow/places.py",
+        "radius * math.sin(turned) - y",
         "radius * math.sin(turned)",
-        "-radius * math.sin(turned)",
+    ),
+    _flow(
+        "the name of a program stands in a subprogram",
+        "gcxform/flow/constructs.py",
+        'if scope.startswith("sub ") and _is_name(block):',
+        "if False:",
+        "tests/test_corpus.py::test_case[flow/name-in-sub]",
     ),
     _flow(
         "positions are always mm",

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from oracles.flows import COMPARE, Flow
 
-NAMES = ("#1", "#2", "#31", "#<a>", "#<_g>", "#[1 + 1]", "#<_value>", "#30")
+NAMES = ("#1", "#2", "#31", "#<a>", "#<_g>", "#[1 + 1]", "#abs[2]", "#<_value>", "#30")
 SET = ("#1", "#2", "#31", "#<a>", "#<_g>", "#[31]", "#[#30]")
 TOLD = ("#5420", "#5421", "#5422", "#<_x>", "#<_z>", "#5220", "#5400", "#<_metric>", "#<_plane>")
 """What the interpreter knows of itself; all of it is known before the machine runs."""

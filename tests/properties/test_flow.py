@@ -13,7 +13,7 @@ import gcxform as gx
 COUNT = 3 * settings.default.max_examples  # 225; the profile `long` asks for 60,000
 RICH = 2 * settings.default.max_examples
 NOT_RESOLVED = (
-    "polar words are resolved in G90",
+    "polar words are resolved in G8",
     "the control loses its place",
     "the control may run this loop once only",
     "in a do loop the control",

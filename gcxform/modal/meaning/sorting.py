@@ -78,6 +78,9 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
             meaning.marked = True
             meaning.deleted |= item.kind == "block_delete"
             meaning.percent |= item.kind == "percent" and not _dropped(shape, dialect)
+            if item.kind == "program_name" and not _stands_alone(item, shape):
+                size = item.end - item.start
+                yield Refusal("GX203", item.start, size, "a name of a program stands by itself")
         elif isinstance(item, Comment):
             yield from _comment(item, shape, dialect, meaning)
 
@@ -124,7 +127,7 @@ def _statement(item: Statement, shape: Shape, dialect: type[Dialect]) -> Iterato
         yield Refusal("GX206", item.start, item.end - item.start, message, hint)
 
 
-def _stands_alone(item: Statement, shape: Shape) -> bool:
+def _stands_alone(item: Statement | Mark, shape: Shape) -> bool:
     """Whether a statement is all that its block does."""
     others = (other for other in shape.block.items if other is not item)
     return all(
