@@ -16,6 +16,7 @@ from gcxform.flow.lasting_values import Lasting
 from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.lookup import Found, LookupFailedError, only
 from gcxform.flow.run_state import UNKNOWN, Call, Edit, RunState, computed, has_slash
+from gcxform.flow.walk import Step, Walk, split
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import Block, Comment, Statement, Word
 from gcxform.system.limits import how_to_raise, limits
@@ -34,6 +35,7 @@ class Execution(RunState):
         super().__init__(listing, reading, keeps)
         self.at = 0
         self.ended = self.acted = False
+        self.executed = 0
         self.skipped: set[int] = set()
         self.percents = 0
         self.steps = 0
@@ -41,6 +43,10 @@ class Execution(RunState):
         self.lasting = Lasting(self)
         self.times = np.zeros(len(listing), np.int64)
         self.kept: tuple[Definition, ...] = ()
+        self.deciding: set[int] = set()
+        self.jumps: set[int] = set()
+        self.named: set[int] = set()
+        self.tied = ""
 
     # --- the walk ---
 
@@ -53,7 +59,10 @@ class Execution(RunState):
             special = self.listing.special  # more with every file that is called
             following = int(np.searchsorted(special, self.at))
             stop = int(special[following]) if following < len(special) else len(self.listing)
-            if stop > self.at:
+            plain = stop > self.at
+            behind = stop if plain else self.at + 1
+            self.walked.append(Step(self.at, behind, self.blocks, len(self.calls), self._level()))
+            if plain:
                 self._copy(stop)
             else:
                 self._step()
@@ -64,6 +73,10 @@ class Execution(RunState):
             self.line = self.at - 1
             message = "the file of a subprogram ends here, without a return to what has called it"
             raise self.refusal("GX223", message)
+
+    def _level(self) -> int:
+        """Count the calls that have parameters of their own: not those by M97 and M98."""
+        return sum(not call.name.startswith("M9") for call in self.calls)
 
     def _copy(self, stop: int) -> None:
         """Take plain lines over as they stand."""
@@ -85,6 +98,7 @@ class Execution(RunState):
             self._copy_line()
         elif block.error is None and self.act(block):
             self.acted = True
+            self.deciding.add(self.walked[-1].first)
         else:
             self.write(block)
 
@@ -130,7 +144,7 @@ class Execution(RunState):
         That are the definitions in `kept`, which other programs may call, and the last percent
         sign, which the control reads.
         """
-        self.kept = kept
+        self.kept, self.executed = kept, self.blocks
         for each in self.kept:
             lines = np.arange(each.first, each.last + 1)
             self.put(self.listing.raw(each.first, each.last + 1), lines)
@@ -139,6 +153,31 @@ class Execution(RunState):
             last -= 1
         if self.ended and not self.times[last] and self.listing.meaning(last).percent:
             self.put(self.listing.raw(last, last + 1), np.array([last]))
+
+    def walk(self) -> Walk:
+        """Return what was done, once the program is closed."""
+        steps, jumps, made = split(self.walked, self.jumps, self.lasting.made)
+        return Walk(
+            self.listing,
+            steps,
+            self.executed,
+            tuple(dict.fromkeys(self.entered())),
+            tuple(each for each in self.definitions() if each.first < self.listing.own),
+            self.kept,
+            tuple(self._called_files()),
+            frozenset(self.deciding),
+            jumps,
+            made,
+            frozenset(self.named),
+            self.tied,
+            self.times,
+            self.arithmetic,
+        )
+
+    def _called_files(self) -> Iterator[Definition]:
+        for file in self.listing.files:
+            first, behind = self.listing.part(file.first)
+            yield Definition(file.name, first, behind - 1)
 
     # --- what differs between controls ---
 

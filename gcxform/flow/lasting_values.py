@@ -9,6 +9,7 @@ from gcxform.dialect.null import MAYBE
 from gcxform.flow.messages import prints_values, told
 from gcxform.flow.run_state import Edit, RunState
 from gcxform.flow.text import assignment
+from gcxform.flow.walk import Made
 from gcxform.modal.expressions.value import written
 from gcxform.syntax.tree import Block, Comment
 
@@ -18,15 +19,18 @@ class Lasting:
 
     assigned    the parameters that outlive the program, with the line that set each, and its value
     locals_set  how often one was set that ends with its call, or with the program
+    made        all of both, with the step that set each
     """
 
     def __init__(self, program: RunState) -> None:
         self.program = program
         self.assigned: list[tuple[int, Key, float]] = []
         self.locals_set = 0
+        self.made: list[Made] = []
 
     def account(self, key: Key, value: float) -> str:
         """Return an assignment as it is written: nothing for a parameter that ends with the run."""
+        self.made.append(Made(len(self.program.walked) - 1, key, value))
         if not self.program.arithmetic.outlives(key):
             self.locals_set += 1
             return ""

@@ -207,6 +207,7 @@ class MacroB(Execution):
             first, name = self._labelled(target), f"M97 P{target}"
             if self._around(first):
                 raise self.refusal("GX223", f"N{target} stands inside a loop that is not running")
+            self.jumps.add(len(self.walked) - 1)
         else:
             target, times = self._unpacked(target, times, block)
             first = self._start(target)
@@ -326,6 +327,7 @@ class MacroB(Execution):
         into = [p for p in self._around(target) if p not in self._around(self.line)]
         if into:
             raise self.refusal("GX223", f"N{number:g} stands inside a loop that is not running")
+        self.jumps.add(len(self.walked) - 1)
         if target > self.line:
             self.at = target
         else:

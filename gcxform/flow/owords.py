@@ -62,6 +62,7 @@ class OWords(Execution):
         items = bare(block)
         if NAMES_POSITION.search(block.text):
             self.acted = True
+            self.tied = "positions are read (#5420 to #5428)"
             self.set(self.places.parameters())
         elif FIRST in self.parameters:
             self.parameters |= dict.fromkeys(POSITIONS, math.nan)
@@ -77,11 +78,16 @@ class OWords(Execution):
         if codes & {98, 99}:
             self._call_by_number(block, items, 98 in codes)
             return True
-        return self.modes.act(block, codes)
+        if self.modes.act(block, codes):
+            self.tied = "modes are stored (M70 to M73)"
+            return True
+        return False
 
     def edits(self, block: Block) -> list[Edit]:
         """Return what is written otherwise: values, and polar words."""
         polar = self.places.polar_edits(block)
+        if polar:
+            self.tied = "there are polar words"
         return [*polar, *(e for e in super().edits(block) if not _within(e, polar))]
 
     def becomes_other(self, block: Block) -> bool:
@@ -233,7 +239,9 @@ class OWords(Execution):
         if not times and (self.calls or self._is_inside(self.line)):
             message = "the control loses its place at a call that is made no time at all"
             raise self.refusal("GX223", message, "leave the block out")
-        if times:
+        if not times:
+            self.named.add(found[0])
+        else:
             name = f"M98 P{number:g}"
             self.enter(Call(name, self.at, found[0] + 1, int(times), {}, self.counters))
             self.modes.enter()

@@ -18,6 +18,7 @@ from gcxform.dialect.arithmetic import Arithmetic, Key, NoValueError, whole
 from gcxform.dialect.null import NULL, Null
 from gcxform.flow.listing import CODES_OF_CALLS, STORED_MODES, Listing
 from gcxform.flow.text import DECIMALS, decimal
+from gcxform.flow.walk import Step
 from gcxform.modal.expressions.value import Evaluator, LocatedError, parameter_key, settable
 from gcxform.modal.lines import DISTANCES
 from gcxform.modal.numbers_without_point import assumed_rounding, hint_of_rounding
@@ -70,7 +71,8 @@ class RunState:
         self.line = 0
         self.text: list[bytes] = []
         self.origin: list[Ints] = []
-        self.size = self.changes = 0
+        self.size = self.blocks = self.changes = 0
+        self.walked: list[Step] = []
         self.assumed: dict[str, None] = {}
         self.inch = (reading.units or self.dialect.initial["units"]) in ("in", "G20")
         self.seen = 0
@@ -86,6 +88,7 @@ class RunState:
             text += b"\n"
         self.text.append(text)
         self.origin.append(lines)
+        self.blocks += len(lines)
         self.size += len(text)
 
     def write_line(self, text: str) -> None:

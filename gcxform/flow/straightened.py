@@ -9,7 +9,8 @@ import numpy as np
 from gcxform.diagnostics import GcxformError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.detection import has_flow
-from gcxform.flow.executed import Executed, WrittenOut
+from gcxform.flow.executed import Executed
+from gcxform.flow.walk import Walked
 from gcxform.modal.inventory import Tally
 from gcxform.modal.state import Reading
 from gcxform.syntax.source import Source
@@ -48,7 +49,7 @@ def written_out(
         source.assumed = tuple(run.assumed)
         return source
     lines = np.concatenate([np.empty(0, np.int64), *run.origin])
-    found = WrittenOut(source, b"".join(run.text), lines, run.assumed, run.listing.files)
+    found = Walked(source, b"".join(run.text), lines, run.walk(), run.assumed)
     found.executed = _account(run)
     found.called = _inside(run)[lines]
     return found

@@ -22,6 +22,7 @@ class Certificate:
     `measured` what passes tell of their own work, the largest over the program, and `added` what
     the output has and the source does not, in all. `inventory` is what source and output hold, by
     kind, and the rules that account for the difference, each with how many it adds or takes away.
+    `written_out` says which calls and loops were written out, though others might stay, and why.
     `assumed` is what was taken for granted, in sentences, and `warnings` what of it may surprise;
     these are shown, and not written.
     """
@@ -39,6 +40,7 @@ class Certificate:
     added: dict[str, int] = field(default_factory=dict)
     inventory: dict[str, Any] = field(default_factory=dict)
     stamps: dict[str, Any] = field(default_factory=dict)
+    written_out: list[str] = field(default_factory=list)
     not_checked: list[str] = field(default_factory=list)
     assumed: list[str] = field(default_factory=list)
     warnings: list[Diagnostic] = field(default_factory=list)

@@ -46,6 +46,7 @@ def certificate(run: Run, out: Output) -> Certificate:
         made.source["files"] = [each.described() for each in run.files]
     made.measured = run.measured
     made.added = run.added
+    made.written_out = [] if run.structure is None else list(run.structure.why)
     made.inventory = dict(run.account.table())
     if run.frame.behind or run.frame.before:
         made.inventory["percent_signs"] = {

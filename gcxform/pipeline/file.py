@@ -100,6 +100,9 @@ class OutputSpec:
     ] = "changed"
     trailing_zeros: Annotated[bool | None, Option("write 1.500 instead of 1.5")] = None
     stamp: Annotated[bool, Option("say in comments what was done to positions")] = True
+    structure: Annotated[
+        Literal["keep", "written-out"], Option("what becomes of subprograms and loops")
+    ] = "keep"
 
 
 @dataclass(frozen=True)

@@ -109,6 +109,7 @@ class Pipeline(Plan):
             spec.warnings,
             spec.limits,
             spec.open,
+            spec.output.structure,
         )
 
     # --- runs ---

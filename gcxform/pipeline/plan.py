@@ -47,6 +47,7 @@ from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY, NO_CYCLES, WORKPIECE_F
 
 ARC_ROUNDING = 2.0  # of the last decimal: what rounding ends and centre can add along an arc
 CENTRE_ROUNDING = 0.003  # mm: what rounding moves a centre by depends on the contour's corners
+STRUCTURES = ("keep", "written-out")
 WORDS = ("changed", "programmed", "all")
 
 
@@ -70,6 +71,8 @@ class Plan:
     again    run on stamped programs all the same, as if they were not
     limits   what a run may take; None: as much as is usual
     open     the places of values that the pipeline file leaves to be filled in
+    structure  "keep": calls and loops stay where each line is written the same every time it is
+             executed; "written-out": they are written as the blocks that are executed
     """
 
     source: type[Dialect]
@@ -87,6 +90,7 @@ class Plan:
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)
     limits: Limits | None = None
     open: Open = field(default_factory=dict, compare=False)
+    structure: str = "keep"
 
     def __post_init__(self) -> None:
         for name, value in self._taken().items():
@@ -118,6 +122,7 @@ class Plan:
             "budget": None if self.budget is None else limit("budget", self.budget),
             "growth": None if self.growth is None else limit("growth", self.growth),
             "words": arguments.chosen("words", self.words, WORDS),
+            "structure": arguments.chosen("structure", self.structure, STRUCTURES),
             "decimals": {
                 arguments.chosen("decimals", letter, tuple(ascii_uppercase)): arguments.whole(
                     f"decimals of {letter}", count, MOST_DECIMALS

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -24,7 +23,9 @@ from gcxform.modal.state import Reading
 from gcxform.pipeline.cutter_comp import check_compensated, whole_stretches
 from gcxform.pipeline.mixed_feeds import check_mixed
 from gcxform.pipeline.output import Output
+from gcxform.pipeline.placing import placing
 from gcxform.pipeline.plan import Plan
+from gcxform.pipeline.structure import Structure
 from gcxform.pipeline.text_passes import TextRun
 from gcxform.pipeline.whole_cuts import whole_cuts, whole_sections
 from gcxform.proof.inventory import Books, Others
@@ -83,6 +84,7 @@ class Run:
         self.assumed = self.source.assumed
         self.executed = getattr(self.source, "executed", None)
         self.files = getattr(self.source, "files", ())
+        self.structure = Structure.of(plan, source, self.source, bool(self.marks.read))
         self.source, self.dialect = plan.without_tip_codes(self.source)
         self.ending = Ending(self.dialect, source.name)
         self.books = Books(plan.context, frozenset())
@@ -172,6 +174,8 @@ class Run:
             self._over(size, out, progress)
         except GcxformError as error:
             raise located(error, self.source) from None
+        if self.structure is not None:
+            self._fold(self.structure, out)
         if self.heads is not None:
             out.close(self.heads)
             if out.proof is not None and (self.findings.moves or not self.heads.waits):
@@ -202,6 +206,18 @@ class Run:
         with worker(read, long) as reader, worker(self._check, proved) as proof:
             windows = ahead(reader, self._counted(texts, out))
             self._write_all(windows, proof, out, progress)
+
+    def _fold(self, structure: Structure, out: Output) -> None:
+        """Hand the program on with its calls and loops, or written out where that cannot be."""
+        folded = structure.fold()
+        if folded is None:
+            self._put(structure.text, structure.lines.tolist(), out)
+            return
+        if self.verify != "off":
+            reading = self._reading_of_output(self.plan.machine_reading)
+            structure.prove(folded, reading, self.account, self.findings)
+        out.lines_in = structure.lines_read
+        out.put(*self.text.edit(folded.text, list(folded.lines)))
 
     def _check(self, *given: Any) -> Findings:
         """Check a window that is to be proved: see `Verifier.check`."""
@@ -292,7 +308,9 @@ class Run:
 
     def _hand_on(self, window: Window, emitted: Emitted, out: Output) -> None:
         out.lines_in += len(window)
-        if out.source_map is None and not self.text.passes:
+        if self.structure is not None:
+            self.structure.parts.append(emitted)
+        elif out.source_map is None and not self.text.passes:
             out.put(emitted.text, emitted.source)
         else:
             self._put(emitted.text, emitted.source.tolist(), out)
@@ -331,18 +349,10 @@ class Run:
             if step.demands.resolves:
                 self._prove(step, meant, path, window)
                 meant = path
-        with self._placing(window):
+        with placing(window, self.source.name):
             check_mixed(read.path, path, self.plan.context)
         path = in_words_of(self.plan.target, path)
         return Transformed(window, table, read, meant, path)
-
-    @contextmanager
-    def _placing(self, window: Window) -> Iterator[None]:
-        """Give the text of their lines to errors about lines of a window."""
-        try:
-            yield
-        except GcxformError as error:
-            raise _located(error, window, self.source.name) from None
 
     def _held(self, number: int, path: Toolpath) -> Toolpath:
         """Return a path that knows where what a step has written before has left the axes."""
@@ -352,11 +362,11 @@ class Run:
         """Let a pass that resolves prove its path, against the one that the program means."""
         if self.verify == "off":
             return
-        with self._placing(window):
+        with placing(window, self.source.name):
             step.prove(before, after, self.plan.context)
 
     def _apply(self, step: Pass, path: Toolpath, window: Window) -> Toolpath:
-        with self._placing(window):
+        with placing(window, self.source.name):
             after = step.apply(path, self.plan.context)
             if not step.demands.resolves:
                 check_compensated(step, path, after)
@@ -384,17 +394,3 @@ class Run:
         enough = math.ceil(out.growth or 0)
         hint = f"give a step that cuts moves a larger tolerance, or growth = {enough} in [budget]"
         raise InputError.one("GX507", message, Location(self.source.name, out.lines_in), hint)
-
-
-def _located(error: GcxformError, window: Window, file: str) -> GcxformError:
-    """Return an error with the text of the lines it is about."""
-    found = []
-    for diagnostic in error.diagnostics:
-        where = diagnostic.where
-        if where is not None and not where.file and where.line:
-            text = window.line(where.line - 1 - window.first_line).decode("latin-1")
-            start = len(text) - len(text.lstrip()) + 1
-            where = Location(file, where.line, start, text, max(1, len(text.strip())))
-            diagnostic = diagnostic.at(where)
-        found.append(diagnostic)
-    return type(error)(tuple(found))

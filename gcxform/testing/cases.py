@@ -22,7 +22,8 @@ program, `pipeline.toml:3:1 GX701`. With neither, the output is the input. Furth
     any other     a file beside the pipeline
 
 A pipeline that says nothing of `stamp` in [output] writes no stamps here, because a stamp has a
-digest of all options, and few cases are about it.
+digest of all options, and few cases are about it. One that says nothing of `structure` writes calls
+and loops out: what is executed shows in no other way.
 
 Where every byte matters (line ends, encodings) a case is a directory with these files in it, the
 prose in `prose.txt`.
@@ -130,6 +131,8 @@ def outcome(case: Case, folder: Path, places: Mapping[str, Path] | None = None) 
         pipeline = Pipeline.load(folder / "pipeline.toml")
         if b"stamp = " not in case.sections["pipeline.toml"]:
             pipeline = replace(pipeline, stamp=False)
+        if b"structure = " not in case.sections["pipeline.toml"]:
+            pipeline = replace(pipeline, structure="written-out")
         result = pipeline.run(case.sections["input.nc"], verify="full")
     except GcxformError as error:
         return Outcome(diagnostics=error.diagnostics)

@@ -12,6 +12,7 @@ from faults import (
     cycles,
     fagor,
     flow,
+    folding,
     frames,
     guarding,
     heads,
@@ -47,6 +48,7 @@ from faults.mutation import Mutation
 MUTATIONS: tuple[Mutation, ...] = (
     *cycles.MUTATIONS,
     *flow.MUTATIONS,
+    *folding.MUTATIONS,
     *guarding.MUTATIONS,
     *fagor.MUTATIONS,
     *commands.MUTATIONS,

@@ -11,6 +11,9 @@ COMPARE = ("lt", "gt", "le", "ge", "eq", "ne")
 class Flow:
     """One program being written; numbers of labels are never used twice."""
 
+    stores = 0.3
+    """How many of the subprograms of M98 bring modes back."""
+
     def __init__(self, seed: int) -> None:
         self.choose = random.Random(seed)
         self.labels = iter(range(1, 1000))
@@ -130,11 +133,35 @@ class Flow:
             lines += self.body(2)
         lines.append("M2")
         for number in (900, 901):
-            head = ["M73"] if self.choose.random() < 0.3 else []
+            head = ["M73"] if self.choose.random() < self.stores else []
             lines += [f"O{number}", *head, *self.plain(0), *self.mode(0), *self.plain(0), "M99"]
         return "\n".join(lines).encode() + b"\n"
 
 
-def program(seed: int) -> bytes:
+class Kept(Flow):
+    """One in which less rests on the path itself, so that more of its structure can be kept."""
+
+    stores = 0.03
+
+    def mode(self, depth: int) -> list[str]:
+        move = self.choose.choice(("X1", "Y-0.5", "X#31", "Z[#1 * 2]"))
+        return self.choose.choice((["G90"], ["G91", f"G0 {move}", "G90"], [f"G91 G0 {move} #2=3"]))
+
+    def stored(self, depth: int) -> list[str]:
+        return super().stored(depth) if self.choose.random() < 0.05 else self.call(depth)
+
+    def position(self, depth: int) -> list[str]:
+        return super().position(depth) if self.choose.random() < 0.05 else self.plain(depth)
+
+    def call(self, depth: int) -> list[str]:
+        lines = super().call(depth)
+        return lines if self.choose.random() < 0.1 else [n for n in lines if "_value" not in n]
+
+    def subprogram(self) -> list[str]:
+        lines = super().subprogram()
+        return lines if self.choose.random() < 0.1 else [n for n in lines if n != "M73"]
+
+
+def program(seed: int, kind: type[Flow] = Flow) -> bytes:
     """Return the program of a seed."""
-    return Flow(seed).program()
+    return kind(seed).program()

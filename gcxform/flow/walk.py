@@ -1,0 +1,182 @@
+"""What an execution did, step by step: which lines, in which order, and how many calls deep.
+
+Who writes a program with its calls and loops needs to know which executed blocks a line stands for.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from gcxform.dialect.arithmetic import Arithmetic, Key
+from gcxform.flow.executed import WrittenOut
+from gcxform.flow.listing import Definition, Listing
+from gcxform.modal.expressions.value import parameter_key
+from gcxform.syntax.source import Source
+from gcxform.system.arrays import Ints
+
+PARAMETER = re.compile(r"#[ \t]*(<[^<>]*>|[0-9]+)?")
+
+
+class Step(NamedTuple):
+    """A line that was executed, or plain lines in a row: from `first` up to `stop`, from 0.
+
+    `block` is the first block that was written for it, or would have been; `depth` counts the calls
+    that it stands in, `level` those of them that have parameters of their own.
+    """
+
+    first: int
+    stop: int
+    block: int
+    depth: int
+    level: int
+
+
+class Made(NamedTuple):
+    """An assignment that a step made."""
+
+    step: int
+    key: Key
+    value: float
+
+
+@dataclass(frozen=True)
+class Walk:
+    """One execution.
+
+    blocks       how many blocks were executed; what is kept behind the end follows them
+    loops        first and last line of each loop, branches too
+    definitions  the subprograms of the file, and those of them that stay: see `Execution.close`
+    files        those that are called, each as one definition
+    deciding     the lines that decided what is executed next, or stored modes
+    jumps        the steps that went to a line by its number
+    made         the assignments, in order
+    named        first lines of subprograms that are named by what calls them no time at all
+    tied         why the order of execution rests on the path itself; nothing if it does not
+    times        how often each line was executed, (lines,)
+    """
+
+    listing: Listing
+    steps: tuple[Step, ...]
+    blocks: int
+    loops: tuple[tuple[int, int], ...]
+    definitions: tuple[Definition, ...]
+    kept: tuple[Definition, ...]
+    files: tuple[Definition, ...]
+    deciding: frozenset[int]
+    jumps: frozenset[int]
+    made: tuple[Made, ...]
+    named: frozenset[int]
+    tied: str
+    times: Ints
+    arithmetic: Arithmetic
+
+    @cached_property
+    def reads(self) -> dict[int, frozenset[Key | None]]:
+        """The parameters that each line names; None for one that is computed."""
+        found = {}
+        for line in range(len(self.listing)):
+            text = self.listing.window.line(line)
+            if b"#" in text:
+                names = PARAMETER.findall(text.decode("latin-1"))
+                found[line] = frozenset(parameter_key(f"#{n}") if n else None for n in names)
+        return found
+
+    def block_end(self, step: int) -> int:
+        """Return the block behind those of a step."""
+        behind = step + 1
+        return self.steps[behind].block if behind < len(self.steps) else self.blocks
+
+    @cached_property
+    def _returned(self) -> list[int]:
+        found, open_ = [len(self.steps)] * len(self.steps), list[int]()
+        for number, step in enumerate(self.steps):
+            while open_ and self.steps[open_[-1]].depth >= step.depth:
+                found[open_.pop()] = number
+            open_.append(number)
+        return found
+
+    def returned(self, step: int) -> int:
+        """Return the step behind a call: the first that is no deeper than the one that calls."""
+        return self._returned[step]
+
+    @cached_property
+    def _left(self) -> list[int]:
+        found, open_ = [len(self.steps)] * len(self.steps), list[int]()
+        for number, step in enumerate(self.steps):
+            while open_ and self.steps[open_[-1]].level > step.level:
+                found[open_.pop()] = number
+            open_.append(number)
+        return found
+
+    def left(self, step: int) -> int:
+        """Return the step behind all those that have the parameters of a step."""
+        return self._left[step]
+
+    @cached_property
+    def readers(self) -> dict[int, list[int]]:
+        """The steps of the lines that name parameters, ascending."""
+        found: dict[int, list[int]] = {}
+        for number, step in enumerate(self.steps):
+            for line in range(step.first, step.stop):
+                if line in self.reads:
+                    found.setdefault(line, []).append(number)
+        return found
+
+    def calls(self, step: int) -> bool:
+        """Whether a step begins a call."""
+        behind = step + 1
+        return behind < len(self.steps) and self.steps[behind].depth > self.steps[step].depth
+
+    def made_by(self, begin: int, end: int) -> tuple[Made, ...]:
+        """Return the assignments of steps up to one."""
+        low, high = (bisect_left(self.made, at, key=lambda made: made.step) for at in (begin, end))
+        return self.made[low:high]
+
+
+class Walked(WrittenOut):
+    """The blocks that a walk has executed, of which `text` is all of them."""
+
+    def __init__(
+        self, source: Source, text: bytes, origin: Ints, walk: Walk, assumed: Iterable[str]
+    ) -> None:
+        super().__init__(source, text, origin, assumed, walk.listing.files)
+        self.walk = walk
+        self.text = text
+
+
+def parts_of(first: int, last: int, others: Iterable[tuple[int, int]]) -> tuple[int, int]:
+    """Return lines from first to last, with all others that they overlap in part."""
+    grown = True
+    while grown:
+        grown = False
+        for begin, end in others:
+            overlaps = begin <= last and first <= end
+            nested = (first <= begin and end <= last) or (begin <= first and last <= end)
+            if overlaps and not nested:
+                first, last, grown = min(first, begin), max(last, end), True
+    return first, last
+
+
+def split(
+    steps: list[Step], jumps: set[int], made: list[Made]
+) -> tuple[tuple[Step, ...], frozenset[int], tuple[Made, ...]]:
+    """Return steps in which every line that was jumped to begins one; jumps and assignments so."""
+    targets = sorted({steps[j + 1].first for j in jumps if j + 1 < len(steps)})
+    found: list[Step] = []
+    places: list[int] = []
+    for step in steps:
+        first = step.first
+        for target in targets[bisect_right(targets, first) : bisect_left(targets, step.stop)]:
+            found.append(
+                step._replace(first=first, stop=target, block=step.block + first - step.first)
+            )
+            first = target
+        found.append(step._replace(first=first, block=step.block + first - step.first))
+        places.append(len(found) - 1)
+    moved = tuple(each._replace(step=places[each.step]) for each in made)
+    return tuple(found), frozenset(places[j] for j in jumps), moved

@@ -1,0 +1,65 @@
+"""Faults of keeping subprograms and loops: the proof, which executes the result, must find them."""
+
+from __future__ import annotations
+
+from faults.mutation import CORPUS, Mutation
+
+FOLDING = "gcxform/emit/folding.py"
+VALUES = "gcxform/emit/values_left.py"
+PROOF = "gcxform/proof/structure.py"
+PLANTED = "tests/test_folding.py"
+AGREES = "tests/properties/test_folding.py"
+
+
+def _fold(name: str, old: str, new: str, file: str = FOLDING, tests: str = CORPUS) -> Mutation:
+    return Mutation(f"structure: {name}", file, old, new, tests)
+
+
+MUTATIONS = (
+    _fold("texts that differ are the same", "if len(texts) > 1:", "if False:"),
+    _fold(
+        "what stays as it was is no text", "if old != new:", "if True:", "gcxform/emit/spelled.py"
+    ),
+    _fold("runs that differ are the same", "if len(same) == 1 else None", "", VALUES),
+    _fold(
+        "no value is left",
+        "for key in sorted(read & values.keys(), key=str):",
+        "for key in ():",
+        VALUES,
+    ),
+    _fold(
+        "nobody reads behind a run",
+        "if at < len(steps) and steps[at]",
+        "if False and steps[at]",
+        VALUES,
+    ),
+    _fold(
+        "a callee's values are left", "if steps[made.step].level == level and", "if", VALUES, AGREES
+    ),
+    _fold("stored modes are nothing", "if self.variants and self.walk.tied:", "if False:"),
+    _fold(
+        "a call that reads values stays", "or line in self.walk.reads:", "or False:", tests=AGREES
+    ),
+    _fold(
+        "a number that is jumped to is doubled",
+        "if lost or after[number] > before[number]:",
+        "if False:",
+    ),
+    _fold(
+        "a jump out of a loop is lost", "steps[end].first == unit.last + 1", "True", tests=AGREES
+    ),
+    _fold(
+        "what others call is changed", "        for unit in self.kept:", "        for unit in ():"
+    ),
+    _fold("returned values are not read", "and self._reads_returns():", "and False:", tests=AGREES),
+    _fold(
+        "what is executed is not compared", "    if now == wanted:", "    if True:", PROOF, PLANTED
+    ),
+    _fold(
+        "what is not executed need not stand there",
+        "if not any(new == old for new in written):",
+        "if False:",
+        PROOF,
+        PLANTED,
+    ),
+)
