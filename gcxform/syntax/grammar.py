@@ -100,8 +100,7 @@ def span_of(node: Any) -> tuple[int, int]:
     """Return where a node of lark's stands in its block: columns from 0."""
     if isinstance(node, Token):
         assert node.start_pos is not None
-        assert node.end_pos is not None
-        return node.start_pos, node.end_pos
+        return node.start_pos, node.start_pos + len(node)  # a pickled token has lost its end
     return node.meta.start_pos, node.meta.end_pos
 
 
