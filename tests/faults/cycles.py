@@ -223,4 +223,25 @@ MUTATIONS = (
         "same, same and not folds",
         "tests/test_corpus.py::test_case[bad/gx215-cycle]",
     ),
+    Mutation(
+        "cycles: R above the level is refused where it is copied",
+        "gcxform/modal/cycles/checks.py",
+        "high &= calls.initial | (not self.open_pecks)",
+        "high &= True",
+        "tests/test_corpus.py::test_case[dialects/haas/r-above-the-level]",
+    ),
+    Mutation(
+        "cycles: R above the level ends at R under G98",
+        "gcxform/modal/cycles/checks.py",
+        "high &= calls.initial | (not self.open_pecks)",
+        "high &= not self.open_pecks",
+        "tests/test_corpus.py::test_case[dialects/haas/r-above-the-level-g98]",
+    ),
+    Mutation(
+        "cycles: R above the level is expanded",
+        "gcxform/modal/cycles/checks.py",
+        "high &= calls.initial | (not self.open_pecks)",
+        "high &= calls.initial",
+        "tests/test_corpus.py::test_case[dialects/haas/r-above-the-level-expanded]",
+    ),
 )

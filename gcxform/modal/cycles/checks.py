@@ -31,7 +31,8 @@ class Refusal:
 class Checks:
     """Looks at the columns of stretches; `pecks` (n,): in how many pecks holes are drilled.
 
-    `open_pecks`: where the tool goes between them need not be known.
+    `open_pecks`: where the tool goes between them need not be known, nor when it rises to an R
+    above the level from which the cycle began.
     """
 
     def __init__(
@@ -146,6 +147,7 @@ class Checks:
         yield deep, f"{{code}} with {normal} above R", ""
         if not self.rule.rises_first:
             high = drilled & (stretch.clearance > stretch.initial)
+            high &= calls.initial | (not self.open_pecks)  # G99 ends at R on every control
             message = "{code} with R above the level from which the cycle began"
             yield high, message, "move up before the cycle"
         yield self._moves() > MOST, f"{{code}} would become more than {MOST} moves", ""
