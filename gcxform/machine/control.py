@@ -90,6 +90,7 @@ declare(
         Setting("peck-clearance", "how far above the last depth a peck of G83 begins"),
         _Code("tip-on", "the M code from which the control follows the tip of the tool"),
         _Code("tip-off", "the M code from which it does not"),
+        Setting("tool-length-alone", "what G43 without Z does: Z, or zero", ("moves", "shifts")),
         Setting("tool-length-axis", "where lengths stay in G18 and G19", ("Z",)),
         Setting(TIP_AT_START, "whether it does before the first block", ("off", "on")),
     )

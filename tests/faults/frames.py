@@ -208,4 +208,25 @@ MUTATIONS = (
         "False:",
         "tests/test_corpus.py::test_case[dialects/fanuc/length-without-h]",
     ),
+    Mutation(
+        "frames: a length that shifts zero moves Z too",
+        "gcxform/modal/frames/track.py",
+        'length_may_move or step == "shifts":',
+        "length_may_move:",
+        "tests/test_corpus.py::test_case[dialects/haas/length-alone-shifts]",
+    ),
+    Mutation(
+        "frames: Z does not move with its length",
+        "gcxform/modal/frames/track.py",
+        "self._stand(2, height)",
+        "pass",
+        "tests/test_corpus.py::test_case[dialects/fanuc/length-alone-moves]",
+    ),
+    Mutation(
+        "frames: a length that moves Z shifts zero",
+        "gcxform/modal/frames/track.py",
+        'return word if step == "moves" else np.nan',
+        "return np.nan",
+        "tests/test_corpus.py::test_case[dialects/fanuc/length-alone-moves]",
+    ),
 )

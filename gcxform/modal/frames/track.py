@@ -42,6 +42,8 @@ LENGTHENED = frozenset(
     }
 )
 
+LENGTH_STEP = "tool-length-alone"
+"""The setting that says what another tool length does to Z before Z is programmed."""
 SWITCHED = frozenset({"tip-on", "tip-off"})
 SPATIAL = 0b111  # X, Y and Z as bits
 WHOLE_TURN = 360.0  # degrees
@@ -129,9 +131,9 @@ class Track:
             self.state.position[:] = LEFT  # the angles are the control's own choice
         if act.name in SWITCHED and before.following is not frames.following:
             self._lose(line, 0 if self._upright() else SPATIAL)
+        lengthened = act.name in LENGTHENED and frames.frame() != old
+        height = self._moved_by_length(line, old) if lengthened else np.nan
         tools = self.dialect.tool_rule
-        if act.name in LENGTHENED and tools.length_may_move and frames.frame() != old:
-            self._lose(line, 4)
         if np.isnan(frames.tool[2]) and frames.tool[0] == 0.0 and tools.lengths_aside:
             self.state.assumed[ALONG_Z] = None
         if act.name == "polar":
@@ -139,6 +141,27 @@ class Track:
         if act.name in LOST_BY_TURN:
             self._lose(line, self._turned_by(line, before, frames))
         self.enter(line, old)
+        self._stand(2, height)
+
+    def _moved_by_length(self, line: int, old: Frame) -> float:
+        """Let go of Z where another length may move it; return its word if that stays for certain.
+
+        The word is nan where it does not. `old` is the frame with the length before.
+        """
+        step = self.lines.reading.control.get(LENGTH_STEP)
+        if not self.dialect.tool_rule.length_may_move or step == "shifts":
+            return np.nan
+        word = float(old.words(self.state.position[None, :])[0][2])
+        self._lose(line, 4)
+        return word if step == "moves" else np.nan
+
+    def _stand(self, k: int, word: float) -> None:
+        """Let an axis stand where a word of the frame in force leads, if that is known."""
+        if not np.isfinite(word) or self.frame.matrix is not None:
+            return
+        words = self.frame.words(self.state.position[None, :])[0].copy()
+        words[k] = word
+        self.state.position[k] = self.frame.positions(words[None, :])[0][k]
 
     def _upright(self) -> bool:
         """Whether all rotary axes are known to be at 0, where the tip is as far as the axes are."""

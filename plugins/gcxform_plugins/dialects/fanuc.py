@@ -20,6 +20,7 @@
 | M codes listed in `[control] inert-m` | move no axis and set no variable |
 | G41, G42 | D stays in force; its radius is the machine file's, D0 is none |
 | G41, G42, G40 with an arc | refused: alarm 34 |
+| G43 without Z | moves Z or shifts zero: Z is lost, or `[control] tool-length-alone` says which |
 | G43 without H | takes the H that is in force |
 | H by itself | another length, or the radius of G41: parameter 5001 decides; Z is not known |
 | G10 L2 P0, L20 | shifts all work offsets; sets G54.1 P1, P2 ... |
