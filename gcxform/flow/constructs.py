@@ -54,7 +54,7 @@ class Constructs:
 
     words      the O-word of each line that has one
     construct  what each of these lines belongs to
-    subs       the subprograms, by their labels
+    subs       the subprograms, by the first line of their file and their labels
     labels     the lines of numbers that M98 calls
     """
 
@@ -62,8 +62,9 @@ class Constructs:
         self.program = program
         self.words: dict[int, OWord] = {}
         self.construct: dict[int, Construct] = {}
-        self.subs: dict[str, Construct] = {}
+        self.subs: dict[tuple[int, str], Construct] = {}
         self.labels: dict[int, list[int]] = {}
+        self.first = 0
         self._arrange()
 
     def _arrange(self) -> None:
@@ -72,6 +73,10 @@ class Constructs:
         open_: dict[tuple[str, str], Construct] = {}
         for line in self.program.listing.special.tolist():
             self.program.line = line
+            if line in self.program.listing.seams:
+                self._refuse_open(open_)
+                scope, open_, self.first = "", {}, line + 1
+                continue
             block = self.program.listing.block(line)
             items = bare(block) if self.program.stands(block) else []
             if scope.startswith("sub ") and _is_name(block):
@@ -87,6 +92,10 @@ class Constructs:
                     raise self._misfit("return outside a subprogram")
                 if word.keyword not in ("call", "return"):
                     scope = self._place(line, word, scope, open_)
+        self._refuse_open(open_)
+
+    def _refuse_open(self, open_: dict[tuple[str, str], Construct]) -> None:
+        """Refuse what is not closed in its file."""
         for (_, label), construct in open_.items():
             if construct.lines and ORDERS[construct.kind][-1] != self._keyword(construct.last):
                 self.program.line = construct.lines[0]
@@ -123,7 +132,7 @@ class Constructs:
                 raise self._misfit(f"{word.keyword} closes or leaves nothing with this label")
             construct = open_[inside, word.label] = Construct(word.keyword)
             if word.keyword == "sub":
-                self.subs[word.label] = construct
+                self.subs[self.first, word.label] = construct
         elif not self._goes_on(construct, word.keyword):
             place = f"{construct.kind} in line {construct.lines[0] + 1}"
             raise self._misfit(f"{word.keyword} does not go with what has this label, {place}")

@@ -13,10 +13,11 @@ from collections.abc import Iterator
 
 from gcxform.diagnostics import InputError
 from gcxform.dialect.arithmetic import RS274, Key, NoValueError, whole
-from gcxform.flow.constructs import Construct, Constructs, OWord
-from gcxform.flow.execution import HINT, Execution
+from gcxform.flow.constructs import Construct, OWord
+from gcxform.flow.execution import Execution
 from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.modes import StoredModes
+from gcxform.flow.named_files import Subprograms
 from gcxform.flow.places import FIRST, Places
 from gcxform.flow.run_state import Call, Edit, whole_number
 from gcxform.modal.state import Reading
@@ -42,18 +43,22 @@ class OWords(Execution):
         self.places = Places(self)
         self.counters: dict[int, int] = {}
         self.left: set[int] = set()
-        self.words: dict[int, OWord] = {}
-        self.construct: dict[int, Construct] = {}
-        self.subs: dict[str, Construct] = {}
-        self.labels: dict[int, list[int]] = {}
         self.returned()
-        self.arrange()
+        self.subprograms = Subprograms(self)
 
     def arrange(self) -> None:
         """Find which lines belong together."""
-        arranged = Constructs(self)
-        self.words, self.construct = arranged.words, arranged.construct
-        self.subs, self.labels = arranged.subs, arranged.labels
+        self.subprograms.arrange()
+
+    @property
+    def words(self) -> dict[int, OWord]:
+        """The O-word of each line that has one."""
+        return self.subprograms.arranged.words
+
+    @property
+    def construct(self) -> dict[int, Construct]:
+        """What each of these lines belongs to."""
+        return self.subprograms.arranged.construct
 
     # --- what lines do ---
 
@@ -118,12 +123,14 @@ class OWords(Execution):
 
     def definitions(self) -> Iterator[Definition]:
         """Yield the subprograms, those of numbers up to the next or to the end of the file."""
-        begins = sorted({line for lines in self.labels.values() for line in lines})
-        begins += [construct.lines[0] for construct in self.subs.values()]
-        found = [Definition(_name(label), c.lines[0], c.last) for label, c in self.subs.items()]
-        for number, lines in self.labels.items():
-            for line in lines:
-                after = min((other for other in begins if other > line), default=None)
+        arranged, own = self.subprograms.arranged, self.listing.own
+        subs = {label: c for (first, label), c in arranged.subs.items() if not first}
+        begins = sorted({line for lines in arranged.labels.values() for line in lines})
+        begins += [construct.lines[0] for construct in subs.values()]
+        found = [Definition(_name(label), c.lines[0], c.last) for label, c in subs.items()]
+        for number, lines in arranged.labels.items():
+            for line in (each for each in lines if each < own):
+                after = min((other for other in begins if line < other < own), default=None)
                 last = self.listing.last_of(line, after)
                 if not self.times[line]:
                     found.append(Definition(f"O{number}", line, last))
@@ -142,7 +149,8 @@ class OWords(Execution):
         return None if numbers in (set(), {None}) else frozenset(f"O{n}" for n in numbers)
 
     def _sub(self, word: OWord) -> None:
-        if word.label in self.ahead:
+        met = self.subprograms.met
+        if word.label in self.ahead or met.setdefault(word.label, self.line) != self.line:
             message = "the control has called this subprogram before it came here, and stops"
             raise self.refusal("GX223", message, "write it before the call, or behind the end")
         self.line = self.construct[self.line].last
@@ -158,18 +166,15 @@ class OWords(Execution):
 
     def _call(self, word: OWord) -> None:
         label = self._label(word)
-        construct = self.subs.get(label)
-        if construct is None:
-            message = f"the subprogram {label} is not in this file"
-            raise self.refusal("GX210", message, HINT)
+        first = self.subprograms.line_of(label)
         values = [self.value(node) for node in word.values]
         if len(values) > len(LOCALS):
             raise self.refusal("GX221", f"a call takes at most {len(LOCALS)} values")
         self._refuse_recursion_in_loop(label)
-        if construct.lines[0] > self.line:
+        if self.line < first < self.listing.own:
             self.ahead.add(label)
         own = {key: value for key, value in self.parameters.items() if _is_local(key)}
-        call = Call(f"O{label}", self.at, construct.lines[0] + 1, 1, own, self.counters)
+        call = Call(f"O{label}", self.at, first + 1, 1, own, self.counters)
         self.parameters = {k: v for k, v in self.parameters.items() if k not in own}
         given = [*values, *[0.0] * (len(LOCALS) - len(values))]
         self.set(dict(zip(LOCALS, given, strict=True)))
@@ -232,10 +237,7 @@ class OWords(Execution):
         number, times = self.number(block, "P"), self.number(block, "L", 1.0)
         if not (number % 1 == 0 and times % 1 == 0 and times >= 0):
             raise self.refusal("GX221", "M98 takes the number of a subprogram, and a count in L")
-        found = [line for line in self.labels.get(int(number), []) if line > self.line]
-        if not found:
-            message = f"the subprogram O{number:g} is not behind this block in the file"
-            raise self.refusal("GX210", message, HINT)
+        first = self.subprograms.line_of_number(int(number))
         if not times and (self.calls or self._is_inside(self.line)):
             message = "the control loses its place at a call that is made no time at all"
             raise self.refusal("GX223", message, "leave the block out")
@@ -243,7 +245,7 @@ class OWords(Execution):
             self.named.add(found[0])
         else:
             name = f"M98 P{number:g}"
-            self.enter(Call(name, self.at, found[0] + 1, int(times), {}, self.counters))
+            self.enter(Call(name, self.at, first + 1, int(times), {}, self.counters))
             self.modes.enter()
             self.counters = {}
             # On its way to the number the control may pass an M99 or endsub, which sets them.

@@ -14,6 +14,24 @@ def _flow(name: str, file: str, old: str, new: str, tests: str = CASES) -> Mutat
 
 MUTATIONS = (
     _flow(
+        "a file of a name is not asked for what it begins",
+        "gcxform/flow/named_files.py",
+        "if file is not None and here is not None:",
+        "if False:",
+    ),
+    _flow(
+        "what stands before a call in a file is found",
+        "gcxform/flow/named_files.py",
+        "if behind is None or (first and behind < line):",
+        "if behind is None:",
+    ),
+    _flow(
+        "what was passed over is forgotten in a file",
+        "gcxform/flow/owords.py",
+        "met.setdefault(word.label, self.line)",
+        "met.get(word.label, self.line)",
+    ),
+    _flow(
         "a caller finds other modes behind a subprogram",
         "gcxform/pipeline/subprogram.py",
         "if codes := _left_otherwise(run):",

@@ -25,11 +25,12 @@ import subprocess
 import tempfile
 import threading
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 
 from oracles.canon import CALL, CanonMove, CanonProgram, Reader
 
@@ -84,9 +85,10 @@ def available() -> bool:
     return shutil.which("rs274") is not None
 
 
-def run(program: bytes) -> CanonProgram:
-    """Interpret one program in a process of its own; raise `Rejected`."""
-    output = _execute(_marked(program, 0))
+def run(program: bytes, files: Mapping[str, bytes] | None = None) -> CanonProgram:
+    """Interpret one program in a process of its own, beside files; raise `Rejected`."""
+    marked = _marked(program, 0)
+    output = _beside(marked, files) if files else _execute(marked)
     reader = Reader()
     for line, name, arguments in output.calls[0] if output.calls else []:
         reader.call(line, name, arguments)
@@ -163,14 +165,21 @@ def _execute(source: bytes) -> _Output:
     return _collect(text, message)
 
 
-def _asked(source: bytes) -> tuple[str, str]:
+def _beside(source: bytes, files: Mapping[str, bytes]) -> _Output:
+    """Run one file in a folder of others; what is asked so is not kept."""
+    text, message = _asked(source, files)
+    return _collect(text, message)
+
+
+def _asked(source: bytes, files: Mapping[str, bytes] = MappingProxyType({})) -> tuple[str, str]:
     """Run one file; return canon calls, tagged with the line whose marker comes next, and why not.
 
     Raises subprocess.TimeoutExpired.
     """
     with tempfile.TemporaryDirectory() as folder:
         at = Path(folder)
-        (at / "in.ngc").write_bytes(source)
+        for name, content in {**files, "in.ngc": source}.items():
+            (at / name).write_bytes(content)
         (at / "tools").write_text("".join(map(_tool_line, range(1, 100))))
         command = ["rs274", "-g", "-t", "tools", "-v", "var", "in.ngc", "out"]
         home = os.environ | {"HOME": folder}

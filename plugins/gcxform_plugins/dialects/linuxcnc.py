@@ -50,7 +50,8 @@
 | M100 to M199 | run a program of the machine: refused, but for `user-codes` and `inert-m` |
 | @ and ^ | polar words: become X and Y; in G91, G7, G18 or G19 refused |
 | comments | `(MSG,` `(PRINT,` `(LOG,` `(PROBEOPEN` `(ABORT,` and their like are executed |
-| O-words, M98 M99 | executed, in the file; what the interpreter gets wrong is refused |
+| O-words, M98 M99 | executed; what the interpreter gets wrong is refused |
+| what they call | is found as the interpreter does, in files of small letters and .ngc too |
 """
 
 from __future__ import annotations
@@ -102,6 +103,7 @@ CYCLE_RULE = v.CycleRule(
     one_plane=False,
     initial_level=False,
 )
+FILES = gx.LookupRule(names=("{name}",), endings=(".ngc",))
 USER_CODE = gx.MCode("user", takes="PQ", act="user-code", loses_position=True)
 # fmt: off
 ACTIVE = (
@@ -189,7 +191,7 @@ class LinuxCNC(gx.Dialect):
         m_first=True,
         spindle_words=frozenset({"S", "M3", "M4", "M5", "M19", "M51", "G95", "G96", "G97"}),
     )
-    flow_rule = gx.FlowRule("o-words", v.RS274)
+    flow_rule = gx.FlowRule("o-words", v.RS274, lookup=FILES)
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     feed_rule = gx.FeedRule(
         mode_clears=True,
