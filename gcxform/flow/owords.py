@@ -165,8 +165,7 @@ class OWords(Execution):
             self.returned(math.nan)  # only who reads it must know it
 
     def _call(self, word: OWord) -> None:
-        label = self._label(word)
-        first = self.subprograms.line_of(label)
+        first = self.subprograms.line_of(label := self._label(word))
         values = [self.value(node) for node in word.values]
         if len(values) > len(LOCALS):
             raise self.refusal("GX221", f"a call takes at most {len(LOCALS)} values")
@@ -242,10 +241,10 @@ class OWords(Execution):
             message = "the control loses its place at a call that is made no time at all"
             raise self.refusal("GX223", message, "leave the block out")
         if not times:
-            self.named.add(found[0])
+            self.named.add(first)
         else:
-            name = f"M98 P{number:g}"
-            self.enter(Call(name, self.at, first + 1, int(times), {}, self.counters))
+            counts = self.counters
+            self.enter(Call(f"M98 P{number:g}", self.at, first + 1, int(times), {}, counts))
             self.modes.enter()
             self.counters = {}
             # On its way to the number the control may pass an M99 or endsub, which sets them.
