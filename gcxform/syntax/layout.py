@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -46,13 +46,15 @@ class Layout:
     The mark is the last one that ends before, as an index from 1, and the offset counts from its
     end; mark 0 is the beginning of the line. `marks` (slots,) is the mark whose number the slot
     has, from 0, or -1, and `signs` (slots,) its sign. `slot_of` finds the slot of a piece of the
-    block that has the tree.
+    block that has the tree. `operands` are the slots of the first numbers inside its expressions,
+    those of words and then of assignments; the others follow in the order of the text.
     """
 
     edges: Ints
     marks: Ints
     signs: Floats
     slot_of: dict[Span, int] = field(hash=False)
+    operands: tuple[int, ...]
 
     def __len__(self) -> int:
         return len(self.marks)
@@ -87,9 +89,10 @@ def layout_of(block: Block, marks: list[tuple[int, int, bool]]) -> Layout | None
     words = [word.value for word in block.words if word.address not in CODES]
     comments = [item for item in block.items if isinstance(item, Comment)]
     statements = [item for item in block.items if isinstance(item, Statement)]
-    computed = [value.tree for value in words if isinstance(value, Expression)]
-    trees = chain(computed, *(item.tree.children for item in statements))
-    operands = [span_of(token) for tree in trees for token in _numbers(tree)]
+    trees = [value.tree for value in words if isinstance(value, Expression)]
+    trees += [item.tree for item in statements]
+    inside = [[span_of(token) for token in _numbers(tree)] for tree in trees]
+    operands = [span for spans in inside for span in spans]
     if not _all_marked(block, marks, operands):
         return None
     spans = [(piece.start, piece.end) for piece in (*words, *comments)]
@@ -103,6 +106,7 @@ def layout_of(block: Block, marks: list[tuple[int, int, bool]]) -> Layout | None
         np.array([number[s[1]] if s in numbers else -1 for s in spans], np.int64),
         np.array([-1.0 if block.text[s[0] : s[1]].startswith("-") else 1.0 for s in spans]),
         {span: slot for slot, span in enumerate(spans)},
+        tuple(accumulate(map(len, inside[:-1]), initial=len(words) + len(comments))),
     )
 
 

@@ -23,11 +23,17 @@ from functools import cached_property
 import numpy as np
 
 from gcxform.syntax.numerals import LONGEST, TEN_TO, Digits
+from gcxform.syntax.tree import COMPUTED
 from gcxform.system.arrays import Flags, Floats, Ints
 
 BEGIN = b"\1"  # first byte of an outline: no plain line has it
 NUMBER, COMMENT, TAIL = 2, 3, 4
 """The bytes that stand for numbers, for comments, and for those that go to the end of the line."""
+ODD = (b"\0", b"\1", b"\2", b"\3", b"\4", b"\r")
+EXACT = 15  # digits: so many are exact in a double
+NUMERIC = bytes(each in b".0123456789" for each in range(256))
+BLANK = np.zeros(256, np.bool_)
+BLANK[list(b" \t")] = True
 NAMES = np.zeros(256, np.bool_)
 NAMES[list(b"#GMOgmo")] = True
 """Behind these a number is a name: of a parameter, or of a code."""
@@ -79,119 +85,114 @@ def outline(text: bytes, lines: Ints, start: Ints, end: Ints, comments: Comments
 
 
 class _Scan:
-    """Lines, each with a line end, and what their bytes are; `length` (n,) counts it."""
+    """Lines, each with a line end, and where their pieces are; `length` (n,) counts it."""
 
     def __init__(self, text: bytes, length: Ints, comments: Comments) -> None:
         self.text = text
         self.comments = comments
         self.raw = np.frombuffer(text, np.uint8)
-        self.length = length
         self.begin = np.cumsum(length) - length
-        self.line = np.repeat(np.arange(len(length)), length)
+        self.last = self.begin + length - 1
         self.unclear = np.zeros(len(length), np.bool_)
-        self._refuse((self.raw <= TAIL) | (self.raw == 13))
-        self.opened = np.flatnonzero(self.raw == 40)
-        self.inside = self._comments()
-        self.named = self._angles()
-        self._executed()
+        if any(odd in text for odd in ODD):
+            self._refuse(np.flatnonzero((self.raw <= TAIL) | (self.raw == 13)))
+        pattern = comments.executed
+        found = [match.start() for match in pattern.finditer(text)] if pattern else []
+        self._refuse(np.array(found, np.int64))
 
-    def _refuse(self, wrong: Flags) -> None:
-        """Note the lines of some bytes as unclear."""
-        self.unclear[self.line[wrong]] = True
+    def _line(self, at: Ints) -> Ints:
+        """Return the lines of some offsets."""
+        return np.searchsorted(self.begin, at, side="right") - 1
 
-    def _depth(self, opening: int, closing: int) -> Ints:
-        """Return how deep in brackets each byte stands, those of both brackets included."""
-        opens, closes = self.raw == opening, self.raw == closing
-        depth = np.cumsum(opens, dtype=np.int32) - np.cumsum(closes, dtype=np.int32)
-        last = self.begin + self.length - 1
-        before = np.append(0, depth[last[:-1]])
-        self.unclear |= depth[last] != before
-        return np.asarray(depth + closes - before[self.line])
+    def _refuse(self, at: Ints) -> None:
+        """Note the lines of some offsets as unclear."""
+        self.unclear[self._line(at)] = True
 
-    def _comments(self) -> Flags:
-        """Return which bytes are comments, their signs included."""
-        inside = np.zeros(len(self.raw), np.bool_)
-        if b"(" in self.text or b")" in self.text:
-            depth = self._depth(40, 41)
-            self._refuse((depth < 0) | (depth > 1))
-            inside = depth > 0
-        if b";" in self.text and ";" in self.comments.begin:
-            signs = np.flatnonzero((self.raw == 59) & ~inside)
-            line, first = np.unique(self.line[signs], return_index=True)
-            behind = np.zeros(len(self.raw) + 1, np.int8)
-            behind[signs[first]] = 1
-            behind[self.begin[line] + self.length[line] - 1] = -1
-            tail = np.cumsum(behind[:-1]).astype(np.bool_)
-            self._refuse(tail & ((self.raw == 40) | (self.raw == 41)))
-            inside = inside | tail
-            self.opened = np.union1d(self.opened, signs[first])
-        return inside
+    def _pairs(self, opening: int, closing: int) -> tuple[Ints, Ints]:
+        """Return where pairs of brackets begin and end; what is no pair in a line is unclear."""
+        opens, closes = np.flatnonzero(self.raw == opening), np.flatnonzero(self.raw == closing)
+        both = np.concatenate([opens, closes])
+        order = np.argsort(both, kind="stable")
+        at, opened = both[order], order < len(opens)
+        line = self._line(at)
+        first = np.append(True, line[1:] != line[:-1])[: len(line)]
+        before = np.append(False, opened[:-1])[: len(line)] & ~first
+        last = np.append(first[1:], True)[: len(line)]
+        wrong = (opened == before) | (last & opened)
+        self.unclear[line[wrong]] = True
+        good = ~self.unclear[line]
+        return at[good & opened], at[good & ~opened] + 1
 
-    def _angles(self) -> Flags:
-        """Return which bytes belong to names of parameters, whose digits are letters."""
-        if b"<" not in self.text and b">" not in self.text:
-            return np.zeros(len(self.raw), np.bool_)
-        depth = self._depth(60, 62)
-        self._refuse(((depth < 0) | (depth > 1)) | ((depth > 0) & self.inside))
-        return np.asarray(depth > 0)
+    def _comments(self) -> tuple[Ints, Ints]:
+        """Return where comments begin and end, their signs included."""
+        start, end = self._pairs(40, 41)
+        if b";" not in self.text or ";" not in self.comments.begin:
+            return start, end
+        signs = np.flatnonzero(self.raw == 59)
+        signs = signs[~_inside(signs, start, end) & ~self.unclear[self._line(signs)]]
+        line, nth = np.unique(self._line(signs), return_index=True)
+        tail, stop = signs[nth], self.last[line]
+        self._refuse(start[_inside(start, tail, stop)])
+        opened = np.concatenate([start, tail])
+        order = np.argsort(opened, kind="stable")
+        order = order[~self.unclear[self._line(opened[order])]]
+        return opened[order], np.concatenate([end, stop])[order]
 
-    def _executed(self) -> None:
-        """Leave lines with comments that the control executes to lark."""
-        pattern = self.comments.executed
-        for found in pattern.finditer(self.text) if pattern else ():
-            self.unclear[self.line[found.start()]] = True
-
-    def _numbers(self) -> tuple[Ints, Ints, Floats, Ints]:
-        """Return first byte, end, value and decimals of the numbers that are no names."""
-        point = self.raw == 46
-        digit = ((self.raw - np.uint8(48)) < 10) & ~self.inside & ~self.named
-        numeric = digit | (point & ~self.inside & ~self.named)
-        edges = np.flatnonzero(np.diff(numeric, prepend=False))
-        start, end = edges[0::2], edges[1::2]
-        before = self._before(start)
-        self.unclear[self.line[start[numeric[before] & (start > 0)]]] = True
-        is_name = NAMES[self.raw[before]] & (start > 0) & (self.line[before] == self.line[start])
-        self.unclear[self.line[start[is_name & (before != start - 1)]]] = True
+    def _numbers(self, opened: Ints, closed: Ints) -> tuple[Ints, Ints, Floats, Ints]:
+        """Return first byte, end, value and decimals of numbers that are no names, and no text."""
+        numeric = np.frombuffer(self.text.translate(NUMERIC), np.bool_)
+        edges = np.flatnonzero(np.append(numeric[1:] != numeric[:-1], True)) + 1
+        edges = np.append(0, edges) if len(numeric) and numeric[0] else edges
+        start, end = edges[0::2][: len(edges) // 2], edges[1::2]
+        kept = ~_inside(start, opened, closed)
+        start, end = start[kept], end[kept]
+        is_name = self._names(start)
         start, end = start[~is_name], end[~is_name]
-        points = np.append(0, np.cumsum(point, dtype=np.int32))
-        count = points[end] - points[start]
-        places = np.append(np.flatnonzero(point), len(self.raw))
-        split = np.where(count > 0, places[points[start]], end)
-        fraction = np.where(count > 0, end - split - 1, -1)
-        digits = Digits(self.text)
-        whole, part = split - start, np.maximum(fraction, 0)
-        wrong = (count > 1) | (whole > LONGEST) | (part > LONGEST) | (whole + part == 0)
-        wrong |= whole + part > 15  # all of them are exact in a double
-        self.unclear[self.line[start[wrong]]] = True
-        scale = TEN_TO[np.minimum(part, LONGEST)]
-        value = (digits.before(split, whole) * scale + digits.before(end, part)) / scale
-        return start, end, value, fraction
+        return start, end, *self._values(start, end)
 
-    def _before(self, at: Ints) -> Ints:
-        """Return the last byte that is no blank before some offsets."""
-        blank = (self.raw == 32) | (self.raw == 9)
-        if not blank.any():
-            return np.maximum(at - 1, 0)
-        last = np.maximum.accumulate(np.where(blank, 0, np.arange(len(self.raw))))
-        return np.asarray(last[np.maximum(at - 1, 0)])
+    def _names(self, start: Ints) -> Flags:
+        """Return which numbers are names, or belong to one; blanks inside are unclear."""
+        before = np.maximum(start - 1, 0)
+        while (blank := BLANK[self.raw[before]] & (before > 0)).any():
+            before = before - blank
+        alone = start == self.begin[self._line(start)]
+        is_name = NAMES[self.raw[before]] & ~alone
+        numeric = (self.raw[before] == 46) | ((self.raw[before] - np.uint8(48)) < 10)
+        self._refuse(start[(is_name | numeric) & (before != start - 1) & ~alone])
+        if b"<" in self.text or b">" in self.text:
+            is_name = is_name | _inside(start, *self._pairs(60, 62))
+        return np.asarray(is_name)
+
+    def _values(self, start: Ints, end: Ints) -> tuple[Floats, Ints]:
+        """Return values and decimals of numbers; those that are not exact at once are unclear."""
+        places = np.append(np.flatnonzero(self.raw == 46), len(self.raw))
+        first = np.searchsorted(places, start)
+        has_point = places[first] < end
+        twice = has_point & (places[np.minimum(first + 1, len(places) - 1)] < end)
+        split = np.where(has_point, places[first], end)
+        fraction = np.where(has_point, end - split - 1, -1)
+        whole, part = split - start, np.maximum(fraction, 0)
+        wrong = twice | (whole > LONGEST) | (part > LONGEST) | (whole + part == 0)
+        self._refuse(start[wrong | (whole + part > EXACT)])
+        digits, scale = Digits(self.text), TEN_TO[np.minimum(part, LONGEST)]
+        value = (digits.before(split, whole) * scale + digits.before(end, part)) / scale
+        return value, fraction
 
     def outlines(self, lines: Ints, offset: Ints) -> Outlines:
         """Return the outlines; `offset` (n,) is where the lines begin in the window."""
-        start, end, value, decimals = self._numbers()
-        opened = self.opened
-        closed = self._closed(opened)
+        opened, closed = self._comments()
+        start, end, value, decimals = self._numbers(opened, closed)
         both = np.concatenate([start, opened])
+        line = self._line(both)
         order = np.argsort(both, kind="stable")
-        order = order[~self.unclear[self.line[both[order]]]]
+        order = order[~self.unclear[line[order]]]
         begin, stop = both[order], np.concatenate([end, closed])[order]
         comment = order >= len(start)
-        value = np.concatenate([value, np.full(len(opened), np.nan)])[order]
-        decimals = np.concatenate([decimals, np.full(len(opened), -2)])[order]
         keys = self._keys(begin, stop, comment)
-        count = np.bincount(self.line[begin], minlength=len(lines))
+        count = np.bincount(line[order], minlength=len(lines))
         first = np.cumsum(count) - count
         clear = np.flatnonzero(~self.unclear)
-        shift = (offset - self.begin)[self.line[begin]]
+        shift = (offset - self.begin)[line[order]]
         return Outlines(
             lines[clear],
             [keys[line] for line in clear.tolist()],
@@ -199,27 +200,26 @@ class _Scan:
             count[clear],
             begin + shift,
             stop + shift,
-            value,
-            decimals,
+            np.concatenate([value, np.full(len(opened), np.nan)])[order],
+            np.concatenate([decimals, np.full(len(opened), COMPUTED)])[order],
             comment,
         )
 
-    def _closed(self, opened: Ints) -> Ints:
-        """Return where the comments end that begin at some offsets."""
-        if not len(opened):
-            return opened
-        last = self.begin + self.length - 1
-        closing = np.append(np.flatnonzero(self.raw == 41), len(self.raw))
-        bracket = closing[np.searchsorted(closing, opened)] + 1
-        return np.where(self.raw[opened] == 40, bracket, last[self.line[opened]])
-
     def _keys(self, start: Ints, end: Ints, comment: Flags) -> list[bytes]:
         """Return the lines with one byte for every mark."""
-        edge = np.zeros(len(self.raw) + 1, np.int32)
+        edge = np.zeros(len(self.raw) + 1, np.int8)
         edge[start + 1] += 1
         edge[end] -= 1
-        keep = np.cumsum(edge[:-1]) == 0
+        keep = np.cumsum(edge[:-1], dtype=np.int8) == 0
         copy = self.raw.copy()
         copy[start] = np.where(comment, np.where(self.raw[start] == 40, COMMENT, TAIL), NUMBER)
         lines = copy[keep].tobytes().split(b"\n")[:-1]
         return [BEGIN + line for line in lines]
+
+
+def _inside(at: Ints, start: Ints, end: Ints) -> Flags:
+    """Return which offsets lie in pieces, which are ascending and apart."""
+    if not len(start):
+        return np.zeros(len(at), np.bool_)
+    nth = np.searchsorted(start, at, side="right") - 1
+    return np.asarray((nth >= 0) & (at < end[np.maximum(nth, 0)]))

@@ -22,8 +22,8 @@ import numpy as np
 from gcxform.diagnostics import Diagnostic
 from gcxform.dialect.arithmetic import NoValueError, whole
 from gcxform.dialect.null import Null
-from gcxform.modal.expressions.compiled import NoColumnError
-from gcxform.modal.expressions.functions import computed_in, functions_of
+from gcxform.modal.expressions.compiled import NO_VALUE, NoColumnError
+from gcxform.modal.expressions.functions import computed_in, functions_of, whole_columns
 from gcxform.modal.expressions.unknown import bare_text, hangs_on, may_be_unknown
 from gcxform.modal.expressions.value import Evaluator, LocatedError, settable
 from gcxform.modal.findings import Findings
@@ -44,62 +44,81 @@ def compute(lines: Lines) -> None:
     having = np.flatnonzero(lines.flag("computes"))
     if not len(having) or lines.dialect.flow_rule.arithmetic is None:
         return
-    value = lines.window.value.copy()
-    shapes = lines.shape[having]
-    writes = np.array([_writes(meaning) for meaning in lines.table.meanings], np.bool_)[shapes]
-    for stretch in np.split(having, np.flatnonzero(writes | np.append(False, writes[:-1]))):
-        columns = stretch if len(stretch) < FEW else _columns(lines, stretch, value)
-        for line in columns.tolist():
-            _execute(lines, line, value)
-        if len(lines.findings.found) >= Findings.enough:
-            break
+    _Run(lines, having).run()
     lines.findings.raise_if_any()
-    lines.window = replace(lines.window, value=value)
+
+
+class _Run:
+    """Computes the lines of a window that compute something, in order."""
+
+    def __init__(self, lines: Lines, having: Ints) -> None:
+        self.lines = lines
+        self.having = having
+        self.value = lines.window.value.copy()
+        self.row = self.value.tolist()
+        self.functions = [
+            functions_of(lines.table, shape) if used else None
+            for shape, used in enumerate(np.bincount(lines.shape[having]))
+        ]
+
+    def run(self) -> None:
+        """Compute them all, and give the window its values."""
+        meanings = self.lines.table.meanings
+        writes = np.array([_writes(meaning) for meaning in meanings], np.bool_)
+        writers = np.flatnonzero(writes[self.lines.shape[self.having]]).tolist()
+        begin = 0
+        for writer in [*writers, len(self.having)]:
+            alone = self.having[begin : writer + 1]
+            if writer - begin >= FEW:
+                alone = np.append(self._columns(self.having[begin:writer]), alone[writer - begin :])
+            for line in alone.tolist():
+                self._line(line)
+            begin = writer + 1
+            if len(self.lines.findings.found) >= Findings.enough:
+                break
+        self.lines.window = replace(self.lines.window, value=self.value)
+
+    def _columns(self, stretch: Ints) -> Ints:
+        """Compute lines between which no parameter changes; return those that are left."""
+        lines, left = self.lines, [self.having[:0]]
+        order = stretch[np.argsort(lines.shape[stretch], kind="stable")]
+        for same in np.split(order, np.flatnonzero(np.diff(lines.shape[order])) + 1):
+            functions = self.functions[int(lines.shape[same[0]])]
+            first = lines.first[same]
+            try:
+                found = whole_columns(functions, lines.parameters, self.value, first)
+            except NoColumnError:
+                left.append(same)
+                continue
+            for slot, computed in found:
+                self.value[first + slot] = computed
+        return np.sort(np.concatenate(left))
+
+    def _line(self, line: int) -> None:
+        """Compute one line: its words, then its assignments, which take effect together."""
+        lines = self.lines
+        functions, first = self.functions[lines.shape[line]], int(lines.first[line])
+        if functions is None:
+            _Block(lines, line, self.value).execute()
+            return
+        row = self.row[first : first + functions.slots]
+        try:
+            found = [(slot, word(lines.parameters, row)) for slot, word in functions.words]
+            made = [(key, result(lines.parameters, row)) for key, result in functions.assigned]
+        except NO_VALUE:
+            _Block(lines, line, self.value).execute()
+            return
+        for slot, computed in found:
+            self.value[first + slot] = computed
+        if made:
+            lines.parameters.update(made)
+            at = lines.window.first_line + line
+            lines.assigned += [Assigned(at, key, result) for key, result in made]
 
 
 def _writes(meaning: Meaning) -> bool:
     """Whether blocks of a shape change parameters."""
     return bool(meaning.assignments) or meaning.runs_macro
-
-
-def _columns(lines: Lines, stretch: Ints, value: Floats) -> Ints:
-    """Compute lines between which no parameter changes; return those that have to be looked at."""
-    left = []
-    order = stretch[np.argsort(lines.shape[stretch], kind="stable")]
-    for same in np.split(order, np.flatnonzero(np.diff(lines.shape[order])) + 1):
-        functions = functions_of(lines.table, int(lines.shape[same[0]]))
-        first = lines.first[same]
-        try:
-            if functions is None:
-                raise NoColumnError
-            operands = [value[first + slot] for slot in range(functions.slots)]
-            found = [(k, word(lines.parameters, operands)) for k, word in functions.words]
-        except NoColumnError:
-            left.append(same)
-            continue
-        for slot, computed in found:
-            value[first + slot] = computed
-    return np.sort(np.concatenate(left)) if left else stretch[:0]
-
-
-def _execute(lines: Lines, line: int, value: Floats) -> None:
-    """Compute one line: its words, then its assignments, which take effect together."""
-    functions = functions_of(lines.table, int(lines.shape[line]))
-    first = int(lines.first[line])
-    try:
-        if functions is None:
-            raise NoColumnError
-        row = value[first : first + functions.slots].tolist()
-        found = [(slot, word(lines.parameters, row)) for slot, word in functions.words]
-        made = [(key, result(lines.parameters, row)) for key, result in functions.assigned]
-    except NoColumnError:
-        _Block(lines, line, value).execute()
-        return
-    for slot, computed in found:
-        value[first + slot] = computed
-    lines.parameters.update(made)
-    at = lines.window.first_line + line
-    lines.assigned += [Assigned(at, key, result) for key, result in made]
 
 
 class _Block:

@@ -1,17 +1,19 @@
 """Expressions as functions: made once for each outline, and called with numbers or whole columns.
 
 An expression of an outline is the same on all its lines but for its numbers. What is made of it
-here takes the parameters and these numbers, for one line or, as arrays, for many lines between
-which no parameter changes.
+here takes the parameters and these numbers: of one line, or, as arrays, of many lines between which
+no parameter changes.
 
 It has a value or it has none: whatever `Evaluator` would refuse, or do in a way of its own, is
-`NoColumnError` here, and the line is computed again by `Evaluator`, whose errors have a place. So
+`NO_VALUE` here, and the line is computed again by `Evaluator`, whose errors have a place. So
 there is one definition of what is refused. Both use the functions of the same `Arithmetic`.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -20,7 +22,7 @@ from lark import Token
 from gcxform.dialect.arithmetic import COLUMNS, Arithmetic, Key, NoValueError
 from gcxform.dialect.null import Null
 from gcxform.modal.expressions.value import parameter_of
-from gcxform.syntax.grammar import rule_of, span_of
+from gcxform.syntax.grammar import rule_of
 
 Parameters = Mapping[Key, float]
 Operands = Sequence[Any]
@@ -32,20 +34,28 @@ class NoColumnError(Exception):
     """A value that is not found in this way."""
 
 
+NO_VALUE = (NoColumnError, NoValueError, ArithmeticError, ValueError)
+"""What functions raise that have no value here."""
+
+
 class Compiler:
-    """Makes functions of the expressions of one outline; `slot_of` finds the slots of numbers."""
+    """Makes the function of one expression of an outline; `slot` is that of its first number.
+
+    The others follow in the order of the text, but behind what is refused.
+    """
 
     def __init__(
-        self, arithmetic: Arithmetic, slot_of: Mapping[tuple[int, int], int], in_word: bool
+        self, arithmetic: Arithmetic, slot: int, in_word: bool, columns: bool = False
     ) -> None:
         self.arithmetic = arithmetic
-        self.slot_of = slot_of
+        self.slots = count(slot)
         self.in_word = in_word
+        self.columns = columns
 
     def compiled(self, node: Any) -> Compiled:
-        """Return the function of an expression; it raises NoColumnError."""
+        """Return the function of an expression; it raises NO_VALUE."""
         if isinstance(node, Token):
-            slot = self.slot_of[span_of(node)]
+            slot = next(self.slots)
             return lambda _, operands: operands[slot]
         rule, children = rule_of(node), node.children
         if rule == "parameter":
@@ -76,40 +86,40 @@ class Compiler:
         function = self.arithmetic.operators.get(str(operator).upper())
         if function is None:
             return _refused
-        return _applied(function, (self.compiled(left), self.compiled(right)))
+        return self._applied(function, self.compiled(left), self.compiled(right))
 
     def _call(self, rule: str, name: str, arguments: list[Any]) -> Compiled:
         function = self.arithmetic.functions.get(name + "/" * (rule == "arctangent"))
         wrong = rule == "call" and len(arguments) != 1 + (name == "POW")
         if function is None or wrong or (self.in_word and name in self.arithmetic.not_in_words):
             return _refused
-        return _applied(function, tuple(self.compiled(each) for each in arguments))
+        return self._applied(function, *map(self.compiled, arguments))
+
+    def _applied(self, function: Callable[..., Any], *arguments: Compiled) -> Compiled:
+        """Return a function of functions, whose result is finite."""
+        if self.columns:
+            return lambda p, o: _column(function, [each(p, o) for each in arguments])
+        if len(arguments) == 1:
+            only = arguments[0]
+            return lambda p, o: _finite(function(only(p, o)))
+        left, right = arguments
+        return lambda p, o: _finite(function(left(p, o), right(p, o)))
 
 
 def _refused(_: Parameters, __: Operands) -> Any:
     raise NoColumnError
 
 
-def _applied(function: Callable[..., Any], arguments: tuple[Compiled, ...]) -> Compiled:
-    """Return a function of functions, whose result is finite."""
-
-    def apply(parameters: Parameters, operands: Operands) -> Any:
-        values = [each(parameters, operands) for each in arguments]
-        try:
-            if not any(isinstance(value, np.ndarray) for value in values):
-                result = function(*values)
-                if not -np.inf < result < np.inf:
-                    raise NoColumnError
-                return result
-            return _column(function, values)
-        except (NoValueError, ArithmeticError, ValueError):
-            raise NoColumnError from None
-
-    return apply
+def _finite(value: float) -> float:
+    if not -math.inf < value < math.inf:
+        raise NoColumnError
+    return value
 
 
 def _column(function: Callable[..., Any], values: list[Any]) -> Any:
-    """Return a function of whole columns. Raises NoColumnError, or what the function raises."""
+    """Return a function of whole columns, or of numbers. Raises NO_VALUE."""
+    if not any(isinstance(value, np.ndarray) for value in values):
+        return _finite(function(*values))
     whole = COLUMNS.get(function)
     if whole is not None:
         with np.errstate(all="ignore"):

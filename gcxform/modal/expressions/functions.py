@@ -7,23 +7,25 @@ from typing import Any
 
 import numpy as np
 
-from gcxform.dialect.arithmetic import Arithmetic, Key, NoValueError, whole
-from gcxform.modal.expressions.compiled import Compiled, Compiler, NoColumnError, Operands
+from gcxform.dialect.arithmetic import Key, NoValueError, whole
+from gcxform.modal.expressions.compiled import NO_VALUE, Compiled, Compiler, NoColumnError, Operands
 from gcxform.modal.expressions.value import Parameters, parameter_of, settable
 from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.syntax.tree import CODES, Block, Expression, Statement, Word
+from gcxform.system.arrays import Floats, Ints
 
 
 @dataclass(frozen=True, slots=True)
 class Functions:
     """The words of an outline that are computed, by slot, and the parameters that it sets.
 
-    `slots` is how many slots its lines have.
+    `slots` is how many slots its lines have; `columns` are the words for many lines at once.
     """
 
     slots: int
     words: tuple[tuple[int, Compiled], ...]
+    columns: tuple[tuple[int, Compiled], ...]
     assigned: tuple[tuple[Key, Compiled], ...]
 
 
@@ -42,18 +44,40 @@ def functions_of(table: MeaningTable, shape: int) -> Functions | None:
     return found
 
 
+def whole_columns(
+    functions: Functions | None, parameters: Parameters, value: Floats, first: Ints
+) -> list[tuple[int, Any]]:
+    """Return the values of the words of lines of one outline, by slot.
+
+    `value` are number columns, `first` (n,) is the first number of each line. Raises NoColumnError.
+    """
+    if functions is None:
+        raise NoColumnError
+    operands = [value[first + slot] for slot in range(functions.slots)]
+    try:
+        found = [(slot, word(parameters, operands)) for slot, word in functions.columns]
+    except NO_VALUE:
+        raise NoColumnError from None
+    if not all(np.isfinite(computed).all() for _, computed in found):
+        raise NoColumnError
+    return found
+
+
 def _made(table: MeaningTable, shape: int) -> Functions | None:
     arithmetic, layout = table.dialect.flow_rule.arithmetic, table.shapes.shapes[shape].layout
     meaning = table.meanings[shape]
     if arithmetic is None or layout is None or meaning.runs_macro:
         return None
-    words = [
-        (slot, _word(word, meaning, arithmetic, layout.slot_of))
-        for slot, word in meaning.expressions
-    ]
-    compiler = Compiler(arithmetic, layout.slot_of, in_word=False)
+    first = iter(layout.operands)
+    words, columns = [], []
+    for slot, word in meaning.expressions:
+        operand = next(first)
+        words.append((slot, _word(word, meaning, Compiler(arithmetic, operand, in_word=True))))
+        many = Compiler(arithmetic, operand, in_word=True, columns=True)
+        columns.append((slot, _word(word, meaning, many)))
     assigned = []
     for statement in meaning.assignments:
+        compiler = Compiler(arithmetic, next(first), in_word=False)
         parameter, expression = statement.tree.children
         key = parameter_of(parameter)
         try:
@@ -62,26 +86,21 @@ def _made(table: MeaningTable, shape: int) -> Functions | None:
             assigned.append((settable(arithmetic, key), compiler.compiled(expression)))
         except NoValueError:
             return None
-    return Functions(len(layout), tuple(words), tuple(assigned))
+    return Functions(len(layout), tuple(words), tuple(columns), tuple(assigned))
 
 
-def _word(
-    word: Word, meaning: Meaning, arithmetic: Arithmetic, slot_of: dict[tuple[int, int], int]
-) -> Compiled:
+def _word(word: Word, meaning: Meaning, compiler: Compiler) -> Compiled:
     """Return the function of the value of a word."""
     assert isinstance(word.value, Expression)
-    value = Compiler(arithmetic, slot_of, in_word=True).compiled(word.value.tree)
+    value, arithmetic = compiler.compiled(word.value.tree), compiler.arithmetic
     if word.address not in arithmetic.whole or meaning.is_length(word.address):
         return value
+    slip = arithmetic.whole_slip
+    if not compiler.columns:
+        return lambda parameters, operands: float(whole(value(parameters, operands), slip))
 
     def rounded(parameters: Parameters, operands: Operands) -> Any:
-        found = value(parameters, operands)
-        try:
-            if isinstance(found, np.ndarray):
-                slip = arithmetic.whole_slip
-                return np.array([float(whole(each, slip)) for each in found.tolist()])
-            return float(whole(found, arithmetic.whole_slip))
-        except NoValueError:
-            raise NoColumnError from None
+        found = np.atleast_1d(value(parameters, operands))
+        return np.array([float(whole(each, slip)) for each in found.tolist()])
 
     return rounded
