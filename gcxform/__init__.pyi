@@ -92,6 +92,7 @@ from gcxform.machine.inverse import inverse as inverse
 from gcxform.machine.inverse import turns as turns
 from gcxform.machine.kinds import Kinematics as Kinematics
 from gcxform.machine.machine import Machine as Machine
+from gcxform.machine.presets import MachinePreset as MachinePreset
 from gcxform.pipeline.pipeline import Pipeline as Pipeline
 from gcxform.pipeline.pipeline import Result as Result
 from gcxform.plugin.hookspecs import hookimpl as hookimpl

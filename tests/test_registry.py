@@ -329,7 +329,7 @@ def test_every_kind_has_an_origin(install: Install) -> None:
     registry = Registry.load()
     assert registry.origin("kinematics", "hexapod") == "acme 1.0"
     assert registry.origin("format", "lddm") == registry.origin("dialect", "grbl")
-    assert set(KINDS) == {"dialect", "pass", "kinematics", "control", "fact", "format"}
+    assert set(KINDS) == {"dialect", "pass", "kinematics", "preset", "control", "fact", "format"}
 
 
 def test_what_a_plugin_prints_is_not_part_of_a_program(

@@ -62,7 +62,8 @@ def command(file: str | None, **asked: Any) -> int:
 
 def chain(pipeline: Pipeline) -> list[str]:
     """Return the steps of a pipeline with their facts and promises, and the budget."""
-    lines = [f"read   {pipeline.source.name}: {_names(facts_after(pipeline.path_passes, 0))}"]
+    lines = [f"preset {each}" for each in pipeline.machine.taken] if pipeline.machine else []
+    lines += [f"read   {pipeline.source.name}: {_names(facts_after(pipeline.path_passes, 0))}"]
     done = 0
     for number, step in enumerate(pipeline.passes, 1):
         lines.append(f"{number:<6} {step.name}")
@@ -124,7 +125,8 @@ def _check(pipeline: Pipeline, source: Source, what: Asked) -> int:
     open_ = Visit(pipeline, source, speaks_against).run([] if done else errors)
     found = errors if done else list(told_open(open_.told(), pipeline.to_fill_in))
     warn([*found, *(each for each in seen if each.severity is not Severity.ERROR)])
-    for line in dict.fromkeys(taken):
+    said = pipeline.machine.taken if pipeline.machine else ()
+    for line in (each for each in dict.fromkeys(taken) if each not in said):
         click.echo(f"assumed   {line}")
     click.echo(f"{source.name}: {lines} lines, {_count(found)}")
     for line in _asked(open_, what, pipeline):

@@ -15,12 +15,14 @@ from gcxform.contract.options import OptionDoc, describe
 from gcxform.contract.passes import Pass, TextPass
 from gcxform.diagnostics import UsageError
 from gcxform.dialect.dialect import Dialect
+from gcxform.machine.presets import MachinePreset, said_by
 from gcxform.plugin.registry import Registry, default_registry
 
 KINDS = {
     "passes": "pass",
     "dialects": "dialect",
     "kinematics": "kinematics",
+    "presets": "preset",
     "formats": "format",
     "controls": "control",
 }
@@ -72,6 +74,8 @@ def _described(thing: Any, kind: str, registry: Registry) -> list[str]:
         lines += ["", *_dialect(thing)]
     if suffixes := getattr(thing, "suffixes", ()):
         lines += ["", f"files: {' '.join(suffixes)}"]
+    if issubclass(thing, MachinePreset):
+        lines += ["", f"source: {thing.source}", *said_by(thing)]
     if control := getattr(thing, "control", ""):
         lines.append(f"in the control: {control}")
     return lines

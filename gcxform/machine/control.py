@@ -19,6 +19,8 @@ from gcxform.machine.machine import SWITCHES, TIP_AT_START
 INERT: Final = "inert-m"
 """The setting that lists M codes which move nothing."""
 Value = str | float | list[int]
+LIKE: Final = "like"
+"""The key that names a preset, which is gone when the settings are read."""
 _OWN_CODE = re.compile("M[1-9][0-9]{2,3}")
 
 
@@ -150,7 +152,8 @@ def _switch_findings(document: TomlText, control: Mapping[str, Value]) -> Iterat
 def schema() -> dict[str, Any]:
     """Return the JSON Schema of the section."""
     codes = {"type": "array", "items": {"type": "integer"}}
-    properties = {name: setting.schema() for name, setting in _KNOWN.items()} | {INERT: codes}
+    properties = {name: setting.schema() for name, setting in _KNOWN.items()}
+    properties |= {INERT: codes, LIKE: {"type": "string", "description": "a preset of a machine"}}
     return {"type": "object", "properties": properties, "additionalProperties": False}
 
 

@@ -42,6 +42,7 @@ from gcxform.machine.machine import (
     Offset,
     Tool,
 )
+from gcxform.machine.presets import with_preset
 from gcxform.system.inputs import referred
 
 FILLED_IN = ("control", "tool", "work-offset", "home")
@@ -59,6 +60,7 @@ def load_machine(path: Path, known: Known = NONE) -> Machine:
     """
     document, still_open = split_open(read_toml(path, CODES), FILLED_IN)
     check_version(document, "machines")
+    document, taken = with_preset(document, known.presets)
     file = _converted(_without_units(document))
     named = tuple(presets.findings(document, file, known.kinematics))
     file = presets.filled(file, known.kinematics)
@@ -78,6 +80,7 @@ def load_machine(path: Path, known: Known = NONE) -> Machine:
         control=control.settings_of(file.control),
         inert_m=control.inert_of(file.control),
         open=still_open,
+        taken=taken,
     )
 
 

@@ -10,6 +10,7 @@ from typing import ClassVar, Literal, NamedTuple
 from gcxform.diagnostics import FileError, Location
 from gcxform.machine.kinds import Kinds
 from gcxform.machine.machine import Machine, Tool
+from gcxform.machine.presets import Presets
 from gcxform.system import inputs
 
 TAKEN = frozenset({"file", "output", "limit", "allow_outside", "debug", "show_traceback", "help"})
@@ -49,10 +50,11 @@ class ControlFiles:
 
 
 class Known(NamedTuple):
-    """What plugins know of machines: kinds of kinematics and files of controls, by name."""
+    """What plugins know of machines: kinematics, files of controls and presets, by name."""
 
     kinematics: Kinds = MappingProxyType({})
     controls: Mapping[str, type[ControlFiles]] = MappingProxyType({})
+    presets: Presets = MappingProxyType({})
 
 
 NONE = Known()

@@ -91,7 +91,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True):
     `gauge_point` (mm) is that of the spindle with all axes at 0; `errors` is a file. `homes` are
     the machine positions of G28 and G30; `control` has settings that codes depend on; `inert_m` are
     M codes of the machine's own that move no axis and set no variable. `open` has the places of
-    values that the file leaves to be filled in.
+    values that the file leaves to be filled in; `taken` says what is from a preset, and its source.
     """
 
     file: Path
@@ -107,3 +107,4 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True):
     control: dict[str, str | float] = {}
     inert_m: frozenset[int] = frozenset()
     open: dict[tuple[str, ...], Location] = {}
+    taken: tuple[str, ...] = ()

@@ -146,7 +146,8 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
     if added := [f"{count} {what}" for what, count in run.added.items() if count]:
         what = "whether the tool is clear in moves that the source does not have"
         certificate.not_checked.append(f"{what}: {', '.join(added)}")
-    chosen = (*run.assumed, *run.stages.emitter.assumed)
+    taken = run.plan.machine.taken if run.plan.machine else ()
+    chosen = (*run.assumed, *run.stages.emitter.assumed, *taken)
     certificate.assumed += assumptions(run.stages.interpreter, run.plan.source, chosen)
     certificate.warnings += warnings_of(run.stages.interpreter, run.source)
 

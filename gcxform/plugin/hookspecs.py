@@ -20,6 +20,7 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.errormodel.formats import ErrorFormat
 from gcxform.machine.formats import ControlFiles
 from gcxform.machine.kinds import Kinematics
+from gcxform.machine.presets import MachinePreset
 from gcxform.toolpath.facts import Fact
 
 PROJECT: Final = "gcxform"
@@ -44,6 +45,12 @@ def gcxform_passes() -> Iterable[type[Pass | TextPass]]:
 @hookspec
 def gcxform_kinematics() -> Iterable[type[Kinematics]]:
     """Return kinds of machines: subclasses of `Kinematics` with a name."""
+    raise NotImplementedError
+
+
+@hookspec
+def gcxform_machine_presets() -> Iterable[type[MachinePreset]]:
+    """Return machines that files can be like: subclasses of `MachinePreset` with a source."""
     raise NotImplementedError
 
 

@@ -30,6 +30,7 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.errormodel.formats import ErrorFormat
 from gcxform.machine.formats import TAKEN, ControlFiles, Known
 from gcxform.machine.kinds import Kinematics
+from gcxform.machine.presets import TABLES, MachinePreset
 from gcxform.plugin import hookspecs
 from gcxform.toolpath.facts import FACTS, Fact
 
@@ -39,6 +40,7 @@ KINDS: Mapping[str, str] = MappingProxyType(
         "dialect": "gcxform_dialects",
         "pass": "gcxform_passes",
         "kinematics": "gcxform_kinematics",
+        "preset": "gcxform_machine_presets",
         "control": "gcxform_control_files",
         "fact": "gcxform_facts",
         "format": "gcxform_error_formats",
@@ -57,6 +59,7 @@ class Registry:
     dialects: dict[str, type[Dialect]] = field(default_factory=dict)
     passes: dict[str, type[Pass] | type[TextPass]] = field(default_factory=dict)
     kinematics: dict[str, type[Kinematics]] = field(default_factory=dict)
+    presets: dict[str, type[MachinePreset]] = field(default_factory=dict)
     controls: dict[str, type[ControlFiles]] = field(default_factory=dict)
     facts: dict[str, Fact] = field(default_factory=lambda: {fact.name: fact for fact in FACTS})
     formats: dict[str, type[ErrorFormat]] = field(default_factory=dict)
@@ -99,7 +102,7 @@ class Registry:
     @property
     def machines(self) -> Known:
         """What machine files can name."""
-        return Known(self.kinematics, self.controls)
+        return Known(self.kinematics, self.controls, self.presets)
 
     def _find(
         self,
@@ -167,6 +170,7 @@ class Registry:
             "dialect": self.dialects,
             "pass": self.passes,
             "kinematics": self.kinematics,
+            "preset": self.presets,
             "control": self.controls,
             "fact": self.facts,
             "format": self.formats,
@@ -247,6 +251,16 @@ def _pass_name(offer: Any) -> str:
     return name
 
 
+def _preset_name(offer: Any) -> str:
+    """Return the name of a preset that says where its values stand, in tables that it may have."""
+    name = _named(offer, (MachinePreset,))
+    if not (isinstance(offer.source, str) and offer.source):
+        raise TypeError(f"{offer.__name__} has no source")
+    if strange := sorted(set(offer.values) - set(TABLES)):
+        raise TypeError(f"{offer.__name__}.values: a preset has no table {strange[0]!r}")
+    return name
+
+
 def _control_name(offer: Any) -> str:
     """Return the name of a control whose options can stand beside those of its command."""
     name = _options_name(offer, (ControlFiles,))
@@ -278,6 +292,7 @@ _CHECKS: Mapping[str, Callable[[Any], str]] = MappingProxyType(
         "dialect": lambda offer: _named(offer, (Dialect,)),
         "pass": _pass_name,
         "kinematics": lambda offer: _named(offer, (Kinematics,)),
+        "preset": _preset_name,
         "control": _control_name,
         "fact": _fact_name,
         "format": _format_name,

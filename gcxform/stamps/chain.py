@@ -151,7 +151,7 @@ def _content(machine: Machine | None) -> dict[str, Any]:
     """Return what a machine file says, without where it is."""
     if machine is None:
         return {}
-    plain = msgspec.to_builtins(msgspec.structs.replace(machine, open={}), enc_hook=str)
+    plain = msgspec.to_builtins(msgspec.structs.replace(machine, open={}, taken=()), enc_hook=str)
     plain["inert_m"] = sorted(machine.inert_m)
     return {key: value for key, value in plain.items() if value and key not in ("file", "errors")}
 

@@ -119,6 +119,14 @@ def gcxform_kinematics() -> list[type[gx.Kinematics]]:
 
 
 @gx.hookimpl
+def gcxform_machine_presets() -> list[type[gx.MachinePreset]]:
+    """Return the machines that files can be like."""
+    from gcxform_plugins.presets.tormach import Pcnc770, Pcnc1100
+
+    return [Pcnc770, Pcnc1100]
+
+
+@gx.hookimpl
 def gcxform_control_files() -> list[type[gx.ControlFiles]]:
     """Return the controls whose kinematics and tool tables are read."""
     from gcxform_plugins.controls.fanuc import FanucFiles

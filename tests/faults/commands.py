@@ -118,6 +118,20 @@ MUTATIONS = (
         "tests/test_machine_new.py",
     ),
     Mutation(
+        "presets: what the file says itself is replaced",
+        "gcxform/machine/presets.py",
+        "if isinstance(value, Mapping) or key not in own",
+        "if True",
+        "tests/test_presets.py",
+    ),
+    Mutation(
+        "presets: what the file says itself is shown as taken",
+        "gcxform/machine/presets.py",
+        "elif said is None:",
+        "else:",
+        "tests/test_presets.py",
+    ),
+    Mutation(
         "haas: a dwell with a point is in milliseconds",
         "gcxform/modal/numbers_without_point.py",
         "self.rule.seconds(address, decimals >= 0)",

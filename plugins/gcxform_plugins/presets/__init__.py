@@ -1,0 +1,1 @@
+"""Machines that machine files can be like, each from what is published of it."""
