@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -13,7 +14,10 @@ from gcxform.pipeline.output import Output
 from gcxform.pipeline.run import Run
 from gcxform.pipeline.structure import Structure
 from gcxform.syntax.source import Source
+from gcxform.testing.cases import read_case, run_case
 
+ROOT = Path(__file__).parents[1] / "corpus" / "structure"
+CASES = sorted(ROOT.glob("*.txt"))
 START = dict.fromkeys("XYZ", 0.0)
 PROGRAM = b"""o100 sub
 G1 X#1 F100
@@ -90,6 +94,12 @@ def test_windows_make_no_difference(size: int) -> None:
     run = Run(absolute(), Source.of_bytes(PROGRAM), "on")
     run.over(Output(parts.append, None), lambda count: None, size)
     assert b"".join(parts) == WRITTEN
+
+
+@pytest.mark.parametrize("name", [path.stem for path in CASES])
+def test_a_case_of_the_corpus(name: str, tmp_path: Path) -> None:
+    """As `test_corpus.py` does; for faults it is quicker here."""
+    run_case(read_case(ROOT / f"{name}.txt"), tmp_path)
 
 
 FAULTS: dict[str, Callable[[bytes], bytes]] = {

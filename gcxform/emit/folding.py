@@ -55,10 +55,6 @@ class Unit:
         """Whether a line stands in it."""
         return self.first <= line <= self.last
 
-    def __str__(self) -> str:
-        lines = f"lines {self.first + 1} to {self.last + 1}"
-        return f"{self.name}, {lines}" if self.name else lines
-
 
 @dataclass(frozen=True, slots=True)
 class Folded:
@@ -206,7 +202,12 @@ class _Folding:
     def _differs(self, line: int, texts: Iterable[bytes]) -> str:
         """Return how the texts of a line differ."""
         shown = [repr(text.decode("latin-1").strip()) for text in islice(texts, SHOWN)]
-        return f"line {line + 1} became {' and '.join(shown)}"
+        return f"{self._told(line)} became {' and '.join(shown)}"
+
+    def _told(self, line: int) -> str:
+        """Return which line it is, of which file."""
+        file, number = self.walk.listing.place(line)
+        return f"line {number}" if line < self.walk.listing.own else f"line {number} of {file}"
 
     def _settle_line(self, unit: Unit, step: int) -> None:
         """Write a line as what it became; with what it sets, which the program reads."""
@@ -369,7 +370,14 @@ class _Folding:
                 raise WholeError(f"N{number} is jumped to, and would be gone or doubled")
 
     def _reasons(self) -> tuple[str, ...]:
-        return tuple(f"{unit}: {why}" for unit, why in self.out.items())
+        """Return what is written out, and why."""
+        found = []
+        for unit, why in self.out.items():
+            names = [unit.name] if unit.name else []
+            if unit.last < self.walk.listing.own:
+                names.append(f"lines {unit.first + 1} to {unit.last + 1}")
+            found.append(f"{', '.join(names)}: {why}")
+        return tuple(found)
 
 
 def _numbers(text: bytes) -> Counter[int]:

@@ -91,8 +91,8 @@ class OWords(Execution):
     def edits(self, block: Block) -> list[Edit]:
         """Return what is written otherwise: values, and polar words."""
         polar = self.places.polar_edits(block)
-        if polar:
-            self.tied = "there are polar words"
+        if sum(word.address in "@^" for word in block.words) == 1:
+            self.tied = "a polar word counts from where the axes stand"
         return [*polar, *(e for e in super().edits(block) if not _within(e, polar))]
 
     def becomes_other(self, block: Block) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import CORPUS, Mutation
+from faults.mutation import Mutation
 
 FOLDING = "gcxform/emit/folding.py"
 VALUES = "gcxform/emit/values_left.py"
@@ -11,7 +11,7 @@ PLANTED = "tests/test_folding.py"
 AGREES = "tests/properties/test_folding.py"
 
 
-def _fold(name: str, old: str, new: str, file: str = FOLDING, tests: str = CORPUS) -> Mutation:
+def _fold(name: str, old: str, new: str, file: str = FOLDING, tests: str = PLANTED) -> Mutation:
     return Mutation(f"structure: {name}", file, old, new, tests)
 
 

