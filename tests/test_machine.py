@@ -219,10 +219,10 @@ def loaded(file: Path) -> Machine:
 def test_a_tool_table_gives_the_tools(tmp_path: Path) -> None:
     machine = loaded(machine_with(tmp_path, TABLE, more="[tool.3]\nlength = 5.0\n"))
     assert machine.tools == {
-        1: Tool(radius=25.0),
-        2: Tool(length=100.25, x=1.5, y=-2.0),
+        1: Tool(length=0.0, radius=25.0),
+        2: Tool(length=100.25, radius=0.0, x=1.5, y=-2.0),
         3: Tool(length=5.0),
-        7: Tool(length=0.5),
+        7: Tool(length=0.5, radius=0.0),
     }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import math
+from math import isnan
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,10 @@ def _chain(asked: Asked, number: int | None) -> tuple[Chain, Machine]:
         known = ", ".join(map(str, sorted(machine.tools))) or "none"
         message = f"{machine.name} has no tool {number}"
         raise UsageError.one("GX707", message, Location("--tool"), f"known: {known}")
+    if isnan(float(machine.tools[number].length)):
+        hint = f"give [tool.{number}] length in the machine file"
+        message = f"the length of tool {number} is not known"
+        raise UsageError.one("GX707", message, Location("--tool"), hint)
     return chain_of(machine, machine.tools[number]), machine
 
 

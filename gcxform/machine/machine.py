@@ -35,11 +35,18 @@ class Axis(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="keba
     wrap: Value | None = None
 
 
-class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="kebab", kw_only=True):
-    """A tool, in mm: length from gauge point to tip, radius, offset of the tip in X and Y."""
+NOT_SAID = float("nan")
+"""A length or a radius that no file has said: never taken for 0."""
 
-    length: Value = 0.0
-    radius: Value = 0.0
+
+class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="kebab", kw_only=True):
+    """A tool, in mm: length from gauge point to tip, radius, offset of the tip in X and Y.
+
+    Length and radius are nan where they are not known.
+    """
+
+    length: Value = NOT_SAID
+    radius: Value = NOT_SAID
     x: Value = 0.0
     y: Value = 0.0
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from math import isnan
 
 import numpy as np
 
@@ -48,11 +49,12 @@ def located(
 
 def _tip(machine: Machine, tool: int | None) -> Triple:
     """Return the tip of the probe with all axes at 0. Raises UsageError."""
-    if tool is None or tool not in machine.tools:
+    known = None if tool is None else machine.tools.get(tool)
+    if known is None or isnan(float(known.length)):
         message = "an axis of the head is found with a probe whose length is known"
         hint = "give [tool.N] length in the machine file, and --tool N"
         raise UsageError.one("GX707", message, Location("--tool"), hint)
-    return chain_of(machine, machine.tools[tool]).tip
+    return chain_of(machine, known).tip
 
 
 def _check(found: Placed, letter: str, machine: Machine) -> None:

@@ -81,4 +81,4 @@ def _tool(words: list[str], unit: float) -> tuple[int, Tool]:
     numbers = {word[0].upper(): float(word[1:]) for word in words}
     scale = {"D": unit / 2}
     values = {KEPT[a]: v * scale.get(a, unit) for a, v in numbers.items() if a in KEPT}
-    return int(numbers["T"]), Tool(**values)
+    return int(numbers["T"]), Tool(**{"length": 0.0, "radius": 0.0, **values})
