@@ -184,6 +184,8 @@ def test_parameters_outlive_a_window() -> None:
         ("FIX[2.8]", 2),
         ("FUP[2.1]", 3),
         ("FIX[-3]", -3),
+        ("ROUND[2.5]", 3),
+        ("ROUND[0.5]", 1),
         ("ROUND[2.4]", 2),
         ("ROUND[-2.6]", -3),
         ("ATAN[1]/[-1]", 135),
@@ -204,7 +206,8 @@ def test_fanuc_values(expression: str, value: float) -> None:
     [
         ("#1=FIX[-2.5]", "GX221"),
         ("#1=FIX[0.3/0.1]", "GX221"),
-        ("#1=ROUND[2.5]", "GX221"),
+        ("#1=ROUND[-2.5]", "GX221"),
+        ("#1=ROUND[[0.1+0.7]*10-5.5]", "GX221"),
         ("#1=5 MOD -2", "GX221"),
         ("#1=ATAN[-1]/[1]", "GX221"),
         ("#1=ASIN[-0.5]", "GX221"),

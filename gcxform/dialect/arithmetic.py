@@ -3,7 +3,7 @@
 Controls differ in what the same expression is worth, so a dialect names its own `Arithmetic`.
 `RS274` is LinuxCNC's, as its stand-alone interpreter executes it. `MACRO_B` is Fanuc's as it is
 commonly known: what is known in two ways (the range of an arctangent, logic, the rounding of
-halves and of negative numbers) has no value here.
+halves below zero and of negative numbers) has no value here.
 """
 
 from __future__ import annotations
@@ -324,8 +324,10 @@ def _truncated(function: Callable[[float], int]) -> Function:
 
 
 def _round_clearly(a: float) -> float:
-    if abs(a - math.floor(a) - 0.5) < NEAR * max(1.0, abs(a)):
-        raise NoValueError(f"{a:.10g} is a half, which controls round in two ways")
+    """Return the nearest whole number; an exact half above zero goes up (Haas 96-8000 p. 116)."""
+    off = abs(a - math.floor(a) - 0.5)
+    if off < NEAR * max(1.0, abs(a)) and (off or a < 0):
+        raise NoValueError(f"{a:.10g} is about a half, or one below zero: known in two ways")
     return _round(a)
 
 

@@ -194,4 +194,18 @@ MUTATIONS = (
         "    return np.nan_to_num(result)",
         "tests/properties/test_outlines.py",
     ),
+    Mutation(
+        "computing: a half below zero is rounded",
+        "gcxform/dialect/arithmetic.py",
+        "and (off or a < 0):",
+        "and off:",
+        "tests/test_corpus.py::test_case[expressions/fanuc-doubtful]",
+    ),
+    Mutation(
+        "computing: what is nearly a half is rounded",
+        "gcxform/dialect/arithmetic.py",
+        "and (off or a < 0):",
+        "and a < 0:",
+        "tests/test_corpus.py::test_case[expressions/fanuc-doubtful]",
+    ),
 )

@@ -51,7 +51,7 @@
 | a computed distance | in mm, rounded to `[input] increment`, which must be given |
 | an assignment beside words | when it acts is not certain: refused |
 | AND OR XOR | known in two ways: refused |
-| FIX, FUP, MOD of negative numbers, halves in ROUND | known in two ways: refused |
+| FIX, FUP, MOD of negative numbers, ROUND of halves below 0 | known in two ways: refused |
 | ATAN, ASIN below 0 | a parameter may add 360 degrees: refused |
 | ROUND in a word | rounds to the increment of the word: refused |
 | computed S T F D H L P | must be whole numbers |
