@@ -85,6 +85,7 @@ class Program:
     def _read(self, source: Source) -> Toolpath:
         axes = source.axes(self.dialect.axes)
         interpreter = Interpreter(self.dialect, self.reading, axes, self.name)
+        interpreter.undecided = source.undecided
         reader = WindowReader(self.dialect)
         texts = [*source.windows()] or [b""]
         windows = (reader.read(text) for text in texts)

@@ -72,6 +72,22 @@ G4 P#513
 G0 Y1.
 M30
 """
+WAITS = b"""O1
+G21 G90 G94
+G0 X0. Y0. Z5.
+#1=3.
+N10 IF[#1005 EQ 0]GOTO10
+IF[#501 GT #1]GOTO20
+#1=4.
+G0 Z6.
+N20 G0 X5. Z#1
+IF[#1006 EQ 1]THEN #502=#502+1
+WHILE[#1007 EQ 0]DO1
+G4 P100
+END1
+G0 Z9.
+M30
+"""
 GRBL = b"G21 G90 G94\nG0 X1\nG1 X2 F100\n"
 
 
@@ -137,12 +153,12 @@ def long_while(self: MacroB, statement: object) -> None:
         self.at = self.loops[self.line].last + 2
 
 
-def silent(self: lasting.Lasting, key: object, value: float) -> str:
+def silent(self: lasting.Lasting, key: object, value: float, kept: str = "") -> str:
     self.assigned.append((self.program.line, key, value))  # type: ignore[arg-type]
     return ""
 
 
-def off(self: lasting.Lasting, key: object, value: float) -> str:
+def off(self: lasting.Lasting, key: object, value: float, kept: str = "") -> str:
     self.assigned.append((self.program.line, key, value))  # type: ignore[arg-type]
     return f"#{key}={value + 1.0}" if self.program.arithmetic.outlives(key) else ""  # type: ignore[arg-type]
 
@@ -177,6 +193,15 @@ FAULTS = {
     "an axis is not lost": (LOST, rewrites(b"Y#511", b"Y511.")),
     "a speed is another variable": (LOST, rewrites(b"S#512", b"S#514")),
     "a time is another variable": (LOST, rewrites(b"P#513", b"P#514")),
+    "a wait is left out": (WAITS, rewrites(b"N10 IF[#1005 EQ 0]GOTO10\n", b"")),
+    "a wait is for another input": (WAITS, rewrites(b"#1005", b"#1006")),
+    "a jump goes elsewhere": (WAITS, rewrites(b"GOTO20", b"GOTO10")),
+    "a label is lost": (WAITS, rewrites(b"N20 ", b"")),
+    "a label is another": (WAITS, rewrites(b"N20 ", b"N21 ")),
+    "a branch asks for something else": (WAITS, rewrites(b"GT 3.", b"GE 3.")),
+    "what perhaps is set is another": (WAITS, rewrites(b"#502+1", b"#502+2")),
+    "a loop has no end": (WAITS, rewrites(b"END1\n", b"")),
+    "what is needed is left out": (WAITS, rewrites(b"#1=3.\n", b"")),
     "percent signs are forgotten": (GRBL, replaces(Frame, "put", lambda s, t, a, b: (t, 0, 0))),
     "only one percent sign": (
         GRBL,
@@ -189,7 +214,9 @@ FAULTS = {
 def test_the_proof_of_a_run_catches(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     program, plant = FAULTS[name]
     fanuc = "fanuc", "fanuc"
-    kinds = {MACRO: fanuc, LOST: fanuc, GRBL: ("grbl", "linuxcnc")}.get(program, ("linuxcnc",) * 2)
+    kinds = {MACRO: fanuc, LOST: fanuc, WAITS: fanuc, GRBL: ("grbl", "linuxcnc")}.get(
+        program, ("linuxcnc",) * 2
+    )
     assert run(program, *kinds).certificate.verified
     plant(monkeypatch)
     with pytest.raises((gx.VerificationError, gx.InputError)):

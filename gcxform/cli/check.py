@@ -216,6 +216,7 @@ def reading_findings(
     chosen = source.assumed
     source, dialect = pipeline.without_tip_codes(source)
     interpreter = Interpreter(dialect, pipeline.machine_reading, axes, source.name)
+    interpreter.undecided = source.undecided
     ending = Ending(pipeline.source, source.name)
     centres = CentreProof(pipeline.context, source.name)
     stays = not any(step.demands.resolves for step in pipeline.path_passes)

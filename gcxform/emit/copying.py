@@ -85,6 +85,7 @@ class Copying:
         self._skipped()
         self._refuse_unknown()
         self._refuse_polar()
+        self._refuse_perhaps(stated, pieces)
 
     def _refuse_changed(self, stands: Flags, pieces: Pieces) -> None:
         """Refuse blocks that move in a way of their own and would have to move otherwise.
@@ -118,6 +119,23 @@ class Copying:
             if any(each.line == self.path.block[row] for each in self.task.read.unknown):
                 hint = f"write {axis} as a number, or leave out the pass that changes this block"
             raise InputError.one("GX506", message, where, hint)
+
+    def _refuse_perhaps(self, stated: Stated, pieces: Pieces) -> None:
+        """Refuse to change more than words in a block that may not be executed.
+
+        Another axis, or a mode, would then be elsewhere, or another one, for all that is behind it.
+        """
+        if self.task.read.perhaps is None:
+            return
+        extra = (self.positions.write & ~self.positions.programmed).any(axis=1)
+        lines = np.zeros(len(self.lines), np.bool_)
+        lines[self.path.block[extra]] = True
+        lines[pieces.line[stated.repaired]] = True
+        wrong = np.flatnonzero(lines & self.task.read.perhaps & ~self.lines)
+        if len(wrong):
+            message = "only the machine knows whether this is executed, and it would do more"
+            hint = "leave out the pass that changes it, or take the branch out of the program"
+            raise InputError.one("GX506", message, self.task.location(int(wrong[0])), hint)
 
     def _refuse_polar(self) -> None:
         """Refuse blocks that have to be written anew while words are radius and angle."""

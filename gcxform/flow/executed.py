@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from hashlib import sha256
+from math import isnan
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from gcxform.diagnostics import Location
 from gcxform.dialect.arithmetic import Key
 from gcxform.modal.inventory import Account, nothing_held
 from gcxform.syntax.source import Source, lines_in
+from gcxform.syntax.undecided import DECIDED, Undecided
 from gcxform.system.arrays import Ints
 
 NEAR = 1e-11  # of a value: as many digits as are written
@@ -63,7 +65,8 @@ class Executed:
     def agrees(self, read: Sequence[tuple[Key, float]]) -> bool:
         """Whether the blocks, read again, set the same parameters."""
         return len(read) == len(self.assigned) and all(
-            key == other and abs(value - now) <= NEAR * abs(value)
+            key == other
+            and (abs(value - now) <= NEAR * abs(value) or (isnan(value) and isnan(now)))
             for (key, value), (other, now) in zip(self.assigned, read, strict=True)
         )
 
@@ -81,11 +84,13 @@ class WrittenOut(Source):
         origin: Ints,
         assumed: Iterable[str] = (),
         files: tuple[CalledFile, ...] = (),
+        undecided: Undecided = DECIDED,
     ) -> None:
         super().__init__(Source.of_bytes(text).stream, source.name)
         self.origin = origin
         self.files = files
         self.assumed = tuple(assumed)
+        self.undecided = undecided
         self.executed: Executed | None = None
         self.called = np.zeros(0, np.bool_)
 

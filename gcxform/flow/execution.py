@@ -17,8 +17,10 @@ from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.lookup import Found, LookupFailedError, only
 from gcxform.flow.run_state import UNKNOWN, Call, Edit, RunState, computed, has_slash
 from gcxform.flow.walk import Step, Walk, split
+from gcxform.modal.expressions.value import Evaluator
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import Block, Comment, Statement, Word
+from gcxform.syntax.undecided import DECIDED, Undecided
 from gcxform.system.limits import how_to_raise, limits
 
 BYTES_AT_MOST = 1 << 28  # of executed blocks
@@ -38,7 +40,7 @@ class Execution(RunState):
         self.executed = 0
         self.skipped: set[int] = set()
         self.percents = 0
-        self.steps = 0
+        self.steps = self.entries = 0
         self.rounds: dict[int, int] = {}
         self.lasting = Lasting(self)
         self.times = np.zeros(len(listing), np.int64)
@@ -56,16 +58,31 @@ class Execution(RunState):
             if self.at in self.listing.seams:
                 self._leave_file()
                 break
+            if self.begins():
+                continue
             special = self.listing.special  # more with every file that is called
             following = int(np.searchsorted(special, self.at))
             stop = int(special[following]) if following < len(special) else len(self.listing)
+            before, line = self.blocks, self.at
             plain = stop > self.at
-            behind = stop if plain else self.at + 1
+            behind = min(stop, self.next_stop()) if plain else self.at + 1
             self.walked.append(Step(self.at, behind, self.blocks, len(self.calls), self._level()))
             if plain:
-                self._copy(stop)
+                self._copy(behind)
             else:
                 self._step()
+            self.is_done(line, before)
+
+    def begins(self) -> bool:
+        """Do what is to be done before a line; return whether nothing is left to do there."""
+        return False
+
+    def next_stop(self) -> int:
+        """Return the next line behind the one that is executed before which something is done."""
+        return len(self.listing)
+
+    def is_done(self, line: int, before: int) -> None:
+        """Do what is to be done behind a line, before which so many lines were written."""
 
     def _leave_file(self) -> None:
         """Come to the end of a file: that of the program is its end, that of another is refused."""
@@ -95,7 +112,7 @@ class Execution(RunState):
         block = self.listing.block(self.line)
         if self._skips(block):
             self.skipped.add(self.line)
-            self._copy_line()
+            self.copy_line()
         elif block.error is None and self.act(block):
             self.acted = True
             self.deciding.add(self.walked[-1].first)
@@ -109,7 +126,8 @@ class Execution(RunState):
             hint = "convert the line ends of the file to LF or CRLF"
             raise self.listing.refusal(self.line, "GX102", message, hint)
 
-    def _copy_line(self) -> None:
+    def copy_line(self) -> None:
+        """Take the line over as it stands."""
         self.put(self.listing.raw(self.line, self.line + 1), np.array([self.line]))
 
     def _skips(self, block: Block) -> bool:
@@ -144,7 +162,9 @@ class Execution(RunState):
         That are the definitions in `kept`, which other programs may call, and the last percent
         sign, which the control reads.
         """
-        self.kept, self.executed = kept, self.blocks
+        self.kept = kept
+        self.close_branches()
+        self.executed = self.blocks
         for each in self.kept:
             lines = np.arange(each.first, each.last + 1)
             self.put(self.listing.raw(each.first, each.last + 1), lines)
@@ -178,6 +198,17 @@ class Execution(RunState):
         for file in self.listing.files:
             first, behind = self.listing.part(file.first)
             yield Definition(file.name, first, behind - 1)
+
+    def close_branches(self) -> None:
+        """Write what only the machine may come to, behind the end."""
+
+    def undecided(self) -> Undecided:
+        """Return what of the executed lines only the machine decides."""
+        return DECIDED
+
+    def is_over(self, block: Block) -> bool:
+        """Whether the program is over after a block."""
+        return self._ends(block)
 
     # --- what differs between controls ---
 
@@ -247,6 +278,8 @@ class Execution(RunState):
         if len(self.calls) >= self.deepest:
             raise self.refusal("GX224", f"{self.deepest} calls are inside each other, and one more")
         self.calls.append(call)
+        self.entries += 1
+        call.serial = self.entries
         self.at = call.first
 
     # --- blocks ---
@@ -262,14 +295,16 @@ class Execution(RunState):
         self.acted |= self.becomes_other(block)
         statements = _statements(block)
         changes = [self._assigned(statement) for statement in statements]
+        texts = [self.kept_assignment(*both) for both in zip(statements, changes, strict=True)]
         self.set(dict(changes))
-        for statement, change in zip(statements, changes, strict=True):
-            edits.append((statement.start, statement.end, self.lasting.account(*change)))
+        for statement, change, text in zip(statements, changes, texts, strict=True):
+            edits.append((statement.start, statement.end, self.lasting.account(*change, text)))
         edits += self.lasting.messages(block)
+        edits = [(start, end, new) for start, end, new in edits if block.text[start:end] != new]
         if edits:
             self._write_changed(block, edits)
         else:
-            self._copy_line()
+            self.copy_line()
         if meaning.runs_macro and not meaning.lost_by <= self.reading.inert_m:
             self._forget()
         self.percents += meaning.percent
@@ -278,6 +313,12 @@ class Execution(RunState):
     def _assigned(self, statement: Statement) -> tuple[Key, float]:
         """Return a parameter and its new value."""
         return self.assignment(statement.tree, (statement.start, statement.end))
+
+    def kept_assignment(self, statement: Statement, change: tuple[Key, float]) -> str:
+        """Return what stays of an assignment that only the machine can make; "" for another."""
+        if self.arithmetic.owns(change[0]) and change[1] == change[1]:
+            return ""
+        return self.remains(statement, Evaluator(self.arithmetic, self.parameters))
 
     def _forget(self) -> None:
         """Forget all parameters, those too that callers get back: a macro may have set them."""

@@ -10,7 +10,7 @@ from gcxform.flow.messages import prints_values, told
 from gcxform.flow.run_state import Edit, RunState
 from gcxform.flow.text import assignment
 from gcxform.flow.walk import Made
-from gcxform.modal.expressions.value import written
+from gcxform.modal.expressions.value import DOUBTFUL, written
 from gcxform.syntax.tree import Block, Comment
 
 
@@ -20,6 +20,7 @@ class Lasting:
     assigned    the parameters that outlive the program, with the line that set each, and its value
     locals_set  how often one was set that ends with its call, or with the program
     made        all of both, with the step that set each
+    levels      of such ones that are written all the same, the call that they belong to
     """
 
     def __init__(self, program: RunState) -> None:
@@ -27,20 +28,40 @@ class Lasting:
         self.assigned: list[tuple[int, Key, float]] = []
         self.locals_set = 0
         self.made: list[Made] = []
+        self.levels: dict[Key, int] = {}
 
-    def account(self, key: Key, value: float) -> str:
-        """Return an assignment as it is written: nothing for a parameter that ends with the run."""
+    def account(self, key: Key, value: float, kept: str = "") -> str:
+        """Return an assignment as it is written: nothing for a parameter that ends with the run.
+
+        `kept` is what stays of one whose value only the machine knows, or the control's own.
+        """
         self.made.append(Made(len(self.program.walked) - 1, key, value))
-        if not self.program.arithmetic.outlives(key):
+        if kept:
+            self._refuse_levels(key)
+            self.assigned.append((self.program.line, key, value))
+            return kept
+        local = not self.program.arithmetic.outlives(key)
+        if local and key not in self.program.settled.needed:
+            self.program.dropped.add(key)
             self.locals_set += 1
             return ""
         if not self.program.keeps:
             return ""
+        self._refuse_levels(key)
         if value is MAYBE:
             message = f"whether {written(key)} becomes 0 or null is not certain"
             raise self.program.refusal("GX221", message)
         self.assigned.append((self.program.line, key, value))
         return assignment(key, value, self.program.arithmetic)
+
+    def _refuse_levels(self, key: Key) -> None:
+        """Refuse to write parameters of two calls that have one name: they would become one."""
+        if self.program.arithmetic.outlives(key):
+            return
+        level = self.program.level()
+        if self.levels.setdefault(key, level) != level:
+            message = f"{written(key)} is not known, and calls have it that are written out"
+            raise self.program.refusal("GX220", message)
 
     def messages(self, block: Block) -> list[Edit]:
         """Return the executed comments that print values, with the values in them.
@@ -63,9 +84,10 @@ class Lasting:
     def _printed(self, key: Key) -> float | None:
         """Return what a message prints for a parameter; None where the control knows it as well."""
         known, arithmetic = self.program.parameters.get(key), self.program.arithmetic
-        if known is None or not math.isnan(known):
+        if known is None or math.isfinite(known):
             return known
-        if arithmetic.owns(key) and not arithmetic.outlives(key):
+        doubtful = key in self.program.dropped - self.program.settled.needed
+        if known == DOUBTFUL or (arithmetic.owns(key) and doubtful):
             message = f"{written(key)}, which this message prints, is not known here"
             raise NoValueError(message, code="GX220")
         return None

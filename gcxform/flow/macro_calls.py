@@ -10,7 +10,8 @@ from __future__ import annotations
 from gcxform.dialect.arithmetic import MACRO_B, Key
 from gcxform.dialect.null import NULL
 from gcxform.flow.macro_arguments import arguments
-from gcxform.flow.run_state import UNKNOWN, Call, RunState, differs
+from gcxform.flow.run_state import Call, RunState, differs
+from gcxform.modal.expressions.value import DOUBTFUL
 from gcxform.syntax.tree import Block, Word
 
 LOCALS = MACRO_B.local
@@ -57,7 +58,7 @@ class ValueCalls:
             return
         first = fresh(call.given)
         changed = [k for k, v in first.items() if differs(self.run.parameters.get(k), v)]
-        self.run.parameters |= first if said else dict.fromkeys(changed, UNKNOWN)
+        self.run.parameters |= first if said else dict.fromkeys(changed, DOUBTFUL)
 
 
 def fresh(given: dict[Key, float]) -> dict[Key, float]:

@@ -7,50 +7,32 @@ G65 makes new ones (`gcxform/flow/macro_calls.py`). Modes stay as what was calle
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
-from lark import Token
-
-from gcxform.dialect.arithmetic import Arithmetic
-from gcxform.flow.execution import HINT, Execution
+from gcxform.flow.execution import HINT
 from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.macro_calls import ValueCalls
+from gcxform.flow.macro_words import Loop, MacroWords, statement_of
 from gcxform.flow.numbered_files import begins_program, file_of, first_block, program_number
-from gcxform.flow.relations import RELATIONS
 from gcxform.flow.run_state import Call, whole_number
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import BLANKS, Block, Number, Statement, Word
 
 LOOPS = ("1", "2", "3")
-SEQUENCE = re.compile(rb"(?:\([^()]*\))*(?:/[1-9]?)?(?:\([^()]*\))*[Nn]([0-9]+)")
 CALLING = frozenset({"M98", "M198", "G65", "G66", "G66.1", "computed"})
 """What calls a program by its number, or may do so."""
 PACKED = 10_000  # P of old controls: a count, and four digits of a program number
 
 
-@dataclass(frozen=True, slots=True)
-class Loop:
-    """A loop: the lines of its DO and its END."""
-
-    first: int
-    last: int
-
-
-class MacroB(Execution):
+class MacroB(MacroWords):
     """Runs programs of Fanuc, Haas and their relatives."""
 
     def __init__(self, listing: Listing, reading: Reading, keeps: bool = False) -> None:
         super().__init__(listing, reading, keeps)
-        self.loops: dict[int, Loop] = {}
         self.starts: dict[int, int] = {}
         self.twice: set[int] = set()
-        self.bounds: list[int] = []
         self.unnumbered: dict[int, int] = {}
         self.values = ValueCalls(self)
         self.arrange()
@@ -60,7 +42,7 @@ class MacroB(Execution):
     def arrange(self) -> None:
         """Find programs and loops. Raises InputError for what does not fit together."""
         self.loops, self.starts, self.twice, self.bounds = {}, dict(self.unnumbered), set(), []
-        self.__dict__.pop("_sequences", None)
+        self.forget_sequences()
         open_: list[tuple[int, str]] = []
         for line in self.listing.special.tolist():
             self.line = line
@@ -75,7 +57,7 @@ class MacroB(Execution):
                 self._refuse_open(open_)
                 self.line = line
                 self._begin(line, program_number(block))
-            statement = _statement(block)
+            statement = statement_of(block)
             if statement is not None:
                 self._place(line, statement, open_)
         self._refuse_open(open_)
@@ -119,25 +101,6 @@ class MacroB(Execution):
             self.line = open_[-1][0]
             raise self.refusal("GX223", f"the loop DO {open_[-1][1]} has no END")
 
-    @property
-    def conditions(self) -> Arithmetic:
-        """The arithmetic of conditions: relations are known there alone."""
-        return self._conditions
-
-    @cached_property
-    def _conditions(self) -> Arithmetic:
-        return replace(self.arithmetic, operators={**self.arithmetic.operators, **RELATIONS})
-
-    def _program(self) -> tuple[int, int]:
-        """Return the first line of the program that runs, and the line behind its last."""
-        first = max((b for b in self.bounds if b <= self.line), default=0)
-        if self.bounds and first == self.bounds[0]:
-            first = 0
-        return first, min(
-            (b for b in self.bounds if b > max(self.line, first) and b != self.bounds[0]),
-            default=len(self.listing),
-        )
-
     # --- what lines do ---
 
     def act(self, block: Block) -> bool:
@@ -145,7 +108,7 @@ class MacroB(Execution):
         if begins_program(block) and self.line != self.bounds[0]:
             message = "the program before goes on into this one, without M30 or M99"
             raise self.refusal("GX223", message)
-        statement = _statement(block)
+        statement = statement_of(block)
         if statement is not None:
             getattr(self, f"_{statement.kind}")(statement)
             return True
@@ -174,7 +137,7 @@ class MacroB(Execution):
     def leaves(self, line: int, first: int, last: int) -> bool:
         """Whether a line jumps, returns, or ends the program."""
         block = self.listing.block(line)
-        statement = _statement(block)
+        statement = statement_of(block)
         jumps = statement is not None and statement.kind in ("goto", "if_goto")
         returns = any(w.address == "M" and whole_number(w) == 99 for w in block.words)
         return jumps or returns or super().leaves(line, first, last)
@@ -204,7 +167,7 @@ class MacroB(Execution):
         target, times = self._called(block)
         name = f"M98 P{target}"
         if own:
-            first, name = self._labelled(target), f"M97 P{target}"
+            first, name = self.labelled(target), f"M97 P{target}"
             if self._around(first):
                 raise self.refusal("GX223", f"N{target} stands inside a loop that is not running")
             self.jumps.add(len(self.walked) - 1)
@@ -297,83 +260,6 @@ class MacroB(Execution):
         self.values.again(call)
         self.changes += 1
         self.at = call.first
-
-    # --- jumps ---
-
-    def _labelled(self, number: float) -> int:
-        """Return the line of the running program that has a sequence number."""
-        first, last = self._program()
-        found = [line for line in self._sequences.get(number, ()) if first <= line < last]
-        if len(found) != 1:
-            how = "no line" if not found else "more than one line"
-            raise self.refusal("GX223", f"{how} of this program has the number N{number:g}")
-        if not self.stands(self.listing.block(found[0])):
-            message = f"N{number:g} is skipped: whether the control finds it is not certain"
-            raise self.refusal("GX223", message)
-        return found[0]
-
-    @cached_property
-    def _sequences(self) -> dict[float, list[int]]:
-        """The lines of every sequence number."""
-        found: dict[float, list[int]] = {}
-        for line in range(len(self.listing)):
-            text = self.listing.window.line(line).translate(None, b" \t")
-            if number := SEQUENCE.match(text):
-                found.setdefault(float(number[1]), []).append(line)
-        return found
-
-    def _jump(self, number: float) -> None:
-        target = self._labelled(number)
-        into = [p for p in self._around(target) if p not in self._around(self.line)]
-        if into:
-            raise self.refusal("GX223", f"N{number:g} stands inside a loop that is not running")
-        self.jumps.add(len(self.walked) - 1)
-        if target > self.line:
-            self.at = target
-        else:
-            self.back_to(target)
-
-    def _around(self, line: int) -> list[Loop]:
-        return [loop for loop in set(self.loops.values()) if loop.first < line <= loop.last]
-
-    def _goto(self, statement: Statement) -> None:
-        self._jump(self._target(statement.tree.children[-1]))
-
-    def _target(self, node: Any) -> float:
-        return float(str(node).translate(BLANKS)) if isinstance(node, Token) else self.value(node)
-
-    def _holds(self, statement: Statement) -> bool:
-        return self.value(statement.tree.children[1], conditions=True) != 0
-
-    def _if_goto(self, statement: Statement) -> None:
-        if self._holds(statement):
-            self._goto(statement)
-
-    def _if_then(self, statement: Statement) -> None:
-        if self._holds(statement):
-            tree = statement.tree.children[-1]
-            key, value = self.assignment(tree, (statement.start, statement.end))
-            self.set({key: value})
-            if text := self.lasting.account(key, value):
-                self.write_line(text)
-
-    # --- loops ---
-
-    def _while(self, statement: Statement) -> None:
-        if not self._holds(statement):
-            self.at = self.loops[self.line].last + 1
-
-    def _do(self, statement: Statement) -> None:
-        """Go on."""
-
-    def _end(self, statement: Statement) -> None:
-        self.back_to(self.loops[self.line].first)
-
-
-def _statement(block: Block) -> Statement | None:
-    """Return the flow word of a block."""
-    found = (i for i in block.items if isinstance(i, Statement) and i.kind != "assignment")
-    return next(found, None)
 
 
 def _names(item: Word | Statement, code: str) -> bool:

@@ -162,7 +162,7 @@ class OWords(Execution):
         try:
             self.returned(self.value(word.values[0]) if word.values else None)
         except InputError:
-            self.returned(math.nan)  # only who reads it must know it
+            self.returned(self.doubtful)  # only who reads it must know it
 
     def _call(self, word: OWord) -> None:
         first = self.subprograms.line_of(label := self._label(word))
@@ -248,7 +248,7 @@ class OWords(Execution):
             self.modes.enter()
             self.counters = {}
             # On its way to the number the control may pass an M99 or endsub, which sets them.
-            self.set({"_value": math.nan, "_value_returned": math.nan})
+            self.set({"_value": self.doubtful, "_value_returned": self.doubtful})
 
     def _is_inside(self, line: int) -> bool:
         """Whether a line stands inside a construct."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -17,13 +17,20 @@ from gcxform.diagnostics import InputError
 from gcxform.dialect.arithmetic import Arithmetic, Key, NoValueError, whole
 from gcxform.dialect.null import NULL, Null
 from gcxform.flow.listing import CODES_OF_CALLS, STORED_MODES, Listing
+from gcxform.flow.residual import edited, residual
 from gcxform.flow.text import DECIMALS, decimal
 from gcxform.flow.walk import Step
-from gcxform.modal.expressions.value import Evaluator, LocatedError, parameter_key, settable
+from gcxform.modal.expressions.value import (
+    DOUBTFUL,
+    Evaluator,
+    LocatedError,
+    parameter_key,
+    settable,
+)
 from gcxform.modal.lines import DISTANCES
 from gcxform.modal.numbers_without_point import assumed_rounding, hint_of_rounding
 from gcxform.modal.state import Reading
-from gcxform.syntax.tree import Block, Expression, Mark, Number, Word
+from gcxform.syntax.tree import Block, Expression, Mark, Number, Statement, Word
 from gcxform.system.arrays import Ints
 
 NAMED = 5  # of the calls that a refusal stands in
@@ -40,6 +47,7 @@ class Call:
 
     `times` are the runs that are left, `first` the first line of the subprogram, `name` what
     called it by. A call with values has variables of its own: `given` are those that it was given.
+    `serial` counts the calls of a run.
     """
 
     name: str
@@ -49,6 +57,27 @@ class Call:
     locals: dict[Key, float] = field(default_factory=dict)
     counters: dict[int, int] = field(default_factory=dict)
     given: dict[Key, float] | None = None
+    serial: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """What a run has found out too late, so that the next one has to know it before.
+
+    needed  parameters that end with the run, and whose assignments stay all the same
+    loops   first and last lines that the machine repeats until it is content
+    """
+
+    needed: frozenset[Key] = frozenset()
+    loops: frozenset[tuple[int, int]] = frozenset()
+
+
+class Again(Exception):  # noqa: N818 - it is no error
+    """The program has to be run from its start once more, and this is known now."""
+
+    def __init__(self, settled: Settled) -> None:
+        super().__init__("again")
+        self.settled = settled
 
 
 class RunState:
@@ -57,6 +86,8 @@ class RunState:
     `keeps`: the blocks are to be written, so what lasts in parameters and what nothing calls stands
     in them; otherwise they are only read.
     """
+
+    doubtful: ClassVar[float] = DOUBTFUL
 
     def __init__(self, listing: Listing, reading: Reading, keeps: bool) -> None:
         assert listing.dialect.flow_rule.arithmetic is not None
@@ -67,6 +98,8 @@ class RunState:
         self.keeps = keeps
         given = {parameter_key(name): v for name, v in reading.parameters.items()}
         self.parameters = {k: v for k, v in given.items() if self.arithmetic.owns(k)}
+        self.settled = Settled()
+        self.dropped: set[Key] = set()
         self.calls: list[Call] = []
         self.line = 0
         self.text: list[bytes] = []
@@ -141,6 +174,8 @@ class RunState:
                 value = whole(value * 10) / 10
                 self._refuse_flow(word, value)
         except NoValueError as why:
+            if why.lost and word.address not in "GM":
+                return self.remains(word.value, evaluator)
             start, end = (
                 (why.start, why.end) if isinstance(why, LocatedError) else (word.start, word.end)
             )
@@ -184,16 +219,40 @@ class RunState:
         return self.inch
 
     def assignment(self, tree: Any, place: tuple[int, int]) -> tuple[Key, float]:
-        """Return the parameter that a tree sets, and its value. Raises InputError."""
+        """Return the parameter that a tree sets, and its value: nan if only the machine knows it.
+
+        Raises InputError.
+        """
         parameter, expression = tree.children
         evaluator = Evaluator(self.arithmetic, self.parameters)
+        key: Key | None = None
         try:
-            return settable(self.arithmetic, evaluator.key(parameter)), evaluator.value(expression)
-        except LocatedError as why:
-            place, error = (why.start, why.end), why
+            key = settable(self.arithmetic, evaluator.key(parameter))
+            return key, evaluator.value(expression)
         except NoValueError as why:
-            error = why  # type: ignore[assignment]
-        raise self.refusal(error.code, error.message, error.hint, place)
+            if why.lost and key is not None:
+                return key, UNKNOWN
+            if isinstance(why, LocatedError):
+                place = why.start, why.end
+            raise self.refusal(why.code, why.message, why.hint, place) from None
+
+    # --- what only the machine can compute ---
+
+    def remains(self, item: Expression | Statement, evaluator: Evaluator) -> str:
+        """Return what stays of an expression, an assignment or a flow word, as text.
+
+        Raises Again if what it reads was left out before.
+        """
+        left = residual(item.tree, evaluator)
+        reads = self.dropped if left.anywhere else left.reads & self.dropped
+        if self.keeps and not reads <= self.settled.needed:
+            raise Again(replace(self.settled, needed=self.settled.needed | reads))
+        return edited(self.listing.block(self.line).text, item.start, item.end, left.edits)
+
+    def level(self) -> int:
+        """Return the number of the call whose parameters end with it; 0 for the program itself."""
+        own = [call.serial for call in self.calls if not call.name.startswith("M9")]
+        return max(own, default=0)
 
     # --- refusals ---
 

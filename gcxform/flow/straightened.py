@@ -9,7 +9,7 @@ import numpy as np
 from gcxform.diagnostics import GcxformError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.detection import has_flow
-from gcxform.flow.executed import Executed
+from gcxform.flow.executed import Executed, WrittenOut
 from gcxform.flow.walk import Walked
 from gcxform.modal.inventory import Tally
 from gcxform.modal.state import Reading
@@ -49,7 +49,10 @@ def written_out(
         source.assumed = tuple(run.assumed)
         return source
     lines = np.concatenate([np.empty(0, np.int64), *run.origin])
-    found = Walked(source, b"".join(run.text), lines, run.walk(), run.assumed)
+    text, undecided = b"".join(run.text), run.undecided()
+    found: WrittenOut = Walked(source, text, lines, run.walk(), run.assumed)
+    if undecided:
+        found = WrittenOut(source, text, lines, run.assumed, run.listing.files, undecided)
     found.executed = _account(run)
     found.called = _inside(run)[lines]
     return found
@@ -92,17 +95,24 @@ def _executed(source: Source, dialect: type[Dialect], reading: Reading, keeps: b
     from gcxform.flow.lookup import Folders
     from gcxform.flow.macros import MacroB
     from gcxform.flow.owords import OWords
+    from gcxform.flow.run_state import Again, Settled
     from gcxform.flow.uncalled_subprograms import kept
 
     kind: type[Execution] = OWords if dialect.flow_rule.language == "o-words" else MacroB
     beside = [source.folder] if source.folder is not None else []
     folders = Folders([*beside, *reading.subprograms], dialect.flow_rule.lookup, source.suffix)
     listing = Listing(b"".join(source.windows()), dialect, source.name, folders)
-    run = kind(listing, reading, keeps)
-    run.run()
-    run.close(kept(run))
-    check_walk(run)
-    return run
+    settled = Settled()
+    while True:
+        run = kind(listing, reading, keeps)
+        run.settled = settled
+        try:
+            run.run()
+            run.close(kept(run))
+            check_walk(run)
+            return run
+        except Again as again:
+            settled = again.settled
 
 
 def located(error: GcxformError, source: Source) -> GcxformError:

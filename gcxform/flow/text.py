@@ -19,10 +19,15 @@ def decimal(value: float) -> str:
 
 
 def assignment(key: Key, value: float, arithmetic: Arithmetic) -> str:
-    """Return an assignment of a number, in all the digits that the control takes."""
+    """Return an assignment of a number."""
+    return f"{written(key)}={number(value, arithmetic)}"
+
+
+def number(value: float, arithmetic: Arithmetic) -> str:
+    """Return a number in all the digits that the control takes, or null."""
     if isinstance(value, Null):
-        return f"{written(key)}=#0"
+        return "#0"
     digits = repr(value) if arithmetic.digits >= 17 else f"{value:.{arithmetic.digits}g}"
     text = f"{Decimal(digits):f}"
     whole, _, rest = text.partition(".")
-    return f"{written(key)}={whole}.{rest.rstrip('0')}"
+    return f"{whole}.{rest.rstrip('0')}"

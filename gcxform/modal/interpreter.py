@@ -27,7 +27,8 @@ from gcxform.modal.meaning.tables import GROUPS, NUMBER, SPLINES, MeaningTable
 from gcxform.modal.moves.moves import Moves
 from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, State
 from gcxform.syntax.scan import Window
-from gcxform.system.arrays import Floats, Ints
+from gcxform.syntax.undecided import DECIDED
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.path import Toolpath
 
 
@@ -37,7 +38,8 @@ class Interpreted:
 
     `shape` (live,) are their shapes: that of an empty line for blocks that are skipped. `value`
     are the window's numbers, those that were computed among them; `assigned` are the parameters
-    that the lines set, in order, and `unknown` what of them only the machine can compute.
+    that the lines set, in order, and `unknown` what of them only the machine can compute. `perhaps`
+    (live,) are lines that move something and may not be executed; None: there are none.
     """
 
     path: Toolpath
@@ -48,6 +50,7 @@ class Interpreted:
     value: Floats
     assigned: tuple[Assigned, ...] = ()
     unknown: tuple[Unknown, ...] = ()
+    perhaps: Flags | None = None
 
 
 PECKS = ("peck-return", "peck-clearance")
@@ -69,7 +72,7 @@ def _key_of(parameter: str) -> Key:
 
 
 class Interpreter:
-    """Reads the windows of one program in order."""
+    """Reads the windows of one program in order; `undecided` is what of it the machine decides."""
 
     def __init__(
         self,
@@ -82,6 +85,7 @@ class Interpreter:
         self.reading = reading or Reading()
         self.axes = axes or dialect.axes
         self.file = file
+        self.undecided = DECIDED
         self.state = self._first_state()
 
     def _first_state(self) -> State:
@@ -123,7 +127,8 @@ class Interpreter:
         """Return the moves of a window. Raises InputError with all that speaks against it."""
         table.update()
         before = replace(self.state, position=self.state.position.copy())
-        lines = Lines(self.dialect, self.reading, self.state, window, table, self.file)
+        given = self.file, self.undecided
+        lines = Lines(self.dialect, self.reading, self.state, window, table, *given)
         lines.refuse_statically()
         compute(lines)
         modes = lines.modes()
@@ -133,7 +138,8 @@ class Interpreter:
         self._carry(lines, modes)
         value, assigned = lines.window.value, tuple(lines.assigned)
         unknown = tuple(lines.unknown)
-        return Interpreted(path, modes, lines.live, lines.shape, before, value, assigned, unknown)
+        found = value, assigned, unknown, lines.perhaps
+        return Interpreted(path, modes, lines.live, lines.shape, before, *found)
 
     def _carry(self, lines: Lines, modes: Modes) -> None:
         """Leave the state in which the window ends."""

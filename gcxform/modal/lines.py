@@ -25,6 +25,7 @@ from gcxform.modal.meaning.tables import (
 from gcxform.modal.numbers_without_point import Pointless
 from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
 from gcxform.syntax.scan import Window
+from gcxform.syntax.undecided import DECIDED, Undecided
 from gcxform.system.arrays import Flags, Floats, Small
 
 DISTANCES = "XYZABCUVWIJKR"
@@ -67,6 +68,7 @@ class Lines:
     parameters   what the program has set, before the window and, once computed, after it
     assigned     what the window has set, in order, once computed
     unknown      what of it only the machine can compute
+    undecided    what of the program only the machine decides, nothing where that is elsewhere
     feed_lost    (live,) whether a feed is in force that only the machine knows
     """
 
@@ -78,6 +80,7 @@ class Lines:
         window: Window,
         table: MeaningTable,
         file: str,
+        undecided: Undecided = DECIDED,
     ) -> None:
         self.dialect = dialect
         self.reading = reading
@@ -89,6 +92,7 @@ class Lines:
         self.parameters = dict(state.parameters)
         self.assigned: list[Assigned] = []
         self.unknown: list[Unknown] = []
+        self.undecided = undecided.within(window.first_line, len(window))
         self.feed_lost: Flags = np.zeros(0, np.bool_)
         self.live = self._live()
         self.shape = window.shape[: self.live]
@@ -127,7 +131,8 @@ class Lines:
         """Raise InputError for what can be seen without numbers."""
         self._deleted_blocks()
         self._lone_line_ends()
-        wrong = np.flatnonzero(self.flag("wrong")).tolist()
+        stays = {line - self.window.first_line for line in self.undecided.lines}
+        wrong = [n for n in np.flatnonzero(self.flag("wrong")).tolist() if n not in stays]
         lathe = [line for line in wrong if self._refusal_code(line) == LATHE]
         for line in lathe[:1] or wrong:  # one sign of a lathe explains all the others
             self.findings.add_refusal(line)
@@ -290,6 +295,27 @@ class Lines:
             self.state.memory[name] = int(values[-1])
         return values
 
+    def lost_before(self, letters: str) -> dict[int, str]:
+        """Return the lines of the window before which some of these letters are lost, and which."""
+        found = {n: {*axes} & {*letters} for n, axes in self.undecided.lost.items()}
+        first, last = self.window.first_line, self.window.first_line + self.live
+        return {n - first: "".join(sorted(a)) for n, a in found.items() if a and n < last}
+
+    @property
+    def apart(self) -> Flags:
+        """The lines that are joined with no other: with a mark, and where a jump may be."""
+        found = self.flag("marked")
+        return found | self.undecided.at_jumps(*self._span) if self.undecided else found
+
+    @property
+    def perhaps(self) -> Flags | None:
+        """The lines that move something and may not be executed; None if there are none."""
+        return self.undecided.skipped(*self._span) if self.undecided.perhaps else None
+
+    @property
+    def _span(self) -> tuple[int, int]:
+        return self.window.first_line, self.live
+
     def _cycle(self, motion: Small) -> Small:
         """Return the canned cycle in force on each line, `CYCLE_OFF` for none.
 
@@ -346,6 +372,9 @@ class Lines:
                 known = present & ~np.isnan(value)
                 value = self.pointless.feeds(value, known, decimals, feed_mode, inch)
         named = present & np.isnan(value)
+        for line in self.lost_before("F"):
+            named[line] = named[line] or not present[line]
+            present[line] = True
         present = present | self._cleared(feed_mode, inch)
         self.feed_lost = fill(named, present, self.state.feed_lost)
         if self.live:

@@ -122,10 +122,10 @@ class Run:
         axes = "".join(axis for axis in plan.source.axes if axis in written)
         reading = plan.reading_at_start(axes)
         interpreter = Interpreter(self.dialect, reading, axes, self.source.name)
+        interpreter.undecided = self.source.undecided
         self.frame = self._frame()
-        start = interpreter.state.position
-        called = self.source.is_called
-        emitter = Emitter(plan.manner, start, self.source.name, called)
+        where = interpreter.state.position, self.source.name
+        emitter = Emitter(plan.manner, *where, self.source.is_called)
         emitter.believed.inch = int(plan.first_units == "in")
         self.books = Books(plan.context, self._switches())
         if self.verify == "off":
@@ -140,7 +140,7 @@ class Run:
             self.source.name,
             any(step.demands.folds for step in self.steps),
             self._switches(),
-            plan.bounded,
+            *(plan.bounded, self.source.undecided),
         )
         return Stages(interpreter, emitter, verifier)
 

@@ -51,6 +51,7 @@ from gcxform.proof.path_modes import PathModes
 from gcxform.proof.spared_rapids import led_elsewhere, spared_rows, told
 from gcxform.proof.trace import Trace
 from gcxform.syntax.scan import Window
+from gcxform.syntax.undecided import DECIDED, Undecided
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.facts import IN_AIR, between_taps
 from gcxform.toolpath.path import WHOLE, Kind, Toolpath
@@ -111,6 +112,7 @@ class Verifier:
         folded: bool = False,
         switches: frozenset[str] = frozenset(),
         bounded: bool = True,
+        undecided: Undecided = DECIDED,
     ) -> None:
         self.passes = passes
         self.switches = switches
@@ -118,6 +120,7 @@ class Verifier:
         self.context = context
         self.reader = WindowReader(context.target)
         self.interpreter = Interpreter(context.target, reading, axes, "output")
+        self.undecided = undecided
         self.whole = Whole(context.target)
         self.limit = limit
         self.centres = CentreProof(context, file)
@@ -144,8 +147,8 @@ class Verifier:
         which of the moves of its input line the first move of an output line is.
         Raises VerificationError.
         """
-        first = self.reader.lines
         again = self.reader.read(text)
+        self.interpreter.undecided = self.undecided.through(source, again.first_line)
         try:
             back = self.interpreter.interpret(again, self.reader.table)
         except GcxformError as error:
@@ -154,12 +157,12 @@ class Verifier:
         path = back.path
         self.findings.inch |= bool(path.blocks.inch[path.block].any())
         self.findings.arcs |= any(p.has_arcs or p.has_splines for p in (path, read.path))
-        written = path.source - first
+        written = path.source - again.first_line
         line, which = source[written], path.nth + nth[written]
         known = path = as_known(path, read.path, line, which, bool(self.switches))
         for step in reversed(self.passes):
             path = step.undo(path, self.context)
-        trace = Trace(read.path, lines, back.path, path, source, nth, first)
+        trace = Trace(read.path, lines, back.path, path, source, nth, again.first_line)
         self._count(read, lines, trace)
         self._compare(trace, spared_rows(self.passes, read.path), known)
         self._centres(trace)

@@ -20,6 +20,7 @@ from typing import IO, BinaryIO, cast
 
 from gcxform.config import arguments
 from gcxform.diagnostics import FileError, InputError, Location
+from gcxform.syntax.undecided import DECIDED, Undecided
 from gcxform.system.inputs import is_changed
 from gcxform.system.limits import how_to_raise, limits
 
@@ -34,12 +35,14 @@ COMMENT = re.compile(rb"\([^()\r\n]*\)")  # of every dialect; some have others b
 class Source:
     """A program and its name. The stream can be read from the start more than once.
 
-    `assumed` is what was chosen among several meanings where the text was made of another one;
+    `assumed` is what was chosen among several meanings where the text was made of another one, and
+    `undecided` what of it only the machine decides;
     `written` is when its file was (seconds of the epoch), None for what is no file; `folder` is
     where that lies, whose other files it may call, and `suffix` the ending of its name.
     """
 
     assumed: tuple[str, ...] = ()
+    undecided: Undecided = DECIDED
     folder: Path | None = None
     suffix = ""
 

@@ -32,6 +32,7 @@ class Tolerant:
         axes = self.source.axes(self.dialect.axes)
         self.reader = WindowReader(self.dialect)
         self.interpreter = Interpreter(self.dialect, self.reading, axes, self.source.name)
+        self.interpreter.undecided = self.source.undecided
 
     def windows(self) -> Iterator[tuple[Window, Toolpath | None]]:
         """Yield the windows with their paths; None for one of which nothing can be made."""

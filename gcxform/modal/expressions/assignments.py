@@ -29,7 +29,7 @@ from gcxform.modal.expressions.value import Evaluator, LocatedError, settable
 from gcxform.modal.findings import Findings
 from gcxform.modal.lines import Assigned, Lines, Unknown
 from gcxform.modal.meaning.meaning import Meaning
-from gcxform.syntax.tree import Expression, Statement, Word
+from gcxform.syntax.tree import Expression, Item, Mark, Statement, Word
 from gcxform.system.arrays import Floats, Ints
 
 UNKNOWN = float("nan")
@@ -41,18 +41,20 @@ def compute(lines: Lines) -> None:
 
     Raises InputError for what has no value.
     """
-    having = np.flatnonzero(lines.flag("computes"))
+    undecided = _undecided(lines)
+    having = np.union1d(np.flatnonzero(lines.flag("computes")), undecided).astype(np.int64)
     if not len(having) or lines.dialect.flow_rule.arithmetic is None:
         return
-    _Run(lines, having).run()
+    _Run(lines, having, undecided).run()
     lines.findings.raise_if_any()
 
 
 class _Run:
     """Computes the lines of a window that compute something, in order."""
 
-    def __init__(self, lines: Lines, having: Ints) -> None:
+    def __init__(self, lines: Lines, having: Ints, undecided: list[int]) -> None:
         self.lines = lines
+        self.undecided = frozenset(undecided)
         self.having = having
         self.value = lines.window.value.copy()
         self.row = self.value.tolist()
@@ -66,6 +68,9 @@ class _Run:
         meanings = self.lines.table.meanings
         writes = np.array([_writes(meaning) for meaning in meanings], np.bool_)
         writers = np.flatnonzero(writes[self.lines.shape[self.having]]).tolist()
+        if self.undecided:
+            kept = np.flatnonzero(np.isin(self.having, [*self.undecided])).tolist()
+            writers = sorted({*writers, *kept})
         begin = 0
         for writer in [*writers, len(self.having)]:
             alone = self.having[begin : writer + 1]
@@ -98,7 +103,7 @@ class _Run:
         """Compute one line: its words, then its assignments, which take effect together."""
         lines = self.lines
         functions, first = self.functions[lines.shape[line]], int(lines.first[line])
-        if functions is None:
+        if functions is None or line in self.undecided:
             _Block(lines, line, self.value).execute()
             return
         row = self.row[first : first + functions.slots]
@@ -139,6 +144,7 @@ class _Block:
     def execute(self) -> None:
         """Compute the words, then the assignments; these take effect together, at the end."""
         first = int(self.lines.first[self.line])
+        self._stay()
         for slot, word in self.expressions:
             self.value[first + slot] = self._word(word)
         changes = [self._assigned(statement) for statement in self.assignments]
@@ -147,6 +153,29 @@ class _Block:
         self.lines.assigned += made
         if self.meaning.runs_macro and not self.meaning.lost_by <= self.lines.reading.inert_m:
             self.lines.parameters = dict.fromkeys(self.lines.parameters, UNKNOWN)
+
+    def _stay(self) -> None:
+        """Note the texts of what only the machine decides: flow words, and what they jump to."""
+        place, undecided = self.line + self.lines.window.first_line, self.lines.undecided
+        items = self.lines.table.shapes.grammar.parse(self._text).items if undecided else ()
+        number = bare_text(self._text[: _label_end(items)])
+        self.lines.parameters |= dict.fromkeys(undecided.forgets.get(place, ()), UNKNOWN)
+        if place in undecided.labels:
+            self.lines.unknown.append(Unknown(self.line, number or "without a number", ""))
+        for item in items if place in undecided.lines else ():
+            if isinstance(item, Statement) and item.kind != "assignment":
+                self._keep(item, item.tree, Evaluator(self.arithmetic, self.lines.parameters))
+                if item.kind == "if_then":
+                    self._perhaps(item)
+
+    def _perhaps(self, item: Statement) -> None:
+        """Note an assignment that may be made or not."""
+        evaluator = Evaluator(self.arithmetic, self.lines.parameters)
+        key = settable(self.arithmetic, evaluator.key(item.tree.children[-1].children[0]))
+        text = bare_text(self._text[item.start : item.end])
+        line = self.lines.window.first_line + self.line
+        self.lines.parameters[key] = UNKNOWN
+        self.lines.assigned.append(Assigned(line, key, UNKNOWN, text))
 
     def _word(self, word: Word) -> float:
         """Return the value of a word, nan where only the machine knows it, and after a finding."""
@@ -203,3 +232,20 @@ class _Block:
             place = why.start, why.end
         diagnostic = Diagnostic(why.code, why.message, hint=why.hint)
         self.lines.findings.add_at(self.line, place, diagnostic)
+
+
+def _undecided(lines: Lines) -> list[int]:
+    """Return the lines of a window with what only the machine decides."""
+    first, found = lines.window.first_line, lines.undecided
+    there = {*found.lines, *found.labels, *found.forgets}
+    return sorted(n - first for n in there if 0 <= n - first < lines.live)
+
+
+def _label_end(items: tuple[Item, ...]) -> int:
+    """Return where the sequence number of a block ends that begins with one."""
+    for item in items:
+        if isinstance(item, Word) and item.address == "N":
+            return item.end
+        if isinstance(item, Mark) and item.kind == "label":
+            return item.end
+    return 0

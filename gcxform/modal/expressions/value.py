@@ -18,6 +18,8 @@ from gcxform.dialect.null import MAYBE, NULL, Null, as_argument
 from gcxform.syntax.grammar import rule_of, span_of
 from gcxform.syntax.tree import BLANKS, Statement
 
+DOUBTFUL = math.inf
+"""Stands for the value of a parameter that controls are known to set in two ways."""
 Parameters = Mapping[Key, float]
 """Values by parameter; nan for one that is no longer known."""
 
@@ -133,9 +135,11 @@ class Evaluator:
         if key == self.arithmetic.machine.null:
             return NULL
         value = self.parameters.get(key)
-        if value is not None and not math.isnan(value):
+        if value is not None and math.isfinite(value):
             return value
         name = written(key)
+        if value == DOUBTFUL:
+            raise NoValueError(f"{name} is known in two ways here", how_to_give(key), "GX220")
         if value is not None:
             message = f"{name} is not known here: it was set to what only the control knows"
             raise NoValueError(message, how_to_give(key), "GX220", True)

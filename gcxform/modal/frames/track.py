@@ -231,6 +231,10 @@ class Track:
         """Note that from a line on no position is known."""
         self._lose(line, (1 << len(self.axes)) - 1)
 
+    def lose(self, line: int, axes: str) -> None:
+        """Note that from a line on the positions of some axes are not known."""
+        self._lose(line, sum(1 << self.axes.index(axis) for axis in axes))
+
     # --- stretches ---
 
     def along(self, first: int, last: int, rows: Ints, lost: Flags | None) -> Floats:

@@ -8,7 +8,6 @@ row; G28 and G53 move in a way of their own (`gcxform/modal/moves/home.py`), and
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -24,7 +23,7 @@ from gcxform.modal.moves.arcs import ArcWords, resolve_arcs
 from gcxform.modal.moves.cutter_comp import compensation, refuse_ends
 from gcxform.modal.moves.cycle_patterns import Drilling
 from gcxform.modal.moves.home import own_moves
-from gcxform.modal.moves.rows import Rows
+from gcxform.modal.moves.rows import Rows, Stretches
 from gcxform.modal.moves.spindle_and_probe import Tied
 from gcxform.modal.moves.splines import read_splines, with_splines
 from gcxform.modal.moves.tool_vectors import Pointing
@@ -34,21 +33,6 @@ from gcxform.system.distinct import distinct
 from gcxform.toolpath.columns import constant, picked
 from gcxform.toolpath.path import Blocks, Kind, Toolpath
 from gcxform.toolpath.still_axes import turns_only
-
-
-@dataclass(frozen=True, slots=True)
-class Stretches:
-    """First line and last line + 1 of stretches, and what lines do that begin some of them.
-
-    Before `leaving` an M code loses positions; `busy` (live + 1,) counts lines that change them.
-    """
-
-    borders: list[tuple[int, int]]
-    acts: set[int]
-    resets: set[int]
-    singles: set[int]
-    leaving: set[int]
-    busy: list[int]
 
 
 class Moves:
@@ -80,7 +64,7 @@ class Moves:
         moving = self._moving()
         lost = self.lines.loses_position()
         of = self._stretches(moving, lost)
-        if len(of.borders) > 1 and not lost.any():
+        if len(of.borders) > 1 and not lost.any() and not of.lost:
             self.shifted = Shifted(self.track, moving)
         losing = lost if lost.any() else None
         found = [self._stretch(first, last, of, moving, losing) for first, last in of.borders]
@@ -233,10 +217,12 @@ class Moves:
         drills = self.drilling.borders()
         singles = np.flatnonzero(moving & self.tied.single if self.tied.any else moving[:0])
         alone = np.concatenate([acting[own], singles])
-        ends = np.array([0, self.lines.live, *leaving], np.int64)
+        jumped = self.lines.lost_before(self.axes)
+        ends = np.array([0, self.lines.live, *leaving, *jumped], np.int64)
         borders = distinct(np.concatenate([acting, alone, alone + 1, drills, ends])).tolist()
         acts, resets, taps = (set(x.tolist()) for x in (acting, np.flatnonzero(reset), singles))
-        return Stretches(list(pairwise(borders)) or [(0, 0)], acts, resets, taps, leaving, busy)
+        pairs = list(pairwise(borders)) or [(0, 0)]
+        return Stretches(pairs, acts, resets, taps, leaving, jumped, busy)
 
     def _stretch(
         self, first: int, last: int, of: Stretches, moving: Flags, lost: Flags | None
@@ -247,6 +233,8 @@ class Moves:
             self.track.reset_work(first)
         if first in of.leaving or (first + 1 in of.leaving and first in of.acts):
             self.track.lose_all(first)
+        if first in of.lost:
+            self.track.lose(first, of.lost[first])
         if first in of.acts:
             self.track.act(first)
             own = own_moves(self.track, first)
@@ -329,7 +317,7 @@ class Moves:
                 self.modes.absolute_centre,
                 self.modes.feed_mode,
                 self.lines.flag("ends") | self.lines.flag("loses_position"),
-                self.lines.flag("marked"),
+                self.lines.apart,
                 self.track.named(self.lines.flag("own_moves")),
             ),
             events_of(self.lines, line, self.drilling.events),

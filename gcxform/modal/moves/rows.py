@@ -13,6 +13,23 @@ from gcxform.toolpath.path import Form
 
 
 @dataclass(frozen=True, slots=True)
+class Stretches:
+    """First line and last line + 1 of stretches, and what lines do that begin some of them.
+
+    Before `leaving` an M code loses positions, before `lost` a jump some axes; `busy` (live + 1,)
+    counts lines that change them.
+    """
+
+    borders: list[tuple[int, int]]
+    acts: set[int]
+    resets: set[int]
+    singles: set[int]
+    leaving: set[int]
+    lost: dict[int, str]
+    busy: list[int]
+
+
+@dataclass(frozen=True, slots=True)
 class Rows:
     """Moves (n,) in order: line of the window, kind, end, which of its line, form, frame."""
 

@@ -56,7 +56,7 @@
 | ROUND in a word | rounds to the increment of the word: refused |
 | computed S T F D H L P | must be whole numbers |
 | #1000 and above | belong to the control: what they go into is lost; only outputs may be set |
-| IF WHILE GOTO | executed; numbers that are almost equal are refused |
+| IF WHILE GOTO | executed, or kept where only the machine decides; almost equal: refused |
 """
 
 from __future__ import annotations

@@ -95,6 +95,7 @@ class FeedPass(gx.Pass):
             (path.form[rows] != gx.Form.PLAIN, "it is a part of a cycle, or tied to something"),
             (path.side[rows] != 0, "cutter compensation changes its length"),
             (np.isnan(moves.lengths()), "where it starts is not known"),
+            (np.isnan(path.feed[rows]), "only the machine knows the feed"),
             (mixed, f"{per_minute.name} may measure it along any of its axes"),
             (arcs & (not timed.feed_rule.arcs_in_time), f"{timed.name} does not time arcs in G93"),
             (self._goes_nowhere(moves), "it goes nowhere, but takes time in G93"),

@@ -1,0 +1,346 @@
+"""Branches that only the machine can decide, and loops in which it waits.
+
+They stand in the executed blocks as they are, and these are read from the first to the last. A jump
+forwards opens a stretch that is executed or not: where it leads, what the stretch moves is lost,
+what it sets is forgotten, and a mode that it changes has to be programmed before it counts. What is
+repeated until the machine is content may move nothing and change no mode. Alarms and the like may
+stand behind the end.
+"""
+
+from __future__ import annotations
+
+import re
+from abc import abstractmethod
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from lark import Token
+
+from gcxform.dialect.arithmetic import Key
+from gcxform.flow.execution import Execution
+from gcxform.flow.messages import prints_values
+from gcxform.flow.run_state import UNKNOWN, Again, differs
+from gcxform.flow.skipped_stretches import Effect, Join, effect_of, is_still, other_modes
+from gcxform.modal.expressions.value import Evaluator, settable
+from gcxform.syntax.tree import Block, Comment, Expression, Statement, Word
+from gcxform.syntax.undecided import Undecided
+
+SEQUENCE = re.compile(rb"(?:\([^()]*\))*(?:/[1-9]?)?(?:\([^()]*\))*[Nn]([0-9]+)")
+HINT = "set what it reads with parameters in [input], or use passes that keep positions"
+
+
+class Jumping(Execution):
+    """A run of a language in which lines with numbers are jumped to."""
+
+    @abstractmethod
+    def target(self, node: Any) -> float:
+        """Return the sequence number to which a jump leads."""
+
+    @abstractmethod
+    def labelled(self, number: float) -> int:
+        """Return the line of the running program that has a sequence number."""
+
+    @abstractmethod
+    def refuse_into(self, target: int, number: float) -> None:
+        """Refuse a jump to a line inside a loop that is not running."""
+
+
+@dataclass(frozen=True, slots=True)
+class Arrival:
+    """A jump that may be made: what is known there, and the executed line that it stands in."""
+
+    parameters: dict[Key, float]
+    line: int
+    depth: int
+
+
+class Branches:
+    """Those of one run. `open` are the lines that jumps may lead to, with what is known there.
+
+    `over`: the run is behind a jump that is always made, so that nothing is executed here.
+    """
+
+    def __init__(self, run: Jumping) -> None:
+        self.run = run
+        self.open: dict[int, list[Arrival]] = {}
+        self.over = False
+        self.lines: set[int] = set()
+        self.labels: dict[int, int] = {}
+        self.lost: dict[int, str] = {}
+        self.forgets: dict[int, frozenset[Key]] = {}
+        self.perhaps: set[int] = set()
+        self.tail: set[int] = set()
+        self.joins: list[Join] = []
+
+    @property
+    def undecided(self) -> Undecided:
+        """What of the executed blocks only the machine decides."""
+        lines, labels, perhaps = (frozenset(n) for n in (self.lines, self.labels, self.perhaps))
+        return Undecided(lines, labels, self.lost, self.forgets, perhaps)
+
+    # --- the walk ---
+
+    def next_from(self, line: int) -> int:
+        """Return the next line behind this one to which a jump leads, or where a loop begins."""
+        ahead = [n for n in self.open if n > line]
+        ahead += [first for first, _ in self.run.settled.loops if first > line]
+        return min(ahead, default=len(self.run.listing))
+
+    def begin(self) -> bool:
+        """Do what is to be done before a line; return whether that line is done by it."""
+        run = self.run
+        if self.over:
+            run.at = self.next_from(run.at - 1) if self.open else len(run.listing)
+            if run.at >= len(run.listing):
+                run.ended = True
+                return True
+        if run.at in self.open:
+            self._join(run.at)
+        ends = [last for first, last in run.settled.loops if first == run.at]
+        if ends:
+            self.keep_range(run.at, max(ends))
+        return bool(ends)
+
+    def end(self, line: int, before: int) -> None:
+        """See to it that the number of a line stays to which a jump leads."""
+        if before in self.labels and self.labels[before] == line and self.run.blocks == before:
+            self.run.line, now = line, self.run.line
+            self.run.write_line(f"N{self._label_of(line)}")
+            self.run.line = now
+
+    def _label_of(self, line: int) -> int | None:
+        """Return the sequence number of a line."""
+        return number_of(self.run.listing.window.line(line))
+
+    # --- jumps ---
+
+    def keep_jump(self, statement: Statement, always: bool = False) -> None:
+        """Keep a jump that may be made, or not come to; `always`: it has no condition."""
+        run = self.run
+        number = run.target(statement.tree.children[-1])
+        target = run.labelled(number)
+        run.refuse_into(target, number)
+        if target > run.line:
+            self.jump(run.listing.block(run.line), statement, target, always)
+            return
+        if always or run.calls or self.open:
+            raise run.refusal("GX220", "only the machine knows how often this goes back", HINT)
+        raise Again(replace(run.settled, loops=run.settled.loops | {(target, run.line)}))
+
+    def _target(self, statement: Statement) -> int | None:
+        """Return the line to which a jump of a loop leads; None for what is no jump."""
+        if statement.kind not in ("goto", "if_goto"):
+            return None
+        node = statement.tree.children[-1]
+        if not isinstance(node, Token):
+            message = "a jump of a loop that the machine ends names its line by a value"
+            raise self.run.refusal("GX220", message, HINT)
+        return self.run.labelled(self.run.target(node))
+
+    def jump(self, block: Block, statement: Statement, line: int, always: bool = False) -> None:
+        """Keep a jump to a line ahead."""
+        self.keep(block, statement)
+        arrival = Arrival(dict(self.run.parameters), self.run.blocks - 1, len(self.run.calls))
+        self.open.setdefault(line, []).append(arrival)
+        self.over = always
+        self.run.changes += 1
+
+    def refuse_passing(self, line: int, target: int) -> None:
+        """Refuse to pass a line to which a jump may lead: it would not be written."""
+        if any(line < each < target for each in self.open):
+            message = "a jump that only the machine decides leads to a line that is passed here"
+            raise self.run.refusal("GX220", message, HINT)
+
+    def perhaps_set(self, block: Block, statement: Statement) -> None:
+        """Keep an assignment that may be made or not."""
+        run = self.run
+        key, _ = run.assignment(statement.tree.children[-1], (statement.start, statement.end))
+        self.keep(block, statement)
+        run.lasting.account(key, UNKNOWN, block.text[statement.start : statement.end])
+        run.set({key: UNKNOWN})
+
+    def keep(self, block: Block, statement: Statement) -> None:
+        """Write a block with a flow word as it stands, but for what is known."""
+        run = self.run
+        run.acted = True
+        evaluator = Evaluator(run.conditions, run.parameters)
+        text = run.remains(statement, evaluator)
+        self.lines.add(run.blocks)
+        self._write(block, [(statement, text)])
+
+    def _write(self, block: Block, pieces: list[tuple[Statement | Expression, str]]) -> None:
+        text = block.text
+        for item, new in sorted(pieces, key=lambda piece: -piece[0].start):
+            text = text[: item.start] + new + text[item.end :]
+        if text == block.text:
+            self.run.copy_line()
+        else:
+            self.run.write_line(text.rstrip())
+
+    def _join(self, line: int) -> None:
+        run, arrivals = self.run, self.open.pop(line)
+        if any(each.depth != len(run.calls) for each in arrivals):
+            raise run.refusal("GX220", "a jump that only the machine decides leads here", HINT)
+        states = [each.parameters for each in arrivals] + [run.parameters] * (not self.over)
+        keys = {key for state in states for key in state}
+        first = states[0]
+        lost = {k for k in keys if any(_differ(first.get(k), s.get(k)) for s in states)}
+        run.parameters = {**first, **dict.fromkeys(lost, UNKNOWN)}
+        self.over = False
+        run.changes += 1
+        here, since = run.blocks, min(each.line for each in arrivals)
+        self.labels[here] = line
+        self.forgets[here] = frozenset(lost)
+        self.joins.append(Join(tuple(each.line for each in arrivals), here, line))
+        found = self._effect(since, here)
+        if found.letters:
+            self.lost[here] = found.letters
+        self.perhaps.update(range(since + 1, here) if found.moves else ())
+
+    def _effect(self, since: int, here: int) -> Effect:
+        """Return what executed lines change that may be jumped over."""
+        run = self.run
+        return effect_of(run, np.concatenate(run.origin)[since + 1 : here])
+
+    # --- loops ---
+
+    def keep_range(self, first: int, last: int) -> None:
+        """Keep lines that are repeated until the machine is content."""
+        run = self.run
+        keys = {key for n in range(first, last + 1) for key in self._set_in(n)}
+        linear = {**run.parameters, **dict.fromkeys(keys, UNKNOWN)}
+        run.parameters = dict(linear)
+        self.forgets[run.blocks] = frozenset(keys) | self.forgets.get(run.blocks, frozenset())
+        for run.line in range(first, last + 1):
+            run.times[run.line] += 1
+            linear = self._keep_line(run.listing.block(run.line), first, last, linear)
+        self.forgets[run.blocks] = frozenset(keys)
+        run.at = last + 1
+        run.changes += 1
+        run.acted = True
+
+    def _set_in(self, line: int) -> list[Key]:
+        """Return the parameters that a line sets, or may set."""
+        run = self.run
+        run.line = line
+        evaluator = Evaluator(run.arithmetic, run.parameters)
+        trees = [i.tree for i in run.listing.block(line).items if isinstance(i, Statement)]
+        found = [each for tree in trees for each in tree.iter_subtrees()]
+        sets = [tree for tree in found if str(tree.data).endswith("assignment")]
+        return [settable(run.arithmetic, evaluator.key(tree.children[0])) for tree in sets]
+
+    def _keep_line(
+        self, block: Block, first: int, last: int, linear: dict[Key, float]
+    ) -> dict[Key, float]:
+        run = self.run
+        flow = [i for i in block.items if isinstance(i, Statement) and i.kind != "assignment"]
+        if not flow and not is_still(run.listing.meaning(run.line), block):
+            message = "this may be repeated: only the machine knows how often"
+            raise run.refusal("GX220", message, HINT)
+        pieces: list[tuple[Statement | Expression, str]] = []
+        known = Evaluator(run.conditions, run.parameters)
+        for item in block.items:
+            if isinstance(item, Statement):
+                pieces.append((item, run.remains(item, known)))
+                linear = self._account(item, linear, pieces[-1][1])
+            elif isinstance(item, Word) and isinstance(item.value, Expression):
+                pieces.append((item.value, run.remains(item.value, known)))
+            elif isinstance(item, Comment) and prints_values(block.text[item.start : item.end]):
+                raise run.refusal("GX220", "this message may be repeated", HINT)
+        if flow:
+            self.lines.add(run.blocks)
+        elif self._label_of(run.line) is not None:
+            self.labels.setdefault(run.blocks, run.line)
+        self._write(block, pieces)
+        for item in flow:
+            self._leads(item, first, last)
+        return linear
+
+    def _account(self, item: Statement, linear: dict[Key, float], text: str) -> dict[Key, float]:
+        """Account for an assignment of a loop, as who reads the lines once would see it."""
+        run = self.run
+        if item.kind not in ("assignment", "if_then"):
+            return linear
+        tree = item.tree if item.kind == "assignment" else item.tree.children[-1]
+        mine, run.parameters = run.parameters, linear
+        key, value = run.assignment(tree, (item.start, item.end))
+        run.parameters = mine
+        value = value if item.kind == "assignment" else UNKNOWN
+        run.lasting.account(key, value, text)
+        return {**linear, key: value}
+
+    def _leads(self, item: Statement, first: int, last: int) -> None:
+        """Look at where a jump of a loop leads: inside, ahead, or back to make the loop longer."""
+        run, to = self.run, self._target(item)
+        if to is None or first <= to <= last:
+            return
+        if to < first:
+            loops = run.settled.loops | {(to, last)}
+            raise Again(replace(run.settled, loops=loops))
+        arrival = Arrival(dict(run.parameters), run.blocks - 1, len(run.calls))
+        self.open.setdefault(to, []).append(arrival)
+
+    # --- behind the end ---
+
+    def close(self) -> None:
+        """Write what jumps lead to behind the end of the program, and check all of it."""
+        run = self.run
+        for line in sorted(self.open):
+            self._behind(line)
+        self._check_labels()
+        origin = np.concatenate([np.empty(0, np.int64), *run.origin])
+        if (other := other_modes(run, origin, self.joins)) is not None:
+            run.line, code = other
+            message = f"only the machine knows whether {code} is in force here"
+            raise run.refusal("GX220", message, f"program it behind the branch, or {HINT}")
+
+    def _behind(self, line: int) -> None:
+        """Write lines behind the end, to which a jump leads."""
+        run = self.run
+        at = run.line = line
+        if at in self.tail:
+            return
+        if not run.ended or run.times[at] or any(each.depth for each in self.open[line]):
+            raise run.refusal("GX220", "a jump leads here that only the machine decides", HINT)
+        while not run.times[at]:
+            run.line = at
+            self.tail.add(at)
+            meaning, block = run.listing.meaning(at), run.listing.block(at)
+            if meaning.percent:
+                return
+            run.times[at] = 1
+            run.put(run.listing.raw(at, at + 1), np.array([at]))
+            if run.is_over(block):
+                return
+            if meaning.refusal is not None or not is_still(meaning, block):
+                break
+            at += 1
+            if at >= run.listing.own:
+                return
+        raise run.refusal("GX220", "what a jump behind the end leads to is not followed", HINT)
+
+    def _check_labels(self) -> None:
+        """Refuse sequence numbers that jumps name and that would stand twice in what is written."""
+        run = self.run
+        written: dict[int | None, int] = {}
+        text = b"".join(run.text)
+        for each in text.splitlines():
+            number = number_of(each)
+            written[number] = written.get(number, 0) + 1
+        for line in (*self.labels.values(), *self.open):
+            run.line = line
+            number = self._label_of(line)
+            if number is not None and written.get(number) != 1:
+                message = f"N{number} would stand {written.get(number, 0)} times where calls are"
+                raise run.refusal("GX220", f"{message} written out, and a jump names it", HINT)
+
+
+def _differ(one: float | None, other: float | None) -> bool:
+    return other is None if one is None else other is None or differs(one, other)
+
+
+def number_of(text: bytes) -> int | None:
+    """Return the sequence number at the head of a block."""
+    number = SEQUENCE.match(text.translate(None, b" \t"))
+    return int(number[1]) if number else None

@@ -1,0 +1,81 @@
+"""What of a program only the machine decides: branches that stand in text of which all else is run.
+
+The text is read from its first line to its last, whatever its jumps do. That is right where blocks
+between a jump and where it leads change nothing, or what they change is taken for lost there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from gcxform.system.arrays import Flags, Ints
+
+
+@dataclass(frozen=True)
+class Undecided:
+    """Lines of a text, from 0.
+
+    lines    those with flow words that stay as they are
+    labels   those that jumps lead to: their sequence numbers stay
+    lost     before which lines axes are lost, by their letters; F is the feed
+    forgets  before which lines parameters are no longer known, by number or name
+    perhaps  those that may not be executed, and move something
+    """
+
+    lines: frozenset[int] = frozenset()
+    labels: frozenset[int] = frozenset()
+    lost: Mapping[int, str] = field(default_factory=dict)
+    forgets: Mapping[int, frozenset[int | str]] = field(default_factory=dict)
+    perhaps: frozenset[int] = frozenset()
+
+    def __bool__(self) -> bool:
+        return bool(self.lines or self.labels or self.forgets or self.perhaps)
+
+    def within(self, first: int, count: int) -> Undecided:
+        """Return what of it is in so many lines from the first on."""
+        if not self:
+            return self
+        here = range(first, first + count)
+        lines, labels, perhaps = (
+            frozenset(n for n in group if n in here)
+            for group in (self.lines, self.labels, self.perhaps)
+        )
+        lost = {n: axes for n, axes in self.lost.items() if n in here}
+        forgets = {n: keys for n, keys in self.forgets.items() if n in here}
+        return Undecided(lines, labels, lost, forgets, perhaps)
+
+    def at_jumps(self, first: int, count: int) -> Flags:
+        """Return which of so many lines from the first on jumps leave, meet, or may leave out."""
+        return _flags(self.lines | self.labels | self.perhaps, first, count)
+
+    def skipped(self, first: int, count: int) -> Flags:
+        """Return which of so many lines from the first on may not be executed."""
+        return _flags(self.perhaps, first, count)
+
+    def through(self, source: Ints, first: int) -> Undecided:
+        """Return the same of a text whose line `first + k` was written for the line source[k]."""
+        if not self:
+            return self
+        at: dict[int, list[int]] = {}
+        for k, line in enumerate(source.tolist()):
+            at.setdefault(line, []).append(first + k)
+
+        def written(lines: frozenset[int]) -> frozenset[int]:
+            return frozenset(at[line][0] for line in lines if line in at)
+
+        lost = {at[line][0]: axes for line, axes in self.lost.items() if line in at}
+        forgets = {at[line][0]: keys for line, keys in self.forgets.items() if line in at}
+        perhaps = frozenset(n for line in self.perhaps for n in at.get(line, ()))
+        return Undecided(written(self.lines), written(self.labels), lost, forgets, perhaps)
+
+
+def _flags(lines: frozenset[int], first: int, count: int) -> Flags:
+    found = np.zeros(count, np.bool_)
+    found[[line - first for line in lines if first <= line < first + count]] = True
+    return found
+
+
+DECIDED = Undecided()
