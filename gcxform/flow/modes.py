@@ -67,6 +67,10 @@ class StoredModes:
         if level.comes_back and level.stored is not None:
             self._restore(level.stored)
 
+    def has_stored(self) -> bool:
+        """Whether the call that runs has stored modes."""
+        return self.levels[-1].stored is not None
+
     def act(self, block: Block, codes: set[int | None]) -> bool:
         """Do what M70 to M73 do; return whether the block was one of them."""
         asked = codes & {STORE, FORGET, RESTORE, STORE_FOR_CALL}
@@ -118,7 +122,7 @@ class StoredModes:
         if code is None or code.group in LEFT:
             return
         if code.group in (SPINDLE, *RESTORED, UNITS):
-            self.now[code.group] = name
+            self.now[code.group] = "M5" if name == "M19" else name  # it stops the spindle
         else:
             taken = (f" {a}{number[a]}" for a in code.takes if a in number)
             self.now[code.group] = name + "".join(taken)

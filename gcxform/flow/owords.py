@@ -2,7 +2,7 @@
 
 What is here was executed with LinuxCNC's stand-alone interpreter: labels are those of the
 subprogram they stand in; numbered parameters up to 30 and names without an underscore belong to
-their call, but not to M98; a count is rounded, halves to an even number.
+their call, to M98 the names alone; a count is rounded, halves to an even number.
 """
 
 from __future__ import annotations
@@ -12,19 +12,19 @@ import re
 from collections.abc import Iterator
 
 from gcxform.diagnostics import InputError
-from gcxform.dialect.arithmetic import RS274, Key, NoValueError, whole
+from gcxform.dialect.arithmetic import NoValueError, whole
 from gcxform.flow.constructs import Construct, OWord
 from gcxform.flow.execution import Execution
 from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.modes import StoredModes
 from gcxform.flow.named_files import Subprograms
+from gcxform.flow.oword_names import LOCALS, is_local, is_named_local, name_of
 from gcxform.flow.places import FIRST, Places
 from gcxform.flow.run_state import Call, Edit, whole_number
 from gcxform.modal.state import Reading
 from gcxform.syntax.grammar import span_of
 from gcxform.syntax.tree import Block, Statement, Word
 
-LOCALS = RS274.local
 LEAVES = frozenset({"break", "continue"})
 POSITIONS = range(FIRST, FIRST + 9)
 NAMES_POSITION = re.compile(r"#[ \t]*5[ \t]*4[ \t]*2")
@@ -127,7 +127,7 @@ class OWords(Execution):
         subs = {label: c for (first, label), c in arranged.subs.items() if not first}
         begins = sorted({line for lines in arranged.labels.values() for line in lines})
         begins += [construct.lines[0] for construct in subs.values()]
-        found = [Definition(_name(label), c.lines[0], c.last) for label, c in subs.items()]
+        found = [Definition(name_of(label), c.lines[0], c.last) for label, c in subs.items()]
         for number, lines in arranged.labels.items():
             for line in (each for each in lines if each < own):
                 after = min((other for other in begins if line < other < own), default=None)
@@ -141,7 +141,7 @@ class OWords(Execution):
         word, block = self.words.get(line), self.listing.block(line)
         if word is not None:
             called = word.keyword == "call"
-            return frozenset({_name(word.label)} if called else ())
+            return frozenset({name_of(word.label)} if called else ())
         calls = any(w.address == "M" and whole_number(w) in (98, None) for w in block.words)
         if block.error is None and not calls:
             return frozenset()
@@ -153,12 +153,16 @@ class OWords(Execution):
         if word.label in self.ahead or met.setdefault(word.label, self.line) != self.line:
             message = "the control has called this subprogram before it came here, and stops"
             raise self.refusal("GX223", message, "write it before the call, or behind the end")
-        self.line = self.construct[self.line].last
-        self._pass_end(self.words[self.line])
-        self.at = self.line + 1
+        construct = self.construct[self.line]
+        inside = range(construct.lines[0] + 1, construct.last + 1)
+        for line in filter(self.words.__contains__, inside):
+            if self.words[line].keyword in ("return", "endsub"):
+                self.line = line
+                self._pass_end(self.words[line])
+        self.at = construct.last + 1
 
     def _pass_end(self, word: OWord) -> None:
-        """Set what stands at the end of a subprogram that is passed over, as if it had returned."""
+        """Set what stands where a subprogram that is passed over would return, as if it had."""
         try:
             self.returned(self.value(word.values[0]) if word.values else None)
         except InputError:
@@ -172,7 +176,7 @@ class OWords(Execution):
         self._refuse_recursion_in_loop(label)
         if self.line < first < self.listing.own:
             self.ahead.add(label)
-        own = {key: value for key, value in self.parameters.items() if _is_local(key)}
+        own = {key: value for key, value in self.parameters.items() if is_local(key)}
         call = Call(f"O{label}", self.at, first + 1, 1, own, self.counters)
         self.parameters = {k: v for k, v in self.parameters.items() if k not in own}
         given = [*values, *[0.0] * (len(LOCALS) - len(values))]
@@ -210,7 +214,7 @@ class OWords(Execution):
         value = self.value(word.values[0]) if word.values else None
         call = self.calls.pop()
         self.modes.leave()
-        self.parameters = {k: v for k, v in self.parameters.items() if not _is_local(k)}
+        self.parameters = {k: v for k, v in self.parameters.items() if not is_local(k)}
         self.parameters.update(call.locals)
         self.left |= set(self.counters)
         self.counters = call.counters
@@ -222,7 +226,7 @@ class OWords(Execution):
         self.set({"_value": value or 0.0, "_value_returned": float(value is not None)})
 
     def _call_by_number(self, block: Block, items: list[Word | Statement], calls: bool) -> None:
-        """Do M98 or M99: without parameters of its own."""
+        """Do M98 or M99: named parameters are of the call, numbered ones of its caller."""
         self.refuse_more(items, "MPL" if calls else "M")
         if calls:
             self._call_number(block)
@@ -237,14 +241,17 @@ class OWords(Execution):
         if not (number % 1 == 0 and times % 1 == 0 and times >= 0):
             raise self.refusal("GX221", "M98 takes the number of a subprogram, and a count in L")
         first = self.subprograms.line_of_number(int(number))
-        if not times and (self.calls or self._is_inside(self.line)):
+        held = self.modes.has_stored() or any(map(is_named_local, self.parameters))
+        if not times and (held or self.calls or self._is_inside(self.line)):
             message = "the control loses its place at a call that is made no time at all"
             raise self.refusal("GX223", message, "leave the block out")
         if not times:
             self.named.add(first)
         else:
-            counts = self.counters
-            self.enter(Call(f"M98 P{number:g}", self.at, first + 1, int(times), {}, counts))
+            named = {k: v for k, v in self.parameters.items() if is_named_local(k)}
+            self.parameters = {k: v for k, v in self.parameters.items() if k not in named}
+            name, counts = f"M98 P{number:g}", self.counters
+            self.enter(Call(name, self.at, first + 1, int(times), named, counts))
             self.modes.enter()
             self.counters = {}
             # On its way to the number the control may pass an M99 or endsub, which sets them.
@@ -266,6 +273,8 @@ class OWords(Execution):
             self.at = call.first
             return
         self.calls.pop()
+        self.parameters = {k: v for k, v in self.parameters.items() if not is_named_local(k)}
+        self.parameters.update(call.locals)
         self.counters = call.counters
         self.at = call.back
 
@@ -380,11 +389,6 @@ class OWords(Execution):
         self.at = construct.last + 1
 
 
-def _name(label: str) -> str:
-    """Return the name of a subprogram with a label."""
-    return f"O{label}" if label.isdigit() else f"o<{label}>"
-
-
 def _returns(block: Block) -> bool:
     """Whether a block has M99."""
     return any(w.address == "M" and whole_number(w) == 99 for w in block.words)
@@ -393,8 +397,3 @@ def _returns(block: Block) -> bool:
 def _within(edit: Edit, others: list[Edit]) -> bool:
     """Whether a piece of a block is part of another."""
     return any(start <= edit[0] and edit[1] <= end for start, end, _ in others)
-
-
-def _is_local(key: Key) -> bool:
-    """Whether a parameter belongs to its call."""
-    return not RS274.outlives(key)

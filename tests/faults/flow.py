@@ -94,7 +94,10 @@ MUTATIONS = (
     ),
     _flow("what is not given is one", "gcxform/flow/owords.py", "*[0.0] *", "*[1.0] *", AGREES),
     _flow(
-        "names are not local", "gcxform/flow/owords.py", "not RS274.outlives(key)", "key in LOCALS"
+        "names are not local",
+        "gcxform/flow/oword_names.py",
+        "not RS274.outlives(key)",
+        "key in LOCALS",
     ),
     _flow(
         "nothing lasts", "gcxform/flow/lasting_values.py", "if not self.program.keeps:", "if True:"
@@ -137,7 +140,9 @@ MUTATIONS = (
         "self.counters[first] > 0",
         "self.counters[first] >= 0",
     ),
-    _flow("M98 runs once more", "gcxform/flow/owords.py", "int(times), {}", "int(times) + 1, {}"),
+    _flow(
+        "M98 runs once more", "gcxform/flow/owords.py", "int(times), named", "int(times) + 1, named"
+    ),
     _flow(
         "a value does not return",
         "gcxform/flow/owords.py",
@@ -192,6 +197,41 @@ MUTATIONS = (
         "gcxform/flow/places.py",
         "math.cos(turned), radius * math.sin(turned)\n",
         "math.cos(turned), -radius * math.sin(turned)\n",
+    ),
+    _flow(
+        "names under M98 are those of the caller",
+        "gcxform/flow/owords.py",
+        "if k not in named}",
+        "}",
+        "tests/test_corpus.py::test_case[flow/name-of-the-caller-under-m98]",
+    ),
+    _flow(
+        "names of M98 stay behind it",
+        "gcxform/flow/owords.py",
+        "self.parameters.update(call.locals)\n        self.counters",
+        "self.counters",
+        "tests/test_corpus.py::test_case[flow/names-under-m98]",
+    ),
+    _flow(
+        "M98 no time keeps names",
+        "gcxform/flow/owords.py",
+        "(held or self.calls",
+        "(self.calls",
+        "tests/test_corpus.py::test_case[flow/names-after-m98-no-times]",
+    ),
+    _flow(
+        "M19 leaves the spindle as it was",
+        "gcxform/flow/modes.py",
+        '"M5" if name == "M19" else name',
+        "name",
+        "tests/test_corpus.py::test_case[flow/m73-orient]",
+    ),
+    _flow(
+        "a return that is passed over sets nothing",
+        "gcxform/flow/owords.py",
+        'in ("return", "endsub")',
+        'in ("endsub",)',
+        "tests/test_corpus.py::test_case[flow/passed-over-return]",
     ),
     _flow(
         "polar words in G91 forget the angle of here",

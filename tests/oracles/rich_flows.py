@@ -104,6 +104,43 @@ class Rich(Flow):
         hole = f"G90 {high} G{code} X{self.value()} Y2 Z-4 R1{words} L{self.choose.choice((1, 2))}"
         return ["G90 G17 G0 Z5", hole, f"X{self.value()}", "G80"]
 
+    def lost(self, depth: int) -> list[str]:
+        """Blocks with values that only the machine knows, and what depends on them."""
+        told = self.choose.choice(("#5063", "#5070", "#5399", "#5061", "#<l>"))
+        return self.choose.choice(
+            (
+                ["G90 G38.2 Z-50 F40", f"#<l>=[#5063 + {self.number()}]"],
+                ["M66 P0 L0", f"#<l>=[{told} * 2]"],
+                [f"G0 X[{told} mod 9]", f"G91 X{self.value()}", "G90"],
+                [f"G0 Z{told}", f"G0 Z{self.value()}"],
+                [f"S[100 + abs[{told}]]", f"G1 X[{told}] Y2 F[100 + abs[{told}]]", "F100 S100"],
+                [f"#1={told}", f"#2=[#1 + {self.number()}]", "G0 Y#2", f"#1={self.value()}"],
+                [f"(debug, l {told})", f"G4 P[1 + abs[{told}]]"],
+                [f"G10 L2 P1 X{told}", f"G0 X{self.value()}", "G10 L2 P1 X0"],
+                [f"G92 X{told}", f"G0 X{self.value()} Y1", "G92.1"],
+            )
+        )
+
+    def machine(self, depth: int) -> list[str]:
+        """Blocks that act on the machine and on frames."""
+        return self.choose.choice(
+            (
+                ["T1 M6", "G0 Z3"],
+                [f"G10 L2 P1 R{self.choose.choice((0, 30, -45))}"],
+                ["G93 G1 X1 F[2 + 1]", "Y2 F5", "G94 F100"],
+                ["G90.1", "G2 X#5420 Y#5421 I[#5420 + 3] J#5421", "G91.1"],
+                ["G61", "G64 P.01"],
+                ["G28.1", "G0 X5", "G28 X1", "G30 Z2"],
+                [f"A{self.value()}", f"G1 X{self.value()} A{self.value()} F[90]"],
+                ["G95 F.1 G1 X2", "G94 F100"],
+                ["M48", "M49", "M62 P0"],
+                ["G59.1", f"G0 X{self.value()}", "G54"],
+                ["M0", "M1", "M60"],
+                ["G5 X#5420 Y[#5421 + 3] I0 J1 P0 Q-1 F[100]", "G0 X1"],
+                ["M19 R10"],
+            )
+        )
+
     def itself(self, depth: int) -> list[str]:
         """A subprogram that calls itself until its argument is used up."""
         if not self.again:
@@ -128,6 +165,7 @@ class Rich(Flow):
         """Some blocks; deep inside only plain ones."""
         flat = (self.plain, self.plain, self.assignment, self.mode, self.call, self.frame)
         deep = (self.branch, self.repeat, self.loop, self.stored, self.cycle, self.itself)
+        deep += (self.lost, self.machine, self.by_number)
         lines: list[str] = []
         for _ in range(self.choose.randint(1, 3)):
             kinds = flat if depth <= 0 else (*flat, *deep)
@@ -147,7 +185,7 @@ class Rich(Flow):
         return [*lines, f"o{number} endsub{value}"]
 
     def recursion(self) -> list[str]:
-        number, name = 900 + next(self.labels), self.label()
+        number, name = 2000 + next(self.labels), self.label()
         self.again = number
         inner = [f"o{number} call [#1 - 1] [#2 + 1]", *self.plain(0)]
         body = [f"{name} if [#1 gt 0]", *inner, f"{name} endif"]
@@ -163,7 +201,11 @@ class Rich(Flow):
             lines += self.recursion()
         for _ in range(self.choose.randint(1, 3)):
             lines += self.body(2)
-        return "\n".join([*lines, "M2"]).encode() + b"\n"
+        lines.append("M2")
+        for number in (900, 901):
+            head = ["M73"] if self.choose.random() < 0.3 else []
+            lines += [f"O{number}", *head, *self.plain(0), *self.mode(0), *self.plain(0), "M99"]
+        return "\n".join(lines).encode() + b"\n"
 
 
 def program(seed: int) -> bytes:

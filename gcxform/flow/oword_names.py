@@ -1,0 +1,23 @@
+"""What belongs to a call of LinuxCNC, and what its subprograms are called."""
+
+from __future__ import annotations
+
+from gcxform.dialect.arithmetic import RS274, Key
+
+LOCALS = RS274.local
+"""The numbered parameters of a call."""
+
+
+def is_local(key: Key) -> bool:
+    """Whether a parameter belongs to its call."""
+    return not RS274.outlives(key)
+
+
+def is_named_local(key: Key) -> bool:
+    """Whether a parameter belongs to its call by M98, all rounds of it: a name does."""
+    return isinstance(key, str) and is_local(key)
+
+
+def name_of(label: str) -> str:
+    """Return the name of a subprogram with a label."""
+    return f"O{label}" if label.isdigit() else f"o<{label}>"
