@@ -32,6 +32,7 @@ ORIENTS = {"R", "P"}
 """An M19 without any of these words says nothing to the spindle of `rs274`."""
 LOST = "?"
 """What the name of a value ends with that only the machine knows: any other is as good."""
+HALF = 0.51e-4
 STILL = 1.001e-4  # units of the program: a move that the print shows as none
 START = dict.fromkeys("XYZABCUVW", 0.0)
 OFFSETS = {f"G{n}": START for n in (54, 55, 56, 57, 58, 59)} | {
@@ -177,13 +178,10 @@ def _events_differ(
 
 
 def _alike(ours: str, theirs: str) -> bool:
-    """Whether an event is what LinuxCNC printed."""
+    """Whether an event is what LinuxCNC printed, to half of its last decimal."""
     if ours.endswith(LOST):
         return theirs.startswith(ours.removesuffix(LOST))
-    return _text(ours) == _text(theirs)
-
-
-def _text(event: str) -> str:
-    """Return an event with as many decimals as are printed."""
-    name, digits = ("DWELL ", event[6:]) if event.startswith("DWELL") else ("S", event[1:])
-    return f"{name}{float(digits):.4f}" if event.startswith(name) else event
+    for name in ("DWELL ", "S"):
+        if ours.startswith(name) and theirs.startswith(name):
+            return abs(float(ours.removeprefix(name)) - float(theirs.removeprefix(name))) <= HALF
+    return ours == theirs
