@@ -146,3 +146,34 @@ def test_two_that_differ_are_named() -> None:
     assert only([one, same], "O7") is one
     with pytest.raises(LookupFailedError, match="O7 stands in more than one file: a and c"):
         only([one, other], "O7")
+
+
+def test_subprograms_of_a_shop_are_kept(shared: Path) -> None:
+    """Real subprograms, whose modes their caller leaves, come out byte for byte."""
+    folder = shared / "corpus/programs/fanuc/ailtonbsj-free-cnc-simulator-wine/Mill"
+    files = [*folder.glob("MM/Fanuc/50*.nc"), *folder.glob("INCH/Fanuc/60*.nc")]
+    assert len(files) == 21
+    pipeline = gx.Pipeline.parse("absolute", "fanuc")
+    for file in files:
+        done = pipeline.run(file)
+        assert done.text == file.read_bytes()
+        assert done.certificate.verified
+        assert {each.code for each in done.certificate.warnings} == {"GX228"}
+
+
+def test_a_real_caller_names_what_is_missing(shared: Path, tmp_path: Path) -> None:
+    """The programs that are there are called, and the one that is not is named."""
+    folder = shared / "corpus/programs/fanuc/ailtonbsj-free-cnc-simulator-wine/Mill/INCH/Fanuc"
+    pipeline = gx.Pipeline.parse("absolute", "fanuc")
+    with pytest.raises(gx.InputError, match="subprogram O6003 is not in this file"):
+        pipeline.run(folder / "M98_P_inch.nc")
+    (tmp_path / "6003.nc").write_bytes(b"(C)\r\nM99")
+    lines = (folder / "M98_P_inch.nc").read_bytes().splitlines(keepends=True)
+    plain = [line for line in lines if b"($" not in line and b"M06" not in line]
+    (tmp_path / "main.nc").write_bytes(b"".join(plain))
+    reading = gx.read(MAIN, "fanuc", subprograms=(folder,), start={"Z": 5.0}).reading
+    whole = gx.Pipeline(pipeline.source, pipeline.target, pipeline.passes, reading)
+    done = whole.run(tmp_path / "main.nc").certificate
+    assert done.verified
+    assert done.source["files"][-1]["name"].endswith("6013.nc")
+    assert len(done.source["files"]) == 13

@@ -17,7 +17,7 @@ from gcxform.flow.listing import Definition
 from gcxform.modal.meaning.meaning import OWN_MOVES
 
 NAMED = 5  # of the subprograms that a refusal names
-HINT = "transform the program that calls it, with this one in the same file"
+HINT = "transform the program that calls it: it is looked up beside that"
 
 
 def kept(program: Execution) -> tuple[Definition, ...]:

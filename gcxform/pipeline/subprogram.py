@@ -16,6 +16,7 @@ import numpy as np
 from gcxform.diagnostics import Diagnostic, InputError, Location, Severity
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.straightened import located
+from gcxform.flow.uncalled_subprograms import HINT
 from gcxform.modal.meaning.tables import COLUMNS, GROUPS, code_of
 from gcxform.modal.reader import windows_of
 from gcxform.modal.state import State
@@ -35,7 +36,6 @@ USES = {
 """The modal groups on which a block depends that has one of these addresses."""
 STATED_AGAIN = ("units", "plane", "distance", "feed-mode", "arc-distance")
 LAST_OF_TEXT = "GX2"
-HINT = "transform the program that calls it: it is looked up beside that"
 
 
 @dataclass

@@ -14,6 +14,12 @@ def _flow(name: str, file: str, old: str, new: str, tests: str = CASES) -> Mutat
 
 MUTATIONS = (
     _flow(
+        "what a file does besides defining is passed over",
+        "gcxform/flow/subprogram_file.py",
+        'word != "SUB" and not _is_end(items)',
+        "False",
+    ),
+    _flow(
         "a file of a name is not asked for what it begins",
         "gcxform/flow/named_files.py",
         "if file is not None and here is not None:",
