@@ -171,7 +171,8 @@ def test_a_real_caller_names_what_is_missing(shared: Path, tmp_path: Path) -> No
     lines = (folder / "M98_P_inch.nc").read_bytes().splitlines(keepends=True)
     plain = [line for line in lines if b"($" not in line and b"M06" not in line]
     (tmp_path / "main.nc").write_bytes(b"".join(plain))
-    reading = gx.read(MAIN, "fanuc", subprograms=(folder,), start={"Z": 5.0}).reading
+    said = {"subprograms": (folder,), "start": {"Z": 5.0}, "increment": "IS-B"}
+    reading = gx.read(MAIN, "fanuc", **said).reading
     whole = gx.Pipeline(pipeline.source, pipeline.target, pipeline.passes, reading)
     done = whole.run(tmp_path / "main.nc").certificate
     assert done.verified
