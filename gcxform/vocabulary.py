@@ -17,6 +17,7 @@ from gcxform.dialect.codes import (
     TRANSFORM,
     at_end,
     barrier,
+    call,
     frame,
     inert,
 )
@@ -83,6 +84,7 @@ __all__ = [
     "Tool",
     "at_end",
     "barrier",
+    "call",
     "control_lines",
     "feed",
     "frame",

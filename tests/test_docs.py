@@ -126,7 +126,7 @@ def codes_table():
         m_codes = sorted(dialect.m_codes.items())
         effects = {
             "read": (Effect.MODAL, Effect.DWELL, Effect.FRAME),
-            "kept": (Effect.INERT,),
+            "kept": (Effect.INERT, Effect.CALL),
             "refused": (Effect.BARRIER,),
         }
         for word, which in effects.items():

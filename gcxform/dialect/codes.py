@@ -19,6 +19,7 @@ class Effect(Enum):
     INERT = "is kept as it is: it changes no position"
     FRAME = "changes how words become positions, or moves in a way of its own"
     BARRIER = "is refused wherever a pass needs positions"
+    CALL = "calls a program with the values of its block, and is kept where that is not found"
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +100,11 @@ def frame(group: str, act: str, takes: str = "") -> Code:
 def barrier(group: str, reason: str, takes: str = "") -> Code:
     """Return a code that is refused by name wherever a pass needs positions."""
     return Code(group, Effect.BARRIER, takes, reason)
+
+
+def call(group: str, takes: str) -> Code:
+    """Return a code that calls a program with values, by its number in P."""
+    return Code(group, Effect.CALL, takes)
 
 
 ISO: Mapping[str, Code] = {

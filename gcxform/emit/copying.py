@@ -14,9 +14,9 @@ from gcxform.emit.same_rows import EXACT, SameRows
 from gcxform.emit.stated import Stated
 from gcxform.emit.tapping import Taps
 from gcxform.modal.columns import fill
-from gcxform.modal.lines import Unknown
 from gcxform.modal.meaning.meaning import FRAMING
 from gcxform.modal.meaning.tables import GROUPS
+from gcxform.modal.noted import Unknown
 from gcxform.system.arrays import Flags, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.angles import TURN
@@ -31,6 +31,7 @@ WHAT = {
     Form.SPLINE: "a spline",
     Form.THREAD: "a thread",
 }
+COMPENSATED = 1.0  # mm; farther no compensation of a machine moves an axis
 HINTS = {
     Form.CYCLE: 'put the pass "cycles" before',
     Form.SPLINE: 'put the pass "segment" before',
@@ -68,6 +69,7 @@ class Copying:
         self._refuse_changed(stands, pieces)
         self._refuse_presets()
         self._refuse_other_values()
+        self._refuse_calls()
         self._refuse_lengths()
         if task.manner.crossing:
             self.lines &= self._nothing_to_say()
@@ -158,15 +160,15 @@ class Copying:
                 hint = 'put the pass "offsets" before'
                 raise InputError.one("GX506", message, self.task.location(line), hint)
 
-    def _stands_elsewhere(self, line: int) -> bool:
-        """Whether the axes stand elsewhere before a line than in the source."""
+    def _stands_elsewhere(self, line: int, by: float = EXACT) -> bool:
+        """Whether the axes stand elsewhere before a line than in the source, by a distance (mm)."""
         now = np.searchsorted(self.path.block, line) - 1
         was = np.searchsorted(self.original.block, line) - 1
         if self.exact[now] if now >= 0 else self.believed_exact:
             return False
         stands = self.positions.after[now] if now >= 0 else self.believed_position
         gap = np.abs(stands - (self.original.end[was] if was >= 0 else self.original.entry))
-        return bool((gap > EXACT).any())
+        return bool((gap > by).any())
 
     def _refuse_other_values(self) -> None:
         """Refuse what only the machine can compute if it would compute something else.
@@ -190,6 +192,27 @@ class Copying:
         if each.hangs_on != "place":
             return False
         return not bool(self.same.modes()[line]) or self._stands_elsewhere(line)
+
+    def _refuse_calls(self) -> None:
+        """Refuse calls of what is not there, if they would find another control than in the source.
+
+        What an axis is off by because a pass compensates the machine is where it ought to be.
+        """
+        now, old = self.path.blocks, self.original.blocks
+        for line in np.flatnonzero(self.task.table.flag("calls", self.task.shape)).tolist():
+            why = "another dialect" if self.task.manner.crossing else ""
+            if not self.same.modes()[line] or now.feed_mode[line] != old.feed_mode[line]:
+                why = "other modes (G20 or G21, G90 or G91, G93 or G94)"
+            if self.path.folded and any(
+                any(frame.shift) or frame.matrix for frame in self.original.frames
+            ):
+                why = "coordinates that are not shifted"
+            if self._stands_elsewhere(line, COMPENSATED):
+                why = "other places of the axes"
+            if why:
+                message = f"this call, whose program is not known, would find {why}"
+                hint = "leave out the pass that changes this, or the call"
+                raise InputError.one("GX506", message, self.task.location(line), hint)
 
     def _refuse_lengths(self) -> None:
         """Refuse lengths that codes take for themselves where another unit would be in force."""

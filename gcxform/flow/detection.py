@@ -8,11 +8,12 @@ is not seen here is refused where it is read.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from gcxform.dialect.dialect import Dialect
 from gcxform.syntax.source import COMMENT, Source
 
+CODE = re.compile("[GM][0-9]+")
 TO_THE_END = re.compile(rb";[^\r\n]*")
 NUMBERED = rb"(?:N[ \t]*[0-9.]+[ \t]*)?"
 MODES = rb"M[ \t]*0*(?:98|7[0-3])(?![0-9])"
@@ -60,10 +61,18 @@ PROOFS = {
 """What that looks like outside of comments."""
 
 
-def has_flow(source: Source, dialect: type[Dialect]) -> bool:
+def aliases(control: Mapping[str, str | float]) -> dict[str, int]:
+    """Return the programs that codes call, by code, as a machine file says: G100 calls O9010."""
+    said = ((name.removeprefix("macro "), value) for name, value in control.items())
+    return {name: int(value) for name, value in said if CODE.fullmatch(name)}
+
+
+def has_flow(source: Source, dialect: type[Dialect], control: Mapping[str, str | float]) -> bool:
     """Whether a program may have calls, loops or codes that are computed."""
     if dialect.flow_rule.language not in SIGNS:
         return False
+    if dialect.flow_rule.macro_levels and aliases(control):
+        return True
     signs = [(byte, re.compile(pattern)) for byte, pattern in _cased(dialect)]
     return any(
         any(byte in text and pattern.search(text) for byte, pattern in signs)

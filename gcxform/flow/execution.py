@@ -17,7 +17,7 @@ from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.lookup import Found, LookupFailedError, only
 from gcxform.flow.run_state import UNKNOWN, Call, Edit, RunState, computed, has_slash
 from gcxform.flow.walk import Step, Walk, split
-from gcxform.modal.expressions.value import Evaluator
+from gcxform.modal.expressions.value import Evaluator, forgotten
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import Block, Comment, Statement, Word
 from gcxform.syntax.undecided import DECIDED, Undecided
@@ -93,7 +93,7 @@ class Execution(RunState):
 
     def _level(self) -> int:
         """Count the calls that have parameters of their own: not those by M97 and M98."""
-        return sum(not call.name.startswith("M9") for call in self.calls)
+        return sum(call.given is not None or not call.name.startswith("M9") for call in self.calls)
 
     def _copy(self, stop: int) -> None:
         """Take plain lines over as they stand."""
@@ -322,8 +322,9 @@ class Execution(RunState):
 
     def _forget(self) -> None:
         """Forget all parameters, those too that callers get back: a macro may have set them."""
-        self.parameters = dict.fromkeys(self.parameters, UNKNOWN)
-        for call in self.calls:
+        called = bool(self.listing.meaning(self.line).call)
+        self.parameters = forgotten(self.parameters, self.arithmetic, called)
+        for call in () if called else self.calls:
             call.locals = dict.fromkeys(call.locals, UNKNOWN)
 
     def edits(self, block: Block) -> list[Edit]:
@@ -332,7 +333,9 @@ class Execution(RunState):
 
     def _edit(self, word: Word) -> Edit:
         """Return a word with its value; one whose value is null is left out."""
-        text = self.written(word)
+        text = (
+            self.handed_over(word) if self.listing.meaning(self.line).call else self.written(word)
+        )
         self.acted |= not text
         if text:
             return (word.value.start, word.end, text)

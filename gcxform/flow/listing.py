@@ -73,6 +73,7 @@ class Listing:
         for seam in self.seams:
             special[seam - 1 : seam + 1] = True
         self.special = np.flatnonzero(special)
+        self.codes: frozenset[str] = frozenset()
         self._blocks: dict[int, Block] = {}
         number = {"G20": 1, "G21": 0}
         said = [number.get(m.groups.get("units", ""), -1) for m in self.table.meanings]
@@ -87,7 +88,18 @@ class Listing:
         end = b"" if text.endswith(b"\n") else b"\n"
         joined = b"".join((text, end, b"\n", found.text))
         files = (*self.files, CalledFile(found.name, len(self) + 1, found.text))
-        return Listing(joined, self.dialect, self.file, self.folders, files)
+        more = Listing(joined, self.dialect, self.file, self.folders, files)
+        more.take_for_calls(self.codes)
+        return more
+
+    def take_for_calls(self, codes: frozenset[str]) -> None:
+        """Take codes, "G100", for calls: what their lines do is not what they say."""
+        self.codes = codes
+        if not codes:
+            return
+        names = [{code_name(word) for word in s.block.words} for s in self.table.shapes.shapes]
+        calls = np.array([not codes.isdisjoint(each) for each in names], np.bool_)
+        self.special = np.union1d(self.special, np.flatnonzero(calls[self.window.shape]))
 
     def part(self, line: int) -> tuple[int, int]:
         """Return the first line of the file in which a line stands, and the line behind its last.
@@ -170,6 +182,12 @@ class Listing:
         start, end = place or (len(text) - len(text.lstrip()), len(text.rstrip()))
         where = Location(*self.place(line), start + 1, text, max(1, end - start))
         return InputError((Diagnostic(code, message, where, hint),))
+
+
+def code_name(word: Word) -> str:
+    """Return a G or M code as it is called; "" for one that is computed, and for other words."""
+    named = word.address in "GM" and isinstance(word.value, Number)
+    return f"{word.address}{word.value.value:g}" if named else ""
 
 
 def _calls(word: Word) -> bool:

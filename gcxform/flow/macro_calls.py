@@ -9,10 +9,12 @@ from __future__ import annotations
 
 from gcxform.dialect.arithmetic import MACRO_B, Key
 from gcxform.dialect.null import NULL
+from gcxform.flow.detection import aliases
+from gcxform.flow.listing import code_name
 from gcxform.flow.macro_arguments import arguments
 from gcxform.flow.run_state import Call, RunState, differs
 from gcxform.modal.expressions.value import DOUBTFUL
-from gcxform.syntax.tree import Block, Word
+from gcxform.syntax.tree import Word
 
 LOCALS = MACRO_B.local
 LOCALS_AT_START, REPEATS = "local-variables", "macro-repeat"
@@ -26,19 +28,38 @@ class ValueCalls:
     def __init__(self, run: RunState) -> None:
         self.run = run
         self.levels = run.dialect.flow_rule.macro_levels
+        self.aliases = aliases(run.reading.control)
         if run.reading.control.get(LOCALS_AT_START) == "null":
             run.parameters = fresh(run.parameters)
 
-    def made_by(self, block: Block, words: list[Word], times: int, back: int) -> Call:
+    def made_by(self, name: str, words: list[Word], times: int, back: int) -> Call:
         """Return the call that words make. Raises InputError for more of them than may be open."""
-        number = self.run.number(block, "P")
-        name = f"G65 P{number:g}"
         if sum(call.given is not None for call in self.run.calls) >= self.levels:
             message = f"{name}: {self.levels} calls with values are inside each other"
             raise self.run.refusal("GX224", message)
         given = arguments(self.run, [w for w in words if w.address not in NO_VALUES])
         before = {k: v for k, v in self.run.parameters.items() if k in LOCALS}
         return Call(name, back, times=times, locals=before, given=given)
+
+    def alias(self, words: list[Word]) -> tuple[str, int] | None:
+        """Return a code of a block that calls a program, as the machine file says, and its number.
+
+        Raises InputError where it does not begin its block, and where the same kind of code is
+        open: whether it calls again there is a setting of some controls.
+        """
+        for nth, word in enumerate(words):
+            name = code_name(word)
+            if name not in self.aliases:
+                continue
+            inside = any(call.name in self.aliases for call in self.run.calls)
+            if nth or inside:
+                what = "behind other words" if nth else "inside a program that such a code calls"
+                place = (word.start, word.end)
+                raise self.run.refusal(
+                    "GX210", f"what {name} does {what} is not certain", "", place
+                )
+            return name, self.aliases[name]
+        return None
 
     def give(self, call: Call) -> None:
         """Make the variables of a call."""

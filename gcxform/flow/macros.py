@@ -113,8 +113,12 @@ class MacroB(MacroWords):
             getattr(self, f"_{statement.kind}")(statement)
             return True
         items = bare(block)
-        if items and self.values.levels and _names(items[0], "G65"):
-            return self._call_with_values(block, items)
+        words = [item for item in items if isinstance(item, Word)]
+        alias = self.values.alias(words)
+        if alias or (
+            words and words[0] is items[0] and self.values.levels and _code(words[0]) == "G65"
+        ):
+            return self._call_with_values(block, words, *(alias or ()))
         codes = {whole_number(i) for i in items if isinstance(i, Word) and i.address == "M"}
         if 98 in codes or (97 in codes and self.dialect.flow_rule.calls_own_lines):
             self._call(block, items, own=97 in codes)
@@ -176,13 +180,19 @@ class MacroB(MacroWords):
             first = self._start(target)
         self.enter(Call(name, self.at, first, times))
 
-    def _call_with_values(self, block: Block, items: list[Word | Statement]) -> bool:
-        """Call a program with variables of its own; return whether there is one to be called."""
-        number, times = self._called(block)
-        if not self._has(number):
-            return False
-        words = [item for item in items if isinstance(item, Word)]
-        call = self.values.made_by(block, words, times, self.at)
+    def _call_with_values(
+        self, block: Block, words: list[Word], name: str = "", number: int = 0
+    ) -> bool:
+        """Call a program with variables of its own; return whether there is one to be called.
+
+        `name` is a code that calls the program of a `number`; without it P says which.
+        """
+        times = self._times(block)
+        if not name:
+            number = self._called(block)[0]
+            if not self._has(number):
+                return False
+        call = self.values.made_by(name or f"G65 P{number}", words[1:], times, self.at)
         call.first = self._start(number)
         self.enter(call)
         self.values.give(call)
@@ -190,10 +200,17 @@ class MacroB(MacroWords):
 
     def _called(self, block: Block) -> tuple[int, int]:
         """Return number and count of a call. Raises InputError."""
-        number, times = self.number(block, "P"), self.number(block, "L", 1.0)
-        if not (number % 1 == 0 and times % 1 == 0 and times >= 1):
+        number = self.number(block, "P")
+        if number % 1 != 0:
             raise self.refusal("GX221", "a call takes a number in P, and a count from 1 in L")
-        return int(number), int(times)
+        return int(number), self._times(block)
+
+    def _times(self, block: Block) -> int:
+        """Return the count of a call. Raises InputError."""
+        times = self.number(block, "L", 1.0)
+        if times % 1 != 0 or times < 1:
+            raise self.refusal("GX221", "a call takes a number in P, and a count from 1 in L")
+        return int(times)
 
     def _unpacked(self, number: int, times: int, block: Block) -> tuple[int, int]:
         """Return program and count of a P that may hold both."""
@@ -260,11 +277,6 @@ class MacroB(MacroWords):
         self.values.again(call)
         self.changes += 1
         self.at = call.first
-
-
-def _names(item: Word | Statement, code: str) -> bool:
-    """Whether an item of a block is a code."""
-    return isinstance(item, Word) and item.address in "GM" and _code(item) == code
 
 
 def _code(word: Word) -> str:

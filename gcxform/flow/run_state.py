@@ -25,6 +25,7 @@ from gcxform.modal.expressions.value import (
     Evaluator,
     LocatedError,
     parameter_key,
+    parameters_in,
     settable,
 )
 from gcxform.modal.lines import DISTANCES
@@ -186,6 +187,24 @@ class RunState:
         if self.dialect.point_rule.required and word.address in DISTANCES:
             return self._on_increment(word, value)
         return decimal(value).removesuffix(".")
+
+    def handed_over(self, word: Word) -> str:
+        """Return the value of a word of a call that is kept, in all its digits.
+
+        One that only the machine knows stays as it stands, if its variables outlive the program.
+        """
+        assert isinstance(word.value, Expression)
+        tree = word.value.tree
+        try:
+            value = Evaluator(self.arithmetic, self.parameters).value(tree)
+        except LocatedError as why:
+            if why.lost and all(self.arithmetic.outlives(key) for key in parameters_in(tree)):
+                return self.listing.block(self.line).text[word.value.start : word.end]
+            raise self.refusal(why.code, why.message, why.hint, (why.start, why.end)) from None
+        if isinstance(value, Null):
+            message = f"whether a call is handed 0 or null in {word.address} is not certain"
+            raise self.refusal("GX221", message, "leave it out", (word.start, word.end))
+        return decimal(value)
 
     def _refuse_flow(self, word: Word, value: float) -> None:
         """Refuse a computed M code that decides what is executed next, and a computed unit."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from gcxform.diagnostics import GcxformError
 from gcxform.dialect.dialect import Dialect
-from gcxform.flow.detection import has_flow
+from gcxform.flow.detection import aliases, has_flow
 from gcxform.flow.executed import Executed, WrittenOut
 from gcxform.flow.walk import Walked
 from gcxform.modal.inventory import Tally
@@ -41,7 +41,7 @@ def written_out(
 
         return translated(source, dialect, reading)
     assigns = target is not None and _assigns_for(source, dialect, target)
-    if not assigns and not has_flow(source, dialect):
+    if not assigns and not has_flow(source, dialect, reading.control):
         return source
     keeps = target is not None
     run = _executed(source, dialect, reading, keeps)
@@ -102,6 +102,7 @@ def _executed(source: Source, dialect: type[Dialect], reading: Reading, keeps: b
     beside = [source.folder] if source.folder is not None else []
     folders = Folders([*beside, *reading.subprograms], dialect.flow_rule.lookup, source.suffix)
     listing = Listing(b"".join(source.windows()), dialect, source.name, folders)
+    listing.take_for_calls(frozenset(aliases(reading.control)))
     settled = Settled()
     while True:
         run = kind(listing, reading, keeps)

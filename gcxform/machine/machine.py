@@ -88,7 +88,7 @@ class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
     tool_table: str | None = None
     tool_table_units: Literal["mm", "in"] | None = None
     tool_table_control: str = "linuxcnc"
-    control: dict[str, str | float | list[int]] = {}
+    control: dict[str, str | float | list[int] | dict[str, dict[str, str | int]]] = {}
 
 
 class Machine(msgspec.Struct, frozen=True, kw_only=True):

@@ -22,9 +22,11 @@ from gcxform.modal.cycles.expansion import Cycles
 from gcxform.modal.expressions.assignments import compute
 from gcxform.modal.expressions.value import parameter_key
 from gcxform.modal.frame_state import FrameState
-from gcxform.modal.lines import Assigned, Lines, Unknown
+from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import GROUPS, NUMBER, SPLINES, MeaningTable
+from gcxform.modal.moves.kept_calls import refuse_lost_modes
 from gcxform.modal.moves.moves import Moves
+from gcxform.modal.noted import Assigned, Unknown
 from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, State
 from gcxform.syntax.scan import Window
 from gcxform.syntax.undecided import DECIDED
@@ -132,6 +134,7 @@ class Interpreter:
         lines.refuse_statically()
         compute(lines)
         modes = lines.modes()
+        refuse_lost_modes(lines, modes)
         path = Moves(lines, modes, self.axes).path()
         refuse_limits(lines, modes, path.events)
         lines.findings.raise_if_any()

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
-from gcxform.dialect.arithmetic import Key
 from gcxform.dialect.dialect import INCH, LINEAR, Dialect
 from gcxform.modal.columns import fill
 from gcxform.modal.findings import Findings
@@ -22,6 +20,7 @@ from gcxform.modal.meaning.tables import (
     MeaningTable,
     of_splines,
 )
+from gcxform.modal.noted import Assigned, KeptCall, Unknown
 from gcxform.modal.numbers_without_point import Pointless
 from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
 from gcxform.syntax.scan import Window
@@ -29,30 +28,6 @@ from gcxform.syntax.undecided import DECIDED, Undecided
 from gcxform.system.arrays import Flags, Floats, Small
 
 DISTANCES = "XYZABCUVWIJKR"
-
-
-class Assigned(NamedTuple):
-    """A parameter that a line of the program, from 0, has set, and its value.
-
-    `text` is the assignment itself where only the machine knows the value, which is nan then.
-    """
-
-    line: int
-    key: Key
-    value: float
-    text: str = ""
-
-
-class Unknown(NamedTuple):
-    """A piece of a line of the window, from 0, that only the machine can compute.
-
-    `text` has no blanks. `hangs_on` is what of the program its value depends on besides parameters:
-    "" for nothing, "units", or "place" for the places of the axes and all modes.
-    """
-
-    line: int
-    text: str
-    hangs_on: str
 
 
 LENGTHS = LINEAR + "IJKR"
@@ -113,10 +88,24 @@ class Lines:
     def loses_position(self) -> Flags:
         """Return the lines after which no position is known: not those that the machine excepts."""
         lost, inert = self.flag("loses_position"), self.reading.inert_m
+        if still := [each.line for each in self.kept_calls if each.ends not in ("", "unknown")]:
+            lost = lost & ~np.isin(np.arange(self.live), still)
         if not inert or not lost.any():
             return lost
         known = np.array([meaning.lost_by <= inert for meaning in self.table.meanings], np.bool_)
         return np.asarray(lost & ~known[self.shape])
+
+    @cached_property
+    def kept_calls(self) -> tuple[KeptCall, ...]:
+        """The calls of programs that are not there, in order."""
+        found = []
+        for line in np.flatnonzero(self.flag("calls")).tolist():
+            meaning = self.table.meanings[int(self.shape[line])]
+            slot = dict(meaning.call_slots).get("P", 0)
+            number = float(self.window.value[int(self.first[line]) + slot])
+            ends = str(self.reading.control.get(f"macro P{number:g}", ""))
+            found.append(KeptCall(line, f"P{number:g}", ends))
+        return tuple(found)
 
     @cached_property
     def inch(self) -> Flags:
@@ -390,6 +379,7 @@ class Lines:
     def _cleared(self, feed_mode: Small, inch: Flags) -> Flags:
         """Return the lines that leave no feed in force unless they program one."""
         cleared = np.zeros(self.live, np.bool_)
+        cleared[[call.line for call in self.kept_calls if not call.ends]] = True
         if self.dialect.feed_rule.mode_clears:
             cleared |= self.stated("feed-mode")
         mode = np.append(np.int8(self.state.groups["feed-mode"]), feed_mode)

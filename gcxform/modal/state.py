@@ -168,6 +168,7 @@ class State:
     assumed  what was chosen among several meanings that a word can have, in sentences; those that
              may surprise with a warning
     feed_lost  a feed is in force that only the machine knows
+    lost_modes  groups whose code is not known, behind a call that is kept, `lost_by`
     vector the tool axis that G43.5 has led to, nan where it is not in force
     """
 
@@ -198,6 +199,8 @@ class State:
     pull: tuple[float, float] | None = None
     vector: tuple[float, float, float] = (np.nan, np.nan, np.nan)
     memory: dict[str, int] = field(default_factory=dict)
+    lost_modes: frozenset[str] = frozenset()
+    lost_by: str = ""
     feed_lost: bool = False
 
 

@@ -21,8 +21,8 @@ from gcxform.flow.executed import Executed
 from gcxform.modal.expressions.value import written
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.inventory import KINDS, Account, Tally, nothing_held
-from gcxform.modal.lines import Assigned
 from gcxform.modal.meaning.tables import MeaningTable
+from gcxform.modal.noted import Assigned
 from gcxform.modal.program_end import Ending
 from gcxform.proof.trace import Trace
 from gcxform.stamps.comment import without_lines

@@ -149,6 +149,7 @@ def _check_code(dialect: type[Dialect], name: str) -> None:
         assert code.group in COLUMNS, f"{here}: the core has no group {code.group!r}; use inert"
         assert name in NUMBER, f"{here} is a modal code that the core does not know"
     word = next(iter(dialect.point_rule.dwell), "P") + "1." if code.effect is Effect.DWELL else ""
+    word = "P1" if code.effect is Effect.CALL else word
     meaning = _meaning(dialect, f"{name} {word}".strip())
     refusal = meaning.refusal
     if code.effect is Effect.BARRIER:

@@ -25,10 +25,11 @@ from gcxform.dialect.null import Null
 from gcxform.modal.expressions.compiled import NO_VALUE, NoColumnError
 from gcxform.modal.expressions.functions import computed_in, functions_of, whole_columns
 from gcxform.modal.expressions.unknown import bare_text, hangs_on, may_be_unknown
-from gcxform.modal.expressions.value import Evaluator, LocatedError, settable
+from gcxform.modal.expressions.value import Evaluator, LocatedError, forgotten, settable
 from gcxform.modal.findings import Findings
-from gcxform.modal.lines import Assigned, Lines, Unknown
+from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.meaning import Meaning
+from gcxform.modal.noted import Assigned, Unknown
 from gcxform.syntax.tree import Expression, Item, Mark, Statement, Word
 from gcxform.system.arrays import Floats, Ints
 
@@ -138,7 +139,8 @@ class _Block:
         self.meaning = lines.table.meanings[int(lines.shape[line])]
         self.expressions, self.assignments = self.meaning.expressions, self.meaning.assignments
         shapes = lines.table.shapes
-        if shapes.shapes[int(lines.shape[line])].layout is not None:  # it has other numbers
+        own = shapes.shapes[int(lines.shape[line])].layout is None or self.meaning.call
+        if not own:  # it has other numbers than the line that was read
             self.expressions, self.assignments = computed_in(shapes.grammar.parse(self._text))
 
     def execute(self) -> None:
@@ -152,7 +154,9 @@ class _Block:
         self.lines.parameters.update({each.key: each.value for each in made})
         self.lines.assigned += made
         if self.meaning.runs_macro and not self.meaning.lost_by <= self.lines.reading.inert_m:
-            self.lines.parameters = dict.fromkeys(self.lines.parameters, UNKNOWN)
+            self.lines.parameters = forgotten(
+                self.lines.parameters, self.arithmetic, bool(self.meaning.call)
+            )
 
     def _stay(self) -> None:
         """Note the texts of what only the machine decides: flow words, and what they jump to."""

@@ -7,7 +7,7 @@ A parameter that nothing in the program has set is not zero: it has what another
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -178,6 +178,26 @@ def parameter_of(node: Any) -> Key | None:
         return _name(child)
     value = float(str(child).translate(BLANKS))
     return int(value) if value == int(value) else None
+
+
+def parameters_in(node: Any) -> Iterator[Key]:
+    """Yield the parameters that an expression names; the first local one for any it computes."""
+    if isinstance(node, Tree):
+        if rule_of(node) == "parameter":
+            key = parameter_of(node)
+            yield 1 if key is None else key
+        for child in node.children:
+            yield from parameters_in(child)
+
+
+def forgotten(parameters: Parameters, arithmetic: Arithmetic, called: bool) -> dict[Key, float]:
+    """Return parameters behind what may have set them.
+
+    A program that was `called` with values has local variables of its own; what an M code runs may
+    have those of its caller.
+    """
+    kept = {k: v for k, v in parameters.items() if called and not arithmetic.outlives(k)}
+    return {**dict.fromkeys(parameters, math.nan), **kept}
 
 
 def key_set(statement: Statement) -> Key | None:

@@ -33,6 +33,7 @@ class Asked:
     written   the same numbers as they stand in the block
     axes      the axes it names, with their words in mm or degrees, X as a radius
     position  (axes,) where the axes stand before the block
+    ends      what the machine file says of a call that is kept
     """
 
     code: str
@@ -45,6 +46,7 @@ class Asked:
     tool_word: float
     dialect: type[Dialect]
     reading: Reading
+    ends: str = ""
 
     def column(self, state: FrameState, axis: str) -> int:
         """Return the index of an axis."""

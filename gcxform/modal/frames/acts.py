@@ -10,6 +10,7 @@ from gcxform.modal.frames import work_offsets as offsets
 from gcxform.modal.frames.act import Act, Asked
 
 ACTS: Mapping[str, Act] = {
+    "call": offsets.behind_call,
     "change-tool": lengths.change_tool,
     "set-tool": lengths.set_tool,
     "user-code": lengths.user_code,

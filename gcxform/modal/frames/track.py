@@ -211,6 +211,7 @@ class Track:
             float(self.modes.tool[line]),
             self.dialect,
             self.lines.reading,
+            next((call.ends for call in self.lines.kept_calls if call.line == line), ""),
         )
 
     def _radial(self, words: dict[str, float]) -> dict[str, float]:

@@ -27,6 +27,19 @@ def _article(address: str) -> str:
 # --- work offsets ---
 
 
+def behind_call(state: FrameState, asked: Asked) -> FrameState:
+    """Lose work offsets and tool length behind a call of what is not there: it may have set them.
+
+    Nothing is lost where the machine file says that all is as it was.
+    """
+    if asked.ends not in ("", "unknown"):
+        return state
+    unknown = (np.nan,) * len(state.axes)
+    tool = (*state.tool[:2], np.nan) if state.tool_name else state.tool
+    state = state.with_tool((tool[0], tool[1], tool[2]), state.tool_name)
+    return replace(state, zeros={}, machine=unknown)
+
+
 def work(state: FrameState, asked: Asked) -> FrameState:
     """G54 and its like: another work offset; a code that takes words names one by each of them."""
     name = asked.dialect.offset_rule.names.get(asked.code, asked.code)

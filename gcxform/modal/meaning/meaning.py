@@ -54,6 +54,7 @@ class Act:
 
 
 ACT_ORDER = (
+    "call",
     "change-tool",
     "set-tool",
     "user-code",
@@ -107,6 +108,7 @@ class Meaning:
     `lengths` are the words that codes take for themselves and that are in the unit of the program:
     code, address, slot. `lent` are words that codes take which a move of the block may want as
     well: the code by address. `choices` are what was chosen among several meanings, in sentences.
+    `call` is the code of a block that calls a program and is kept, `call_slots` are its numbers.
     """
 
     groups: dict[str, str] = field(default_factory=dict)
@@ -132,6 +134,8 @@ class Meaning:
     lent: dict[str, str] = field(default_factory=dict)
     refusal: Refusal | None = None
     choices: tuple[str, ...] = ()
+    call: str = ""
+    call_slots: tuple[tuple[str, int], ...] = ()
 
     def is_length(self, address: str) -> bool:
         """Whether a code takes a word as a length: D of G41.1, where D of G41 is a number."""

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.dialect import LINEAR, Dialect
+from gcxform.modal.meaning.calls import calling, read_call
 from gcxform.modal.meaning.choices import choices_of
 from gcxform.modal.meaning.lathe import lathe_signs
 from gcxform.modal.meaning.meaning import (
@@ -43,6 +44,10 @@ def meaning_of(shape: Shape, dialect: type[Dialect]) -> Meaning:
 
 def _read(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
     """Fill the meaning and yield what speaks against it, in the order in which it is looked for."""
+    word = calling(shape, dialect)
+    if word is not None:
+        yield from read_call(shape, word, dialect, meaning)
+        return
     if shape.block.error is not None:
         column, message = shape.block.error
         yield Refusal("GX101", column - 1, 1, f"this is not {dialect.name} G-code: {message}")
@@ -163,13 +168,23 @@ def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
             )
         owners[code.group] = word
         meaning.groups[code.group] = name
-        if code.effect is Effect.BARRIER:
-            yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.reason}")
+        yield from _unresolved(name, code, word)
     if meaning.groups.get("cycle", "G80") != "G80" and "motion" in meaning.groups:
         word = owners["cycle"]
         message = f"{meaning.groups['cycle']} beside {meaning.groups['motion']}"
         yield Refusal("GX202", word.start, word.end - word.start, message)
     yield from _g_effects(dialect, meaning, owners)
+
+
+def _unresolved(name: str, code: Code, word: Word) -> Iterator[Refusal]:
+    """Refuse barriers, and calls that do not begin their block."""
+    width = word.end - word.start
+    if code.effect is Effect.CALL:
+        message = f"in what order {name} and the words in front of it act is not certain"
+        hint = "write the call in a block of its own"
+        yield Refusal("GX210", word.start, width, message, hint)
+    if code.effect is Effect.BARRIER:
+        yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.reason}")
 
 
 def _g_effects(

@@ -119,6 +119,7 @@ FLAGS = (
     "bars_comp_after",
     "compensates",
     "lends",
+    "calls",
 )
 
 
@@ -199,6 +200,7 @@ class MeaningTable:
             bool(meaning.bars_comp[1]),
             meaning.compensates,
             bool(meaning.lent),
+            bool(meaning.call),
         )
 
     def flag(self, name: str, shape: Ints) -> Flags:

@@ -8,10 +8,13 @@ from __future__ import annotations
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, Severity
+from gcxform.dialect.dialect import INCH, LINEAR
 from gcxform.modal.frames.track import LEFT, Track
+from gcxform.modal.meaning.calls import CALL
 from gcxform.modal.meaning.meaning import OWN_MOVES, Act
 from gcxform.modal.moves.rows import Rows
 from gcxform.modal.moves.spindle_and_probe import probe
+from gcxform.modal.noted import AT
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.path import Form, Kind, Plane
 
@@ -22,6 +25,8 @@ def own_moves(track: Track, line: int) -> Rows | None:
     for act in meaning.acts:
         if act.name in OWN_MOVES and track.frame.polar:
             _refuse_polar(track, line, act.code)
+        if act.name == CALL:
+            return _called(track, line)
         if act.name == "home":
             return _home(track, line, _reference(track, line, act))
         if act.name == "probe":
@@ -142,6 +147,39 @@ def _in_frame(track: Track, k: int, value: float) -> float:
     if track.frame.origin[k] != track.state.frames.first:
         return float("nan")
     return float(track.state.frames.machine[k]) + value
+
+
+def _called(track: Track, line: int) -> Rows | None:
+    """Return the way to the point at which a call ends, where the machine file says that it does.
+
+    How it gets there is not known, so that the block stays as it is. None for other calls.
+    """
+    call = next(call for call in track.lines.kept_calls if call.line == line)
+    if not call.ends.startswith(AT):
+        return None
+    place = track.frame.words(track.state.position[None, :])[0].copy()
+    words = _target(track, line)
+    for axis in call.ends.removeprefix(AT):
+        if axis in words:
+            place[track.axes.index(axis)] = words[axis]
+    end = np.array(track.frame.positions(place[None, :])[0])
+    return _rows(track, line, Form.HOME, [(Kind.RAPID, end)] if words else [])
+
+
+def _target(track: Track, line: int) -> dict[str, float]:
+    """Return where the axes named in a call go, mm or degrees; nan where that is not certain."""
+    meaning = track.lines.table.meanings[int(track.lines.shape[line])]
+    first, window = int(track.lines.first[line]), track.lines.window
+    text = window.line(line).decode("latin-1")
+    block = track.lines.table.shapes.grammar.parse(text)
+    found = {word.address: np.nan for word in block.words if word.address in track.axes}
+    sure = not (track.modes.incremental[line] or track.frame.polar or track.frame.diameter)
+    for axis, slot in meaning.call_slots if sure and track.frame.matrix is None else ():
+        value = float(window.value[first + slot])
+        if axis in found and (window.decimals[first + slot] >= 0 or value == 0.0):
+            inch = track.modes.inch[line] and axis in LINEAR
+            found[axis] = value * INCH if inch else value
+    return found
 
 
 def _in_machine(track: Track, line: int) -> Rows:

@@ -64,7 +64,7 @@ class Moves:
         moving = self._moving()
         lost = self.lines.loses_position()
         of = self._stretches(moving, lost)
-        if len(of.borders) > 1 and not lost.any() and not of.lost:
+        if len(of.borders) > 1 and not (lost.any() or of.lost or self.lines.kept_calls):
             self.shifted = Shifted(self.track, moving)
         losing = lost if lost.any() else None
         found = [self._stretch(first, last, of, moving, losing) for first, last in of.borders]
@@ -213,7 +213,7 @@ class Moves:
         busy = np.append(0, np.cumsum(moving | lost | self.track.worded)).tolist()
         leaving, reset = self._leaves(lost), self._after_end()
         acting = self._acting(reset)
-        own = self.lines.flag("own_moves")[acting]
+        own = (self.lines.flag("own_moves") | self.lines.flag("calls"))[acting]
         drills = self.drilling.borders()
         singles = np.flatnonzero(moving & self.tied.single if self.tied.any else moving[:0])
         alone = np.concatenate([acting[own], singles])

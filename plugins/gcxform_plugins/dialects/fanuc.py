@@ -43,6 +43,8 @@
 | L of M98 | counts, or the digits of P before four |
 | local variables across M98 | shared (macro executor B-62093E-1 p. 32) |
 | G65 | new ones, null but for those given by letter (16i B-63684EN p. 278); four deep |
+| G65 of what is not found | stays; positions, variables, offsets, G0, G90, F are lost behind it |
+| G65 P9810, G100, M50 | `[control.macro]` says how a call ends, and what a code calls |
 | G65 L2 | the second run finds arguments anew or not: refused, or `[control] macro-repeat` |
 | I, J, K again in G65 | list II or not (6008#7): refused, or `[control] argument-list` |
 | M198 G66 | calls of other programs, or at every move: refused |
@@ -158,10 +160,8 @@ class Fanuc(gx.Dialect):
         **{code: v.barrier("motion", "it cuts a spiral", "IJKRLPQ") for code in ("G2.2", "G3.2")},
         "G31": v.frame("non-modal", "probe", "PQ"),
         **{code: v.barrier("non-modal", v.PROBE, "PQRIJKH") for code in ("G36", "G37")},
-        **{
-            code: v.barrier("macro", v.CALL, "ABCDEFHIJKLMPQRSTUVW")
-            for code in ("G65", "G66", "G66.1")
-        },
+        "G65": v.call("macro", "ABCDEFHIJKLMPQRSTUVW"),
+        **{code: v.barrier("macro", v.CALL, "ABCDEFHIJKLMPQRSTUVW") for code in ("G66", "G66.1")},
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
         **v.ISO_M,

@@ -1,0 +1,99 @@
+"""Blocks that call a program with values, and are kept: the program is not there to be read.
+
+All words of such a block belong to the call: G65 branches off before anything else is done (Fanuc
+macro executor B-62093E-1 p. 32). Words in front of it are commands of their own, which no manual
+puts in order, so that they are refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from gcxform.dialect.codes import Effect
+from gcxform.dialect.dialect import Dialect
+from gcxform.modal.meaning.meaning import Act, EventShape, Meaning, Refusal
+from gcxform.syntax.shapes import Shape
+from gcxform.syntax.tree import BLANKS, CODES, Block, Expression, Mark, Number, Statement, Word
+
+ORDER = 25
+CALL = "call"
+
+
+def calling(shape: Shape, dialect: type[Dialect]) -> Word | None:
+    """Return the code with which a block calls a program; None for other blocks."""
+    for word in shape.block.words:
+        if word.address == "N":
+            continue
+        return word if _calls(word, dialect) else None
+    return None
+
+
+def _calls(word: Word, dialect: type[Dialect]) -> bool:
+    if word.address != "G" or not isinstance(word.value, Number):
+        return False
+    code = dialect.codes.get(f"G{round(word.value.value, 6):g}")
+    return code is not None and code.effect is Effect.CALL
+
+
+def read_call(
+    shape: Shape, word: Word, dialect: type[Dialect], meaning: Meaning
+) -> Iterator[Refusal]:
+    """Fill the meaning of a call, and yield what speaks against it."""
+    assert isinstance(word.value, Number)
+    name = f"G{round(word.value.value, 6):g}"
+    yield from _others(shape)
+    meaning.groups[dialect.codes[name].group] = name
+    meaning.call, meaning.call_slots = name, _slots(shape)
+    meaning.marked = any(isinstance(item, Mark) for item in shape.block.items)
+    meaning.deleted = any(
+        isinstance(item, Mark) and item.kind == "block_delete" for item in shape.block.items
+    )
+    if all(address != "P" for address, _ in meaning.call_slots):
+        message = f"{name} calls a program by a number in P, and that is not written here"
+        yield Refusal("GX210", word.start, word.end - word.start, message)
+    meaning.loses_position = meaning.runs_macro = True
+    meaning.lost_by.add(-1)
+    meaning.acts.append(Act(CALL, name, (), word.start, word.end - word.start))
+    meaning.events.append(EventShape(ORDER, _text(shape), meaning.call_slots))
+
+
+def _others(shape: Shape) -> Iterator[Refusal]:
+    """Refuse what is neither a word nor a comment."""
+    if shape.block.error is not None:
+        column, message = shape.block.error
+        yield Refusal("GX101", column - 1, 1, message)
+    for item in shape.block.items:
+        if isinstance(item, Statement):
+            width = item.end - item.start
+            yield Refusal("GX206", item.start, width, "this belongs to no word of the call")
+
+
+def _slots(shape: Shape) -> tuple[tuple[str, int], ...]:
+    """Return the numbers of a call with their slots; those of codes stand in its text."""
+    varying = [word for word in shape.block.words if word.address not in CODES]
+    return tuple(
+        (word.address, slot)
+        for slot, word in enumerate(varying)
+        if isinstance(word.value, Number) and word.address != "N"
+    )
+
+
+def _text(shape: Shape) -> str:
+    """Return what all calls of the shape have in common: codes as they stand, letters of others."""
+    said = (_spelled(shape.block, word, word.address in CODES) for word in _named(shape.block))
+    return "".join(said)
+
+
+def computed_words(block: Block) -> str:
+    """Return the words of a call whose values are computed, as they are compared."""
+    found = (word for word in _named(block) if isinstance(word.value, Expression))
+    return "".join(_spelled(block, word, True) for word in found)
+
+
+def _named(block: Block) -> list[Word]:
+    return [word for word in block.words if word.address != "N"]
+
+
+def _spelled(block: Block, word: Word, whole: bool) -> str:
+    text = block.text[word.start : word.end].translate(BLANKS).upper()
+    return text if whole else word.address

@@ -1,0 +1,88 @@
+"""What is not known behind a call that is kept, as what it calls is not there to be read.
+
+Positions, variables of the program, offsets, and what macros set as they go: the motion code, G90
+or G91, F. Each has to be programmed again before it is needed. Of units, plane, feed mode, work
+offset and compensation it is assumed that they are as before; the certificate says so.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gcxform.modal.columns import fill
+from gcxform.modal.findings import Findings
+from gcxform.modal.lines import Lines
+from gcxform.modal.meaning.calls import computed_words
+from gcxform.modal.noted import Unknown
+from gcxform.modal.state import CYCLE_OFF, Modes
+from gcxform.system.arrays import Flags
+
+SAID_BY = {"motion": "a motion code", "distance": "G90 or G91"}
+
+
+def refuse_lost_modes(lines: Lines, modes: Modes) -> None:
+    """Refuse lines that need a mode which a call may have changed, and calls in others."""
+    _refuse_calls(lines, modes)
+    if not lines.kept_calls and not lines.state.lost_modes:
+        return
+    moves = lines.flag("moves")
+    needing = {"motion": moves & ~lines.flag("own_moves"), "distance": moves}
+    for group, needs in needing.items():
+        known = _known(lines, group)
+        for line in _first_of_each(needs & ~known, lines):
+            message = f"{SAID_BY[group]} is needed here: {_name_before(lines, line)} may have"
+            hint = "write it in this block, or say in the machine file what the call does"
+            lines.findings.add(line, "GX210", f"{message} changed it", hint=hint)
+    lines.state.lost_by = _name_before(lines, lines.live)
+
+
+def _first_of_each(which: Flags, lines: Lines) -> list[int]:
+    """Return the first line of those behind each call."""
+    found = np.flatnonzero(which)
+    behind = np.searchsorted([call.line for call in lines.kept_calls], found)
+    _, first = np.unique(behind, return_index=True)
+    return [int(line) for line in found[first][: Findings.enough]]
+
+
+def _name_before(lines: Lines, line: int) -> str:
+    before = [call.name for call in lines.kept_calls if call.line < line and not call.ends]
+    return before[-1] if before else lines.state.lost_by
+
+
+def _known(lines: Lines, group: str) -> Flags:
+    """Return on which lines the code in force of a group is known, and keep the last of it."""
+    lost = np.zeros(lines.live, np.bool_)
+    for call in lines.kept_calls:
+        lost[call.line] = not call.ends
+    said = lines.stated(group)
+    known = fill(said, said | lost, group not in lines.state.lost_modes).astype(np.bool_)
+    if lines.live:
+        gone = {group} if not known[-1] else set()
+        lines.state.lost_modes = lines.state.lost_modes - {group} | gone
+    return np.asarray(known)
+
+
+def _refuse_calls(lines: Lines, modes: Modes) -> None:
+    """Refuse calls under cutter compensation and in a canned cycle; note the others."""
+    for call in lines.kept_calls:
+        _note_computed(lines, call.line)
+        if modes.comp[call.line] or modes.cycle[call.line] != CYCLE_OFF:
+            what = "cutter compensation" if modes.comp[call.line] else "a canned cycle"
+            message = f"{what} is in force at the call of {call.name}, whose moves are not known"
+            lines.findings.add(call.line, "GX210", message, hint="cancel it before the call")
+        said = f"{call.name} is kept: {_taken(call.ends)}"
+        lines.state.assumed.setdefault(said, None)
+
+
+def _note_computed(lines: Lines, line: int) -> None:
+    """Note the words of a call that are computed: they stay as they stand, and are compared."""
+    text = lines.window.line(line).decode("latin-1")
+    if computed := computed_words(lines.table.shapes.grammar.parse(text)):
+        lines.unknown.append(Unknown(line, computed, ""))
+
+
+def _taken(ends: str) -> str:
+    if ends:
+        return f"the machine file says that it ends {ends}; variables are lost behind it"
+    modes = "units, plane, feed mode, work offset and compensation are as before"
+    return f"positions, offsets and variables are lost behind it, and {modes}"

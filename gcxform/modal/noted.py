@@ -1,0 +1,46 @@
+"""What is noted of single lines: assignments, what only the machine knows, calls that are kept."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from gcxform.dialect.arithmetic import Key
+
+
+class Assigned(NamedTuple):
+    """A parameter that a line of the program, from 0, has set, and its value.
+
+    `text` is the assignment itself where only the machine knows the value, which is nan then.
+    """
+
+    line: int
+    key: Key
+    value: float
+    text: str = ""
+
+
+class Unknown(NamedTuple):
+    """A piece of a line of the window, from 0, that only the machine can compute.
+
+    `text` has no blanks. `hangs_on` is what of the program its value depends on besides parameters:
+    "" for nothing, "units", or "place" for the places of the axes and all modes.
+    """
+
+    line: int
+    text: str
+    hangs_on: str
+
+
+class KeptCall(NamedTuple):
+    """A call, in a line of the window, from 0, whose program is not there to be read.
+
+    `ends` is what the machine file says of it: "unchanged", "unknown", "at XYZ", or nothing.
+    """
+
+    line: int
+    name: str
+    ends: str
+
+
+AT = "at "
+"""What the axes begin with that a call leaves where it names them."""
