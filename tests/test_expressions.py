@@ -219,7 +219,6 @@ def test_fanuc_values(expression: str, value: float) -> None:
         ("#1=1. X5.", "GX206"),
         ("#1000=1", "GX206"),
         ("#34=1", "GX206"),
-        ("#1=#0", "GX220"),
         ("IF [1 EQ 1] GOTO 5", "GX223"),
     ],
 )

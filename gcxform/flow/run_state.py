@@ -20,6 +20,7 @@ from gcxform.flow.listing import CODES_OF_CALLS, STORED_MODES, Listing
 from gcxform.flow.residual import edited, residual
 from gcxform.flow.text import DECIMALS, decimal
 from gcxform.flow.walk import Step
+from gcxform.modal.expressions.compiled import NO_VALUE, Compiled, Compiler
 from gcxform.modal.expressions.value import (
     DOUBTFUL,
     Evaluator,
@@ -110,6 +111,7 @@ class RunState:
         self.assumed: dict[str, None] = {}
         self.inch = (reading.units or self.dialect.initial["units"]) in ("in", "G20")
         self.seen = 0
+        self._functions: dict[tuple[int, int, bool], tuple[Compiled, Any]] = {}  # and their trees
 
     def set(self, values: Mapping[Key, float]) -> None:
         """Give parameters their values."""
@@ -140,9 +142,21 @@ class RunState:
         """Return the value of an expression of the line. Raises InputError."""
         arithmetic = self.conditions if conditions else self.arithmetic
         try:
-            return Evaluator(arithmetic, self.parameters).value(node)
+            return self._worth(arithmetic, node)
         except LocatedError as why:
             raise self.refusal(why.code, why.message, why.hint, (why.start, why.end)) from None
+
+    def _worth(self, arithmetic: Arithmetic, node: Any, in_word: bool = False) -> float:
+        """Return what a node is worth, by a function made once. Raises NoValueError."""
+        names = id(node), id(arithmetic), in_word
+        made = self._functions.get(names)
+        if made is None:
+            made = Compiler(arithmetic, None, in_word).compiled(node), node
+            self._functions[names] = made
+        try:
+            return float(made[0](self.parameters, ()))
+        except NO_VALUE:
+            return Evaluator(arithmetic, self.parameters, in_word).value(node)
 
     @property
     def conditions(self) -> Arithmetic:
@@ -163,9 +177,8 @@ class RunState:
     def written(self, word: Word) -> str:
         """Return the value of a word that is computed, as it is written; "" for null."""
         assert isinstance(word.value, Expression)
-        evaluator = Evaluator(self.arithmetic, self.parameters, in_word=True)
         try:
-            value = evaluator.value(word.value.tree)
+            value = self._worth(self.arithmetic, word.value.tree, in_word=True)
             if isinstance(value, Null):
                 return _vanished(value, word)
             length = self.listing.meaning(self.line).is_length(word.address)
@@ -176,6 +189,7 @@ class RunState:
                 self._refuse_flow(word, value)
         except NoValueError as why:
             if why.lost and word.address not in "GM":
+                evaluator = Evaluator(self.arithmetic, self.parameters, in_word=True)
                 return self.remains(word.value, evaluator)
             start, end = (
                 (why.start, why.end) if isinstance(why, LocatedError) else (word.start, word.end)
@@ -247,7 +261,7 @@ class RunState:
         key: Key | None = None
         try:
             key = settable(self.arithmetic, evaluator.key(parameter))
-            return key, evaluator.value(expression)
+            return key, self._worth(self.arithmetic, expression)
         except NoValueError as why:
             if why.lost and key is not None:
                 return key, UNKNOWN

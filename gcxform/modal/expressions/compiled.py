@@ -23,6 +23,7 @@ from gcxform.dialect.arithmetic import COLUMNS, Arithmetic, Key, NoValueError
 from gcxform.dialect.null import Null
 from gcxform.modal.expressions.value import parameter_of
 from gcxform.syntax.grammar import rule_of
+from gcxform.syntax.tree import BLANKS
 
 Parameters = Mapping[Key, float]
 Operands = Sequence[Any]
@@ -39,22 +40,26 @@ NO_VALUE = (NoColumnError, NoValueError, ArithmeticError, ValueError)
 
 
 class Compiler:
-    """Makes the function of one expression of an outline; `slot` is that of its first number.
+    """Makes the function of one expression; `slot` is that of its first number in an outline.
 
-    The others follow in the order of the text, but behind what is refused.
+    The others follow in the order of the text, but behind what is refused. Without a slot numbers
+    are worth what they are in the tree.
     """
 
     def __init__(
-        self, arithmetic: Arithmetic, slot: int, in_word: bool, columns: bool = False
+        self, arithmetic: Arithmetic, slot: int | None, in_word: bool, columns: bool = False
     ) -> None:
         self.arithmetic = arithmetic
-        self.slots = count(slot)
+        self.slots = None if slot is None else count(slot)
         self.in_word = in_word
         self.columns = columns
 
     def compiled(self, node: Any) -> Compiled:
         """Return the function of an expression; it raises NO_VALUE."""
         if isinstance(node, Token):
+            if self.slots is None:
+                number = float(str(node).translate(BLANKS))
+                return lambda _, __: number
             slot = next(self.slots)
             return lambda _, operands: operands[slot]
         rule, children = rule_of(node), node.children
@@ -76,7 +81,7 @@ class Compiler:
 
         def read(parameters: Parameters, _: Operands) -> float:
             value = parameters.get(key, np.nan)
-            if value != value or isinstance(value, Null):
+            if not -math.inf < value < math.inf or isinstance(value, Null):
                 raise NoColumnError
             return value
 
