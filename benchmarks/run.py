@@ -34,6 +34,7 @@ from jobs import (
     PLAIN,
     READ,
     REWRITTEN,
+    ROADS,
     SHOP_COPIED,
     SHOP_READ,
     SHOP_REWRITTEN,
@@ -48,6 +49,8 @@ from jobs import (
     five_axis_jobs,
     gcxform_job,
     main_jobs,
+    road_jobs,
+    road_names,
     shop,
     shop_job,
     shop_jobs,
@@ -174,7 +177,9 @@ def measure(scratch: Path, lines: int, rounds: int, tenfold: bool) -> list[Job]:
     repeat(parts, rounds, scratch)
     tips = five_axis_jobs(scratch, lines)
     repeat(tips, rounds, scratch)
-    jobs += [*parts, *tips, *(job for job, _ in small)]
+    roads = road_jobs(scratch, lines)
+    repeat(roads, rounds, scratch)
+    jobs += [*parts, *tips, *roads, *(job for job, _ in small)]
     if tenfold:
         source = surfacing(scratch, 10 * lines)
         big = gcxform_job(TENFOLD, source, scratch / "tenfold.nc", 10 * lines)
@@ -239,9 +244,16 @@ def limits(jobs: list[Job]) -> list[Limit]:
         Limit("shop: peak memory, ten times the lines / once", ratio(shop_tenfold, shop_peak), 1.1),
         Limit(f"peak memory, {VERIFIED}", peak, 400.0, " MB"),
         Limit("peak memory, ten times the lines / once", ratio(tenfold, peak), 1.1),
+        *(road_limit(jobs, road) for road in ROADS),
         Limit(HELP, wall(HELP), 0.15, " s"),
         Limit(LDDM, wall(LDDM), 0.5, " s"),
     ]
+
+
+def road_limit(jobs: list[Job], road: str) -> Limit:
+    """Return the figure of a road: user and system time against rs274's."""
+    reading, ours = (find(jobs, name).middle("cpu") for name in road_names(road))
+    return Limit(f"{road}: user+sys, gcxform, verified / {READ}", ratio(ours, reading), 5.0)
 
 
 def report(jobs: list[Job], found: list[Limit], slack: float) -> Iterator[str]:
@@ -258,13 +270,18 @@ def time_table(jobs: list[Job]) -> Iterator[str]:
     yield "| program | lines | runs | wall s | user+sys s | peak MB | / rs274 | / C |"
     yield "|---|--:|--:|--:|--:|--:|--:|--:|"
     readings = [find(jobs, READ), find(jobs, SHOP_READ)]
+    of_roads = {
+        name: find(jobs, road_names(road)[0]) for road in ROADS for name in road_names(road)
+    }
     for job in jobs:
         lines = f"{job.lines:,}" if job.lines else ""
         if job.failure:
             yield f"| {job.name} | {lines} | {job.failure} | | | | | |"
             continue
         shop, other = job.name.startswith("shop"), job.name.startswith("five")
-        others = (readings[shop], Job(PLAIN, []) if shop or other else find(jobs, PLAIN))
+        off = shop or other or job.name in of_roads
+        reading = of_roads.get(job.name, readings[shop])
+        others = (reading, Job(PLAIN, []) if off else find(jobs, PLAIN))
         against = [ratio_cell(job, other) if job.lines == other.lines else "" for other in others]
         times = [f"{job.middle(quantity):.3f}" for quantity in ("wall", "cpu")]
         cells = [job.name, lines, str(len(job.samples)), *times, peak_cell(job), *against]

@@ -17,6 +17,7 @@ from gcxform.flow.macro_calls import ValueCalls
 from gcxform.flow.macro_words import Loop, MacroWords, statement_of
 from gcxform.flow.numbered_files import begins_program, file_of, first_block, program_number
 from gcxform.flow.run_state import Call, whole_number
+from gcxform.flow.subprogram_file import returns
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import BLANKS, Block, Number, Statement, Word
 
@@ -127,10 +128,28 @@ class MacroB(MacroWords):
             self._return(block, items)
             return True
         if 99 in codes:
+            self._refuse_beginning_anew(block)
             line = self.listing.place(self.line)[1]
             what = f"M99 in line {line} stands in no call: it returns, or begins the program anew"
             self.assumed[what] = None
         return False
+
+    def _refuse_beginning_anew(self, block: Block) -> None:
+        """Refuse M99 outside a call where this program goes on in a state that it has left.
+
+        A file without another end is a subprogram by itself, and read as one.
+        """
+        first, last = self._program()
+        special = (n for n in self.listing.special.tolist() if first <= n < last)
+        if any(
+            self.listing.meaning(n).ends and not returns(self.listing.block(n)) for n in special
+        ):
+            message = "M99 outside a call, in a program that ends as well: it begins anew here"
+            raise self.refusal("GX226", message, "let the program end with M30 alone")
+        to = self.number(block, "P")
+        if any(first <= line < last for line in self._sequences.get(to, ())):
+            message = f"M99 P{to:g} goes to N{to:g} of this program, or of one that has called it"
+            raise self.refusal("GX210", message, "rename N, or transform the program that calls it")
 
     # --- subprograms ---
 
