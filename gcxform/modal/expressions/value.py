@@ -201,7 +201,9 @@ def forgotten(parameters: Parameters, arithmetic: Arithmetic, called: bool) -> d
 
 
 def key_set(statement: Statement) -> Key | None:
-    """Return the parameter that an assignment sets; None where it is computed which."""
+    """Return the parameter that an assignment sets; None where it is computed which, or none."""
+    if statement.kind != "assignment":
+        return None
     parameter = statement.tree.children[0]
     return Evaluator(LITERAL, {}).key(parameter) if _is_literal(parameter.children[0]) else None
 
