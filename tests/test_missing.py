@@ -40,8 +40,8 @@ BODIES = {
     "a setting of G52": ("haas", "G90 G0 X1. Y1. Z1.\nG52 X1. Y0.\nG0 X2.\nG52 X0 Y0", ""),
     "a code of the maker": ("linuxcnc", "G90 G0 X1. Y1. Z1.\nM120\nG90 G0 X2. Y2. Z2.", ""),
     "a parameter": (
-        "fanuc",
-        "G90 G0 X1.\nIF [#510 GT #511] GOTO 9\nG1 X5. F100.\nN9 G1 X8. F9.",
+        "linuxcnc",
+        "G90 G0 X1. Y0. Z1.\n#1=[#<depth>+1]\nG1 Z#1 F100.\nG1 X8. F9.",
         "",
     ),
     "two work offsets": ("fanuc", "G90 G0 X1. Y1. Z1.\nG55 X1. Y1. Z1.\nG1 X2. F99.", "offsets"),

@@ -295,10 +295,6 @@ PLANTED: dict[str, tuple[Callable[[], Kind], str]] = {
     "M0 before the motion": (lambda: ms(NGC, {0: gx.MCode("stop")}), "M0 acts after"),
     "M6 after the motion": (lambda: ms(NGC, {6: gx.MCode("tool", after=True)}), "M6 acts before"),
     "M30 does not end": (lambda: ms(FANUC, {30: gx.MCode("stop", after=True)}), "M30 does not end"),
-    "M99 ends": (
-        lambda: ms(FANUC, {99: gx.MCode("stop", after=True, ends=True, barrier=v.CALL)}),
-        "M99 ends",
-    ),
     "M98 a plain code": (lambda: ms(FANUC, {98: gx.MCode("stop", takes="PL")}), "calls a program"),
     "M6 without loss": (lambda: ms(FANUC, {6: gx.MCode("tool")}), "loses no position"),
     "unknown M without loss": (

@@ -67,6 +67,8 @@ def feed_difference(ours: Any, theirs: CanonMove) -> str | None:
         return None if ours.feed is theirs.feed else "feed"
     if ours.feed_mode != theirs.feed_mode:
         return "feed mode"
+    if ours.feed != ours.feed:  # only the machine knows it: any other is as good
+        return None
     linear, rotary = lengths(ours)
     alone = bool(rotary and not linear)  # only rotary axes move
     unit = 1.0 if alone else theirs.unit

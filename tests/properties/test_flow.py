@@ -26,6 +26,9 @@ NOT_RESOLVED = (
     "goes where only the machine knows",
     "another unit under a tool length",
     "the control goes on counting from there",
+    "is incremental, but where",  # behind a word that only the machine knows
+    "an arc, but where it starts is not known",
+    "is known in two ways here",
 )
 """Why programs are refused that the interpreter runs, in the way that its own faults decide."""
 
