@@ -8,6 +8,7 @@ no pass turns positions into others: whoever calls it finds what it was. The cer
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -85,9 +86,19 @@ def _entered(plan: Plan, source: Source, verify: str, held: Held) -> Certificate
     else:
         run, out = _done(plan, source, verify, held)
     found = certificate(run, out)
-    said = " ".join(plan.reading.entry.modes) or "no mode of it is given"
+    said = " ".join(_said(plan)) or "nothing is given"
     found.assumed.append(f"this is a subprogram, and is entered in a state of which {said}")
     return found
+
+
+def _said(plan: Plan) -> Iterator[str]:
+    """Yield what is said of the state in which a subprogram is entered."""
+    reading = plan.reading
+    yield from reading.entry.modes
+    yield from (f"{address}{value:g}" for address, value in reading.start.items())
+    if reading.feed is not None:
+        yield f"F{reading.feed:g}"
+    yield from (f"#{name}={value:g}" for name, value in reading.parameters.items())
 
 
 def at_entry(plan: Plan) -> Plan:

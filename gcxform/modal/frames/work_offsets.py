@@ -152,6 +152,9 @@ def _set_tool(state: FrameState, asked: Asked, kind: int) -> FrameState:
         raise ActError("GX213", message, "write G90 before it")
     if "R" in asked.written and rule.g10_rotates:
         raise ActError("GX213", f"R in G10 L{kind} is a radius, and an angle in G10 L2")
+    if across := sorted(set(asked.axes) - {"Z"}):
+        message = f"G10 L{kind} gives the tool a length along {across[0]}, which is not followed"
+        raise ActError("GX213", message, "give the tool its length in the machine file")
     return written(state, asked)
 
 
