@@ -90,3 +90,8 @@ def test_a_column_is_refused_at_the_line_that_has_no_value() -> None:
     (finding,) = result(text.encode(), "linuxcnc", "absolute", "")  # type: ignore[misc]
     assert "divides by zero" in finding[1]
     assert f"line={HEAD.count(chr(10)) + 21}, column=6" in finding[1]
+
+
+def test_what_nobody_has_set_is_not_zero() -> None:
+    (finding,) = result(f"{HEAD}G20\nG1 X#7\nM2\n".encode(), "linuxcnc", "metric", "")  # type: ignore[misc]
+    assert "#7 is computed by the machine" in finding[1]
