@@ -544,6 +544,6 @@ MUTATIONS = (
         "gcxform/modal/expressions/assignments.py",
         "self.lines.parameters |= dict.fromkeys(undecided.forgets.get(place, ()), UNKNOWN)",
         "pass",
-        CASES,
+        "tests/test_corpus.py::test_case[flow/fanuc-branch-forgets]",
     ),
 )
