@@ -224,9 +224,9 @@ def comment_in(target: type[Dialect], text: str) -> str:
     return ";" + inner
 
 
-def passive_comment(source: type[Dialect], target: type[Dialect], text: str) -> str:
-    """Return a comment that the source does not execute, as one that the target does not either."""
-    if target.text_rule.executes(text):
+def comment_for(source: type[Dialect], target: type[Dialect], text: str) -> str:
+    """Return a comment for a target, which does not execute it where the source does not."""
+    if target.text_rule.executes(text) and not source.text_rule.executes(text):
         text = f"{text[0]}-{text[1:]}"
     if source is not target:
         text = text.translate({ord(each): "-" for each in target.text_rule.acts_anywhere})

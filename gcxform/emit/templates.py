@@ -14,13 +14,12 @@ from gcxform.emit.draft import Draft
 from gcxform.emit.expressible import (
     CannotSayError,
     code_of,
-    comment_in,
+    comment_for,
     is_foreign,
     lasts_in,
     left_out,
     needs_assignment,
     own_gap,
-    passive_comment,
     unsaid_words,
 )
 from gcxform.emit.fields import (
@@ -180,13 +179,10 @@ class TemplateWriter:
 
     def _comment_text(self, item: Comment) -> str:
         text = self.text[item.start : item.end]
-        if not self.source.text_rule.executes(text):
-            return passive_comment(self.source, self.target, text)
-        if self.source is not self.target and not self.target.text_rule.executes(text):
+        executed = self.source.text_rule.executes(text) and self.source is not self.target
+        if executed and not self.target.text_rule.executes(text):
             self.draft.raise_at(item, f"{self.target.name} does not execute this comment")
-        if self.source is not self.target:
-            text = text.translate({ord(each): "-" for each in self.target.text_rule.acts_anywhere})
-        return comment_in(self.target, text)
+        return comment_for(self.source, self.target, text)
 
     def _mark(self, item: Mark, lead: bytes) -> None:
         if item.kind == "block_delete":

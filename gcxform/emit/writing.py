@@ -18,9 +18,9 @@ from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import INCH
 from gcxform.emit.expressible import (
     CannotSayError,
+    comment_for,
     event_text,
     gaps_between,
-    passive_comment,
     slash_of,
 )
 from gcxform.emit.fields import (
@@ -249,9 +249,7 @@ class Writing:
             renderer.copied_text(lines, field.slot)
             return
         source, target = self.task.manner.source, self.task.manner.target
-        texts = [
-            passive_comment(source, target, text) for text in renderer.texts(lines, field.slot)
-        ]
+        texts = [comment_for(source, target, text) for text in renderer.texts(lines, field.slot)]
         renderer.said([text.encode("latin-1") for text in texts])
 
     def _computed(self, field: Computed, lines: Ints, renderer: Renderer) -> None:

@@ -7,9 +7,9 @@ from faults.mutation import CORPUS, FIGURES, FOUND, LAWS, VERIFY, Mutation
 MUTATIONS = (
     Mutation(
         "comments: what acts at once is taken over",
-        "gcxform/emit/templates.py",
-        "in self.target.text_rule.acts_anywhere}",
-        "in self.source.text_rule.acts_anywhere}",
+        "gcxform/emit/expressible.py",
+        "in target.text_rule.acts_anywhere}",
+        "in source.text_rule.acts_anywhere}",
         "tests/test_corpus.py::test_case[dialects/across/comment-of-real-time]",
     ),
     Mutation(
