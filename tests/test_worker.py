@@ -269,11 +269,12 @@ def test_a_certificate_is_the_same(verify, monkeypatch):
 
 
 def test_shapes_begin_anew_in_both(monkeypatch):
-    """Every comment is a shape of its own; a table that is full is begun anew."""
+    """Every executed comment is a shape of its own; a table that is full is begun anew."""
     monkeypatch.setattr("gcxform.modal.reader.SHAPES_AT_MOST", 50)
     monkeypatch.setattr("gcxform.syntax.source.WINDOW", 300)
     text = b"G21 G91 G94 G17\n" + b"".join(
-        b"G1 X%d. Y1. F%d (%d)\nG4 P%d (TWO%d)\n" % (n, 100 + n, n, n, n) for n in range(1, 200)
+        b"G1 X%d. Y1. F%d (MSG, %d)\nG4 P%d (MSG, TWO%d)\n" % (n, 100 + n, n, n, n)
+        for n in range(1, 200)
     )
     pipeline = gx.Pipeline.parse("absolute", "linuxcnc")
     there = pipeline.run(b"G0 X0 Y0 Z0\n" + text)
