@@ -39,6 +39,7 @@ from gcxform.emit.fields import (
 )
 from gcxform.emit.manner import Manner
 from gcxform.modal.meaning.meaning import DRILL_WORDS, Meaning
+from gcxform.modal.meaning.printed import is_output
 from gcxform.modal.meaning.sorting import program_number_fits
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import CODES, Comment, Expression, Item, Mark, Number, Statement, Word
@@ -188,6 +189,8 @@ class TemplateWriter:
         if item.kind == "block_delete":
             if self.source.program_rule.block_delete != self.target.program_rule.block_delete:
                 self._check_same(item, "a block with a slash in the same way")
+        elif is_output(item):
+            self._check_same(item, "a block that sends something out")
         elif item.kind == "block_end":
             self._rest()
             if self.source is not self.target:

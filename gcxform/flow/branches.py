@@ -19,10 +19,10 @@ from lark import Token
 
 from gcxform.dialect.arithmetic import Key
 from gcxform.flow.execution import Execution
-from gcxform.flow.messages import prints_values
 from gcxform.flow.run_state import UNKNOWN, Again, differs
 from gcxform.flow.skipped_stretches import Effect, Join, effect_of, is_still, other_modes
 from gcxform.modal.expressions.value import Evaluator, settable
+from gcxform.modal.meaning.printed import prints_values
 from gcxform.syntax.tree import Block, Comment, Expression, Statement, Word
 from gcxform.syntax.undecided import Undecided
 
@@ -188,6 +188,7 @@ class Branches:
         lost = {k for k in keys if any(_differ(first.get(k), s.get(k)) for s in states)}
         run.parameters = {**first, **dict.fromkeys(lost, UNKNOWN)}
         self.over = False
+        run.lasting.outputs.stands.clear()
         run.changes += 1
         here, since = run.blocks, min(each.line for each in arrivals)
         self.labels[here] = line

@@ -300,6 +300,7 @@ class Execution(RunState):
         for statement, change, text in zip(statements, changes, texts, strict=True):
             edits.append((statement.start, statement.end, self.lasting.account(*change, text)))
         edits += self.lasting.messages(block)
+        self.lasting.outputs.before(block)
         edits = [(start, end, new) for start, end, new in edits if block.text[start:end] != new]
         if edits:
             self._write_changed(block, edits)

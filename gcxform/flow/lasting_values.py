@@ -6,29 +6,29 @@ import math
 
 from gcxform.dialect.arithmetic import Key, NoValueError
 from gcxform.dialect.null import MAYBE
-from gcxform.flow.messages import prints_values, told
+from gcxform.flow.messages import told
+from gcxform.flow.outputs import Outputs
 from gcxform.flow.run_state import Edit, RunState
 from gcxform.flow.text import assignment
 from gcxform.flow.walk import Made
 from gcxform.modal.expressions.value import DOUBTFUL, written
+from gcxform.modal.meaning.printed import prints_values
 from gcxform.syntax.tree import Block, Comment
 
 
 class Lasting:
     """Keeps account of one execution.
 
-    assigned    the parameters that outlive the program, with the line that set each, and its value
-    locals_set  how often one was set that ends with its call, or with the program
-    made        all of both, with the step that set each
-    levels      of such ones that are written all the same, the call that they belong to
+    locals_set  how often a parameter was set that ends with its call, or with the program
+    made        all assignments, with the step that made each
+    outputs     what the written blocks set, for those that last and for blocks that print
     """
 
     def __init__(self, program: RunState) -> None:
         self.program = program
-        self.assigned: list[tuple[int, Key, float]] = []
         self.locals_set = 0
         self.made: list[Made] = []
-        self.levels: dict[Key, int] = {}
+        self.outputs = Outputs(program)
 
     def account(self, key: Key, value: float, kept: str = "") -> str:
         """Return an assignment as it is written: nothing for a parameter that ends with the run.
@@ -37,8 +37,8 @@ class Lasting:
         """
         self.made.append(Made(len(self.program.walked) - 1, key, value))
         if kept:
-            self._refuse_levels(key)
-            self.assigned.append((self.program.line, key, value))
+            self.outputs.refuse_levels(key)
+            self.outputs.assign(key, value)
             return kept
         local = not self.program.arithmetic.outlives(key)
         if local and key not in self.program.settled.needed:
@@ -47,21 +47,12 @@ class Lasting:
             return ""
         if not self.program.keeps:
             return ""
-        self._refuse_levels(key)
+        self.outputs.refuse_levels(key)
         if value is MAYBE:
             message = f"whether {written(key)} becomes 0 or null is not certain"
             raise self.program.refusal("GX221", message)
-        self.assigned.append((self.program.line, key, value))
+        self.outputs.assign(key, value)
         return assignment(key, value, self.program.arithmetic)
-
-    def _refuse_levels(self, key: Key) -> None:
-        """Refuse to write parameters of two calls that have one name: they would become one."""
-        if self.program.arithmetic.outlives(key):
-            return
-        level = self.program.level()
-        if self.levels.setdefault(key, level) != level:
-            message = f"{written(key)} is not known, and calls have it that are written out"
-            raise self.program.refusal("GX220", message)
 
     def messages(self, block: Block) -> list[Edit]:
         """Return the executed comments that print values, with the values in them.
@@ -72,7 +63,8 @@ class Lasting:
         edits: list[Edit] = []
         for item in block.items:
             text = block.text[item.start : item.end]
-            if not isinstance(item, Comment) or not prints_values(text):
+            executed = isinstance(item, Comment) and self.program.dialect.text_rule.executes(text)
+            if not executed or not prints_values(text):
                 continue
             place = item.start, item.end
             try:

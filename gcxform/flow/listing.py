@@ -15,8 +15,8 @@ from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.executed import CalledFile
 from gcxform.flow.lookup import Folders, Found
-from gcxform.flow.messages import prints_values
 from gcxform.modal.meaning.meaning import Meaning
+from gcxform.modal.meaning.printed import is_output, prints_values
 from gcxform.modal.reader import WindowReader
 from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statement, Word
 
@@ -123,6 +123,8 @@ class Listing:
         if meaning.ends or meaning.percent or meaning.runs_macro:
             return True
         for item in block.items:
+            if is_output(item):
+                return True
             if isinstance(item, Statement) or (
                 isinstance(item, Mark) and item.kind in ("program_id", "program_name")
             ):

@@ -77,6 +77,10 @@ class MacroWords(Jumping):
         """Write what jumps may lead to behind the end."""
         self.branches.close()
 
+    def is_jumped_to(self) -> bool:
+        """Whether a jump that only the machine decides leads to what is written next."""
+        return self.blocks in self.branches.labels
+
     def undecided(self) -> Undecided:
         """Return what of the executed lines only the machine decides."""
         return self.branches.undecided

@@ -14,18 +14,11 @@ from collections.abc import Callable
 
 from gcxform.dialect.arithmetic import Key, NoValueError
 from gcxform.modal.expressions.value import parameter_key
+from gcxform.modal.meaning.printed import prints_values
 
-PRINTS = re.compile(r"\([ \t]*(?:DEBUG|PRINT|LOG)[ \t]*,", re.IGNORECASE)
 PART = re.compile(r"#<[^<>]*>|#[0-9]+|%d|%f|%\.[0-9]f|%\.")
 DECIMALS, OF_F = 6, 4
 ZERO = 1e-4  # what is nearer to zero is printed as zero
-
-
-def prints_values(comment: str) -> bool:
-    """Return whether a comment prints the value of a parameter."""
-    return PRINTS.match(comment) is not None and any(
-        part.startswith("#") for part in PART.findall(comment)
-    )
 
 
 def told(comment: str, value: Callable[[Key], float | None]) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -277,10 +278,18 @@ class RunState:
         Raises Again if what it reads was left out before.
         """
         left = residual(item.tree, evaluator)
-        reads = self.dropped if left.anywhere else left.reads & self.dropped
+        self.needs(self.dropped if left.anywhere else left.reads)
+        return edited(self.listing.block(self.line).text, item.start, item.end, left.edits)
+
+    def needs(self, keys: AbstractSet[Key]) -> None:
+        """See to it that assignments to parameters stay. Raises Again if one was left out."""
+        reads = keys & self.dropped
         if self.keeps and not reads <= self.settled.needed:
             raise Again(replace(self.settled, needed=self.settled.needed | reads))
-        return edited(self.listing.block(self.line).text, item.start, item.end, left.edits)
+
+    def is_jumped_to(self) -> bool:
+        """Whether a jump that only the machine decides leads to what is written next."""
+        return False
 
     def level(self) -> int:
         """Return the number of the call whose parameters end with it; 0 for the program itself."""

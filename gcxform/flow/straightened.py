@@ -45,7 +45,7 @@ def written_out(
         return source
     keeps = target is not None
     run = _executed(source, dialect, reading, keeps)
-    if not run.acted and not (assigns and run.lasting.assigned):
+    if not run.acted and not (assigns and run.lasting.outputs.assigned):
         source.assumed = tuple(run.assumed)
         return source
     lines = np.concatenate([np.empty(0, np.int64), *run.origin])
@@ -75,7 +75,7 @@ def _account(run: Execution) -> Executed:
         idle[each.first : each.last + 1] = False
     for definition in run.definitions():
         idle[definition.first] &= not run.times[definition.lines].any()
-    made = tuple((key, value) for _, key, value in run.lasting.assigned)
+    made = tuple((key, value) for _, key, value in run.lasting.outputs.assigned)
     held, left = Tally().add(table, shapes), Tally().add(table, shapes[idle])
     return Executed(held, left, run.lasting.locals_set, made, len(run.kept))
 

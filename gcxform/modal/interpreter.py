@@ -20,6 +20,7 @@ from gcxform.dialect.dialect import INCH, Dialect
 from gcxform.modal.control_limits import refuse_limits
 from gcxform.modal.cycles.expansion import Cycles
 from gcxform.modal.expressions.assignments import compute
+from gcxform.modal.expressions.unknown import note_prints
 from gcxform.modal.expressions.value import parameter_key
 from gcxform.modal.frame_state import FrameState
 from gcxform.modal.lines import Lines
@@ -133,6 +134,7 @@ class Interpreter:
         lines = Lines(self.dialect, self.reading, self.state, window, table, *given)
         lines.refuse_statically()
         compute(lines)
+        note_prints(lines)
         modes = lines.modes()
         refuse_lost_modes(lines, modes)
         path = Moves(lines, modes, self.axes).path()

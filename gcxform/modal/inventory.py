@@ -88,7 +88,7 @@ def _held(block: Block, meaning: Meaning, dialect: type[Dialect]) -> list[int]:
     ends = sum(code in dialect.m_codes and dialect.m_codes[code].ends for code in codes)
     stops = sum(code in STOPS for code in codes)
     others = sum(code not in OF_CALLS for code in codes) - ends - stops
-    told = sum(map(dialect.text_rule.executes, texts))
+    told = sum(map(dialect.text_rule.executes, texts)) + meaning.sends
     named = (dialect.codes[name] for name in meaning.groups.values() if name in dialect.codes)
     modes = sum(code.group == "path" for code in named)
     return [int(moves), int(defines(block)), sets, told, stops, ends, others, modes]

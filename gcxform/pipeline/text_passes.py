@@ -8,6 +8,7 @@ from gcxform.contract.passes import TextPass
 from gcxform.diagnostics import InputError, Location, VerificationError
 from gcxform.dialect.dialect import Dialect
 from gcxform.modal.control_limits import without_blanks
+from gcxform.modal.meaning.printed import is_output
 from gcxform.stamps.comment import is_stamp
 from gcxform.syntax.scan import scan
 from gcxform.syntax.shapes import ShapeTable, instantiate
@@ -97,5 +98,7 @@ def _meaning(block: Block) -> list[str]:
     return [
         block.text[item.start : item.end].translate(BLANKS).upper()
         for item in block.items
-        if (isinstance(item, Word) and item.address != "N") or isinstance(item, Statement)
+        if (isinstance(item, Word) and item.address != "N")
+        or isinstance(item, Statement)
+        or is_output(item)
     ]

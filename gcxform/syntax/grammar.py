@@ -28,7 +28,10 @@ from gcxform.system.limits import how_to_raise, limits
 
 ABOVE = 3  # levels of a tree above the first of an expression: start, word
 MARKS = frozenset(
-    {"block_delete", "block_end", "percent", "program_id", "program_name", "filler", "label"}
+    {
+        *("block_delete", "block_end", "percent", "program_id", "program_name", "filler", "label"),
+        "output",
+    }
 )
 
 

@@ -20,6 +20,7 @@ from faults import (
     increments,
     inventory,
     kinematics,
+    macros,
     passes,
     pathmodes,
     proof,
@@ -83,6 +84,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     *spared.MUTATIONS,
     *rotary.MUTATIONS,
     *kinematics.MUTATIONS,
+    *macros.MUTATIONS,
     *heads.MUTATIONS,
     *heidenhain.MUTATIONS,
 )

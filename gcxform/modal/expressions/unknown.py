@@ -10,11 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 from lark import Token, Tree
 
 from gcxform.dialect.arithmetic import NoValueError
 from gcxform.modal.expressions.value import Evaluator
+from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.meaning import Meaning
+from gcxform.modal.noted import Unknown
 from gcxform.syntax.grammar import rule_of
 from gcxform.syntax.tree import BLANKS
 
@@ -40,6 +43,14 @@ def may_be_unknown(address: str, meaning: Meaning) -> bool:
     if any(address == taken for slots in waits for taken, _ in slots):
         return True
     return address == "H" and any(act.name in LENGTHS for act in meaning.acts)
+
+
+def note_prints(lines: Lines) -> None:
+    """Note what is printed of the machine: passes may change what it is worth."""
+    for line in np.flatnonzero(lines.flag("prints")).tolist():
+        text = lines.window.line(line).decode("latin-1")
+        hangs = lines.table.meanings[int(lines.shape[line])].prints
+        lines.unknown.append(Unknown(line, bare_text(text), hangs))
 
 
 def hangs_on(node: Any, evaluator: Evaluator) -> str:

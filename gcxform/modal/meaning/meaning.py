@@ -108,6 +108,7 @@ class Meaning:
     `lengths` are the words that codes take for themselves and that are in the unit of the program:
     code, address, slot. `lent` are words that codes take which a move of the block may want as
     well: the code by address. `choices` are what was chosen among several meanings, in sentences.
+    `sends`: it sends something out; `prints` is on what the values that it prints hang.
     `call` is the code of a block that calls a program and is kept, `call_slots` are its numbers.
     """
 
@@ -134,6 +135,8 @@ class Meaning:
     lent: dict[str, str] = field(default_factory=dict)
     refusal: Refusal | None = None
     choices: tuple[str, ...] = ()
+    sends: bool = False
+    prints: str = ""
     call: str = ""
     call_slots: tuple[tuple[str, int], ...] = ()
 

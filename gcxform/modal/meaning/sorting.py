@@ -23,6 +23,7 @@ from gcxform.modal.meaning.meaning import (
     Refusal,
 )
 from gcxform.modal.meaning.numbered import code_of, length_number, offset_word, spindle_number
+from gcxform.modal.meaning.printed import is_output, print_hangs_on, prints_values, read_output
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import CODES, Comment, Expression, Mark, Number, Statement, Word
 
@@ -80,14 +81,21 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
             yield from _statement(item, shape, dialect)
             meaning.assignments.append(item)
         elif isinstance(item, Mark):
-            meaning.marked = True
-            meaning.deleted |= item.kind == "block_delete"
-            meaning.percent |= item.kind == "percent" and not _dropped(shape, dialect)
-            if item.kind == "program_name" and not _stands_alone(item, shape):
-                size = item.end - item.start
-                yield Refusal("GX203", item.start, size, "a name of a program stands by itself")
+            yield from _mark(item, shape, dialect, meaning)
         elif isinstance(item, Comment):
             yield from _comment(item, shape, dialect, meaning)
+
+
+def _mark(item: Mark, shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
+    """Look at a sign of the frame of a program, or at what is sent out."""
+    meaning.marked = True
+    meaning.deleted |= item.kind == "block_delete"
+    meaning.percent |= item.kind == "percent" and not _dropped(shape, dialect)
+    if item.kind == "program_name" and not _stands_alone(item, shape):
+        size = item.end - item.start
+        yield Refusal("GX203", item.start, size, "a name of a program stands by itself")
+    if is_output(item):
+        yield from read_output(item, shape.block, dialect, meaning)
 
 
 def _dropped(shape: Shape, dialect: type[Dialect]) -> bool:
@@ -106,6 +114,8 @@ def _comment(
     if dialect.text_rule.executes(text):
         inner = text[1:].removesuffix(")") if text[0] == "(" else text[1:]
         meaning.events.append(EventShape(COMMENT, f"({inner})"))
+        if prints_values(text):
+            meaning.prints = meaning.prints or print_hangs_on(text, dialect)
 
 
 def _expression(word: Word, dialect: type[Dialect]) -> Iterator[Refusal]:

@@ -120,6 +120,7 @@ FLAGS = (
     "compensates",
     "lends",
     "calls",
+    "prints",
 )
 
 
@@ -201,6 +202,7 @@ class MeaningTable:
             meaning.compensates,
             bool(meaning.lent),
             bool(meaning.call),
+            bool(meaning.prints),
         )
 
     def flag(self, name: str, shape: Ints) -> Flags:

@@ -59,6 +59,7 @@
 | computed S T F D H L P | must be whole numbers |
 | #1000 and above | belong to the control: what they go into is lost; only outputs may be set |
 | IF WHILE GOTO | executed, or kept where only the machine decides; almost equal: refused |
+| POPEN DPRNT BPRNT PCLOS | alone in a block; kept, what they print is set before |
 """
 
 from __future__ import annotations

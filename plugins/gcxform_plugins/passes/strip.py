@@ -29,7 +29,8 @@ class Strip(gx.TextPass):
                 continue
             if self.blanks:
                 gap = "" if not gap.strip(" \t") else gap
-                text = text if comment else text.translate({32: None, 9: None})
+                told = comment or getattr(item, "kind", "") == "output"
+                text = text if told else text.translate({32: None, 9: None})
             parts += [gap, text]
         rest = block.text[at:]
         text = "".join(parts) + (rest if not self.blanks or rest.strip(" \t") else "")
