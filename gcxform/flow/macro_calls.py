@@ -34,12 +34,19 @@ class ValueCalls:
 
     def made_by(self, name: str, words: list[Word], times: int, back: int) -> Call:
         """Return the call that words make. Raises InputError for more of them than may be open."""
+        given = arguments(self.run, [w for w in words if w.address not in NO_VALUES])
+        return self.with_values(name, given, times, back)
+
+    def with_values(self, name: str, given: dict[Key, float], times: int, back: int) -> Call:
+        """Return a call that is given values. Raises InputError for more than may be open."""
+        self._refuse_deeper(name)
+        before = {k: v for k, v in self.run.parameters.items() if k in LOCALS}
+        return Call(name, back, times=times, locals=before, given=given)
+
+    def _refuse_deeper(self, name: str) -> None:
         if sum(call.given is not None for call in self.run.calls) >= self.levels:
             message = f"{name}: {self.levels} calls with values are inside each other"
             raise self.run.refusal("GX224", message)
-        given = arguments(self.run, [w for w in words if w.address not in NO_VALUES])
-        before = {k: v for k, v in self.run.parameters.items() if k in LOCALS}
-        return Call(name, back, times=times, locals=before, given=given)
 
     def alias(self, words: list[Word]) -> tuple[str, int] | None:
         """Return a code of a block that calls a program, as the machine file says, and its number.

@@ -11,13 +11,17 @@ from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
+
 from gcxform.flow.execution import HINT
 from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.macro_calls import ValueCalls
 from gcxform.flow.macro_words import Loop, MacroWords, statement_of
+from gcxform.flow.modal_calls import BEGINS, ENDS, Modal, ModalCalls
 from gcxform.flow.numbered_files import begins_program, file_of, first_block, program_number
 from gcxform.flow.run_state import Call, whole_number
 from gcxform.flow.subprogram_file import returns
+from gcxform.modal.meaning.tables import COLUMNS
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import BLANKS, Block, Number, Statement, Word
 
@@ -36,6 +40,7 @@ class MacroB(MacroWords):
         self.twice: set[int] = set()
         self.unnumbered: dict[int, int] = {}
         self.values = ValueCalls(self)
+        self.modals = ModalCalls(self, self._modal_call)
         self.arrange()
 
     # --- which lines belong together ---
@@ -120,6 +125,8 @@ class MacroB(MacroWords):
             words and words[0] is items[0] and self.values.levels and _code(words[0]) == "G65"
         ):
             return self._call_with_values(block, words, *(alias or ()))
+        if self._is_modal(block, words):
+            return True
         codes = {whole_number(i) for i in items if isinstance(i, Word) and i.address == "M"}
         if 98 in codes or (97 in codes and self.dialect.flow_rule.calls_own_lines):
             self._call(block, items, own=97 in codes)
@@ -216,6 +223,60 @@ class MacroB(MacroWords):
         self.enter(call)
         self.values.give(call)
         return True
+
+    # --- modal calls ---
+
+    def _is_modal(self, block: Block, words: list[Word]) -> bool:
+        """Begin or end a modal call; return whether that was all of the block."""
+        name = _code(words[0]) if words and words[0] is bare(block)[0] else ""
+        if name not in self.dialect.codes or name not in (BEGINS, ENDS):
+            ends = any(_code(word) == ENDS for word in words)
+            return ends and self.modals.end(words)
+        if self.branches.open:
+            message = f"only the machine knows whether this {name} is executed"
+            raise self.refusal("GX220", message)
+        if name == ENDS:
+            return self.modals.end(words)
+        number, times = self._called(block)
+        given = self.values.made_by(f"{name} P{number}", words[1:], times, self.at).given or {}
+        first = self._start(number)
+        self.tied = "moves call a program (G66)"
+        self.modals.begin(Modal(f"{name} P{number}", first, times, given, len(self.calls)))
+        return True
+
+    def _modal_call(self, modal: Modal) -> Call:
+        """Return a call that a block with a movement makes."""
+        call = self.values.with_values(modal.name, dict(modal.given), modal.times, self.at)
+        call.first = modal.first
+        return call
+
+    def next_stop(self) -> int:
+        """Return the next line to which a jump may lead, or behind which a program is called."""
+        stop = super().next_stop()
+        if not self.modals.open:
+            return stop
+        window, table = self.listing.window, self.listing.table
+        shapes = window.shape[self.at : stop]
+        moves = table.flag("moves", shapes) | table.flag("own_moves", shapes)
+        for name in ("motion", "cycle"):
+            moves |= table.groups[shapes, COLUMNS.index(name)] >= 0
+        return self.at + int(np.argmax(moves)) + 1 if moves.any() else stop
+
+    def is_done(self, line: int, before: int) -> None:
+        """Call what is to be called behind a block with a movement."""
+        super().is_done(line, before)
+        if not self.modals.open or self.blocks == before or self.ended:
+            return
+        last = self.origin[-1][-1]
+        call = self.modals.called_behind(int(last), self._written_words())
+        if call is not None:
+            self.enter(call)
+            self.values.give(call)
+
+    def _written_words(self) -> list[Word]:
+        """Return the words of the block that was written last."""
+        text = self.text[-1].splitlines()[-1].decode("latin-1")
+        return list(self.dialect.load_grammar().parse(text).words)
 
     def _called(self, block: Block) -> tuple[int, int]:
         """Return number and count of a call. Raises InputError."""

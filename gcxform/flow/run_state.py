@@ -50,7 +50,7 @@ class Call:
 
     `times` are the runs that are left, `first` the first line of the subprogram, `name` what
     called it by. A call with values has variables of its own: `given` are those that it was given.
-    `serial` counts the calls of a run.
+    `serial` counts the calls of a run; `modal` is the number of the G66 that has made it, from 1.
     """
 
     name: str
@@ -61,6 +61,7 @@ class Call:
     counters: dict[int, int] = field(default_factory=dict)
     given: dict[Key, float] | None = None
     serial: int = 0
+    modal: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,62 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 
 MUTATIONS = (
     _macro(
+        "the block of G66 calls behind what moves nothing",
+        "gcxform/flow/modal_calls.py",
+        "if not active or not (moves or _may_move(meaning)):",
+        "if not active:",
+        "flow/g66",
+    ),
+    _macro(
+        "moves of a modal program call it again",
+        "gcxform/flow/modal_calls.py",
+        "active = self._inside() - 1 if self._inside() else len(self.open)",
+        "active = len(self.open)",
+        "flow/g66",
+    ),
+    _macro(
+        "an arc calls for G66",
+        "gcxform/flow/modal_calls.py",
+        'if self.codes["motion"] not in STRAIGHT or any(',
+        "if any(",
+        "flow/g66-arc",
+    ),
+    _macro(
+        "a cycle calls for G66",
+        "gcxform/flow/modal_calls.py",
+        'if self.codes["cycle"] not in (-1, NUMBER["G80"]):',
+        "if False:",
+        "flow/g66-cycle",
+    ),
+    _macro(
+        "a program that is not at hand moves without G66",
+        "gcxform/flow/modal_calls.py",
+        "return meaning.runs_macro or any(",
+        "return any(",
+        "flow/g66-and-kept-call",
+    ),
+    _macro(
+        "what M98 calls moves for G66",
+        "gcxform/flow/modal_calls.py",
+        'return "" if depth == len(run.calls) else',
+        'return "" if depth + 1 else',
+        "flow/g66-and-m98",
+    ),
+    _macro(
+        "G66 in a branch of the machine counts",
+        "gcxform/flow/macros.py",
+        'if self.branches.open:\n            message = f"only the machine knows whether this',
+        'if False:\n            message = f"only the machine knows whether this',
+        "flow/g66-perhaps",
+    ),
+    _macro(
+        "a block of null calls for G66",
+        "gcxform/flow/macros.py",
+        "or self.blocks == before or self.ended:",
+        "or self.ended:",
+        "flow/g66-vanished",
+    ),
+    _macro(
         "a local variable that is printed is not set",
         "gcxform/flow/outputs.py",
         "elif differs(self.stands.get(key), value):",

@@ -47,7 +47,8 @@
 | G65 P9810, G100, M50 | `[control.macro]` says how a call ends, and what a code calls |
 | G65 L2 | the second run finds arguments anew or not: refused, or `[control] macro-repeat` |
 | I, J, K again in G65 | list II or not (6008#7): refused, or `[control] argument-list` |
-| M198 G66 | calls of other programs, or at every move: refused |
+| G66 G67 | calls behind each G0 and G1 with axis words; behind arcs, cycles, G28: refused |
+| M198 G66.1 | calls of other programs, or with each block: refused |
 | a variable that nothing has set | is null, or is left from before: lost, unless given |
 | a null variable | leaves its word out, is 0 in expressions, and equal to null alone |
 | a computed distance | in mm, rounded to `[input] increment`, which must be given |
