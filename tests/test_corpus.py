@@ -31,6 +31,7 @@ ELSEWHERE = {
     "GX454": "test_controls.py",
     **dict.fromkeys(("GX470", "GX471", "GX472", "GX473", "GX474"), "test_diagonal_files.py"),
     **dict.fromkeys(("GX475", "GX476"), "test_step_diagonal.py"),
+    **dict.fromkeys(("GX477", "GX478"), "test_circle_files.py"),
     "GX486": "test_rotary.py",
     "GX487": "test_rotary.py",
     "GX488": "test_rotary_files.py",

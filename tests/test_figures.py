@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcxform.simulate.circles import Circles, circular_deviation, least_squares_circle
+from gcxform.calibrate.circles.deviations import circular_deviation, least_squares_circle
+from gcxform.simulate.circles import Circles
 from gcxform.simulate.figures import Positioning
 
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 3600, endpoint=False)
@@ -117,6 +118,7 @@ def test_figures_tell_senses_apart():
         "Fmax(CCW)": 0.002,
         "Fmin(CCW)": 0.0,
         "D": 0.0005,
+        "H": np.abs(0.003 * np.cos(2 * ANGLES) - 0.001 - 0.001 * np.cos(3 * ANGLES)).max(),
     }
     assert found == pytest.approx(wanted, abs=1e-7)
 

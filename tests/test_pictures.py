@@ -124,7 +124,7 @@ def test_programs_in_whole_millimetres(here):
         (
             BALLBAR,
             ["XY before cw", "XY after ccw"],
-            ["XY before, 5 um/div", "G(b) 3.65", "+X", "-Y"],
+            ["XY before, 2 um/div", "G(b) 3.65", "+X", "-Y"],
         ),
         (LINES, ["X before mean up", "Z after low down"], ["deviation, um", "X before"]),
         ((*DIAGONAL, "body"), ["PPP before", "PPN after"], ["body diagonals before", "PPP  E 12"]),

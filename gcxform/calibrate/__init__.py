@@ -27,6 +27,12 @@
     ballbar/file.py             their readings from CSV files, and back
     ballbar/locations.py        the names of location errors, also of a trunnion
     ballbar/report.py           the report and comments of circular tests
+    circles/deviations.py       circular tests: G, F, D and H of ISO 230-4
+    circles/causes.py           what makes a circle not round, a column for each cause
+    circles/circles.py          tests in the planes of the linear axes, and their causes
+    circles/machine.py          from several planes to squareness, scales and their model
+    circles/file.py             their readings from CSV files, also foreign ones, and back
+    circles/report.py           their sheet in words, comments and report
 
 Nothing here prints. What is wrong with a measurement is an InputError, with file, line and column
 where there is one.

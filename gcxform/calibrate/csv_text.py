@@ -9,6 +9,9 @@ The first row that is neither blank nor a comment is the header. Cells are set o
 the header has no comma by semicolons, and where it has neither by tabs. A column with a unit has it
 in brackets, and there is no default: nobody can tell micrometres from millimetres by looking at
 them. Decimals are set off by a point. Case and order of the columns are free.
+
+Of a table that is not of this form a `Layout` says what the header would: the lines above it are
+left out, and decimals may be set off by a comma.
 """
 
 from __future__ import annotations
@@ -65,6 +68,21 @@ class Heading(NamedTuple):
 
 
 @dataclass(frozen=True)
+class Layout:
+    """How a table is laid out: its header where it has none of its own.
+
+    `skip` lines above the table are left out; `comma` sets off decimals.
+    """
+
+    columns: str = ""
+    skip: int = 0
+    comma: bool = False
+
+
+OWN: Final = Layout()
+
+
+@dataclass(frozen=True)
 class CsvTable:
     """A table as read: no value has been looked at, but every row has a cell for each heading."""
 
@@ -72,6 +90,7 @@ class CsvTable:
     header: Row
     headings: Mapping[str, Heading]
     rows: tuple[Row, ...]
+    comma: bool = False
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -82,6 +101,8 @@ class CsvTable:
 
     def heading_place(self, name: str = "") -> Location:
         """Return the place of a heading, of the header without a name."""
+        if not self.header.line:
+            return Location("--columns")
         return _place(self.file, self.header, self.headings[name].place if name else None)
 
     def texts(self, name: str) -> list[str]:
@@ -95,7 +116,8 @@ class CsvTable:
         """Return a column (n,) in the unit of its heading. Raises InputError (GX471)."""
         found: list[Diagnostic] = []
         values = np.zeros(len(self))
-        for k, text in enumerate(self.texts(name)):
+        texts = self.texts(name)
+        for k, text in enumerate(_pointed(texts) if self.comma else texts):
             problem, hint = _problem(text)
             if problem:
                 found.append(Diagnostic("GX471", problem, self.where(k, name), hint))
@@ -107,8 +129,11 @@ class CsvTable:
 
     def angles(self, name: str) -> Floats:
         """Return a column (n,) in degrees. Raises InputError for its unit (GX470), its numbers."""
-        unit = self._unit(name, "an angle", ANGLES)
-        return self.numbers(name) * ANGLES[unit]
+        return self.scaled(name, "an angle", ANGLES)
+
+    def scaled(self, name: str, kind: str, known: Mapping[str, float]) -> Floats:
+        """Return a column (n,) times what its unit is worth. Raises InputError as `angles`."""
+        return self.numbers(name) * known[self._unit(name, kind, known)]
 
     def _unit(self, name: str, kind: str, known: Mapping[str, float]) -> str:
         """Return the unit of a column. Raises InputError (GX470) unless it is known."""
@@ -143,7 +168,7 @@ class CsvTable:
             raise InputError.one("GX470", message, self.heading_place(), hint)
 
 
-def read_csv(path: Path) -> CsvTable:
+def read_csv(path: Path, layout: Layout = OWN) -> CsvTable:
     """Return the table of a file. Raises FileError, and InputError for its form."""
     try:
         data = inputs.read(path)
@@ -154,22 +179,25 @@ def read_csv(path: Path) -> CsvTable:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InputError.one("GX470", "the file is not UTF-8 text", Location(str(path))) from None
-    return parse_csv(text, str(path))
+    return parse_csv(text, str(path), layout)
 
 
-def parse_csv(text: str, file: str = "<text>") -> CsvTable:
+def parse_csv(text: str, file: str = "<text>", layout: Layout = OWN) -> CsvTable:
     """Return the table of a text. Raises InputError."""
     lines = [
         (number, line)
         for number, line in enumerate(text.splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
+        if number > layout.skip and line.strip() and not line.lstrip().startswith("#")
     ]
-    if len(lines) < 2:
+    if len(lines) + bool(layout.columns) < 2:
         what = "has a header and no rows" if lines else "is empty"
         raise InputError.one("GX470", f"the table {what}", Location(file))
-    mark = next((c for c in ",;" if c in lines[0][1]), "\t")
+    marks = ";" if layout.comma else ",;"
+    mark = next((c for c in marks if c in lines[0][1]), "\t")
     rows = [Row(number, line, _cells(line, mark)) for number, line in lines]
-    headings = _headings(file, rows[0])
+    if layout.columns:
+        rows.insert(0, Row(0, layout.columns, _cells(layout.columns, ",")))
+    headings = _headings("--columns" if layout.columns else file, rows[0])
     found = [
         Diagnostic(
             "GX471",
@@ -181,7 +209,12 @@ def parse_csv(text: str, file: str = "<text>") -> CsvTable:
     ]
     if found:
         raise InputError(tuple(found))
-    return CsvTable(file, rows[0], headings, tuple(rows[1:]))
+    return CsvTable(file, rows[0], headings, tuple(rows[1:]), layout.comma)
+
+
+def _pointed(texts: Sequence[str]) -> list[str]:
+    """Return numbers with a point in place of their comma; what has a point stays no number."""
+    return [f"{text} with a point" if "." in text else text.replace(",", ".") for text in texts]
 
 
 def _cells(line: str, mark: str) -> tuple[Cell, ...]:

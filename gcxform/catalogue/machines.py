@@ -270,6 +270,22 @@ CODES: dict[str, tuple[str, str]] = {
         "Some errors can change together without any effect on a reading, so that the model would "
         "be a guess. Unless the beams are known to be along their diagonals, the diagonals tell "
         "one combination of the three scale errors and not the scales. Add linear tests of two "
-        "axes with --linear; --report without -o writes what is known.",
+        "axes with --linear; --report without -o writes what is known. Circles in one sense do "
+        "not tell squareness from servo mismatch, and circles at one feed not the scales from "
+        "what the axes lag behind: measure in both senses, and at two feeds.",
+    ),
+    "GX477": (
+        "A circular test that is no circle",
+        "A run of a circular test goes once around a part of a circle, or all of it, at angles of "
+        "the place in its plane. Its way in and out is no part of it, and of a clockwise run whose "
+        "angles rise nobody can tell whether they are those of the way travelled. `gcxform "
+        "calibrate circles --help` shows the table, and --arc and --cw-angles say what it does "
+        "not.",
+    ),
+    "GX478": (
+        "A circular test whose place is not known",
+        "Squareness and scales hold where they were measured, and the error model that is written "
+        "has no error in the middle of the circle and ends where the circle did. Say where that "
+        "was in machine coordinates: --centre, or columns in the table.",
     ),
 }

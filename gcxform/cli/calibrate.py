@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from gcxform.cli import VERBS
+from gcxform.cli.calibration.circles import circles
 from gcxform.cli.calibration.plan import centres, plan
 from gcxform.cli.calibration.rotary_axes import ballbar, bundle, rotary
 from gcxform.cli.calibration.shared import about, path_of, write
@@ -49,6 +50,7 @@ def command() -> None:
 command.add_command(rotary)
 command.add_command(bundle)
 command.add_command(ballbar)
+command.add_command(circles)
 command.add_command(plan)
 command.add_command(centres)
 

@@ -22,6 +22,7 @@ from gcxform.diagnostics import Location, UsageError
 from gcxform.errormodel.model import AXES, Outside
 from gcxform.plugin.registry import default_registry
 from gcxform.simulate import report
+from gcxform.simulate.drives import NONE, Drives
 from gcxform.simulate.positions import Chain
 from gcxform.simulate.programs import PLANES
 from gcxform.simulate.virtual import (
@@ -81,13 +82,23 @@ class BallbarOptions(Common):
         Length | None, Option("radius; absent: what fits into the model", above=0.0)
     ] = None
     planes: Annotated[str, Option("planes, of XY, YZ and ZX")] = ",".join(PLANES)
+    lag: Annotated[Vector, Option("what X, Y, Z are behind their commands at the feed")] = NONE
+    backlash: Annotated[Vector, Option("what X, Y, Z lose where they turn back")] = NONE
+    play: Annotated[Vector, Option("how far X, Y, Z jump aside where they turn back")] = NONE
+    stick: Annotated[Vector, Option("way for which X, Y, Z stand where they turn back")] = NONE
+    cyclic: Annotated[Vector, Option("amplitude of a cyclic error of X, Y, Z")] = NONE
+    pitch: Annotated[Length, Option("pitch of the cyclic error", above=0.0)] = 10.0
+    pivot: Annotated[Vector, Option("how far the pivot is set off the centre")] = NONE
+    samples: Annotated[int, Option("readings a run of --readings", at_least=8, at_most=7200)] = 720
 
     def test(self) -> Ballbar:
         """Return the test. Raises UsageError."""
         planes = chosen("planes", self.planes, tuple(PLANES))
         centre = self.centre or middle(self.box)
         radius = self.radius or self._radius(planes)
-        return Ballbar(centre, radius, planes, self.feed, self.noise, self.seed)
+        drives = Drives(self.lag, self.backlash, self.play, self.stick, self.cyclic, self.pitch)
+        said = (planes, self.feed, self.noise, self.seed, drives, self.pivot)
+        return Ballbar(centre, radius, *said)
 
     @property
     def headline(self) -> str:
@@ -212,7 +223,7 @@ def command() -> None:
 command.add_command(balls)
 command.add_command(ballbar_rtcp)
 
-_FILES = ("json", "plot", "program", "compensated")
+_FILES = ("json", "plot", "program", "compensated", "readings")
 
 
 def _files(command: Command) -> Command:
@@ -238,10 +249,19 @@ def _files(command: Command) -> Command:
 
 @command.command("ballbar")
 @options_of(BallbarOptions)
+@click.option(
+    "--readings",
+    metavar="FILE",
+    help="Write the readings before compensation, as `calibrate circles` reads them (CSV).",
+)
 @_files
 def ballbar(**given: Any) -> None:
-    """Circles in both senses: circular and radial deviations of ISO 230-4."""
-    telling = Telling(report.circle_pairs, report.circle_readings, plot.circles)
+    """Circles in both senses: circular and radial deviations of ISO 230-4.
+
+    The machine has the errors of its model and, if they are given, those of its drives, of which no
+    model by position knows and which no program can compensate.
+    """
+    telling = Telling(report.circle_pairs, report.circle_readings, plot.circles, _table)
     _simulate("ballbar", BallbarOptions, telling, **given)
 
 
@@ -263,6 +283,10 @@ def diagonal(**given: Any) -> None:
     _simulate("diagonal", DiagonalOptions, telling, **given)
 
 
+def _table(asked: Any, outcome: Outcome[Any]) -> str:
+    return report.circles_table(asked.test(), outcome.before, asked.samples)
+
+
 @dataclass(frozen=True)
 class Telling:
     """How the outcome of a kind of test is told: its figures, its readings, its picture."""
@@ -270,6 +294,7 @@ class Telling:
     pairs: Callable[[Any], Iterator[tuple[str, report.Pairs]]]
     readings: Callable[[Any], dict[str, Any]]
     draw: Callable[[Any, str], Any]
+    table: Callable[[Any, Outcome[Any]], str] | None = None
 
 
 def _simulate(name: str, kind: type[Any], telling: Telling, dialect: str, **given: Any) -> None:
@@ -279,12 +304,13 @@ def _simulate(name: str, kind: type[Any], telling: Telling, dialect: str, **give
     if asked.time is not None:
         asked = replace(asked, model=asked.model.at_time(asked.time))
     outcome = asked.test().run(asked.chain(dialect))
-    _hand_out(files, _title(asked, outcome), outcome, telling)
+    table = telling.table(asked, outcome) if telling.table and files["readings"] else ""
+    _hand_out(files, _title(asked, outcome), outcome, telling, table)
 
 
 def _checked(given: dict[str, Any]) -> dict[str, str | None]:
     """Take the names of files out of what was given, and refuse those that cannot be."""
-    files = {name: given.pop(name) for name in _FILES}
+    files = {name: given.pop(name, None) for name in _FILES}
     check_places({f"--{name}": file for name, file in files.items()}, [given["model"]])
     if files["plot"]:
         plot.check(files["plot"])
@@ -306,6 +332,7 @@ def _hand_out(
     title: str,
     outcome: Outcome[Any],
     telling: Telling,
+    table: str,
 ) -> None:
     """Print the table and write the files, all of them or none."""
     parts: dict[str, bytes] = {}
@@ -319,6 +346,7 @@ def _hand_out(
         parts["json"] = (json.dumps(found, indent=1) + "\n").encode()
     if files["plot"]:
         parts["plot"] = plot.rendered(telling.draw(outcome, title), files["plot"])
+    parts["readings"] = table.encode()
     parts |= {"program": outcome.program.text, "compensated": outcome.compensated.text}
     with ExitStack() as stack:
         for name, content in parts.items():

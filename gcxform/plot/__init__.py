@@ -14,3 +14,4 @@ from gcxform.plot.paths import heat as heat
 from gcxform.plot.residuals import bundled as bundled
 from gcxform.plot.residuals import circled as circled
 from gcxform.plot.residuals import placed as placed
+from gcxform.plot.sheets import sheets as sheets

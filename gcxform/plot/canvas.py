@@ -29,7 +29,10 @@ KINDS = (".svg", ".png")
 DOTS = 150  # per inch, of PNG
 LETTERS = 13  # per inch, of a title
 DIVISIONS = 4  # between the centre of a polar diagram and the nominal circle
-BEFORE, AFTER, MEAN, GREY = "#b03a2e", "#1f618d", "#1e8449", "#909497"
+RINGS = 67.5  # degrees at which the rings of a polar diagram have their numbers
+BEFORE, AFTER, MEAN, GREY = "#d55e00", "#0072b2", "#009e73", "#7f8488"
+"""Colours that eyes tell apart which do not see red and green (Okabe and Ito), and a grey."""
+INK = "#22272b"  # of what is written and not drawn
 STYLE: Any = {
     "svg.hashsalt": "gcxform",  # names inside the file do not change from run to run
     "svg.fonttype": "none",  # text stays text
@@ -103,11 +106,15 @@ def magnified(axes: Any, most: float) -> float:
     Return how many um a division is.
     """
     division = nice(max(most / 2.0, 1e-6))
-    axes.plot(np.linspace(0.0, 2.0 * np.pi, 181), np.zeros(181), color=GREY, linewidth=0.6)
+    axes.plot(np.linspace(0.0, 2.0 * np.pi, 181), np.zeros(181), color=INK, linewidth=0.7)
     ticks = division * np.arange(-DIVISIONS, 3.5)
     axes.set_rlim(ticks[0], ticks[-1])
     axes.set_rticks(ticks[1:-1])
-    axes.set_yticklabels([f"{tick:g}" if tick in (0.0, -division) else "" for tick in ticks[1:-1]])
+    axes.set_yticklabels([f"{tick:+g}" if tick else "0" for tick in ticks[1:-1]])
+    axes.tick_params(axis="y", labelsize=6.0, labelcolor=INK)
+    axes.set_rlabel_position(RINGS)
+    for label in axes.get_yticklabels():
+        label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8})
     return division
 
 

@@ -7,18 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gcxform.plot.canvas import AFTER, BEFORE, empty, figure, magnified, styled
+from gcxform.plot.canvas import AFTER, BEFORE, empty, figure, styled
+from gcxform.plot.polar import circle_diagram
 from gcxform.simulate.circles import Circles
 from gcxform.simulate.figures import Positioning
 from gcxform.simulate.virtual import BODY, FACES, Outcome
-from gcxform.system.arrays import Floats
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 UM = 1000.0  # per mm
-POINTS = 720  # drawn of a circle
 
 
 # --- circles ---
@@ -26,48 +25,25 @@ POINTS = 720  # drawn of a circle
 
 @styled
 def circles(outcome: Outcome[Circles], title: str) -> Figure:
-    """Return the polar diagrams of a ballbar test: a column a plane, before above after."""
-    made = figure(3.6 * len(outcome.before), 8.0, title)
-    sides = {"before": outcome.before, "after": outcome.after}
-    places = iter(range(1, 1 + 2 * len(outcome.before)))
-    for side, read in sides.items():
-        for plane, found in read.items():
-            axes = made.add_subplot(2, len(read), next(places), projection="polar")
-            _polar(axes, found, f"{plane} {side}")
+    """Return the polar diagrams of a ballbar test: a row a plane, before beside after."""
+    made = figure(7.6, 4.3 * len(outcome.before) + 0.5, title)
+    grid = made.add_gridspec(len(outcome.before), 2)
+    for column, (side, read) in enumerate((("before", outcome.before), ("after", outcome.after))):
+        for row, (plane, found) in enumerate(read.items()):
+            axes = made.add_subplot(grid[row, column], projection="polar")
+            _polar(axes, found, plane, f"{plane} {side}")
     return made
 
 
-def _polar(axes: Any, found: Circles, name: str) -> None:
+def _polar(axes: Any, found: Circles, plane: str, name: str) -> None:
     """Draw the radial deviations of both senses, magnified, about the nominal circle."""
-    paths = {"cw": (found.cw, BEFORE), "ccw": (found.ccw, AFTER)}
-    most = max(float(np.abs(found.radial(path)).max()) for path, _ in paths.values())
-    for sense, (path, colour) in paths.items():
-        angle, value = _around(path, UM * found.radial(path))
-        axes.plot(angle, value, color=colour, label=sense.upper(), gid=f"{name} {sense}")
-    division = magnified(axes, UM * most)
+    paths = {"CW": found.cw, "CCW": found.ccw}
+    division = circle_diagram(axes, paths, found.radius, plane, name)
     figures = {symbol: UM * value for symbol, value in found.figures.items()}
-    lines = [
-        f"{name}, {division:g} um/div",
-        "  ".join(f"{s} {figures[s]:.2f}" for s in ("G(CW)", "G(CCW)", "G(b)")),
-        "  ".join(f"{s} {figures[s]:.2f}" for s in ("Fmax(CCW)", "Fmin(CCW)")) + " um",
-    ]
-    axes.set_title("\n".join(lines))
-    axes.set_xticks(np.radians(range(0, 360, 45)), _around_labels(name))
-    axes.legend(loc="lower left", bbox_to_anchor=(-0.1, -0.1))
-
-
-def _around_labels(plane: str) -> list[str]:
-    """Return what stands around a circle: its axes, the first of the plane at 0, and degrees."""
-    ways = {0: f"+{plane[0]}", 90: f"+{plane[1]}", 180: f"-{plane[0]}", 270: f"-{plane[1]}"}
-    return [ways.get(angle, f"{angle}°") for angle in range(0, 360, 45)]
-
-
-def _around(path: Floats, value: Floats) -> tuple[Floats, Floats]:
-    """Return angles (rad) and values of a closed path, in the order of the angle, not too many."""
-    angle = np.arctan2(path[:, 1], path[:, 0])
-    order = np.argsort(angle, kind="stable")[:: max(1, len(path) // POINTS)]
-    order = np.append(order, order[:1])
-    return angle[order], value[order]
+    rows = (("G(CW)", "G(CCW)", "G(b)"), ("Fmax(CCW)", "Fmin(CCW)", "D"))
+    lines = ["  ".join(f"{symbol} {figures[symbol]:.2f}" for symbol in row) for row in rows]
+    axes.set_title("\n".join([f"{name}, {division:g} um/div", lines[0], f"{lines[1]} um"]))
+    axes.legend(loc="lower left", bbox_to_anchor=(-0.12, -0.1))
 
 
 # --- lines ---

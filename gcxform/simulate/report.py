@@ -8,9 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from gcxform.calibrate.circles.causes import SetUp
+from gcxform.calibrate.circles.circles import Run
+from gcxform.calibrate.circles.file import circles_csv
 from gcxform.simulate.circles import Circles
 from gcxform.simulate.figures import Positioning
-from gcxform.simulate.virtual import BODY, FACES, Outcome, largest
+from gcxform.simulate.virtual import BODY, FACES, Ballbar, Outcome, largest
 from gcxform.system.arrays import Floats
 
 DEGREE = 360  # points of a circle in the data
@@ -91,6 +94,25 @@ def circle_readings(circles: Circles) -> dict[str, Any]:
 
 def _around(path: Floats, values: Floats, angle: Floats) -> Floats:
     return np.interp(angle, np.arctan2(path[:, 1], path[:, 0]), values, period=2.0 * np.pi)
+
+
+def circles_table(test: Ballbar, read: Mapping[str, Circles], count: int) -> str:
+    """Return the readings of circles, so many a run, as `gcxform calibrate circles` reads them."""
+    tests = []
+    for plane, circles in read.items():
+        setup = SetUp(plane, test.radius, test.feed / 60.0, test.centre)
+        paths = {1: circles.ccw, -1: circles.cw}
+        runs = [_run(sense, circles, path, count) for sense, path in paths.items()]
+        tests.append((setup, runs))
+    return circles_csv(tests)
+
+
+def _run(sense: int, circles: Circles, path: Floats, count: int) -> Run:
+    """Return so many readings of a path, in the order of travel."""
+    step = len(path) / count
+    rows = ((np.arange(count) + 0.5) * step).astype(np.int64)
+    degrees = np.degrees(np.arctan2(path[rows, 1], path[rows, 0])) % 360.0
+    return Run(sense, degrees.round(6), circles.radial(path)[rows].round(9))
 
 
 def line_readings(line: Positioning) -> dict[str, Any]:

@@ -16,6 +16,7 @@ import numpy as np
 from gcxform.diagnostics import UsageError
 from gcxform.errormodel.model import AXES, ErrorModel, Outside
 from gcxform.simulate.circles import Circles
+from gcxform.simulate.drives import NONE, STILL, Drives
 from gcxform.simulate.figures import Positioning
 from gcxform.simulate.positions import Chain, Compensated, Track
 from gcxform.simulate.programs import (
@@ -87,7 +88,9 @@ def ranges(model: ErrorModel) -> Floats:
 class Ballbar:
     """A ballbar test: circles of `radius` (mm) about `centre` (mm) in some planes.
 
-    `noise` is the standard deviation in mm of a reading of the bar, drawn from `seed`.
+    `noise` is the standard deviation in mm of a reading of the bar, drawn from `seed`. `drives` is
+    what the axes do besides the errors of the model, and `pivot` how far the pivot of the
+    instrument is set off where the machine stood, mm.
     """
 
     centre: tuple[float, float, float]
@@ -96,6 +99,8 @@ class Ballbar:
     feed: float = 1000.0
     noise: float = 0.0
     seed: int = 0
+    drives: Drives = STILL
+    pivot: tuple[float, float, float] = NONE
 
     def run(self, chain: Chain) -> Outcome[Circles]:
         """Return the readings. Raises UsageError if the circles leave the model."""
@@ -110,13 +115,22 @@ class Ballbar:
         found = {}
         for plane in self.planes:
             axes = list(PLANES[plane].axes[:2])
-            pivot = track.stops(program.lines[f"{plane} centre"])[0]
+            pivot = track.stops(program.lines[f"{plane} centre"])[0] + self.pivot
             paths = {}
             for sense in SENSES:
                 path = (track.on(program.lines[f"{plane} {sense}"][0]) - pivot)[:, axes]
-                paths[sense] = self._disturbed(path, random)
+                driven = path + self._driven(path + np.array(self.pivot)[axes], plane, sense)
+                paths[sense] = self._disturbed(driven, random)
             found[plane] = Circles(self.radius, paths["cw"], paths["ccw"])
         return found
+
+    def _driven(self, path: Floats, plane: str, sense: str) -> Floats:
+        """Return what the drives add to a path (n, 2) about its middle."""
+        first, second = PLANES[plane].axes[:2]
+        angle = np.arctan2(path[:, 1], path[:, 0])
+        middle = np.array([self.centre[first], self.centre[second]])
+        turn = 1 if sense == "ccw" else -1
+        return self.drives.off(angle, turn, (first, second), (middle, self.radius))
 
     def _disturbed(self, path: Floats, random: np.random.Generator) -> Floats:
         """Return a path (n, 2) with noise along the bar.

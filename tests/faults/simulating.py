@@ -42,8 +42,8 @@ MUTATIONS = (
     Mutation(
         "simulate: the pivot is the programmed centre",
         "gcxform/simulate/virtual.py",
-        "[0]\n            paths = {}",
-        "[0] * 0 + self.centre\n            paths = {}",
+        "[0] + self.pivot\n",
+        "[0] * 0 + self.centre + self.pivot\n",
         TESTS,
     ),
     Mutation(
@@ -83,7 +83,7 @@ MUTATIONS = (
     ),
     Mutation(
         "circles: G about the mean of the points",
-        "gcxform/simulate/circles.py",
+        "gcxform/calibrate/circles/deviations.py",
         "return mean + centre,",
         "return mean,",
         FIGURES,

@@ -1,0 +1,1 @@
+"""The linear axes from circular tests in their planes."""
