@@ -35,6 +35,7 @@ VERBS: Final = {
     "simulate": "Test a machine with known errors, before and after compensation.",
     "machine": "Write a machine file for programs, show its rotary axes, or import them.",
     "show": "Draw an error model, or the error along the path of a program.",
+    "view": "Write a page (HTML) that shows a program in 3-D, with its lines.",
     "table": "Convert error tables from one format to another, or show one.",
     "list": "List what is installed, or the options of one thing.",
     "explain": "Explain a diagnostic code, or what a block does.",

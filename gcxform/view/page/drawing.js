@@ -1,0 +1,359 @@
+// The picture: paths as wide lines, from the parallel camera, drawn when something has changed.
+import { FULL, HIDDEN, DASHED } from "./colours.js";
+import { CHUNK, chosen, importance, withTints } from "./levels.js";
+import { FIELDS, RAPID, isDrawn } from "./path.js";
+
+const TEXELS = 2048; // a row of the texture of colours
+const ACROSS = 256; // a row of the texture of corners
+const MANY = 60_000; // pieces of which a picture is made; more are drawn as thin lines
+const SHARP = 0.4; // pixels that a line may be off when the picture stands still
+const COARSEST = 6; // pixels, while it moves and is slow
+const [SLOW, FAST] = [45, 24]; // ms between pictures
+const STILL = 220; // ms without movement, after which the picture is drawn sharp
+
+// A piece of path is a rectangle that faces the screen (6 corners) or a thin line (2); where it lies
+// is in a texture, because software renderers are slow at instances.
+const VERTEX = `
+precision highp float; precision highp int; precision highp sampler2D;
+uniform mat4 modelViewMatrix, projectionMatrix;
+uniform vec2 viewport; uniform float width; uniform int per;
+uniform sampler2D corners, colours; uniform vec4 single;
+out vec3 shade; out float along, travelled; flat out int dashed;
+vec4 cornerAt(int k) { return texelFetch(corners, ivec2(k % ${ACROSS}, k / ${ACROSS}), 0); }
+void main() {
+  int piece = gl_VertexID / per, nth = gl_VertexID % per;
+  vec4 first = cornerAt(piece), second = cornerAt(piece + 1);
+  int row = int(second.w);
+  vec4 colour = texelFetch(colours, ivec2(row % ${TEXELS}, row / ${TEXELS}), 0);
+  if (colour.a == 0.0) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
+  vec4 a = projectionMatrix * modelViewMatrix * vec4(first.xyz, 1.0);
+  vec4 b = projectionMatrix * modelViewMatrix * vec4(second.xyz, 1.0);
+  vec2 way = 0.5 * (b.xy - a.xy) * viewport;
+  float size = length(way);
+  float part = per == 2 ? float(nth) : nth == 1 || nth > 3 ? 1.0 : 0.0;
+  gl_Position = mix(a, b, part);
+  if (per > 2) {
+    vec2 unit = size > 0.0 ? way / size : vec2(1.0, 0.0);
+    float side = nth == 2 || nth == 3 || nth == 5 ? 1.0 : -1.0;
+    gl_Position.xy += (vec2(-unit.y, unit.x) * side + unit * (2.0 * part - 1.0)) * width / viewport;
+  }
+  along = part * size;
+  dashed = colour.a < 0.9 ? 1 : 0;
+  shade = mix(colour.rgb, single.rgb, single.a);
+  travelled = mix(first.w, second.w, part);
+}`;
+const FRAGMENT = `
+precision highp float;
+uniform vec3 ground; uniform float played;
+in vec3 shade; in float along, travelled; flat in int dashed; out vec4 fragment;
+void main() {
+  if (dashed == 1 && mod(along, 9.0) > 5.0) discard;
+  fragment = vec4(travelled > played ? mix(shade, ground, 0.86) : shade, 1.0);
+}`;
+
+export function drawingOn(canvas) {
+  const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+  renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+  const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -1, 1);
+  camera.up.set(0, 0, 1);
+  const controls = new THREE.OrbitControls(camera, canvas);
+  controls.zoomToCursor = true;
+  const drawing = {
+    canvas, renderer, camera, controls, scene: new THREE.Scene(), paths: [], ground: new THREE.Color(),
+    coarse: SHARP, moved: 0, asked: false, last: 0, size: 100, middle: [0, 0, 0], frames: 0, onDrawn: [],
+  };
+  controls.addEventListener("change", () => stir(drawing));
+  new ResizeObserver(() => resized(drawing)).observe(canvas.parentElement);
+  return drawing;
+}
+
+export function setGround(drawing, colour) {
+  drawing.ground.setStyle(colour, "");
+  drawing.renderer.setClearColor(drawing.ground);
+  for (const shown of drawing.paths) shown.uniforms.ground.value = drawing.ground;
+  redraw(drawing);
+}
+
+function resized(drawing) {
+  const { clientWidth, clientHeight } = drawing.canvas.parentElement;
+  drawing.renderer.setSize(clientWidth, clientHeight, false);
+  const high = drawing.camera.top - drawing.camera.bottom;
+  const half = (high * clientWidth) / Math.max(clientHeight, 1) / 2;
+  drawing.camera.left = -half;
+  drawing.camera.right = half;
+  drawing.camera.updateProjectionMatrix();
+  redraw(drawing);
+}
+
+// --- when ---
+
+export function redraw(drawing) {
+  if (drawing.asked) return;
+  drawing.asked = true;
+  requestAnimationFrame((now) => drawn(drawing, now));
+}
+
+// The camera moves: be fast rather than sharp.
+function stir(drawing) {
+  drawing.moved = performance.now();
+  redraw(drawing);
+}
+
+function drawn(drawing, now) {
+  drawing.asked = false;
+  const between = now - drawing.last;
+  drawing.last = now;
+  const moving = performance.now() - drawing.moved < STILL;
+  if (!moving) drawing.coarse = SHARP;
+  else if (between > SLOW && between < 2000) drawing.coarse = Math.min(COARSEST, 1.5 * drawing.coarse);
+  else if (between < FAST) drawing.coarse = Math.max(SHARP, drawing.coarse / 1.1);
+  render(drawing);
+  if (moving) redraw(drawing);
+}
+
+// Draw sharp, and at once.
+export function drawNow(drawing) {
+  drawing.coarse = SHARP;
+  render(drawing);
+}
+
+function render(drawing) {
+  const least = pixel(drawing) * drawing.coarse;
+  const seen = drawing.paths.filter((shown) => shown.group.visible);
+  for (const shown of seen) levelled(shown, least);
+  const pieces = seen.flatMap((shown) => shown.chunks).reduce((sum, chunk) => sum + chunk.pieces, 0);
+  for (const shown of seen) widen(shown, pieces < MANY);
+  drawing.renderer.render(drawing.scene, drawing.camera);
+  drawing.frames += 1;
+  for (const act of drawing.onDrawn) act();
+}
+
+// How many mm a pixel of the screen is.
+export function pixel(drawing) {
+  const { top, bottom, zoom } = drawing.camera;
+  return (top - bottom) / zoom / Math.max(drawing.canvas.clientHeight, 1);
+}
+
+// --- paths ---
+
+export function addPath(drawing, path) {
+  const rows = Math.ceil(Math.max(path.count, 1) / TEXELS);
+  const colours = new Uint8Array(4 * TEXELS * rows).fill(FULL);
+  const texture = new THREE.DataTexture(colours, TEXELS, rows, THREE.RGBAFormat, THREE.UnsignedByteType);
+  const uniforms = {
+    viewport: { value: new THREE.Vector2(1, 1) }, width: { value: 2 }, played: { value: Infinity },
+    colours: { value: texture }, ground: { value: drawing.ground }, single: { value: [0, 0, 0, 0] },
+    corners: { value: null }, per: { value: 6 },
+  };
+  const material = new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms, side: THREE.DoubleSide,
+  });
+  const shown = { path, colours, texture, uniforms, material, group: new THREE.Group(), chunks: [] };
+  shown.manner = mannersOf(path);
+  const corners = path.corners.length / FIELDS;
+  for (let first = 0; first < corners - 1; first += CHUNK) {
+    shown.chunks.push(chunkOf(shown, first, Math.min(first + CHUNK, corners - 1)));
+  }
+  shown.group.position.set(...path.middle.map((value, axis) => value - drawing.middle[axis]));
+  drawing.scene.add(shown.group);
+  drawing.paths.push(shown);
+  return shown;
+}
+
+// How each move is drawn, whatever its colour.
+function mannersOf(path) {
+  const found = new Uint8Array(path.count);
+  for (let row = 0; row < path.count; row++) {
+    found[row] = !isDrawn(path, row) ? HIDDEN : path.kind[row] === RAPID ? DASHED : FULL;
+  }
+  return found;
+}
+
+function chunkOf(shown, first, last) {
+  const chunk = {
+    first, last, level: NaN, weight: null, pieces: 0, sphere: sphereOf(shown.path.corners, first, last),
+    wide: pieceOf(shown, THREE.Mesh, 6), thin: pieceOf(shown, THREE.LineSegments, 2),
+  };
+  return chunk;
+}
+
+// Something that draws corners of a path, none yet; `per` of its points make one piece.
+function pieceOf(shown, kind, per, material = shown.material) {
+  const object = new kind(new THREE.BufferGeometry(), material);
+  const { uniforms } = material;
+  object.onBeforeRender = (renderer) => {
+    renderer.getDrawingBufferSize(uniforms.viewport.value);
+    uniforms.corners.value = object.userData.corners;
+    uniforms.per.value = per;
+    material.uniformsNeedUpdate = true;
+  };
+  object.userData.per = per;
+  shown.group.add(object);
+  return object;
+}
+
+function give(object, texture, pieces, sphere) {
+  object.userData.corners = texture;
+  object.geometry.setDrawRange(0, object.userData.per * pieces);
+  object.geometry.boundingSphere = sphere;
+}
+
+function widen(shown, wide) {
+  for (const chunk of shown.chunks) {
+    chunk.wide.visible = wide;
+    chunk.thin.visible = !wide;
+  }
+}
+
+// A colour, roughly.
+function tintOf(colours, row) {
+  const at = 4 * row;
+  return ((colours[at] >> 5) << 6) | ((colours[at + 1] >> 5) << 3) | (colours[at + 2] >> 5);
+}
+
+function sphereOf(corners, first, last) {
+  const box = new THREE.Box3();
+  const point = new THREE.Vector3();
+  for (let at = FIELDS * first; at <= FIELDS * last; at += FIELDS) {
+    box.expandByPoint(point.set(corners[at], corners[at + 1], corners[at + 2]));
+  }
+  return box.getBoundingSphere(new THREE.Sphere());
+}
+
+// Let each chunk hold the corners that matter at a size in mm.
+function levelled(shown, least) {
+  const level = Math.floor(Math.log2(least));
+  for (const chunk of shown.chunks) {
+    if (chunk.level === level) continue;
+    chunk.level = level;
+    chunk.weight ??= weightOf(shown, chunk);
+    chunk.texture?.dispose();
+    const corners = chosen(shown.path.corners, chunk.first, chunk.last, chunk.weight, 2 ** level);
+    chunk.pieces = corners.length / FIELDS - 1;
+    chunk.texture = textureOf(corners);
+    for (const object of [chunk.wide, chunk.thin]) give(object, chunk.texture, chunk.pieces, chunk.sphere);
+  }
+}
+
+function textureOf(corners) {
+  const rows = Math.ceil(corners.length / FIELDS / ACROSS);
+  const texels = new Float32Array(FIELDS * ACROSS * rows);
+  texels.set(corners);
+  const texture = new THREE.DataTexture(texels, ACROSS, rows, THREE.RGBAFormat, THREE.FloatType);
+  texture.needsUpdate = true;
+  return texture;
+}
+
+function weightOf(shown, chunk) {
+  const { corners } = shown.path;
+  const rowOf = (corner) => corners[FIELDS * corner + 3];
+  const manner = (corner) => shown.manner[rowOf(corner)];
+  const isFixed = (corner) => manner(corner) !== manner(corner + 1);
+  const weight = importance(corners, chunk.first, chunk.last, isFixed);
+  return withTints(weight, corners, chunk.first, (corner) => tintOf(shown.colours, rowOf(corner)));
+}
+
+// The corners of some rows, to be drawn on top of the rest.
+export function highlight(drawing, shown, rows, colour) {
+  drawing.marked ??= [];
+  const { path } = shown;
+  for (const row of rows) {
+    if (shown.manner[row] === HIDDEN) continue;
+    const [from, to] = [path.last[row], path.last[row + 1]];
+    const mesh = pieceOf(shown, THREE.Mesh, 6, markMaterial(shown, colour));
+    give(mesh, textureOf(path.corners.slice(FIELDS * from, FIELDS * (to + 1))), to - from, new THREE.Sphere());
+    mesh.frustumCulled = false;
+    mesh.renderOrder = 2;
+    drawing.marked.push(mesh);
+  }
+  redraw(drawing);
+}
+
+function markMaterial(shown, colour) {
+  const uniforms = {
+    ...shown.uniforms, corners: { value: null }, per: { value: 6 }, width: { value: 5 }, played: { value: Infinity }, single: { value: [...colour.map((c) => c / 255), 1] },
+  };
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms,
+    side: THREE.DoubleSide, depthTest: false,
+  });
+}
+
+export function unmark(drawing) {
+  for (const mesh of drawing.marked ?? []) {
+    mesh.userData.corners.dispose();
+    mesh.material.dispose();
+    mesh.removeFromParent();
+  }
+  drawing.marked = [];
+  redraw(drawing);
+}
+
+// Give each row a colour; `colourOf(row)` is [red, green, blue], or null for a row not to be seen.
+export function paint(drawing, shown, colourOf) {
+  const { colours, manner, path } = shown;
+  for (let row = 0; row < path.count; row++) {
+    const colour = manner[row] === HIDDEN ? null : colourOf(row);
+    colours[4 * row + 3] = colour ? manner[row] : HIDDEN;
+    if (colour) colours.set(colour, 4 * row);
+  }
+  shown.texture.needsUpdate = true;
+  for (const chunk of shown.chunks) Object.assign(chunk, { level: NaN, weight: null });
+  redraw(drawing);
+}
+
+// --- the camera ---
+
+export const VIEWS = {
+  iso: [1, -1.2, 0.9], top: [0, -1e-4, 1], front: [0, -1, 0], right: [1, 0, 0], back: [0, 1, 0],
+  left: [-1, 0, 0], bottom: [0, -1e-4, -1],
+};
+
+export function lookAt(drawing, box, way) {
+  const [centre, size] = [box.getCenter(new THREE.Vector3()), box.getSize(new THREE.Vector3()).length() || 1];
+  const { camera, controls, canvas } = drawing;
+  const direction = way ? new THREE.Vector3(...way) : camera.position.clone().sub(controls.target);
+  camera.position.copy(centre).addScaledVector(direction.normalize(), 4 * size);
+  controls.target.copy(centre);
+  camera.near = -8 * size;
+  camera.far = 16 * size;
+  camera.zoom = 1;
+  camera.lookAt(centre);
+  camera.updateMatrixWorld();
+  const aspect = canvas.clientWidth / Math.max(canvas.clientHeight, 1);
+  const seen = extentOn(camera, box);
+  const high = 1.12 * Math.max(seen.y, seen.x / aspect, 1e-3);
+  Object.assign(camera, { top: high / 2, bottom: -high / 2, left: (-high * aspect) / 2, right: (high * aspect) / 2 });
+  camera.updateProjectionMatrix();
+  controls.update();
+  stir(drawing);
+}
+
+// How wide and high a box is on the screen, in mm.
+function extentOn(camera, box) {
+  const seen = new THREE.Box3();
+  for (let k = 0; k < 8; k++) {
+    const corner = new THREE.Vector3(...["x", "y", "z"].map((axis, bit) => ((k >> bit) & 1 ? box.max : box.min)[axis]));
+    seen.expandByPoint(corner.applyMatrix4(camera.matrixWorldInverse));
+  }
+  return seen.getSize(new THREE.Vector3());
+}
+
+export function boxOf(drawing, all = false) {
+  const box = new THREE.Box3();
+  const point = new THREE.Vector3();
+  for (const shown of drawing.paths) {
+    const { corners } = shown.path;
+    for (let at = FIELDS; at < corners.length; at += FIELDS) {
+      const manner = shown.manner[corners[at + 3]];
+      if (manner === FULL || (all && manner === DASHED)) {
+        for (const from of [at - FIELDS, at]) {
+          point.set(corners[from], corners[from + 1], corners[from + 2]);
+          box.expandByPoint(point.add(shown.group.position));
+        }
+      }
+    }
+  }
+  if (box.isEmpty() && !all) return boxOf(drawing, true);
+  return box.isEmpty() ? box.set(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1)) : box;
+}

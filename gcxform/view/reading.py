@@ -1,0 +1,94 @@
+"""A program as it is shown: its moves, the lines they come from, and the codes in force there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gcxform.api import joined
+from gcxform.diagnostics import InputError
+from gcxform.dialect.dialect import Dialect
+from gcxform.flow.straightened import located, written_out
+from gcxform.modal.interpreter import Interpreted, Interpreter
+from gcxform.modal.meaning.tables import FAMILIES, NUMBER
+from gcxform.modal.reader import WindowReader
+from gcxform.modal.state import Modes, Reading
+from gcxform.syntax.source import Source
+from gcxform.system.arrays import Ints
+from gcxform.toolpath.path import Toolpath
+
+GROUPS = {
+    "motion": "motion",
+    "plane": "plane",
+    "distance": "incremental",
+    "feed-mode": "feed_mode",
+    "units": "inch",
+    "cutter-comp": "comp",
+}
+"""Groups of codes that are shown, and the column of `Modes` that has each."""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A program that is shown.
+
+    text    what was written, and after it the files that it calls
+    path    its moves; `source` counts executed blocks, from 0
+    line    (blocks,) line of the text, from 0, that each executed block stands for
+    mode    (blocks,) index into `modes`, the codes in force after each executed block
+    """
+
+    name: str
+    dialect: type[Dialect]
+    text: bytes
+    path: Toolpath
+    line: Ints
+    mode: Ints
+    modes: tuple[str, ...]
+
+
+def read(source: Source, dialect: type[Dialect], reading: Reading) -> Shown:
+    """Return a program as it is shown. Raises InputError where it is refused."""
+    executed = written_out(source, dialect, reading)
+    try:
+        windows = _interpreted(executed, dialect, reading)
+    except InputError as error:
+        raise located(error, executed) from None
+    path = joined([window.path for window in windows])
+    mode, modes = _codes([window.modes for window in windows])
+    text = b"".join(source.windows())
+    for file in getattr(executed, "files", ()):
+        text = text + (b"" if text.endswith(b"\n") else b"\n") + file.text
+    line = getattr(executed, "origin", np.arange(len(path.blocks.inch)))
+    return Shown(source.name, dialect, text, path, np.asarray(line), mode, modes)
+
+
+def _interpreted(source: Source, dialect: type[Dialect], reading: Reading) -> list[Interpreted]:
+    interpreter = Interpreter(dialect, reading, source.axes(dialect.axes), source.name)
+    interpreter.undecided = source.undecided
+    reader = WindowReader(dialect)
+    texts: Iterable[bytes] = [*source.windows()] or [b""]
+    windows = (reader.read(text) for text in texts)
+    return [interpreter.interpret(window, reader.table) for window in windows]
+
+
+def _codes(windows: list[Modes]) -> tuple[Ints, tuple[str, ...]]:
+    """Return for each executed block which codes are in force after it, and these."""
+    columns = [
+        np.concatenate([getattr(modes, column) for modes in windows]).astype(np.int64)
+        for column in GROUPS.values()
+    ]
+    key = np.zeros(len(columns[0]), np.int64)
+    for column in columns:
+        key = key * (int(column.max(initial=0)) + 1) + column
+    _, first, mode = np.unique(key, return_index=True, return_inverse=True)
+    told = [" ".join(map(_code, GROUPS, (int(c[k]) for c in columns))) for k in first.tolist()]
+    return mode.astype(np.int64), tuple(told)
+
+
+def _code(group: str, number: Any) -> str:
+    """Return the code of a group by its number; empty where none is in force."""
+    return next((code for code in FAMILIES[group] if NUMBER[code] == number), "")
