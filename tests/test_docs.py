@@ -420,6 +420,8 @@ ALLOWED = re.compile(r'scope="\w+"')  # of pytest's fixtures
 
 def test_no_file_names_a_registry_or_a_computer():
     for file in tracked():
+        if file.name.endswith(".min.js"):  # a library as it is published
+            continue
         text = ALLOWED.sub("", file.read_bytes().decode("latin-1")).lower()
         assert not [word for word in FORBIDDEN if word in text], file
 
