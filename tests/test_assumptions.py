@@ -40,6 +40,15 @@ def test_nothing_is_assumed_of_what_a_program_does_not_use() -> None:
     assert found == []
 
 
+def test_calls_of_what_is_not_at_hand_are_counted() -> None:
+    calls = b"G65 P9832\nG65 P9810 X1. Y1.\n" + b"G65 P9810 X5. Y1.\n"
+    found = assumed(b"O1\nG21 G90 G94 G17 G40 G54\n" + calls + b"G90 G0 X1.\nM30\n", "fanuc")
+    assert found.kept_calls == {"P9810": 2, "P9832": 1}
+    assert "what programs do that are called and not at hand: P9810 (2), P9832 (1)" in (
+        found.not_checked
+    )
+
+
 def test_m_codes_of_linuxcnc_act_in_a_known_order() -> None:
     found = assumed(b"G21 G90 G94 G17 G40 G54\nG0 X0 Y0\nG1 X1 F9 M8\nM2\n", "linuxcnc").assumed
     assert found == []

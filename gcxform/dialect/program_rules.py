@@ -127,6 +127,7 @@ class FlowRule:
     macro_levels    how many calls with values may be inside each other; 0: there are none
     repeats_keep    variables keep what a call did to them when L calls again; None: not known
     argument_list   "II" if I, J, K may come again; "" where a parameter decides
+    null_compare    whether null is equal to 0: "distinct", "zero", or "" where that is not known
     """
 
     language: str = ""
@@ -136,3 +137,4 @@ class FlowRule:
     macro_levels: int = 0
     repeats_keep: bool | None = None
     argument_list: str = ""
+    null_compare: str = ""

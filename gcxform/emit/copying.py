@@ -31,7 +31,6 @@ WHAT = {
     Form.SPLINE: "a spline",
     Form.THREAD: "a thread",
 }
-COMPENSATED = 1.0  # mm; farther no compensation of a machine moves an axis
 HINTS = {
     Form.CYCLE: 'put the pass "cycles" before',
     Form.SPLINE: 'put the pass "segment" before',
@@ -196,7 +195,8 @@ class Copying:
     def _refuse_calls(self) -> None:
         """Refuse calls of what is not there, if they would find another control than in the source.
 
-        What an axis is off by because a pass compensates the machine is where it ought to be.
+        Where a pass has compensated the machine the tool stands where it ought to; how far that
+        may be is an option of the pass. By any other the axes stay within what is promised.
         """
         now, old = self.path.blocks, self.original.blocks
         for line in np.flatnonzero(self.task.table.flag("calls", self.task.shape)).tolist():
@@ -207,7 +207,9 @@ class Copying:
                 any(frame.shift) or frame.matrix for frame in self.original.frames
             ):
                 why = "coordinates that are not shifted"
-            if self._stands_elsewhere(line, COMPENSATED):
+            manner = self.task.manner
+            stays = EXACT + manner.promised + manner.rounding(bool(now.inch[line]))
+            if not manner.compensates and self._stands_elsewhere(line, stays):
                 why = "other places of the axes"
             if why:
                 message = f"this call, whose program is not known, would find {why}"

@@ -27,6 +27,7 @@ class Manner:
     decimals  by address, where they differ from the number format
     expands   whether canned cycles have become plain moves
     promised  mm; how far the passes may be off, which a tap may use up
+    compensates  positions become commands for a machine with errors, or the other way round
     """
 
     source: type[Dialect]
@@ -36,6 +37,7 @@ class Manner:
     decimals: Mapping[str, int] = field(default_factory=dict)
     expands: bool = False
     promised: float = 0.0
+    compensates: bool = False
 
     @property
     def crossing(self) -> bool:

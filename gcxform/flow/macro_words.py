@@ -11,7 +11,7 @@ from lark import Token
 from gcxform.dialect.arithmetic import Arithmetic
 from gcxform.flow.branches import Branches, Jumping, number_of
 from gcxform.flow.listing import Listing
-from gcxform.flow.relations import RELATIONS
+from gcxform.flow.relations import COMPARES, relations
 from gcxform.modal.expressions.value import Evaluator, LocatedError
 from gcxform.modal.state import Reading
 from gcxform.syntax.grammar import span_of
@@ -47,7 +47,9 @@ class MacroWords(Jumping):
 
     @cached_property
     def _conditions(self) -> Arithmetic:
-        return replace(self.arithmetic, operators={**self.arithmetic.operators, **RELATIONS})
+        said = self.reading.control.get(COMPARES) or self.dialect.flow_rule.null_compare
+        known = relations(str(said))
+        return replace(self.arithmetic, operators={**self.arithmetic.operators, **known})
 
     def _program(self) -> tuple[int, int]:
         """Return the first line of the program that runs, and the line behind its last."""

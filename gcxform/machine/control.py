@@ -93,6 +93,7 @@ declare(
         Setting("user-codes", "whether M100 to M199 are there", ("keep",)),
         Setting("argument-list", "how G65 takes I, J, K: parameter 6008#7", ("I", "II")),
         Setting("local-variables", "what #1 to #33 are before the program", ("null",)),
+        Setting("null-compare", "whether null EQ 0 is false, or true", ("distinct", "zero")),
         Setting("macro-repeat", "variables of a macro in the second run of L", ("keep", "anew")),
         Setting("peck-return", "how far G73 goes up between pecks"),
         Setting("peck-clearance", "how far above the last depth a peck of G83 begins"),

@@ -168,6 +168,7 @@ class State:
     assumed  what was chosen among several meanings that a word can have, in sentences; those that
              may surprise with a warning
     feed_lost  a feed is in force that only the machine knows
+    kept_calls  how often each call is made whose program is not at hand
     lost_modes  groups whose code is not known, behind a call that is kept, `lost_by`
     vector the tool axis that G43.5 has led to, nan where it is not in force
     """
@@ -201,6 +202,7 @@ class State:
     memory: dict[str, int] = field(default_factory=dict)
     lost_modes: frozenset[str] = frozenset()
     lost_by: str = ""
+    kept_calls: dict[str, int] = field(default_factory=dict)
     feed_lost: bool = False
 
 

@@ -23,6 +23,7 @@ class Certificate:
     the output has and the source does not, in all. `inventory` is what source and output hold, by
     kind, and the rules that account for the difference, each with how many it adds or takes away.
     `written_out` says which calls and loops were written out, though others might stay, and why.
+    `kept_calls` counts calls of programs that are not at hand, by what they call.
     `assumed` is what was taken for granted, in sentences, and `warnings` what of it may surprise;
     these are shown, and not written.
     """
@@ -41,6 +42,7 @@ class Certificate:
     inventory: dict[str, Any] = field(default_factory=dict)
     stamps: dict[str, Any] = field(default_factory=dict)
     written_out: list[str] = field(default_factory=list)
+    kept_calls: dict[str, int] = field(default_factory=dict)
     not_checked: list[str] = field(default_factory=list)
     assumed: list[str] = field(default_factory=list)
     warnings: list[Diagnostic] = field(default_factory=list)

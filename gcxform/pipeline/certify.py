@@ -143,6 +143,10 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
     ):
         if count:
             certificate.not_checked.append(f"{what}: {count}")
+    certificate.kept_calls = dict(sorted(run.stages.interpreter.state.kept_calls.items()))
+    if calls := [f"{name} ({count})" for name, count in certificate.kept_calls.items()]:
+        what = "what programs do that are called and not at hand"
+        certificate.not_checked.append(f"{what}: {', '.join(calls)}")
     if added := [f"{count} {what}" for what, count in run.added.items() if count]:
         what = "whether the tool is clear in moves that the source does not have"
         certificate.not_checked.append(f"{what}: {', '.join(added)}")

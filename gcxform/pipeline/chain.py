@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from gcxform.contract.passes import Pass
 from gcxform.diagnostics import UsageError
 from gcxform.plugin.registry import default_registry
-from gcxform.toolpath.facts import AT_READING, Fact
+from gcxform.toolpath.facts import AT_READING, AXIS_POSITIONS, COMPENSATED, TIP_POSITIONS, Fact
 
 
 def facts_at_reading(passes: Sequence[Pass]) -> frozenset[Fact]:
@@ -26,6 +26,13 @@ def facts_after(passes: Sequence[Pass], first: int | None = None) -> frozenset[F
     for step in passes[:first]:
         facts = (facts - step.clears) | step.ensures
     return frozenset(facts)
+
+
+def compensates(passes: Sequence[Pass]) -> bool:
+    """Return whether a chain does no more to positions than to account for a machine's errors."""
+    before, after = facts_at_reading(passes), facts_after(passes)
+    moved = {TIP_POSITIONS, AXIS_POSITIONS}
+    return before & moved == after & moved and (COMPENSATED in before) != (COMPENSATED in after)
 
 
 def check_chain(passes: Sequence[Pass]) -> None:

@@ -36,7 +36,7 @@ from gcxform.emit.manner import Manner
 from gcxform.machine.machine import Machine
 from gcxform.modal.meaning.tables import GROUPS
 from gcxform.modal.state import Reading
-from gcxform.pipeline.chain import check_chain, facts_after
+from gcxform.pipeline.chain import check_chain, compensates, facts_after
 from gcxform.plugin.registry import dialect_of
 from gcxform.stamps.chain import Marks, against, refusal, stamp_of
 from gcxform.stamps.comment import stamps_in
@@ -191,7 +191,7 @@ class Plan:
         promised = self.promised()
         if not np.isfinite(promised):
             promised = max((self.budget or 0.0) - self._repeated * manner.rounding(False), 0.0)
-        return replace(manner, promised=promised)
+        return replace(manner, promised=promised, compensates=compensates(self.path_passes))
 
     @property
     def read_as(self) -> type[Dialect]:

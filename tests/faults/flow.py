@@ -367,8 +367,8 @@ MUTATIONS = (
     _flow(
         "null is 0",
         "gcxform/flow/relations.py",
-        "nulls[0].certain or float(a)",
-        "float(a)",
+        "if said == DISTINCT:",
+        "if said != DISTINCT:",
         "tests/test_corpus.py::test_case[flow/null-compared]",
     ),
     _flow(

@@ -11,6 +11,34 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 
 MUTATIONS = (
     _macro(
+        "null is no 0 on a Haas, whatever is said",
+        "gcxform/flow/relations.py",
+        "if said == ZERO:",
+        "if False:",
+        "flow/haas-null-said",
+    ),
+    _macro(
+        "null is no 0 on a Haas, though nobody says so",
+        "gcxform/flow/relations.py",
+        "if said == DISTINCT:",
+        "if said in (DISTINCT, ''):",
+        "flow/haas-null-compared",
+    ),
+    _macro(
+        "a call may not begin where a compensated axis stands",
+        "gcxform/emit/copying.py",
+        "if not manner.compensates and self._stands_elsewhere(line, stays):",
+        "if self._stands_elsewhere(line, stays):",
+        "flow/kept-call-on-machine",
+    ),
+    _macro(
+        "a call has to begin where it did to the last bit",
+        "gcxform/emit/copying.py",
+        "stays = EXACT + manner.promised + manner.rounding(bool(now.inch[line]))",
+        "stays = EXACT",
+        "flow/kept-call-rounded",
+    ),
+    _macro(
         "the block of G66 calls behind what moves nothing",
         "gcxform/flow/modal_calls.py",
         "if not active or not (moves or _may_move(meaning)):",

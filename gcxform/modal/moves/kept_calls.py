@@ -66,6 +66,7 @@ def _refuse_calls(lines: Lines, modes: Modes) -> None:
     """Refuse calls under cutter compensation and in a canned cycle; note the others."""
     for call in lines.kept_calls:
         _note_computed(lines, call.line)
+        lines.state.kept_calls[call.name] = lines.state.kept_calls.get(call.name, 0) + 1
         if modes.comp[call.line] or modes.cycle[call.line] != CYCLE_OFF:
             what = "cutter compensation" if modes.comp[call.line] else "a canned cycle"
             message = f"{what} is in force at the call of {call.name}, whose moves are not known"

@@ -188,7 +188,9 @@ class Fanuc(gx.Dialect):
         m_order_chosen=True,
         unknown_m=gx.MCode("user", loses_position=True),
     )
-    flow_rule = gx.FlowRule("macro-b", v.MACRO_B, macro_levels=4, lookup=FILES)
+    flow_rule = gx.FlowRule(
+        "macro-b", v.MACRO_B, macro_levels=4, lookup=FILES, null_compare="distinct"
+    )
     point_rule = gx.PointRule(required=True, dwell={"X": 1.0, "U": 1.0, "P": 0.001})
     feed_rule = gx.FeedRule(change_clears=True)
     motion_rule = gx.MotionRule(g53_is_rapid=True)

@@ -33,6 +33,7 @@ refused. What is not named here is as in `fanuc`.
 | G103, G187 | look-ahead, smoothness: change no position | manual |
 | M97 M98 M99 | executed where what they call is found, as Fanuc; P of M98 holds no count | manual |
 | G65 | as Fanuc's, nine deep; L keeps what the macro did to its variables; list II | manual |
+| null EQ 0 | true or not: refused, or `[control] null-compare` | known |
 | M96 M198 | jumps at an input, other programs: refused | manual |
 | M16 | is M6 | known |
 | M29, M48, M49 | are no tapping mode and no overrides: as any unknown M code | known |
@@ -116,6 +117,7 @@ class Haas(Fanuc):
         macro_levels=9,
         repeats_keep=True,
         argument_list="II",
+        null_compare="",
     )
     point_rule = replace(
         Fanuc.point_rule,
