@@ -39,6 +39,10 @@ M2
 WRITTEN = b"""o100 sub
 G1 X#1 F100
 o100 endsub
+o200 sub
+G91 X1
+G90
+o200 endsub
 G21 G90 G0 X0 Y0 Z0
 o100 call [1]
 G90 X2.
@@ -63,17 +67,17 @@ def test_what_is_said_of_a_program_that_keeps_its_structure() -> None:
     assert done.text == WRITTEN
     said = done.certificate
     assert said.written_out == ["O200, lines 4 to 7: line 5 became 'G90 X2.' and 'G90 X3.'"]
-    lines = [1, 2, 3, 8, 9, 5, 6, 5, 6, 12, 13, 14, 15, 16]
+    lines = [1, 2, 3, 4, 5, 6, 7, 8, 9, 5, 6, 5, 6, 12, 13, 14, 15, 16]
     assert [line + 1 for line in done.source_map] == lines
-    assert (said.source["lines"], said.output["lines"]) == (16, 14)
-    assert said.growth["ratio"] == pytest.approx(14 / 16)
+    assert (said.source["lines"], said.output["lines"]) == (16, 18)
+    assert said.growth["ratio"] == pytest.approx(18 / 16)
 
 
 def test_both_files_are_counted_as_they_stand() -> None:
     held = absolute().run(PROGRAM).certificate.inventory
     for kind, (source, output) in {
-        "motions": (4, 5),
-        "definitions": (2, 1),
+        "motions": (4, 6),
+        "definitions": (2, 2),
         "assignments": (1, 1),
     }.items():
         assert (held[kind]["source"], held[kind]["output"]) == (source, output)
@@ -111,6 +115,9 @@ FAULTS: dict[str, Callable[[bytes], bytes]] = {
     "no assignment": lambda text: text.replace(b"#100=5\n", b""),
     "what is not executed": lambda text: text.replace(b"Y9\n", b""),
     "no definition": lambda text: text.replace(WRITTEN[: WRITTEN.index(b"G21")], b""),
+    "a definition that nothing calls": lambda text: text.replace(
+        WRITTEN[33 : WRITTEN.index(b"G21")], b""
+    ),
     "a condition": lambda text: text.replace(b"[0]", b"[1]"),
 }
 

@@ -38,11 +38,12 @@ CODES: dict[str, tuple[str, str]] = {
         "What is transformed is what the control executes when it runs this file. A subprogram "
         "that nothing in the file calls is not executed, so it would be left as it is, and what it "
         "does depends on who calls it. Transform the program that calls it: subprograms are looked "
-        "up in the files beside it. Beside a program that moves, such subprograms are kept as they "
-        "stand, behind its end, with those that they call; the certificate says how many. Where a "
-        "step turns positions into others (volumetric, rtcp), a second program that moves is "
-        "refused in a file of a control that runs programs by their numbers: it would stay as it "
-        "is, and the stamp would say otherwise. Give each program a file of its own.",
+        "up in the files beside it. Such subprograms are kept as they stand, with those that they "
+        "call, and where all is written out behind the end; the certificate says how many. Where a "
+        "step turns positions into others (volumetric, rtcp), a file is refused in which nothing "
+        "else moves, and so is a second program that moves, in a file of a control that runs "
+        "programs by their numbers: it would stay as it is, and the stamp would say otherwise. "
+        "Give each program a file of its own.",
     ),
     "GX227": (
         "Which file the subprogram is in is not certain",

@@ -5,11 +5,11 @@ line whose blocks stayed as they were, in every execution, stands as it does in 
 its expressions, assignments and flow words. One whose blocks became the same other text each time
 is written as that. If the texts differ, the smallest loop or subprogram around the line is written
 out where it is executed; if that differs as well, what is around it is. What was not executed stays
-as it stands.
+as it stands, and so does the definition of a subprogram that is written out: others may call it.
 
 Where nothing is left to keep, or what would be executed is not certain to be the same, the whole
-program is written out, and the reason is told. `gcxform/proof/structure.py` executes what comes out
-of here.
+program is written out beside its definitions, and the reason is told. `gcxform/proof/structure.py`
+executes what comes out of here.
 """
 
 from __future__ import annotations
@@ -63,12 +63,14 @@ class Folded:
     text   whole lines, and `lines` of the program, from 0, that they are for
     gone   lines, first and last, that are written out elsewhere, or in place of themselves
     why    what is written out, each in a sentence with its reason
+    whole  of all lines those of definitions alone stand as they did
     """
 
     text: bytes
     lines: tuple[int, ...]
     gone: tuple[tuple[int, int], ...]
     why: tuple[str, ...]
+    whole: bool = False
 
 
 def fold(spelled: Spelled, takes_stamps: bool = False) -> Folded:
@@ -107,6 +109,17 @@ class _Folding:
         """The subprograms that stay as they stand: what is not executed needs them, or others."""
         found = (*self.walk.kept, *self.walk.files)
         return tuple(Unit(each.first, each.last, each.name) for each in found)
+
+    def _needed(self) -> list[Unit]:
+        """Return those, and what subprograms may call that are written out: they stay as well."""
+        found = {*self.kept}
+        new = [unit.first for unit in self.out if unit.name]
+        while new:
+            called = self.walk.callees.get(new.pop(), ())
+            units = {Unit(each.first, each.last, each.name) for each in called} - found
+            found |= units
+            new += [unit.first for unit in units]
+        return sorted(found, key=lambda each: each.first)
 
     @cached_property
     def loops(self) -> tuple[Unit, ...]:
@@ -165,15 +178,13 @@ class _Folding:
             self._leave_kept()
         if self.out and MODAL.search(self.walk.listing.window.text):
             raise WholeError("a macro is called by every move (G66)")
-        if any(unit.first in self.walk.named for unit in self.out):
-            raise WholeError("a call that is made no time at all names what is written out")
         if any(unit.name for unit in self.out) and self._reads_returns():
             raise WholeError("what a subprogram returned is read")
 
     def _leave_kept(self) -> None:
         """Write out subprograms that what is not executed calls too: it needs them as they are."""
         changed = [*self.variants, *self.texts, *(unit.first for unit in self.ranges)]
-        for unit in self.kept:
+        for unit in self._needed():
             if any(unit.has(line) for line in changed):
                 self._write_out(unit, self.out.get(unit) or OTHERS)
 
@@ -330,15 +341,14 @@ class _Folding:
             why = "; ".join(dict.fromkeys(self.out.values()))
             raise WholeError(why or "no call and no loop is left")
         whole = b"".join(found)
-        self._check_labels(whole, gone)
+        self._check_labels(whole, [*gone, *(unit for unit in self.out if unit.name)])
         ranges = tuple((unit.first, unit.last) for unit in gone)
         return Folded(whole, tuple(lines), ranges, self._reasons())
 
     def _gone(self) -> list[Unit]:
         """Return the units that do not stand where they did, but for those inside others."""
-        gone = [u for u in self.out if u.name or u in self.ranges]
-        left = [u for u in self.kept if u in self.out]
-        gone = [u for u in gone if not any(o.first <= u.first <= o.last for o in left)]
+        left = [u for u in self.out if u.name]
+        gone = [u for u in self.ranges if not any(o.has(u.first) for o in left)]
         return [u for u in gone if not any(o != u and o.first <= u.first <= o.last for o in gone)]
 
     def _text_of(self, line: int, takes_stamps: bool) -> Text:

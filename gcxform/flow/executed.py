@@ -9,7 +9,7 @@ from math import isnan
 
 import numpy as np
 
-from gcxform.diagnostics import Location
+from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.arithmetic import Key
 from gcxform.modal.inventory import Account, nothing_held
 from gcxform.syntax.source import Source, lines_in
@@ -46,6 +46,8 @@ class Executed:
     locals_set  how often a parameter was set that ends with its call, or with the program
     assigned    the others, with their values, in order
     kept        how many subprograms stay: nothing calls them, or one of them does
+    unmoved     why nothing is said of what the file does: these alone move; None if others do
+    unended     why these cannot stand behind the end; None if they can
     """
 
     held: Ints
@@ -53,6 +55,18 @@ class Executed:
     locals_set: int
     assigned: tuple[tuple[Key, float], ...]
     kept: int
+    unmoved: InputError | None = None
+    unended: InputError | None = None
+
+    def refuse(self, moves: bool, folds: bool) -> None:
+        """Raise InputError for what cannot be kept.
+
+        `moves`: positions are turned into others, `folds`: what is written keeps its structure.
+        """
+        if moves and self.unmoved is not None:
+            raise self.unmoved
+        if not folds and self.unended is not None:
+            raise self.unended
 
     def explain(self, account: Account, written: Ints) -> None:
         """Say by which rules the lines became the blocks that were written out."""

@@ -6,7 +6,7 @@ What a flow word or a call does is that of a subclass.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import ClassVar
 
 import numpy as np
@@ -47,7 +47,6 @@ class Execution(RunState):
         self.kept: tuple[Definition, ...] = ()
         self.deciding: set[int] = set()
         self.jumps: set[int] = set()
-        self.named: set[int] = set()
         self.tied = ""
 
     # --- the walk ---
@@ -160,12 +159,13 @@ class Execution(RunState):
         """Write what stands behind the end of the program.
 
         That are the definitions in `kept`, which other programs may call, and the last percent
-        sign, which the control reads.
+        sign, which the control reads. Without an end there is no place for any of them: they can
+        only stand where they are.
         """
         self.kept = kept
         self.close_branches()
         self.executed = self.blocks
-        for each in self.kept:
+        for each in self.behind:
             lines = np.arange(each.first, each.last + 1)
             self.put(self.listing.raw(each.first, each.last + 1), lines)
         last = self.listing.own - 1
@@ -174,7 +174,12 @@ class Execution(RunState):
         if self.ended and not self.times[last] and self.listing.meaning(last).percent:
             self.put(self.listing.raw(last, last + 1), np.array([last]))
 
-    def walk(self) -> Walk:
+    @property
+    def behind(self) -> tuple[Definition, ...]:
+        """What is kept behind the end of the program; nothing if that has none."""
+        return self.kept if self.ended else ()
+
+    def walk(self, callees: Mapping[int, tuple[Definition, ...]]) -> Walk:
         """Return what was done, once the program is closed."""
         steps, jumps, made = split(self.walked, self.jumps, self.lasting.made)
         return Walk(
@@ -184,11 +189,11 @@ class Execution(RunState):
             tuple(dict.fromkeys(self.entered())),
             tuple(each for each in self.definitions() if each.first < self.listing.own),
             self.kept,
+            callees,
             tuple(self._called_files()),
             frozenset(self.deciding),
             jumps,
             made,
-            frozenset(self.named),
             self.tied,
             self.times,
             self.arithmetic,

@@ -34,7 +34,7 @@ def _written(program: Execution) -> Ints:
     """Return how often each line stands in what is written, for itself and no other reason."""
     lines = np.concatenate([np.empty(0, np.int64), *program.origin])
     times = np.bincount(lines, minlength=len(program.times))
-    for each in program.kept:
+    for each in program.behind:
         times[each.first : each.last + 1] -= 1
     return np.asarray(times)
 

@@ -245,9 +245,7 @@ class OWords(Execution):
         if not times and (held or self.calls or self._is_inside(self.line)):
             message = "the control loses its place at a call that is made no time at all"
             raise self.refusal("GX223", message, "leave the block out")
-        if not times:
-            self.named.add(first)
-        else:
+        if times:
             named = {k: v for k, v in self.parameters.items() if is_named_local(k)}
             self.parameters = {k: v for k, v in self.parameters.items() if k not in named}
             name, counts = f"M98 P{number:g}", self.counters

@@ -43,6 +43,8 @@ def written_out(
     assigns = target is not None and _assigns_for(source, dialect, target)
     if not assigns and not has_flow(source, dialect, reading.control):
         return source
+    from gcxform.flow.uncalled_subprograms import callees
+
     keeps = target is not None
     run = _executed(source, dialect, reading, keeps)
     if not run.acted and not (assigns and run.lasting.outputs.assigned):
@@ -50,9 +52,9 @@ def written_out(
         return source
     lines = np.concatenate([np.empty(0, np.int64), *run.origin])
     text, undecided = b"".join(run.text), run.undecided()
-    found: WrittenOut = Walked(source, text, lines, run.walk(), run.assumed)
-    if undecided:
-        found = WrittenOut(source, text, lines, run.assumed, run.listing.files, undecided)
+    found = WrittenOut(source, text, lines, run.assumed, run.listing.files, undecided)
+    if not undecided:
+        found = Walked(source, text, lines, run.walk(callees(run)), run.assumed)
     found.executed = _account(run)
     found.called = _inside(run)[lines]
     return found
@@ -69,15 +71,18 @@ def _inside(run: Execution) -> Flags:
 
 def _account(run: Execution) -> Executed:
     """Return what an execution did with what the lines hold."""
+    from gcxform.flow.uncalled_subprograms import why_not_behind, why_nothing_is_done
+
     shapes, table = run.listing.window.shape[: run.listing.own], run.listing.table
     idle = run.times[: run.listing.own] == 0
-    for each in run.kept:
+    for each in run.behind:
         idle[each.first : each.last + 1] = False
     for definition in run.definitions():
         idle[definition.first] &= not run.times[definition.lines].any()
     made = tuple((key, value) for _, key, value in run.lasting.outputs.assigned)
     held, left = Tally().add(table, shapes), Tally().add(table, shapes[idle])
-    return Executed(held, left, run.lasting.locals_set, made, len(run.kept))
+    refusals = why_nothing_is_done(run), why_not_behind(run)
+    return Executed(held, left, run.lasting.locals_set, made, len(run.kept), *refusals)
 
 
 def _assigns_for(source: Source, dialect: type[Dialect], target: type[Dialect]) -> bool:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -51,11 +51,11 @@ class Walk:
     blocks       how many blocks were executed; what is kept behind the end follows them
     loops        first and last line of each loop, branches too
     definitions  the subprograms of the file, and those of them that stay: see `Execution.close`
+    callees      by the first line of a definition: those that it may call
     files        those that are called, each as one definition
     deciding     the lines that decided what is executed next, or stored modes
     jumps        the steps that went to a line by its number
     made         the assignments, in order
-    named        first lines of subprograms that are named by what calls them no time at all
     tied         why the order of execution rests on the path itself; nothing if it does not
     times        how often each line was executed, (lines,)
     """
@@ -66,11 +66,11 @@ class Walk:
     loops: tuple[tuple[int, int], ...]
     definitions: tuple[Definition, ...]
     kept: tuple[Definition, ...]
+    callees: Mapping[int, tuple[Definition, ...]]
     files: tuple[Definition, ...]
     deciding: frozenset[int]
     jumps: frozenset[int]
     made: tuple[Made, ...]
-    named: frozenset[int]
     tied: str
     times: Ints
     arithmetic: Arithmetic
@@ -131,6 +131,10 @@ class Walk:
         """Whether a step begins a call."""
         behind = step + 1
         return behind < len(self.steps) and self.steps[behind].depth > self.steps[step].depth
+
+    def passed_at(self, line: int) -> int | None:
+        """Return the block before which a line was first executed or passed; None if never."""
+        return next((step.block for step in self.steps if step.first == line), None)
 
     def made_by(self, begin: int, end: int) -> tuple[Made, ...]:
         """Return the assignments of steps up to one."""

@@ -85,6 +85,8 @@ class Run:
         self.executed = getattr(self.source, "executed", None)
         self.files = getattr(self.source, "files", ())
         self.structure = Structure.of(plan, source, self.source, bool(self.marks.read))
+        if self.executed is not None:
+            self.executed.refuse(self.marks.changes, self.structure is not None)
         self.source, self.dialect = plan.without_tip_codes(self.source)
         self.ending = Ending(self.dialect, source.name)
         self.books = Books(plan.context, frozenset())

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from gcxform.diagnostics import InputError
+from gcxform.emit.beside import beside
 from gcxform.emit.emitter import Emitted
 from gcxform.emit.folding import Folded, WholeError, fold
 from gcxform.emit.spelled import Spelled
@@ -66,7 +67,7 @@ class Structure:
             self._ask_text_passes(folded)
         except WholeError as why:
             self.why = (f"the whole program: {why}",)
-            return None
+            return beside(self._spelled(), self.takes_stamps)
         self.why = folded.why
         return folded
 
@@ -93,9 +94,10 @@ class Structure:
         written = Source.of_bytes(folded.text, self.given.name)
         written.folder, written.suffix = self.given.folder, self.given.suffix
         check_executed(written, folded.lines, proved, target, reading)
-        check_kept(folded.text, self.source.walk, folded.gone, self.given.name)
+        gone = None if folded.whole else folded.gone
+        check_kept(folded.text, self.source.walk, gone, self.given.name)
         held = held_by(folded.text, target)
-        account.rule("calls and loops that are kept", held - account.output)
+        account.rule("definitions, calls and loops that are kept", held - account.output)
         account.output = held
         findings.output_line = self._line_in(folded, findings.output_line)
 

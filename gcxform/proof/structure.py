@@ -17,9 +17,11 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.flow.straightened import written_out
 from gcxform.flow.walk import Walk, Walked
 from gcxform.modal.inventory import Tally
+from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.stamps.comment import is_stamp
+from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Ints
 
@@ -45,8 +47,10 @@ def check_executed(
         where = next((each.where.line - 1 for each in error.diagnostics if each.where), 0)
         raise _wrong(f"what was written is not executed: {why}", lines, where, file) from None
     now, wanted = b"".join(executed.windows()).splitlines(), proved.splitlines()
-    if isinstance(executed, Walked):
-        now = now[: executed.walk.blocks]  # without what stands behind the end
+    last = (
+        executed.walk.blocks if isinstance(executed, Walked) else _last(written, dialect, reading)
+    )
+    now = now[:last]  # without what stands behind the end
     if now == wanted:
         return
     same = zip(now, wanted, strict=False)
@@ -58,16 +62,29 @@ def check_executed(
     raise _wrong(f"what was written executes {said[0]}, and not {said[1]}", lines, where, file)
 
 
-def check_kept(text: bytes, walk: Walk, gone: Sequence[tuple[int, int]], file: str) -> None:
+def _last(written: Source, dialect: type[Dialect], reading: Reading) -> int | None:
+    """Return how many lines of a program without calls and loops are executed; None for all."""
+    if not dialect.program_rule.stops_at_end:
+        return None
+    window, table = _read(b"".join(written.windows()), dialect)
+    ends = table.flag("ends", window.shape)
+    if reading.blocks_with_a_slash(dialect) != "execute":
+        ends &= ~table.flag("deleted", window.shape)
+    return int(np.argmax(ends)) + 1 if ends.any() else None
+
+
+def check_kept(text: bytes, walk: Walk, gone: Sequence[tuple[int, int]] | None, file: str) -> None:
     """Check that lines that are not executed stand in a text, as they are, in their order.
 
-    Those in `gone`, first and last line, are written out: something in each was executed. Raises
-    VerificationError.
+    So does the first line of every definition. Lines in `gone`, first and last, are written out:
+    something in each was executed. None: of all lines those of definitions alone are left, and each
+    of these stands as it is. Raises VerificationError.
     """
-    idle = walk.times[: walk.listing.own] == 0
-    for each in walk.kept:
+    idle = (walk.times[: walk.listing.own] == 0) & (gone is not None)
+    for each in walk.kept if gone is not None else walk.definitions:
         idle[each.first : each.last + 1] = True
-    for first, last in gone:
+    idle[[each.first for each in walk.definitions]] = True
+    for first, last in gone or ():
         if idle[first : last + 1].all():
             raise _wrong("what is not executed is gone", (), first, file)
         idle[first : last + 1] = False
@@ -82,10 +99,16 @@ def check_kept(text: bytes, walk: Walk, gone: Sequence[tuple[int, int]], file: s
 
 def held_by(text: bytes, dialect: type[Dialect]) -> Ints:
     """Return what a text holds as it stands, (kinds,)."""
+    window, table = _read(text, dialect)
+    return Tally().add(table, window.shape)
+
+
+def _read(text: bytes, dialect: type[Dialect]) -> tuple[Window, MeaningTable]:
+    """Return a text as one window, with what its lines mean."""
     reader = WindowReader(dialect)
     window = reader.read(text)
     reader.table.update()
-    return Tally().add(reader.table, window.shape)
+    return window, reader.table
 
 
 def _wrong(message: str, lines: Sequence[int], at: int, file: str) -> VerificationError:

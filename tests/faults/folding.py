@@ -41,8 +41,49 @@ MUTATIONS = (
         "if False:",
     ),
     _fold("a jump out of a loop is lost", "steps[end].first == unit.last + 1", "True"),
+    _fold("what others call is changed", "in self._needed():", "in ():"),
     _fold(
-        "what others call is changed", "        for unit in self.kept:", "        for unit in ():"
+        "what is written out calls nothing",
+        "new = [unit.first for unit in self.out if unit.name]",
+        "new = [unit.first for unit in ()]",
+    ),
+    _fold(
+        "definitions go where all is written out",
+        "return beside(self._spelled(), self.takes_stamps)",
+        "return None",
+        "gcxform/pipeline/structure.py",
+    ),
+    _fold(
+        "a definition that is passed stands behind the end",
+        "places = {each: walk.passed_at(each.first) for",
+        "places = {each: None for",
+        "gcxform/emit/beside.py",
+    ),
+    _fold(
+        "all behind an end is executed",
+        "return int(np.argmax(ends)) + 1 if ends.any() else None",
+        "return None",
+        PROOF,
+    ),
+    _fold(
+        "definitions need not stand there",
+        "idle[[each.first for each in walk.definitions]] = True",
+        "pass",
+        PROOF,
+    ),
+    _fold(
+        "what is kept is what was done",
+        "if moves and self.unmoved is not None:",
+        "if False and self.unmoved is not None:",
+        "gcxform/flow/executed.py",
+        "tests/test_corpus.py::test_case[bad/gx226-alone-moves]",
+    ),
+    _fold(
+        "what is kept stands behind no end",
+        "if not folds and self.unended is not None:",
+        "if False and self.unended is not None:",
+        "gcxform/flow/executed.py",
+        "tests/test_corpus.py::test_case[bad/gx226-no-end]",
     ),
     _fold("returned values are not read", "and self._reads_returns():", "and False:"),
     _fold(
