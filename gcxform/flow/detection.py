@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping
 
 from gcxform.dialect.dialect import Dialect
+from gcxform.flow.oword_names import STANDS
 from gcxform.syntax.source import COMMENT, Source
 
 CODE = re.compile("[GM][0-9]+")
@@ -26,7 +27,10 @@ COMPUTED = (
     (b"[", rb"G[ \t]*\["),
     (b"[", rb"M[ \t]*\["),
 )
-POSITION = rb"#[ \t]*5[ \t]*4[ \t]*2"
+NAMES = "|".join(STANDS).upper().encode()
+POSITION = rb"#[ \t]*(?:5[ \t]*4[ \t]*2|<[ \t]*(?:%s)[ \t]*>(?![ \t]*=))" % NAMES
+PRINTED = re.compile(rb"\([ \t]*(?:DEBUG|PRINT|LOG)[ \t]*,[^()\n\r]*" + POSITION, re.IGNORECASE)
+"""Messages of LinuxCNC that may print where the axes stand, or modes."""
 SIGNS: dict[str, tuple[tuple[bytes, bytes], ...]] = {
     "o-words": (
         (b"O", rb"O[ \t]*[0-9<#]"),
@@ -76,7 +80,10 @@ def has_flow(source: Source, dialect: type[Dialect], control: Mapping[str, str |
     signs = [(byte, re.compile(pattern)) for byte, pattern in _cased(dialect)]
     return any(
         any(byte in text and pattern.search(text) for byte, pattern in signs)
-        and PROOFS[dialect.flow_rule.language].search(_without_comments(text, dialect))
+        and (
+            PROOFS[dialect.flow_rule.language].search(_without_comments(text, dialect))
+            or (dialect.flow_rule.language == "o-words" and PRINTED.search(text))
+        )
         for text in source.windows()
     )
 

@@ -91,6 +91,10 @@ class StoredModes:
 
     # --- what is in force ---
 
+    def speed(self) -> float:
+        """Return the S word in force; nan if none was written."""
+        return float(self._in_force().get(SPEED, "nan"))
+
     def _in_force(self) -> Codes:
         """Return the codes in force after the blocks that have been executed."""
         fresh = b"".join(self.program.text[self.seen :])

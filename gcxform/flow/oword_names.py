@@ -6,6 +6,15 @@ from gcxform.dialect.arithmetic import RS274, Key
 
 LOCALS = RS274.local
 """The numbered parameters of a call."""
+STANDS = (
+    *(f"_{axis}" for axis in "xyzabcuvw"),
+    "_imperial",
+    "_metric",
+    "_incremental",
+    "_absolute",
+)
+STANDS += ("_inverse_time", "_units_per_minute", "_units_per_rev", "_feed", "_rpm")
+"""The names that say where the axes stand, and what is in force; the last two are F and S."""
 
 
 def is_local(key: Key) -> bool:

@@ -18,7 +18,7 @@ from gcxform.flow.execution import Execution
 from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.modes import StoredModes
 from gcxform.flow.named_files import Subprograms
-from gcxform.flow.oword_names import LOCALS, is_local, is_named_local, name_of
+from gcxform.flow.oword_names import LOCALS, STANDS, is_local, is_named_local, name_of
 from gcxform.flow.places import FIRST, Places
 from gcxform.flow.run_state import Call, Edit, whole_number
 from gcxform.modal.state import Reading
@@ -27,7 +27,9 @@ from gcxform.syntax.tree import Block, Statement, Word
 
 LEAVES = frozenset({"break", "continue"})
 POSITIONS = range(FIRST, FIRST + 9)
-NAMES_POSITION = re.compile(r"#[ \t]*5[ \t]*4[ \t]*2")
+NAMES_POSITION = re.compile(
+    rf"#[ \t]*(?:5[ \t]*4[ \t]*2|<[ \t]*(?:{'|'.join(STANDS)})[ \t]*>)", re.IGNORECASE
+)
 
 
 class OWords(Execution):
@@ -67,10 +69,10 @@ class OWords(Execution):
         items = bare(block)
         if NAMES_POSITION.search(block.text):
             self.acted = True
-            self.tied = "positions are read (#5420 to #5428)"
-            self.set(self.places.parameters())
+            self.tied = "positions or modes are read (#5420 to #5428, #<_x>, #<_metric>)"
+            self.set(self.places.parameters() | {"_rpm": self.modes.speed()})
         elif FIRST in self.parameters:
-            self.parameters |= dict.fromkeys(POSITIONS, math.nan)
+            self.parameters |= dict.fromkeys((*POSITIONS, *STANDS), math.nan)
         word = self.words.get(self.line)
         if word is not None:
             getattr(self, f"_{word.keyword}")(word)

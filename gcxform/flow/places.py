@@ -1,6 +1,7 @@
-"""Where the axes stand while LinuxCNC executes: #5420 to #5428, and the polar words `@` and `^`.
+"""Where LinuxCNC stands while it executes: #5420 to #5428, `#<_x>`, `#<_metric>`, polar words.
 
-The blocks that have been executed so far are read as any program is; they end at a position.
+The blocks that have been executed so far are read as any program is; they end at a position and in
+modes. What the names are worth was asked of LinuxCNC's interpreter (`tests/facts`).
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from gcxform.modal.state import State
 from gcxform.syntax.tree import Block, Word
 
 FIRST = 5420
+FEEDS = {"_inverse_time": "G93", "_units_per_minute": "G94", "_units_per_rev": "G95"}
 RADIUS, ANGLE = "@", "^"
 ZERO = 1e-6
 """A radius, in the unit of the program, at which rounding alone may say what the angle is."""
@@ -61,8 +63,26 @@ class Places:
         }
 
     def parameters(self) -> dict[int | str, float]:
-        """Return the parameters that say where the axes stand; nan for what is not known."""
-        return {FIRST + k: word for k, word in enumerate(self.words().values())}
+        """Return the parameters that say where axes stand, and the modes; nan: not known."""
+        words = self.words()
+        found: dict[int | str, float] = {FIRST + k: word for k, word in enumerate(words.values())}
+        named = {f"_{axis.lower()}": word for axis, word in words.items()}
+        return found | named | self._modes(self.interpreter.state)
+
+    def _modes(self, state: State) -> dict[str, float]:
+        """Return what the names of modes are worth: 1 where one is in force, F and S as written."""
+        inch, incremental = state.groups["units"], state.groups["distance"]
+        modes = {
+            "_imperial": bool(inch),
+            "_metric": not inch,
+            "_incremental": bool(incremental),
+            "_absolute": not incremental,
+            **{name: state.groups["feed-mode"] == NUMBER[code] for name, code in FEEDS.items()},
+        }
+        open_ = math.nan if state.lost_modes else 1.0
+        timed = state.groups["feed-mode"] == NUMBER["G93"]  # F is what it comes to in G94 there
+        feed = math.nan if state.feed_lost or timed else state.feed
+        return {name: on * open_ for name, on in modes.items()} | {"_feed": feed}
 
     # --- polar words ---
 

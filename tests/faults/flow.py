@@ -546,4 +546,25 @@ MUTATIONS = (
         "pass",
         "tests/test_corpus.py::test_case[flow/fanuc-branch-forgets]",
     ),
+    _flow(
+        "F of G93 is a feed",
+        "gcxform/flow/places.py",
+        'timed = state.groups["feed-mode"] == NUMBER["G93"]',
+        "timed = False",
+        "tests/test_corpus.py::test_case[flow/message-feed-inverse]",
+    ),
+    _flow(
+        "a mode is named by its other",
+        "gcxform/flow/places.py",
+        '"_imperial": bool(inch),',
+        '"_imperial": not inch,',
+        "tests/test_corpus.py::test_case[flow/message-modes]",
+    ),
+    _flow(
+        "messages name no modes",
+        "gcxform/flow/detection.py",
+        'or (dialect.flow_rule.language == "o-words" and PRINTED.search(text))',
+        "",
+        "tests/test_corpus.py::test_case[flow/message-modes]",
+    ),
 )
