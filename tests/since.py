@@ -31,8 +31,8 @@ from gcxform.plugin.registry import default_registry
 
 ROOT = Path(__file__).parents[1]
 TESTS = ROOT / "tests"
-FOLDERS = ("corpus", "examples", "benchmarks", "tests")  # of files that are no modules
-PAGES = ("ARCHITECTURE.md", "CONTRIBUTING.md", "README.md")
+FOLDERS = ("corpus", "docs", "examples", "benchmarks", "tests")  # of files that are no modules
+PAGES = ("ARCHITECTURE.md", "CONTRIBUTING.md", "README.md", "mkdocs.yml")
 PLUGINS, COMMANDS = "gcxform_plugins", "gcxform.cli"
 BY_NAME = ("gcxform", PLUGINS)  # what these import is loaded when it is asked for
 WHOLE_TREE = {  # these read the text of every file, or build and run the package

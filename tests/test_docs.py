@@ -1,6 +1,6 @@
-"""What the documents say is so: names, tables, snippets, figures, links.
+"""What README.md and the manual in `docs/` say is so: names, snippets, figures, links.
 
-`UPDATE_DOCS=1 pytest tests/test_docs.py` writes the generated tables of README.md anew.
+`tests/test_site.py` has what needs the built site.
 """
 
 import json
@@ -21,8 +21,6 @@ from gcxform.catalogue import CATALOGUE
 from gcxform.cli import VERBS
 from gcxform.contract.options import describe
 from gcxform.deviations.deviation import deviation
-from gcxform.dialect.codes import Effect
-from gcxform.flow.straightened import EXECUTED
 from gcxform.machine.chain import chain_of
 from gcxform.machine.file import load_machine
 from gcxform.pipeline.file import KEYS, SECTIONS
@@ -32,17 +30,20 @@ from gcxform.testing import check_dialect, check_pass
 from gcxform.version import VERSION
 
 ROOT = Path(__file__).parents[1]
-PAGES = sorted([*ROOT.glob("*.md"), ROOT / "benchmarks" / "README.md"])
 README = ROOT / "README.md"
-TEXT = README.read_text("utf-8")
+MANUAL = sorted((ROOT / "docs").rglob("*.md"))
+PAGES = sorted([*ROOT.glob("*.md"), ROOT / "benchmarks" / "README.md", *MANUAL])
+TEXT = "\n".join(page.read_text("utf-8") for page in MANUAL)
 REGISTRY = default_registry()
-FIRST_PARTY = {n: p for n, p in REGISTRY.passes.items() if p.__module__.startswith("gcxform_pl")}
-DIALECTS = {n: d for n, d in REGISTRY.dialects.items() if d.__module__.startswith("gcxform_pl")}
 
 
-def blocks(language):
-    """Return the fenced blocks of a language in README.md."""
-    return re.findall(rf"^```{language}\n(.*?)^```$", TEXT, re.MULTILINE | re.DOTALL)
+def named(page):
+    return page.relative_to(ROOT).as_posix()
+
+
+def blocks(language, text=TEXT):
+    """Return the fenced blocks of a language in the manual."""
+    return re.findall(rf"^```{language}\b[^\n]*\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
 
 
 # --- names ---
@@ -50,7 +51,7 @@ def blocks(language):
 
 @pytest.mark.parametrize("hook", HOOKS.values())
 def test_every_hook_is_explained(hook):
-    assert f"`{hook}`" in (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    assert f"`{hook}`" in TEXT
 
 
 @pytest.mark.parametrize("verb", VERBS)
@@ -70,7 +71,7 @@ def test_every_class_of_diagnostics_is_explained():
         assert f"| {hundreds}.. |" in TEXT
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+@pytest.mark.parametrize("page", PAGES, ids=named)
 def test_codes_that_are_named_can_be_explained(page):
     assert set(re.findall(r"\bGX\d{3}\b", page.read_text("utf-8"))) <= set(CATALOGUE)
 
@@ -92,81 +93,6 @@ def test_every_key_of_a_certificate_is_explained():
 def test_the_version_is_one():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     assert project["version"] == VERSION
-
-
-# --- tables ---
-
-
-def options_table():
-    lines = ["| pass | option | takes | default | what it says |", "|---|---|---|---|---|"]
-    for name, step in FIRST_PARTY.items():
-        said = " ".join(step.__doc__.partition("\n\n")[0].split())
-        lines.append(f"| **`{name}`** | | | | {said} |")
-        for option in describe(step):
-            takes = ", ".join(f"`{c}`" for c in option.choices) or option.type
-            takes += f", {option.range}" if option.range else ""
-            default = "mandatory" if option.mandatory else option.default
-            lines.append(f"| | `{option.name}` | {takes} | {default} | {option.help} |")
-    return lines
-
-
-def codes_table():
-    lines = ["| dialect | | codes |", "|---|---|---|"]
-    for name, dialect in DIALECTS.items():
-        said = dialect.__doc__.partition("\n")[0]
-        lines.append(f"| **`{name}`** | axes {' '.join(dialect.axes)} | {said} |")
-        if dialect.translator is not None:
-            file = f"{name}/dialect.py"
-            place = f"plugins/gcxform_plugins/dialects/{file}"
-            lines.append(f"| | read | what the table at the top of [{file}]({place}) says |")
-            codes = [dialect.tip_rule.spelled.get(c, c) for c in dialect.tip_rule.switches.values()]
-            lines.append(f"| | for `tip-codes` | {', '.join(codes)} |")
-            continue
-        codes = sorted(dialect.codes.items(), key=lambda item: float(item[0][1:]))
-        m_codes = sorted(dialect.m_codes.items())
-        effects = {
-            "read": (Effect.MODAL, Effect.DWELL, Effect.FRAME),
-            "kept": (Effect.INERT, Effect.CALL),
-            "refused": (Effect.BARRIER,),
-        }
-        for word, which in effects.items():
-            found = [g for g, code in codes if code.effect in which]
-            if word != "read":
-                refused = word == "refused"
-                rest = ((m, code) for m, code in m_codes if m not in executed(dialect))
-                found += [f"M{m}" for m, code in rest if bool(code.barrier) == refused]
-            lines.append(f"| | {word} | {_runs(found)} |")
-        if numbers := executed(dialect):
-            words = FLOW[dialect.flow_rule.language]
-            lines.append(f"| | executed | {' '.join(f'M{m}' for m in numbers)} {words} |")
-    return lines
-
-
-FLOW = {"o-words": "and O-words", "macro-b": "and IF, GOTO, WHILE"}
-
-
-def executed(dialect):
-    """Return the M codes that are executed while a program is read."""
-    return [m for m in EXECUTED.get(dialect.flow_rule.language, ()) if m in dialect.m_codes]
-
-
-def _runs(codes):
-    """Return codes in words; M100 to M199 as a range."""
-    text = " ".join(codes)
-    return re.sub(r"M100 (M1\d\d )+M199", "M100 ... M199", text)
-
-
-@pytest.mark.parametrize(("mark", "table"), [("options", options_table), ("codes", codes_table)])
-def test_tables_are_those_of_the_code(mark, table):
-    begin, end = f"<!-- {mark}: begin -->\n", f"<!-- {mark}: end -->"
-    text = README.read_text("utf-8")
-    wanted = "\n".join(["", *table(), "", ""])
-    before, rest = text.split(begin)
-    found, after = rest.split(end)
-    if os.environ.get("UPDATE_DOCS"):
-        README.write_text(f"{before}{begin}{wanted}{end}{after}", "utf-8")
-        found = wanted
-    assert found == wanted, "UPDATE_DOCS=1 pytest tests/test_docs.py writes it anew"
 
 
 # --- figures ---
@@ -226,41 +152,45 @@ def test_the_head_of_cutting_gives_the_same_figures():
 # --- snippets ---
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """Return a folder with the examples, in which the shell snippets run one after the other."""
-    path = tmp_path_factory.mktemp("newcomer")
-    shutil.copytree(ROOT / "examples", path / "examples", ignore=shutil.ignore_patterns("out"))
-    return path
+SHOWN = [page for page in (README, *MANUAL) if "```console" in page.read_text("utf-8")]
+SAVED = re.compile(r'^```\w+ title="(.+?)"\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 
 
-@pytest.mark.xdist_group("newcomer")
-@pytest.mark.parametrize("block", blocks("console"), ids=lambda b: b[2:40].split("\n")[0])
-def test_console_snippets_print_what_is_shown(block, folder):
-    assert check_block(block, folder)
+@pytest.fixture
+def folder(tmp_path):
+    """Return a folder with the examples, as a newcomer has it."""
+    shutil.copytree(ROOT / "examples", tmp_path / "examples", ignore=shutil.ignore_patterns("out"))
+    return tmp_path
 
 
-@pytest.mark.xdist_group("newcomer")
-def test_python_snippet_of_the_api_runs(folder, monkeypatch, capsys):
-    monkeypatch.chdir(folder)
-    snippet = next(b for b in blocks("python") if "Pipeline.load" in b)
-    exec(compile(snippet, "README.md", "exec"), {})
-    shown = next(b for b in blocks("console") if "lddm/linear.toml" in b)
-    assert f"largest deviation {float(capsys.readouterr().out):.5f} mm of" in shown
-    assert (folder / "out.nc").read_bytes().startswith(b"%")
+@pytest.mark.parametrize("page", SHOWN, ids=named)
+def test_console_snippets_print_what_is_shown(page, folder):
+    """The commands of a page, one after the other, beside the files that it says to save."""
+    text = page.read_text("utf-8")
+    for name, content in SAVED.findall(text):
+        (folder / name).write_text(content, "utf-8")
+    for block in blocks("console", text):
+        if "pip install" not in block:  # tests/test_site.py does that
+            assert check_block(block, folder)
+
+
+def test_the_python_api_says_what_the_command_says():
+    printed = re.search(r"^\$ python compensate.py\n.*\n(.*)$", TEXT, re.MULTILINE)[1]
+    shown = next(b for b in blocks("console") if "lddm/linear.toml" in b and "largest" in b)
+    assert f"{printed} of" in shown
 
 
 def plugin(name, mark):
-    """Return a class of the snippet of README.md that has the mark; it is short."""
+    """Return a class of the snippet of the manual that has the mark; it is short."""
     snippet = next(b for b in blocks("python") if mark in b)
     body = snippet[snippet.index(f"class {name}") :]
     assert len([line for line in body.splitlines() if line.strip()]) < 20
-    names = {"__name__": "readme"}
-    exec(compile(snippet, "README.md", "exec"), names)
+    names = {"__name__": "manual"}
+    exec(compile(snippet, "manual", "exec"), names)
     return names[name]
 
 
-def test_dialect_and_pass_of_the_readme_work():
+def test_dialect_and_pass_of_the_manual_work():
     dialect = plugin("Acme", "gcxform_dialects")
     step = plugin("Shift", "gcxform_passes")(by=(1.0, 0.0, -2.0))
     pipeline = gx.Pipeline(dialect, dialect, (REGISTRY.passes["absolute"](), step))
@@ -374,16 +304,16 @@ def test_the_architecture_names_no_module_that_does_not_exist():
 # --- files ---
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.relative_to(ROOT).as_posix())
+@pytest.mark.parametrize("page", PAGES, ids=named)
 def test_links_lead_somewhere(page):
     for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text("utf-8")):
         assert "://" in target or (page.parent / target).exists(), target
 
 
-@pytest.mark.parametrize("name", ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"])
-def test_files_that_are_named_exist(name):
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_files_that_are_named_exist(page):
     named = re.findall(r"[ `(]((?:gcxform|plugins|grammars|tests|corpus|benchmarks|examples)/"
-                       r"[\w./*-]*)", (ROOT / name).read_text("utf-8"))  # fmt: skip
+                       r"[\w./*-]*)", page.read_text("utf-8"))  # fmt: skip
     made = ("examples/out",)
     for path in named:
         path = path.rstrip(".")
@@ -391,8 +321,12 @@ def test_files_that_are_named_exist(name):
             assert list(ROOT.glob(path.rstrip("/"))), path
 
 
+def test_the_readme_is_a_door():
+    assert len(README.read_text("utf-8").splitlines()) < 150
+
+
 def test_commands_of_the_first_screen_exist():
-    first = "\n".join(TEXT.splitlines()[:24])
+    first = "\n".join(README.read_text("utf-8").splitlines()[:24])
     scripts = re.findall(r"^(\./\S+)", first, re.MULTILINE)
     assert len(scripts) == 2
     for script in [*scripts, ".ci/run"]:

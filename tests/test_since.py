@@ -31,6 +31,7 @@ def test_what_notices_a_fault_is_chosen_for_its_file() -> None:
         ("tests/test_guess.py", {"test_guess"}, {"test_corpus"}),
         ("corpus/absolute/none.case", {"test_corpus", "properties.test_chains"}, {"test_bundle"}),
         ("README.md", {"test_docs"}, {"test_bundle"}),
+        ("docs/guides/cam.md", {"test_docs", "test_site"}, {"test_bundle"}),
     ],
 )
 def test_what_is_run_and_what_is_left_out(path: str, run: set[str], left: set[str]) -> None:
@@ -45,7 +46,7 @@ def test_what_is_run_and_what_is_left_out(path: str, run: set[str], left: set[st
         "pyproject.toml",
         "gcxform/__init__.py",
         "grammars/x.lark",
-        "docs/page.md",
+        "page.md",
     ],
 )
 def test_what_is_not_understood_chooses_everything(path: str) -> None:

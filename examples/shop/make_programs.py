@@ -61,14 +61,14 @@ def _by_increments(number: int, tool: int) -> list[str]:
 KINDS = (_drilled, _pecked, _grooves, _contour, _by_increments)
 
 
-def write(folder: Path) -> None:
-    """Write all programs into a folder."""
+def write(folder: Path, count: int = COUNT) -> None:
+    """Write programs into a folder, all or the first ones, and the subprograms."""
     folder.mkdir(parents=True, exist_ok=True)
-    for number in range(COUNT):
+    for number in range(count):
         (folder / f"O{1000 + number}.nc").write_text(f"%\n{program(number)}\n%\n")
     for name, text in SUBPROGRAMS.items():
         (folder / f"{name}.nc").write_text(f"%\n{name} {text}\nM99\n%\n")
 
 
 if __name__ == "__main__":
-    write(Path(sys.argv[1]))
+    write(Path(sys.argv[1]), *map(int, sys.argv[2:]))
