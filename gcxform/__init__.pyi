@@ -3,6 +3,9 @@
 from gcxform.api import Program as Program
 from gcxform.api import read as read
 from gcxform.api import write as write
+from gcxform.catalogue.offers import Hint as Hint
+from gcxform.catalogue.offers import put_before as put_before
+from gcxform.catalogue.offers import work_offsets_said as work_offsets_said
 from gcxform.comparison import Comparison as Comparison
 from gcxform.comparison import Difference as Difference
 from gcxform.comparison import compare as compare

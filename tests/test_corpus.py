@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from oracles import rs274
+from ways_kit import go_out
 
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
@@ -81,7 +82,11 @@ def parameter(case: Case) -> object:
 
 @pytest.mark.parametrize("case", [parameter(case) for case in CASES])
 def test_case(case, tmp_path):
-    run_case(case, tmp_path, PLACES)
+    found = run_case(case, tmp_path, PLACES)
+    go_out(case, found, tmp_path, PLACES)
+    for each in (d.where for d in found.diagnostics if d.where is not None):
+        named = each.file in ("", "-") or Path(each.file).is_relative_to(tmp_path)
+        assert named, f"{each.file} is no file that a user has"
 
 
 def joins(case):

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import msgspec
 
+from gcxform.catalogue.offers import write_instead
 from gcxform.diagnostics import Location, UsageError
 from gcxform.system import inputs
 
@@ -215,7 +216,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return a hint: the known word nearest to a wrong one, otherwise all that are known."""
     names = {name.lower(): name for name in known}
     if near := difflib.get_close_matches(word.lower(), names, n=1):
-        return f"did you mean {names[near[0]]!r}?"
+        return write_instead(names[near[0]], word, f"did you mean {names[near[0]]!r}?")
     return f"known: {', '.join(names.values())}" if names else ""
 
 

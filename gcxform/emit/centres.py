@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from gcxform.catalogue.offers import either, put_before
 from gcxform.diagnostics import Diagnostic, InputError
 from gcxform.dialect.dialect import Dialect
 from gcxform.emit.arcs import ArcEnds, centre_words
@@ -61,7 +62,7 @@ class Centres:
         manner = self.task.manner
         if plane.name not in manner.target.arc_rule.planes:
             message = f"{manner.target.name} has no arcs in {plane.name}"
-            self._refuse(rows, "GX501", message, 'put the pass "plane" before')
+            self._refuse(rows, "GX501", message, put_before("plane"))
         axes = np.array(plane.axes[:2])
         refit = self.path.refit_centres
         begin = start[np.ix_(rows, axes)]
@@ -83,7 +84,7 @@ class Centres:
         good |= self._full_circles(rows, axes, begin, refit)
         if refit and not good.all():
             message = f"rounded, this arc is another one, or one that {manner.target.name} refuses"
-            hint = 'give more decimals, or turn arcs into lines with the pass "segment"'
+            hint = either("give more decimals", put_before("segment", options="chord-error=2um"))
             self._refuse(rows[~good], "GX504", message, hint)
 
     def _ends(self, refit: bool) -> Floats:

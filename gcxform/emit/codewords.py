@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import Final, NoReturn
 
+from gcxform.catalogue.offers import put_before
 from gcxform.emit.draft import Draft
 from gcxform.emit.expressible import STATED, TAPPING, like, other_in, same_m
 from gcxform.emit.fields import Key, Role
@@ -70,7 +71,7 @@ class CodeWords:
             self.draft.refuse(word, what)
         if name in self.target.codes:
             what += f" as {self.source.name} means it"
-        self.draft.refuse(word, what, 'put the pass "cycles" before')
+        self.draft.refuse(word, what, put_before("cycles"))
 
     def _states(self, word: Word, name: str, group: str, lead: bytes) -> bool:
         """Write the code that has to be stated for a group; return whether this settles it."""

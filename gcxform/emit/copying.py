@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from gcxform.catalogue.offers import leave_out_block, put_before
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import LINEAR
 from gcxform.emit.converting import convertible
@@ -32,8 +33,8 @@ WHAT = {
     Form.THREAD: "a thread",
 }
 HINTS = {
-    Form.CYCLE: 'put the pass "cycles" before',
-    Form.SPLINE: 'put the pass "segment" before',
+    Form.CYCLE: put_before("cycles"),
+    Form.SPLINE: put_before("segment"),
     Form.PROBE: "leave the pass out that changes its coordinates: what it finds counts in them",
 }
 
@@ -101,7 +102,9 @@ class Copying:
         if not len(wrong):
             return
         form = Form(int(self.path.form[np.searchsorted(self.path.block, wrong[0])]))
-        hint = HINTS.get(form, "leave it as it is, or take it out of the program")
+        hint = HINTS.get(
+            form, "leave out the pass that would change it, or let the CAM write it so"
+        )
         message = f"{WHAT[form]} would have to be written otherwise than it stands"
         raise InputError.one("GX506", message, self.task.location(int(wrong[0])), hint)
 
@@ -135,7 +138,7 @@ class Copying:
         wrong = np.flatnonzero(lines & self.task.read.perhaps & ~self.lines)
         if len(wrong):
             message = "only the machine knows whether this is executed, and it would do more"
-            hint = "leave out the pass that changes it, or take the branch out of the program"
+            hint = "leave out the pass that changes it"
             raise InputError.one("GX506", message, self.task.location(int(wrong[0])), hint)
 
     def _refuse_polar(self) -> None:
@@ -147,7 +150,7 @@ class Copying:
         if len(rows):
             message = "the block would be written anew, in radius and angle (G16)"
             where = self.task.location(int(self.path.block[rows[0]]))
-            raise InputError.one("GX506", message, where, 'put the pass "offsets" before')
+            raise InputError.one("GX506", message, where, put_before("offsets"))
 
     def _refuse_presets(self) -> None:
         """Refuse blocks that set coordinates from where the axes stand if they stand elsewhere."""
@@ -156,7 +159,7 @@ class Copying:
         for line in np.flatnonzero(self.task.table.flag("presets", self.task.shape)).tolist():
             if self._stands_elsewhere(line):
                 message = "this block counts from where the axes stand, and they stand elsewhere"
-                hint = 'put the pass "offsets" before'
+                hint = put_before("offsets")
                 raise InputError.one("GX506", message, self.task.location(line), hint)
 
     def _stands_elsewhere(self, line: int, by: float = EXACT) -> bool:
@@ -213,7 +216,7 @@ class Copying:
                 why = "other places of the axes"
             if why:
                 message = f"this call, whose program is not known, would find {why}"
-                hint = "leave out the pass that changes this, or the call"
+                hint = "leave out the pass that changes this"
                 raise InputError.one("GX506", message, self.task.location(line), hint)
 
     def _refuse_lengths(self) -> None:
@@ -225,11 +228,11 @@ class Copying:
             for name, address in self._lengths_kept(line):
                 if inch[line] or address == "X":
                     message = f"{address} of {name} would have to be written in another unit"
-                    hint = "leave the block out, or let the CAM system write it so"
+                    hint = "leave out the pass that changes the unit"
                     if (name, address) not in self._lengths_left(line):
-                        hint = 'put the pass "offsets" before'
+                        hint = put_before("offsets")
                     elif address == "D":
-                        hint = 'put the pass "cutter-comp" before'
+                        hint = put_before("cutter-comp")
                     raise InputError.one("GX506", message, self.task.location(line), hint)
 
     def _lengths_left(self, line: int) -> list[tuple[str, str]]:
@@ -257,7 +260,7 @@ class Copying:
         if skipped.any() and self.task.manner.crossing:
             where = self.task.location(int(np.argmax(skipped)))
             message = "a block that is skipped cannot be taken into another dialect"
-            raise InputError.one("GX501", message, where, "leave the block out of the program")
+            raise InputError.one("GX501", message, where, leave_out_block())
         self._refuse_switches(skipped)
         self.lines |= skipped
 
@@ -268,7 +271,7 @@ class Copying:
         if len(wrong):
             message = "a block that is skipped would let the control follow the tip"
             where = self.task.location(int(wrong[0]))
-            raise InputError.one("GX330", message, where, "leave it out of the program")
+            raise InputError.one("GX330", message, where, leave_out_block())
 
     def _nothing_to_say(self) -> Flags:
         """Return the lines without any item: the same in every dialect."""

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gcxform.catalogue.offers import put_before
 from gcxform.diagnostics import InputError
 from gcxform.emit.centres import Centres
 from gcxform.emit.copying import Copying
@@ -192,7 +193,7 @@ class _Job:
             if defines(task.table.shapes.shapes[number].block):
                 line = task.read.live + int(np.argmax(shapes == number))
                 message = "nothing calls this subprogram, and in another dialect it would be lost"
-                hint = "take it out of the file, or call it"
+                hint = "take it out of the file"
                 raise InputError.one("GX226", message, task.location(line), hint)
 
     def _refuse_behind_end(self) -> None:
@@ -232,7 +233,7 @@ class _Job:
                 message = (
                     f"{target.name} would wait {wait * now:g} s here, and not {wait * was:g} s"
                 )
-                hint = 'put the pass "cycles" before'
+                hint = put_before("cycles")
                 raise InputError.one("GX501", message, task.location(line), hint)
 
     def _refuse_rounding(self) -> None:

@@ -255,7 +255,7 @@ def _solve(
         "GX309",
         f"the compensated position for ({x:.6g}, {y:.6g}, {z:.6g}) still moves by "
         f"{moved.max():.3g} mm after {STEPS_AT_MOST} steps",
-        hint="the error jumps there: with outside = 'zero' it does so at the border of the table",
+        hint="the error jumps there, as one that is zero outside does at the border of its table",
     )
 
 

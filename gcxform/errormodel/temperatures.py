@@ -75,7 +75,7 @@ class Readings:
         if age > oldest:
             message = f"the last readings before {time.isoformat()} are {age:g} s old"
             place = f"line {row.line} of {Path(self.file).name}"
-            hint = f"max-age = {oldest:g} (s) is what may pass; they are in {place}"
+            hint = f"they may be {oldest:g} s old (max-age), and are in {place}"
             raise UsageError.one("GX426", message, where, hint)
         return row
 

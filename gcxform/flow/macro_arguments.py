@@ -13,7 +13,7 @@ from gcxform.dialect.arithmetic import Key
 from gcxform.dialect.dialect import ROTARY
 from gcxform.dialect.null import as_argument
 from gcxform.flow.run_state import RunState
-from gcxform.modal.numbers_without_point import hint_of
+from gcxform.modal.numbers_without_point import hint_of_argument
 from gcxform.syntax.tree import Expression, Word
 
 NUMBERS = {
@@ -27,8 +27,8 @@ COUNTS = "DHMST"
 """Letters whose values are whole numbers: their increment is 1."""
 LISTS = "argument-list"
 HOW_LISTS = (
-    '[control] argument-list = "II" in the machine file if parameter 6008#7 is 0, and "I" if it '
-    "is 1"
+    'argument-list = "II" in [control] of the machine file if parameter 6008#7 is 0, '
+    'argument-list = "I" in [control] if it is 1'
 )
 
 
@@ -81,7 +81,7 @@ def _value(run: RunState, word: Word) -> float:
     steps = None if said is None or letter in "EF" or said.calculator else _steps(run, letter)
     if steps is None:
         message = f"{letter} has no decimal point: what it counts depends on the control"
-        hint = hint_of(letter, inch) if said is None and letter not in "EF" else ""
+        hint = hint_of_argument(letter, inch) if said is None and letter not in "EF" else ""
         place = (word.start, word.end)
         raise run.refusal("GX205", message, hint or "write it with a point", place)
     return value / steps

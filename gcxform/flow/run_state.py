@@ -14,6 +14,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from gcxform.catalogue.questions import questions
 from gcxform.diagnostics import InputError
 from gcxform.dialect.arithmetic import Arithmetic, Key, NoValueError, whole
 from gcxform.dialect.null import NULL, Null
@@ -314,6 +315,8 @@ class RunState:
         self, code: str, message: str, hint: str = "", place: tuple[int, int] | None = None
     ) -> InputError:
         """Return the error about the line that is executed."""
+        if self._asks_for_local(hint):
+            hint = "set it in the subprogram, or give it with the call"
         error = self.listing.refusal(self.line, code, message, hint, place)
         if not self.calls:
             return error
@@ -321,6 +324,13 @@ class RunState:
         inside = ", by ".join(names[:NAMED] + ["..."] * (len(names) > NAMED))
         found = tuple(replace(d, context=f"called by {inside}") for d in error.diagnostics)
         return InputError(found)
+
+    def _asks_for_local(self, hint: str) -> bool:
+        """Whether a hint asks for a parameter that the call made anew: no start says its value."""
+        asked = (question for question, _ in questions(hint) if self.calls)
+        names = [name[0].strip("<>") for _, key, *name in asked if key == "parameters"]
+        local = self.arithmetic.local if self.level() else ()
+        return any(int(n) in local if n.isdecimal() else not n.startswith("_") for n in names)
 
     def _told(self, call: Call) -> str:
         """Return a call with its place; it goes on at the line behind that."""

@@ -31,6 +31,12 @@ def hint_of(address: str, inch: bool, word: str = "X1000") -> str:
     )
 
 
+def hint_of_argument(address: str, inch: bool) -> str:
+    """Return what to say of the control where calculator input is not known to hold."""
+    one, _ = readings(address, inch)
+    return f'write it with a point, or increment = "IS-B" in [input] if {address}1000 is {one}'
+
+
 def hint_of_rounding(address: str, inch: bool) -> str:
     """Return what to say of the control where computed distances have to be rounded."""
     step = "0.0001 inch" if inch and address not in ROTARY else "0.001"
@@ -45,6 +51,9 @@ def assumed_rounding(address: str, inch: bool, said: Increments) -> str:
     what, name = unit_of(address, inch)
     steps = said.per_unit(address, inch)
     return f"{said.said}: {what} that is computed is rounded to {1 / (steps or 1):.6g} {name}"
+
+
+PLAIN_FEED = "write the feed as a number, with a point"
 
 
 class Pointless:
@@ -147,7 +156,8 @@ class Pointless:
             unknown |= computed
         for line in np.flatnonzero(unknown)[: Findings.enough].tolist():
             message = "F has no decimal point: its unit depends on the control"
-            hint = self._feed_hint(int(mode[line]), bool(inch[line]))
+            written = not computed[line]
+            hint = self._feed_hint(int(mode[line]), bool(inch[line])) if written else PLAIN_FEED
             self.findings.add(line, "GX205", message, "F", hint)
         self._assume_feeds(odd & ~unknown, counts, mode, inch)
         return np.where(odd & ~unknown, value / counts, value)

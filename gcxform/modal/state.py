@@ -159,6 +159,7 @@ class State:
     """What one window hands to the next.
 
     lost        axes, as bits, whose position was lost since the last row
+    lost_once   axes, as bits, whose position a block has lost: the start says nothing of them
     row_frame   the frame of the last row
     polar       radius and angle last programmed in G16, in `polar_plane`
     side, radius  cutter compensation in force; `at_side`: that of the last move;
@@ -183,6 +184,7 @@ class State:
     percents: int = 0
     rapid: bool = False
     lost: int = 0
+    lost_once: int = 0
     row_frame: Frame | None = None
     polar: tuple[float, float] = (np.nan, np.nan)
     polar_plane: int = 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from gcxform.catalogue.offers import either, put_before
 from gcxform.contract.passes import Pass
 from gcxform.diagnostics import UsageError
 from gcxform.plugin.registry import default_registry
@@ -38,19 +39,20 @@ def compensates(passes: Sequence[Pass]) -> bool:
 def check_chain(passes: Sequence[Pass]) -> None:
     """Raise UsageError where a pass requires a fact that the chain does not have there."""
     facts = set(facts_at_reading(passes))
-    cleared: dict[Fact, str] = {}
+    cleared: dict[Fact, tuple[int, str]] = {}
     _check_resolved(passes)
     for number, step in enumerate(passes, 1):
         for fact in sorted(step.requires - facts, key=lambda f: f.name):
             culprit = cleared.get(fact)
-            why = f"which {culprit} has taken away" if culprit else "which no step before ensures"
+            who = f"step {culprit[0]}, {culprit[1]}," if culprit else ""
+            why = f"which {who} has taken away" if culprit else "which no step before ensures"
             raise UsageError.one(
                 "GX725",
                 f"step {number}, {step.name}, requires {fact.name} ({fact.meaning}), {why}",
-                hint=_mend(fact, culprit, step.name),
+                hint=_mend(fact, culprit[1] if culprit else "", step.name),
             )
         for fact in step.clears:
-            cleared[fact] = f"step {number}, {step.name},"
+            cleared[fact] = number, step.name
         facts = (facts - step.clears) | step.ensures
 
 
@@ -65,17 +67,19 @@ def _check_resolved(passes: Sequence[Pass]) -> None:
             exact &= asked.feed_mode is None and asked.keeps_rows
             if not exact or type(other).undo is not Pass.undo or asked.resolves:
                 message = f"{other.name} changes the path that {step.name} is proved against"
-                raise UsageError.one("GX741", message, hint=f"put {step.name} before it")
+                raise UsageError.one("GX741", message, hint=put_before(step.name, other.name))
 
 
-def _mend(fact: Fact, culprit: str | None, name: str) -> str:
+def _mend(fact: Fact, culprit: str, name: str) -> str:
+    if culprit == name:
+        return "leave one of the two out"
     if culprit:
-        return f"put {name} before it, or leave one of the two out"
+        return put_before(name, culprit) + ", or leave one of the two out"
     makers = [
         p.name
         for p in default_registry().passes.values()
         if issubclass(p, Pass) and fact in p.ensures
     ]
     if makers:
-        return f"put {' or '.join(sorted(makers))} before {name}"
+        return either(*(put_before(maker, name) for maker in sorted(makers)))
     return f"no pass that is installed ensures {fact.name}"

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from gcxform.catalogue.offers import put_before
 from gcxform.contract.passes import Pass
 from gcxform.system.arrays import Flags, Ints
 from gcxform.toolpath.path import Toolpath
@@ -25,7 +26,6 @@ AXIS = re.compile(rb"[XYZxyz]")
 WHICH = ("kind", "plane", "source", "nth", "form", "side")
 WHERE = ("start", "end", "centre", "sweep", "radius")
 NOISE = 1e-9  # mm, rad; what computing a position in another way makes of it
-MENDED = "put the pass cutter-comp before it: cutter-comp | {}"
 
 
 def whole_stretches(texts: Iterator[bytes]) -> Iterator[bytes]:
@@ -70,7 +70,7 @@ def check_compensated(step: Pass, before: Toolpath, after: Toolpath) -> None:
         wrong, what = rows[_changed(before, rows, after, new)], "moves a contour"
     if len(wrong):
         message = f"{step.name} {what} that the control offsets by the tool's radius"
-        raise before.refuse("GX233", wrong, message, MENDED.format(step.name))
+        raise before.refuse("GX233", wrong, message, put_before("cutter-comp", step.name))
 
 
 def _contour(path: Toolpath) -> Flags:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from gcxform.catalogue.offers import put_before
 from gcxform.contract.passes import PassContext
 from gcxform.dialect.dialect import LINEAR
 from gcxform.system.arrays import Ints
@@ -57,5 +58,5 @@ def _axes_moved(path: Toolpath) -> tuple[Ints, Ints, Ints]:
 def _way_out(context: PassContext) -> str:
     """Return what to do: G93 says the time of a move, where the source says how long it takes."""
     if context.source.feed_rule.along_lines and "G93" in context.target.codes:
-        return 'put the pass "feed" before, with mode = "inverse-time"'
+        return put_before("feed", options="mode=inverse-time")
     return "let the CAM write this part in inverse time (G93), or in the dialect and unit wanted"

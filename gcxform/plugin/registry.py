@@ -21,6 +21,7 @@ from typing import Any, TypeVar
 
 import pluggy
 
+from gcxform.catalogue.offers import either
 from gcxform.config.toml_text import did_you_mean
 from gcxform.contract.demands import Demands
 from gcxform.contract.options import describe
@@ -118,7 +119,7 @@ class Registry:
         hints = [near if near.endswith("?") else "", f"known: {', '.join(sorted(known))}"]
         hints += [d.message for d in self.diagnostics]
         message = f"there is no {kind} {name!r}"
-        raise UsageError.one(code, message, where, "; ".join(h for h in hints if h))
+        raise UsageError.one(code, message, where, either(*filter(None, hints), by="; "))
 
     def _register(self, manager: pluggy.PluginManager, name: str, point: EntryPoint) -> bool:
         """Import a plugin and register its hooks; return whether that went well."""

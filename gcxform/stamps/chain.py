@@ -257,9 +257,9 @@ def refusal(stamps: Stamps, source: Source, found: tuple[str, str]) -> InputErro
     said = ["done already by this very pipeline"] if code == DONE else []
     said += [why, *([f"the file is of {written}"] if written else [])]
     said += [stamps.edited] if stamps.edited else []
-    again = "--again (again = true in [input]) does it all the same"
-    hint = "nothing is left to be done; " if code == DONE else "take the program as it was posted; "
-    return InputError.one(code, "; ".join(said), Location(source.name, stamps.line), hint + again)
+    hint = "nothing is left to be done" if code == DONE else "take the program as it was posted"
+    hint += f"; where the comment is wrong, `gcxform explain {code}` says how to go on"
+    return InputError.one(code, "; ".join(said), Location(source.name, stamps.line), hint)
 
 
 def edited(why: str, file: str, line: int) -> Iterator[Diagnostic]:

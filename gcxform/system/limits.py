@@ -69,9 +69,14 @@ def in_force(chosen: Limits | None) -> Iterator[None]:
         _IN_FORCE.reset(token)
 
 
-def how_to_raise(name: str) -> str:
-    """Return the hint for a limit that is reached, by the name of its field."""
+def how_to_raise(name: str, needed: int = 0) -> str:
+    """Return the hint for a limit that is reached, by the name of its field.
+
+    What is `needed` may be so much that nobody means it.
+    """
     now = getattr(limits(), name)
+    if needed > 10 * now:
+        return "look for a length or a tolerance that is nearly nothing, or lacks its unit"
     assert name in {field.name for field in fields(Limits)}
     key = name.replace("_", "-")
     return f"if that is meant: {key} = {10 * now} in [limits], or --limit {key}={10 * now}"

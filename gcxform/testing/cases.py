@@ -139,8 +139,8 @@ def outcome(case: Case, folder: Path, places: Mapping[str, Path] | None = None) 
     return Outcome(result.text, result.certificate)
 
 
-def run_case(case: Case, folder: Path, places: Mapping[str, Path] | None = None) -> None:
-    """Run a case; AssertionError if it comes out otherwise than it says."""
+def run_case(case: Case, folder: Path, places: Mapping[str, Path] | None = None) -> Outcome:
+    """Run a case and return what came out; AssertionError if that is not what it says."""
     found = outcome(case, folder, places)
     for diagnostic in found.diagnostics:
         try_hint(diagnostic.hint, default_registry())
@@ -148,7 +148,7 @@ def run_case(case: Case, folder: Path, places: Mapping[str, Path] | None = None)
     if "diagnostics" in case.sections:
         message = f"expected {case.diagnostics}, got {found.places}\n{said}"
         assert found.places == case.diagnostics, message
-        return
+        return found
     assert not found.diagnostics, f"refused: {found.places}\n{said}"
     assert found.certificate is not None
     for claim in case.text("certificate").splitlines():
@@ -162,6 +162,7 @@ def run_case(case: Case, folder: Path, places: Mapping[str, Path] | None = None)
             _check_words(found.text, expected, float(case.text("words")))
         else:
             assert found.text == expected, _difference(found.text, expected)
+    return found
 
 
 def _place(diagnostic: Diagnostic) -> str:

@@ -349,7 +349,8 @@ class Toolpath:
         """Return how often each row is to stand, if that is no more than a window may become."""
         if len(counts) and int(counts.sum()) > limits().rows:
             message = f"with this block a window of the program becomes {counts.sum()} moves"
-            raise self.refuse("GX761", np.argsort(counts)[-1:], message, how_to_raise("rows"))
+            hint = how_to_raise("rows", int(counts.sum()))
+            raise self.refuse("GX761", np.argsort(counts)[-1:], message, hint)
         return counts
 
     def with_rows(self, counts: Ints, **columns: Any) -> Toolpath:

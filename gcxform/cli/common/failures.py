@@ -15,8 +15,8 @@ from typing import Any, Final, TextIO
 
 import click
 
+from gcxform.catalogue.offers import said_to_chain
 from gcxform.catalogue.questions import questions
-from gcxform.catalogue.settings import for_chain
 from gcxform.cli.common import DEBUG
 from gcxform.cli.common.options import ENVIRONMENT
 from gcxform.cli.common.signals import Ended, ending
@@ -105,7 +105,7 @@ def _typed(diagnostics: Iterable[Diagnostic], words: Iterable[str]) -> list[Diag
     file = any(word == "--pipeline" or word.startswith("-p") for word in options)
     if file or (os.environ.get(ENVIRONMENT) and not chain):
         return list(diagnostics)
-    return [replace(each, hint=for_chain(each.hint)) for each in diagnostics]
+    return [replace(each, hint=said_to_chain(each.hint)) for each in diagnostics]
 
 
 def paint(text: str, stream: TextIO) -> str:

@@ -158,9 +158,8 @@ class Visit:
         causes = self.so_far.causes
         for key, cause in list(causes.items()):
             if cause.asks:
-                cause.found = [
-                    f for f in cause.found if (f.code, f.where) != (each.code, each.where)
-                ]
+                same = each.code, each.where, each.message
+                cause.found = [f for f in cause.found if (f.code, f.where, f.message) != same]
                 if not cause.found:
                     del causes[key]
 

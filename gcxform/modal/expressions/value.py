@@ -19,6 +19,7 @@ from gcxform.syntax.grammar import rule_of, span_of
 from gcxform.syntax.tree import BLANKS, Statement
 
 DOUBTFUL = math.inf
+SET_IT = "set it to a number in the program before"
 """Stands for the value of a parameter that controls are known to set in two ways."""
 Parameters = Mapping[Key, float]
 """Values by parameter; nan for one that is no longer known."""
@@ -139,10 +140,10 @@ class Evaluator:
             return value
         name = written(key)
         if value == DOUBTFUL:
-            raise NoValueError(f"{name} is known in two ways here", how_to_give(key), "GX220")
+            raise NoValueError(f"{name} is known in two ways here", SET_IT, "GX220")
         if value is not None:
             message = f"{name} is not known here: it was set to what only the control knows"
-            raise NoValueError(message, how_to_give(key), "GX220", True)
+            raise NoValueError(message, SET_IT, "GX220", True)
         if not self.arithmetic.owns(key):
             message = f"{name} has a value that only the control knows"
             raise NoValueError(message, "", "GX220", self.arithmetic.exists(key))

@@ -126,9 +126,13 @@ class Track:
         if act.name in FRAMELESS:
             return
         if act.name == "work" and not before.known:
+            stood = np.flatnonzero(np.isfinite(self.state.position)).tolist()
+            once = self.state.lost_once | sum(1 << k for k in stood)
             self._lose(line, (1 << len(self.axes)) - 1)
+            self.state.lost_once = once  # where nothing was known, the start is said in this one
         if act.name == "no-vectors" and before.following:
             self.state.position[:] = LEFT  # the angles are the control's own choice
+            self.note_lost((1 << len(self.axes)) - 1)
         if act.name in SWITCHED and before.following is not frames.following:
             self._lose(line, 0 if self._upright() else SPATIAL)
         lengthened = act.name in LENGTHENED and frames.frame() != old
@@ -223,6 +227,7 @@ class Track:
     def _lose(self, line: int, axes: int) -> None:
         if not axes:
             return
+        self.note_lost(axes)
         for k in range(len(self.axes)):
             if axes >> k & 1:
                 self.state.position[k] = np.nan
@@ -235,6 +240,15 @@ class Track:
     def lose(self, line: int, axes: str) -> None:
         """Note that from a line on the positions of some axes are not known."""
         self._lose(line, sum(1 << self.axes.index(axis) for axis in axes))
+
+    def note_lost(self, axes: int) -> None:
+        """Note that something has taken axes where they are not known: no start says it."""
+        self.state.lost_once |= axes
+
+    def _computed(self, axis: str, here: slice) -> bool:
+        """Whether a word of an axis is worth what only the machine knows."""
+        word = self.column(axis)
+        return word is not None and bool(np.isnan(word[0][here][word[1][here]]).any())
 
     # --- stretches ---
 
@@ -258,8 +272,11 @@ class Track:
             position = self._axis(axis, float(before[k]), here, lost_here, polar.get(axis))
             words[:, k] = position[rows - first]
             end[k] = position[-1]
+            if np.isnan(end[k]) and self._computed(axis, here):
+                self.note_lost(1 << k)
         self.state.position = np.array(self.frame.positions(end[None, :])[0])
         if lost_here is not None:
+            self.note_lost((1 << len(self.axes)) - 1)
             axes = (1 << len(self.axes)) - 1
             self.breaks += [Break(first + int(n), axes) for n in np.flatnonzero(lost_here)]
         return self.frame.positions(words)
@@ -304,13 +321,13 @@ class Track:
         if lost is not None:
             value = np.where(lost & ~present, np.nan, value)
             nowhere = incremental & lost & (not self.dialect.block_rule.m_first)
-            self._refuse_steps(nowhere, axis, here.start)
+            self._refuse_steps(nowhere, axis, here.start, lost)
             placed = placed | (lost & ~incremental)
         if not incremental.any():
             return fill(value, placed, before)
         position = _with_increments(value, placed, incremental, before)
         nowhere = incremental & ~np.isfinite(position) & np.isfinite(value)
-        self._refuse_steps(nowhere, axis, here.start)
+        self._refuse_steps(nowhere, axis, here.start, lost)
         return position
 
     def named(self, own: Flags) -> Ints:
@@ -323,7 +340,7 @@ class Track:
             named[line] = sum(1 << k for k, axis in enumerate(self.axes) if axis in words)
         return named
 
-    def _refuse_steps(self, which: Flags, axis: str, first: int) -> None:
+    def _refuse_steps(self, which: Flags, axis: str, first: int, lost: Flags | None) -> None:
         """Refuse incremental words of lines, counted from the first, that begin nowhere known."""
         for line in np.flatnonzero(which)[: Findings.enough].tolist():
             self.findings.add(
@@ -331,9 +348,18 @@ class Track:
                 "GX207",
                 f"{axis} is incremental, but where {axis} stands is not known",
                 axis,
-                f"write an absolute {axis} before; where the program begins, "
-                f"start = {{ {axis} = ... }} in [input] says it too",
+                self._way_out(
+                    axis, line + first, lost is not None and bool(lost[: line + 1].any())
+                ),
             )
+
+    def _way_out(self, axis: str, line: int, lost: bool) -> str:
+        """Return how an axis becomes known; behind a block that loses it the start is no help."""
+        absolute = f"write an absolute {axis} before"
+        before = self.state.lost_once >> self.axes.index(axis) & 1
+        if lost or before or self._computed(axis, slice(0, line)):
+            return f"{absolute}, behind what loses it"
+        return f"{absolute}, or say start = {{ {axis} = ... }} in [input]"
 
     def polar(self, here: slice) -> dict[str, tuple[Floats, Flags]]:
         """Return the words of the plane's axes where radius and angle are programmed."""

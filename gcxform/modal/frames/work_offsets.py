@@ -145,11 +145,12 @@ def _set_tool(state: FrameState, asked: Asked, kind: int) -> FrameState:
         raise ActError(
             "GX213",
             f"G10 L{kind} writes the tool table of the control",
-            "give the tool its length in the machine file, and leave this block out",
+            "set the table at the control, give the tool the same in the machine file, and leave "
+            "this block out",
         )
     if asked.incremental and not rule.g10_ignores_g91:
         message = f"under G91, G10 L{kind} adds to what the table has"
-        raise ActError("GX213", message, "write G90 before it")
+        raise ActError("GX213", message, "write it in G90, and G91 again behind it")
     if "R" in asked.written and rule.g10_rotates:
         raise ActError("GX213", f"R in G10 L{kind} is a radius, and an angle in G10 L2")
     if across := sorted(set(asked.axes) - {"Z"}):

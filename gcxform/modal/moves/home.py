@@ -83,6 +83,7 @@ def _home(track: Track, line: int, code: str) -> Rows:
     for k, axis in enumerate(track.axes):
         if axis in words or not words:
             home[k] = _in_frame(track, k, place.get(axis, np.nan))
+            track.note_lost(int(np.isnan(home[k])) << k)
     rows = _rows(track, line, Form.HOME, [*moves, (Kind.RAPID, home)])
     if track.dialect.motion_rule.g28_ends_length:
         _let_go_of_length(track, line, code)
@@ -161,7 +162,9 @@ def _called(track: Track, line: int) -> Rows | None:
     words = _target(track, line)
     for axis in call.ends.removeprefix(AT):
         if axis in words:
-            place[track.axes.index(axis)] = words[axis]
+            k = track.axes.index(axis)
+            place[k] = words[axis]
+            track.note_lost(int(np.isnan(place[k])) << k)
     end = np.array(track.frame.positions(place[None, :])[0])
     return _rows(track, line, Form.HOME, [(Kind.RAPID, end)] if words else [])
 
@@ -202,4 +205,5 @@ def _in_machine(track: Track, line: int) -> Rows:
         k = track.axes.index(axis)
         value = value / 2 if axis == "X" and track.state.frames.diameter else value
         end[k] = _in_frame(track, k, value)
+        track.note_lost(int(np.isnan(end[k])) << k)
     return _rows(track, line, Form.MACHINE, [(kind, end)])

@@ -121,14 +121,16 @@ class Moves:
                 line,
                 "GX209",
                 "axis words, but no motion code is in force",
-                hint="write G0 or G1 in this block",
+                hint="write G1 in this block, or G0 if the way is clear",
             )
         behind = self.lines.behind_cycle(self.modes.cycle) & (self.modes.motion != Kind.RAPID)
         for line in np.flatnonzero(behind & moves).tolist():
             message = (
                 "after a cycle controls differ in whether G0 or the code before it is in force"
             )
-            self.findings.add(line, "GX209", message, hint="write G0 or G1 in this block")
+            self.findings.add(
+                line, "GX209", message, hint="write G1 in this block, or G0 if the way is clear"
+            )
         for line in np.flatnonzero(centre & ~((arc | self.tied.paced) & ~own)).tolist():
             self.findings.add(line, "GX203", "I, J, K and R belong to arcs, and this is none")
         moves &= self.modes.motion != NUMBER["G80"]

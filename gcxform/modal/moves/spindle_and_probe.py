@@ -139,5 +139,6 @@ def probe(track: Track, line: int) -> Rows:
     for k in range(len(track.axes)):
         if lost >> k & 1:
             track.state.position[k] = np.nan
+    track.note_lost(lost)
     track.breaks.append(Break(line + 1, lost))
     return Rows.of_line(line, Form.PROBE, [(Kind.LINE, end)], len(track.frames) - 1)

@@ -86,7 +86,12 @@ class Pointing:
         yield moves & other, "GX336", "under G43.5 only G0 and G1 are read", hint
         own = self.on & (lines.flag("own_moves") | lines.loses_position())
         message = "under G43.5 this block may turn axes in a way of its own"
-        yield own, "GX336", message, "write G49 before"
+        yield (
+            own,
+            "GX336",
+            message,
+            "before it, draw the tool back along its axis and end G43.5 with G49",
+        )
         begun = named & self.lines.stated("tool-length")
         message = "I, J and K in the block of G43.5: on machines with a table this is an alarm"
         yield begun, "GX336", message, "give the vector in the next block"

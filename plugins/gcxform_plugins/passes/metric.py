@@ -59,5 +59,5 @@ def _has_length(event: gx.Event, path: gx.Toolpath, dialect: type[gx.Dialect]) -
 def _way_out(event: gx.Event, dialect: type[gx.Dialect]) -> str:
     """Return what to do: to leave the block out would shift the part."""
     if dialect.codes[event.what].act in FOLDED:
-        return 'put the pass "offsets" before: it writes what the block does into the moves'
+        return gx.put_before("offsets", why=": it writes what the block does into the moves")
     return "write the block in mm (G21)"

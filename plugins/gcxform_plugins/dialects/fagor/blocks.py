@@ -15,7 +15,7 @@ ALONE = "write it in a block of its own"
 NO_EDGE = "which D is in force after a tool change that names none is the control's choice"
 EDGE_EARLY = "whether a D acts before the tool that it is for is changed is not certain"
 ACROSS = "in G18 and G19 the length of the tool may be across the plane, and not along Z"
-ALONG = 'write G17 before; or say [control] tool-length-axis = "Z", if it stays there'
+ALONG = 'write G17 before; or say tool-length-axis = "Z" in [control], if it stays there'
 NO_OFFSET = "G53 has cancelled the work offset, and where the zero is then only the control knows"
 WHOLE = re.compile(r"[0-9]+\Z")
 

@@ -10,9 +10,13 @@ from gcxform_plugins.dialects.siemens.line import ABSOLUTE, STEP, Line
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
 from gcxform_plugins.dialects.siemens.reading import Statements
 
-EDGE = "say D1 before, or edge-after-tool-change = 1 in [control] of the machine file (or 0)"
-ALONG = 'move in G17; or say [control] tool-length-axis = "Z", if it stays there (SD42940)'
-LINEAR_WAY = 'write ORIAXES and ORIMKS; or say [control] orientation-path = "angles", if it is so'
+EDGE = (
+    "say D1 before; or edge-after-tool-change = 1 in [control] of the machine file, or 0, as it is"
+)
+ALONG = 'move in G17; or say tool-length-axis = "Z" in [control], if it stays there (SD42940)'
+LINEAR_WAY = (
+    'write ORIAXES and ORIMKS; or say orientation-path = "angles" in [control], if it is so'
+)
 
 
 class Moves(Statements):
@@ -45,7 +49,12 @@ class Moves(Statements):
         self._check_tool(line)
         if not self.motion:
             message = "axis words, but no motion code is in force: a setting decides (MD20150)"
-            raise self.refusal("GX209", message, self.any_of(line), "write G0 or G1 in this block")
+            raise self.refusal(
+                "GX209",
+                message,
+                self.any_of(line),
+                "write G1 in this block, or G0 if the way is clear",
+            )
         self.place.moved = True
         if self.following and self.motion != "0":
             self._check_turning(line)

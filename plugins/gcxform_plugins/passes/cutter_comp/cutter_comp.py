@@ -121,6 +121,10 @@ class ContourError(gx.InputError):
     alarm: bool = False
 
 
+WRITTEN = (
+    "the program writes the tool table with G10: set the radius at the control, give the machine "
+    "file the same, and leave the block out"
+)
 CHOICES = {"corners": 'arc" or "linear', "entry": 'own" or "next'}
 
 
@@ -145,7 +149,7 @@ def _refuse(path: gx.Toolpath, context: gx.PassContext) -> None:
             on & np.isnan(path.radius),
             "GX231",
             "the radius of the tool under cutter compensation is not known",
-            "give a machine file with the tool, -m MACHINE.toml: radius = ... in [tool.*]",
+            _radius_said(path, context),
         ),
         (
             changes,
@@ -170,6 +174,15 @@ def _refuse(path: gx.Toolpath, context: gx.PassContext) -> None:
         if wrong.any():
             raise path.refuse(code, np.flatnonzero(wrong), message, hint)
     _refuse_open_end(path, context)
+
+
+def _radius_said(path: gx.Toolpath, context: gx.PassContext) -> str:
+    """Return how a radius becomes known: a machine file says it, unless G10 writes the table."""
+    kinds = context.source.offset_rule.g10_tools
+    tables = (event for event in path.events if event.what == "G10")
+    if any(dict(event.values).get("L", np.nan) in kinds for event in tables):
+        return WRITTEN
+    return "give a machine file with the tool, -m MACHINE.toml: radius = ... in [tool.*]"
 
 
 def _refuse_open_end(path: gx.Toolpath, context: gx.PassContext) -> None:

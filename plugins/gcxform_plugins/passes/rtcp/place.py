@@ -10,6 +10,8 @@ import numpy as np
 import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
 
+TURN_BACK = "before it, draw the tool back along its axis and turn the axes to 0"
+
 SAME = 1e-9  # mm; two tools that differ by less are one
 TURN = 360.0
 ENOUGH = "positions are converted in one work offset, with known tool lengths and nothing turned"
@@ -76,9 +78,8 @@ class Place:
         first, own = np.array([0]), self.chain.letters
         for letter in own:
             if letter not in self.path.axes:
-                hint = f"program it, or say start = {{ {letter} = ... }} in [input]"
                 message = f"where the axis {letter} of the machine stands is not known"
-                raise self.path.refuse("GX311", first, message, hint)
+                raise self.path.refuse("GX311", first, message, f"program {letter} before")
         for column, letter in enumerate(self.path.axes[3:], 3):
             moved = np.flatnonzero(np.isfinite(self.path.end[:, column]))
             if letter not in own and letter not in self.others and len(moved):
@@ -136,8 +137,7 @@ class Place:
             (begins, "the control begins or ends to follow the tip while axes are turned"),
         ):
             if rows.any():
-                hint = "before it, draw the tool back along its axis and turn the axes to 0"
-                raise self.path.refuse("GX330", np.flatnonzero(rows)[:1], what, hint)
+                raise self.path.refuse("GX330", np.flatnonzero(rows)[:1], what, TURN_BACK)
 
     # --- from one to the other ---
 

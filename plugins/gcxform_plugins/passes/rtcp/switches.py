@@ -21,7 +21,10 @@ from gcxform.vocabulary import Flags, Floats
 from gcxform_plugins.passes.rtcp.place import off_zero
 
 SAY = 'switch it before; or say what holds: tip-at-start = "off" in [control] of the machine file'
-TURN_BACK = "turn them to 0 before; or say where they stand: start = { A = 0.0, ... } in [input]"
+TURN_BACK = (
+    "before it, draw the tool back along its axis and turn them to 0; or say where they stand: "
+    "start = { A = 0.0, ... } in [input]"
+)
 UNKNOWN, OFF, ON = 0, 1, 2
 
 

@@ -83,7 +83,7 @@ def lever_of(path: gx.Toolpath, context: gx.PassContext, held: Floats) -> Lever 
     if (turning & path.is_arc).any():
         message = "the head turns along an arc, and the error depends on where the tip is"
         rows = np.flatnonzero(turning & path.is_arc)[:1]
-        raise path.refuse("GX314", rows, message, 'put the pass "segment" before')
+        raise path.refuse("GX314", rows, message, gx.put_before("segment"))
     head = gx.chain_of(machine).head
     return Lever(head, np.array(machine.gauge_point), held, begin, stop)
 

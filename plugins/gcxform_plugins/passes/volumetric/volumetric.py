@@ -170,10 +170,15 @@ class Volumetric(VolumetricOptions, gx.Pass):
             named = [name if tools else name.split(" + ")[0] for name in origins]
             if any(name != path.first for name in named):
                 rows = np.flatnonzero(path.frame == number)[:1]
-                known = " and ".join(dict.fromkeys(n for n in named if n != path.first))
-                hint = (
-                    f"not known: {known}; give a machine file with them: X = ... in "
-                    "[work-offset.*], length = ... in [tool.*]"
-                    + ("" if tools else " instead of part-origin")
-                )
-                raise path.refuse("GX314", rows, message, hint)
+                raise path.refuse("GX314", rows, message, _ways_to_know(path.first, named, tools))
+
+
+def _ways_to_know(first: str, named: list[str], tools: bool) -> str:
+    """Return what to do about frames of which it is not known where they are."""
+    known = " and ".join(dict.fromkeys(name for name in named if name != first))
+    if not tools:
+        return f"not known: {known}; a machine file says it, with part-origin left out"
+    said = gx.work_offsets_said(first, *(name.split(" + ")[0] for name in named))
+    if any(" + " in name for name in named):
+        said += ", length = ... in [tool.*]"
+    return f"not known: {known}; give a machine file with {said}"

@@ -11,7 +11,7 @@ import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.rtcp.forward.ways import Way
 from gcxform_plugins.passes.rtcp.options import Options
-from gcxform_plugins.passes.rtcp.place import SAME, Place, turned_at
+from gcxform_plugins.passes.rtcp.place import SAME, TURN_BACK, Place, turned_at
 from gcxform_plugins.passes.rtcp.proof.undoing import SHARE
 
 STILL = 1e-7  # mm, degrees; what moves by less stands still
@@ -228,14 +228,14 @@ class Cutting:
 
     def _check_forms(self, turned: Flags) -> None:
         """Refuse what is no plain move, and moves to the machine's own points while turned."""
-        path, hint = self.path, "turn the axes back to 0, or to whole turns, before"
+        path, hint = self.path, TURN_BACK
         message = "a move in machine coordinates, where axes are turned"
         self._refuse("GX330", self.own & turned, message, hint)
         message = "cutter compensation is in force"
-        self._refuse("GX330", path.side != 0, message, 'put the pass "cutter-comp" before')
+        self._refuse("GX330", path.side != 0, message, gx.put_before("cutter-comp"))
         cycle = np.isin(path.form, (gx.Form.CYCLE, gx.Form.SYNCHRONISED))
         message = "a canned cycle or a tap is no plain move"
-        self._refuse("GX330", cycle, message, 'put the pass "cycles" before')
+        self._refuse("GX330", cycle, message, gx.put_before("cycles"))
         other = ~self.own & (path.form != gx.Form.PLAIN) & turned
         self._refuse("GX330", other, "this is no plain move", hint)
 
@@ -283,16 +283,12 @@ class Cutting:
         hint = "call the tool length while the rotary axes are at 0"
         if self.options.tip_codes:
             changed &= (self.path.kind != gx.Kind.RAPID) | (not self.options.rapids_turn)
-            hint += (
-                ', or let a rapid follow and say rapids = "ends" if the tool is clear on any way'
-            )
         message = "the tool length changes where the axes are turned"
         self._refuse("GX330", changed, message, hint)
         if self.place.chain.head:
             none = ~self.place.called
             message = "no tool length is in force, and the head is turned"
-            hint = "call it with G43, and give the tools their lengths: length = ... in [tool.*]"
-            self._refuse("GX330", none & turned, message, hint)
+            self._refuse("GX330", none & turned, message, "call it with G43 before")
 
     def _check_feeds(self, moved: Flags) -> None:
         path = self.path

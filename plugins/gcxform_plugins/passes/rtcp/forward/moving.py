@@ -267,7 +267,7 @@ class Moving(Cutting):
         message = "retract-lines and return-lines are in mm, and this block is in inches"
         where = np.isin(np.arange(len(inch)), np.floor(self.retracts - NEAR)) & inch
         if self.options.retraction is not None and self.options.retraction.lines.in_mm:
-            self._refuse("GX330", where, message, 'put the pass "metric" before')
+            self._refuse("GX330", where, message, gx.put_before("metric"))
         for at in np.searchsorted(row + part, self.retracts - NEAR).tolist():
             here = slice(at, at + 1)
             leaves = self._moved(source[here], row[here], part[here], after=True)[0]

@@ -25,7 +25,8 @@ MOST = 179.0  # degrees that the tool turns in a block: of half a turn nobody kn
 LEAST = 0.5  # degrees; where no axis turns by as much in a block, none leaps in it
 PLAIN = (gx.Form.PLAIN,)
 OWN = (gx.Form.PLAIN, gx.Form.HOME, gx.Form.MACHINE)
-TO_ZERO = "turn them to 0 before G43.5, or say where they are: start = { A = 0.0, ... } in [input]"
+TO_ZERO = "before G43.5, draw the tool back and turn them to 0"
+END = "before it, draw the tool back along its axis and end G43.5 with G49"
 
 
 class Pointing(OnCircles):
@@ -59,7 +60,9 @@ class Pointing(OnCircles):
         yield from self._outside()
         angles = self.place.angles(path.end)
         unknown = on & ~np.isfinite(angles).all(axis=1)
-        yield "GX311", unknown, "where the rotary axes stand at G43.5 is not known", TO_ZERO
+        letters = ", ".join(f"{letter} = 0.0" for letter in self.place.chain.letters)
+        said = f"{TO_ZERO}; or say start = {{ {letters} }} in [input], if they stand there"
+        yield "GX311", unknown, "where the rotary axes stand at G43.5 is not known", said
         turned = on & (angles != 0.0).any(axis=1)
         yield "GX330", turned, "G43.5 begins while axes are turned", TO_ZERO
         lost = on & ~np.isfinite(path.end[:, :3]).all(axis=1)
@@ -68,7 +71,7 @@ class Pointing(OnCircles):
         lost = cut & ~np.isfinite(self.start[:, :3]).all(axis=1)
         yield "GX311", lost, "where this cut begins is not known", "program X, Y and Z before"
         form = on & ~np.isin(path.form, PLAIN)
-        yield "GX330", form, "this is no plain move", "write G49 before"
+        yield "GX330", form, "this is no plain move", END
         yield from self._lengths()
         half = cut & (self.turns > MOST)
         hint = "program a point on the way"
@@ -94,10 +97,10 @@ class Pointing(OnCircles):
         """Yield rows without a tool length, and those in which it changes within a section."""
         place, on = self.place, self.vectors.on
         none = ~place.called
-        hint = "call it with H, and give the tools their lengths: length = ... in [tool.*]"
-        yield "GX330", np.asarray(on & none), "no tool length is in force", hint
+        message = "no tool length is in force"
+        yield "GX330", np.asarray(on & none), message, "call it with H in the block of G43.5"
         changed = on & np.append(False, on[:-1])[: len(on)] & (place.which != place.which_before)
-        yield "GX330", changed, "the tool length changes under G43.5", "write G49 before"
+        yield "GX330", changed, "the tool length changes under G43.5", END
 
     # --- which angles ---
 

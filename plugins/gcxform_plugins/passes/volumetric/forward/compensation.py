@@ -55,7 +55,7 @@ class Compensation(Window):
         rows = np.flatnonzero(self.path.form == gx.Form.SPLINE)
         if len(rows):
             message = "a spline is not compensated"
-            raise self.path.refuse("GX506", rows, message, 'put the pass "segment" before')
+            raise self.path.refuse("GX506", rows, message, gx.put_before("segment"))
 
     @cached_property
     def entry_command(self) -> Floats:
@@ -188,11 +188,13 @@ class Compensation(Window):
         there = " ".join(f"{axis}{word:.6g}" for axis, word in words if np.isfinite(word))
         unknown = [a for a, x in zip("XYZ", path.start[row], strict=False) if np.isnan(x)]
         more = f" and {' and '.join(unknown)}, which has not been programmed yet" if unknown else ""
+        steps = "G91 and " if path.blocks.incremental[path.block[row]] else ""
+        then = f"begin it with {steps}its own motion code"
         return path.refuse(
             "GX317",
             np.array([row]),
             f"this feed move begins {what}, where the machine is {size}",
-            f"before it, write a rapid to where it begins: G90 G0 {there}{more}",
+            f"before it, write a rapid to where it begins: G90 G0 {there}{more}; and {then}",
         )
 
     def _check_paces(self, commands: Floats) -> None:
