@@ -162,9 +162,8 @@ def _called(track: Track, line: int) -> Rows | None:
     words = _target(track, line)
     for axis in call.ends.removeprefix(AT):
         if axis in words:
-            k = track.axes.index(axis)
-            place[k] = words[axis]
-            track.note_lost(int(np.isnan(place[k])) << k)
+            place[track.axes.index(axis)] = words[axis]
+            track.note_lost(int(np.isnan(words[axis])) << track.axes.index(axis))
     end = np.array(track.frame.positions(place[None, :])[0])
     return _rows(track, line, Form.HOME, [(Kind.RAPID, end)] if words else [])
 
