@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -21,7 +22,10 @@ from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
+import numpy as np
 import pytest
+from cli_kit import call
+from matplotlib import image
 
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
@@ -31,6 +35,7 @@ from gcxform.plugin.registry import default_registry
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
+SAME_PICTURE = 0.002  # mean difference of what is drawn, of 1: fonts differ, not lines
 MOST_STEPS = 5  # from nothing to the first proved program
 CLONE = ("pyproject.toml", "README.md", "LICENSE", "gcxform", "plugins", "grammars", "examples")
 PROVED = re.compile(r'PASS$|verified"?: [Tt]rue', re.MULTILINE)
@@ -180,6 +185,26 @@ def test_the_reference_has_all_there_is(site: Path) -> None:
     assert headings == set(gx.__all__)
     for kind, where in (("formats", "models"), ("kinematics", "machine"), ("presets", "machine")):
         assert all(f"<code>{n}</code>" in reference[where].text for n in getattr(registry, kind))
+
+
+# --- pictures ---
+
+
+def test_the_picture_of_the_door_is_what_its_command_draws(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As it looks, not its bytes; UPDATE_DOCS=1 draws it anew."""
+    shown = (DOCS / "start.md").read_text("utf-8")
+    (command,) = re.findall(r"^\$ gcxform (show .*bracket.png .*)$", shown, re.MULTILINE)
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(ROOT / "examples", "examples")
+    assert call(*shlex.split(command)).exit_code == 0
+    kept = DOCS / "pictures" / "bracket.png"
+    if os.environ.get("UPDATE_DOCS"):
+        shutil.copy("bracket.png", kept)
+    drawn, wanted = image.imread("bracket.png"), image.imread(kept)
+    assert drawn.shape == wanted.shape
+    assert np.abs(drawn - wanted).mean() < SAME_PICTURE
 
 
 # --- what is pasted ---

@@ -6,14 +6,15 @@ import importlib
 import inspect
 import re
 from collections.abc import Iterator
+from enum import Enum
 
-from reference import described
+from reference import described, prose
 
 import gcxform as gx
 
 TOPICS = {
     "Programs and runs": ("api", "pipeline", "comparison", "guess", "system"),
-    "Errors": ("diagnostics", "config"),
+    "Errors": ("diagnostics", "catalogue", "config"),
     "Toolpaths": ("toolpath", "deviations"),
     "Passes": ("contract",),
     "Dialects": ("dialect", "syntax", "flow"),
@@ -22,26 +23,33 @@ TOPICS = {
     "Plugins": ("plugin",),
 }
 """Where names stand: the part of the core that they come from, by topic."""
+REST = "What else there is"
+LONGEST = 90  # characters of a signature in one line
 
 
 def api() -> Iterator[str]:
     """Yield a section for each topic, and a heading for each name, which is its anchor."""
-    for topic, parts in TOPICS.items():
-        yield from (f"## {topic}", "")
-        for name in gx.__all__:
-            if part_of(name) in parts:
-                yield from _entry(name)
+    for topic in (*TOPICS, REST):
+        names = [name for name in gx.__all__ if topic_of(name) == topic]
+        if names:
+            yield from (f"## {topic}", "")
+        for name in names:
+            yield from _entry(name)
 
 
-def part_of(name: str) -> str:
-    """Return the package of the core that a public name comes from."""
-    return str(gx._HOMES[name]).split(".")[1]
+def topic_of(name: str) -> str:
+    """Return the topic of a public name."""
+    part = str(gx._HOMES[name]).split(".")[1]
+    return next((topic for topic, parts in TOPICS.items() if part in parts), REST)
 
 
 def _entry(name: str) -> Iterator[str]:
     thing = getattr(gx, name)
     yield from (f"### {name}", "")
-    if inspect.isclass(thing) or inspect.isfunction(thing):
+    if inspect.isclass(thing) and issubclass(thing, Enum):
+        yield from described(inspect.getdoc(thing) or "")
+        yield from (f"Members: {', '.join(f'`{member}`' for member in thing.__members__)}.", "")
+    elif inspect.isclass(thing) or inspect.isfunction(thing):
         yield from ("```text", signature(name, thing), "```", "")
         yield from described(inspect.getdoc(thing) or "")
         yield from _methods(thing)
@@ -55,12 +63,30 @@ def signature(name: str, thing: object) -> str:
         found = inspect.signature(thing)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         return name
-    words = re.sub(r"'([^',]*)'", r"\1", str(found)).removesuffix(" -> None")
-    line = f"{name}{words}"
-    if len(line) <= 90 or len(found.parameters) < 2:
+    said = [_argument(parameter) for parameter in found.parameters.values()]
+    returned = _type(found.return_annotation)
+    arrow = "" if returned in ("", "None") else f" -> {returned}"
+    line = f"{name}({', '.join(said)}){arrow}"
+    if len(line) <= LONGEST:
         return line
-    arguments = [re.sub(r"'([^',]*)'", r"\1", str(p)) for p in found.parameters.values()]
-    return f"{name}(\n" + "".join(f"    {a},\n" for a in arguments) + ")"
+    return f"{name}(\n" + "".join(f"    {a},\n" for a in said) + f"){arrow}"
+
+
+def _argument(parameter: inspect.Parameter) -> str:
+    """Return an argument with its type and default, as one writes it."""
+    words, default = str(parameter.replace(annotation=parameter.empty)), parameter.default
+    if (annotation := _type(parameter.annotation)) and default is not parameter.empty:
+        shown = "..." if repr(default) == "<factory>" else repr(default)
+        return f"{parameter.name}: {annotation} = {shown}"
+    return f"{words}: {annotation}" if annotation else words
+
+
+def _type(annotation: object) -> str:
+    """Return a type in words; of an option its type alone."""
+    if annotation is inspect.Parameter.empty:
+        return ""
+    words = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", "")
+    return re.sub(r"^Annotated\[(.+?), Option\(.*", r"\1", words or str(annotation))
 
 
 def _methods(thing: object) -> Iterator[str]:
@@ -77,10 +103,12 @@ def _methods(thing: object) -> Iterator[str]:
 
 
 def _value(name: str, thing: object) -> str:
-    """Return what is said of a constant or an alias: its value, and the comment beneath it."""
-    said = _string_under(name)
-    meaning = getattr(thing, "meaning", "")
-    return said or (f"A fact: {meaning}." if meaning else f"`{name}` is `{thing!r}`.")
+    """Return what is said of a constant or an alias."""
+    if said := _string_under(name):
+        return said
+    for kind in getattr(thing, "__metadata__", ()):
+        return f"The type of an option that takes: {kind.words}."
+    return f"A fact: {prose(thing.meaning)}." if isinstance(thing, gx.Fact) else ""
 
 
 def _string_under(name: str) -> str:

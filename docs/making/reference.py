@@ -188,6 +188,10 @@ def _keys(title: str, table: Mapping[str, Any], mark: str) -> Iterator[str]:
             said = f"{said}; default `{default}`".removeprefix("; ")
         yield f"| `{key}` | {cell(takes(value))} | {said} |"
     yield ""
+    for key, value in table.get("properties", {}).items():
+        for inner, below in ((value, key), (value.get("additionalProperties"), f"{key}.NAME")):
+            if isinstance(inner, Mapping) and inner.get("properties"):
+                yield from _keys(f"[{below}]", inner, mark)
 
 
 def takes(value: Mapping[str, Any]) -> str:

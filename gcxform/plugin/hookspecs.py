@@ -28,6 +28,7 @@ GROUP: Final = "gcxform.plugins"
 
 hookspec = pluggy.HookspecMarker(PROJECT)
 hookimpl = pluggy.HookimplMarker(PROJECT)
+"""Marks a function of a plugin as the hook whose name it has."""
 
 
 @hookspec
