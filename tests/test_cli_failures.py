@@ -68,7 +68,7 @@ BAD: dict[str, tuple[int, str, tuple[str, ...]]] = {
     "a full device": (5, "GX902", (*RUN[:5], "-o", "/dev/full", "part.nc")),
     "a binary file": (3, "GX101", (*RUN, "binary")),
     "no feed": (3, "GX204", (*RUN, "feedless.nc")),
-    "unknown start": (3, "GX207", (*RUN, "lost.nc")),
+    "unknown start": (3, "GX208", (*RUN, "lost.nc")),
     "an arc off its circle": (3, "GX301", (*RUN, "arc.nc")),
     "an impossible radius": (3, "GX302", (*RUN, "radius.nc")),
     "two codes of a group": (3, "GX202", (*RUN, "two.nc")),
@@ -88,7 +88,7 @@ BAD: dict[str, tuple[int, str, tuple[str, ...]]] = {
 PROGRAMS = {
     "binary": bytes(range(256)) * 40,
     "feedless.nc": b"G1 X0 Y0\n",
-    "lost.nc": b"G91 G1 F100 X1\n",
+    "lost.nc": b"G2 F100 X1 I1\n",
     "arc.nc": b"G1 F100 X0 Y0\nG2 X10 Y0 I4 J0\n",
     "radius.nc": b"G1 F100 X0 Y0\nG2 X10 Y0 R2\n",
     "two.nc": b"G0 G1 X0\n",

@@ -26,7 +26,7 @@ ANSWERS: dict[str, Any] = {
 BODIES = {
     "a start in G91": (
         "fanuc",
-        "G91 G1 X1. Y1. F99.\nX2.\nG2 X1. Y1. I1.\nG90 G1 X0 Y0 Z5.",
+        "G91 G41 D1 G1 X1. Y1. F99.\nX2.\nG2 X1. Y1. I1.\nG40 G90 G1 X0 Y0 Z5.",
         "",
     ),
     "increments": ("fanuc", "G90 G0 X10 Y10\nG1 X20. F100.\nZ-2", ""),
@@ -115,7 +115,7 @@ def test_what_is_missing_is_all_that_is_missing(here: Path, name: str) -> None:
 def test_one_unknown_start_is_one_finding_with_twelve_places(here: Path) -> None:
     body = "".join(f"G1 X{n}. F100.\n" for n in range(1, 13))
     (here / "p.nc").write_text(f"O0001\nG91\n{body}M30\n")
-    _, out, err = check(here, "fanuc", "absolute")
+    _, out, err = check(here, "fanuc", "absolute", "-t", "haas")
     assert "1 finding at 12 lines" in out
     assert err.count("error[") == 1
     assert "also at lines 4, 5, 6, 7, 8 (6 more)" in err
@@ -124,9 +124,9 @@ def test_one_unknown_start_is_one_finding_with_twelve_places(here: Path) -> None
 
 
 def test_what_a_setting_does_not_end_is_not_asked_for(here: Path) -> None:
-    (here / "p.nc").write_text("G90 G0 X0 Y0 Z0\nM120\nG91 X1.\nM30\n")
+    (here / "p.nc").write_text("G90 G0 X0 Y0 Z0\nM120\nG91 X1.\nM2\n")
     (here / "m.toml").write_text('format = 1\n[control]\nuser-codes = "keep"\n')
-    code, out, err = check(here, "linuxcnc", "absolute", "-m", "m.toml")
+    code, out, err = check(here, "linuxcnc", "", "-m", "m.toml", "-t", "grbl")
     assert code == 1
     assert "GX207" in err
     assert "start" not in out

@@ -68,7 +68,9 @@ CODES: dict[str, tuple[str, str]] = {
         "An incremental move from an unknown position",
         "In G91 a word adds to where the axis stands, and nothing has said where that is: at "
         "the start of a program, after a change of the work offset, or after a code that moves "
-        "axes by itself. Program the axis in G90 first, or give the position at the start: "
+        "axes by itself. Such a block stays as it is, in G91, where it may: not under cutter "
+        "compensation, in another dialect, or for a pass that needs to know where axes stand. "
+        "Program the axis in G90 first, or give the position at the start: "
         "`start = { X = 0.0 }` in [input], or --start X=0.",
     ),
     "GX208": (

@@ -18,9 +18,10 @@ from gcxform.deviations.splines import beside_splines
 from gcxform.dialect.dialect import LINEAR
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import TURN, swept
-from gcxform.toolpath.path import Kind, Plane, Toolpath
+from gcxform.toolpath.path import Form, Kind, Plane, Toolpath
 
 ROUND = 1e-9  # mm; by so much the radius of a circle may change
+SAME_SWEEP = 1e-9  # rad
 SWEEP_SLIP = 0.05  # rad; rows whose sweeps differ by more do not follow their owner
 
 
@@ -69,7 +70,10 @@ class _Comparison:
         straight = other & ~owner_arc & ~self.after.is_arc
         self._lines(np.flatnonzero(straight & ~unknown & ~bent), start_of_owner)
         self._ends(np.flatnonzero(straight & ends_only & self.last))
-        arcs = np.flatnonzero(other & owner_arc & ~unknown)
+        blind = owner_arc & (before.form[self.owner] == Form.BLIND)
+        if blind.any():
+            self._blind(np.flatnonzero(other & blind))
+        arcs = np.flatnonzero(other & owner_arc & ~unknown & ~blind)
         if len(arcs):
             self._arcs(arcs, start_of_owner)
         if bent.any():
@@ -113,6 +117,19 @@ class _Comparison:
         distance, angle = self._between(self.after.end[rows], self.before.end[self.owner[rows]])
         self.distance[rows] = distance
         self.angle[rows] = angle
+
+    def _blind(self, rows: Ints) -> None:
+        """Compare arcs from where it is not known: by their sweeps, and the axes that are known.
+
+        What such moves go by is compared as events are.
+        """
+        self._ends(rows)
+        owner = self.owner[rows]
+        same = self.after.form[rows] == Form.BLIND
+        same &= np.abs(self.after.sweep[rows] - self.before.sweep[owner]) <= SAME_SWEEP
+        for name in ("kind", "plane"):
+            same &= getattr(self.after, name)[rows] == getattr(self.before, name)[owner]
+        self.distance[rows[~same]] = np.inf
 
     def _lines(self, rows: Ints, starts: Floats) -> None:
         """Compare lines with the line that owns them: their ends against its points."""

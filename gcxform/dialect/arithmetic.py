@@ -16,6 +16,8 @@ from typing import Any
 
 import numpy as np
 
+from gcxform.dialect.machine_parameters import MachineParameters, among
+
 PI = np.longdouble("3.14159265358979323846264338327950288")
 NEAR = 1e-9  # of a number: so far may another control's arithmetic be off
 EQUAL = 1e-4  # numbers that differ by less are equal to LinuxCNC
@@ -32,28 +34,6 @@ COLUMNS: dict[Function, Callable[..., Any]] = {
     operator.sub: operator.sub,
 }
 """Functions that are the same, bit by bit, for every element of arrays; nan: it has no value."""
-
-
-@dataclass(frozen=True, slots=True)
-class MachineParameters:
-    """What is known of the parameters of a control whose values only the machine knows.
-
-    outputs    those that a program may set without any effect on positions
-    signals    those that mean the same in any unit, mode and place: inputs, clocks, counters
-    names      names of such
-    measured   those that do in any mode and place, in one unit: offsets, results of probes
-    hidden     names that have another value where calls and loops are written out
-    highest    the highest number; a higher one is an error
-    null       the parameter without a value (`gcxform/dialect/null.py`); None: there is none
-    """
-
-    outputs: tuple[range, ...] = ()
-    signals: tuple[range, ...] = ()
-    names: frozenset[str] = frozenset()
-    measured: tuple[range, ...] = ()
-    hidden: frozenset[str] = frozenset()
-    highest: int = 2**31
-    null: int | None = None
 
 
 class NoValueError(Exception):
@@ -109,8 +89,19 @@ class Arithmetic:
         return self.named and key.split("[")[0] not in self.system
 
     def sets(self, key: Key) -> bool:
-        """Return whether a program may set a parameter, and nothing else changes by it."""
-        return self.owns(key) or _among(key, self.machine.outputs)
+        """Return whether a program may set a parameter, and what changes by it is followed."""
+        return self.owns(key) or among(key, self.machine.outputs) or self.writes_table(key)
+
+    def writes_table(self, key: Key) -> bool:
+        """Return whether a parameter is an entry of the control's table of tools, or of zeros."""
+        return among(key, self.machine.lengths) or among(key, self.machine.zeros)
+
+    def behind(self, key: Key, value: float) -> dict[Key, float]:
+        """Return parameters behind an assignment: only the control knows those of its own."""
+        if self.owns(key):
+            return {key: value}
+        other = (int(key) - off for each, off in self.machine.aliases if among(key, (each,)))
+        return dict.fromkeys((key, *other), math.nan)
 
     def exists(self, key: Key) -> bool:
         """Return whether a parameter has a value, if only the machine may know which."""
@@ -122,11 +113,11 @@ class Arithmetic:
     def hangs_on(self, key: Key) -> str:
         """Return on what of a program the value of a parameter depends: "", "units" or "place"."""
         known = self.machine
-        if self.owns(key) or _among(key, known.signals):
+        if self.owns(key) or among(key, known.signals):
             return ""
         if isinstance(key, str) and key.split("[")[0] in known.names:
             return ""
-        return "units" if _among(key, known.measured) else "place"
+        return "units" if among(key, known.measured) else "place"
 
     def outlives(self, key: Key) -> bool:
         """Return whether a parameter keeps its value when the program that has set it is over."""
@@ -135,10 +126,6 @@ class Arithmetic:
     def can_say(self, key: Key) -> bool:
         """Return whether an assignment to a parameter can be written, and lasts as long here."""
         return self.owns(key) and self.outlives(key)
-
-
-def _among(key: Key, numbers: tuple[range, ...]) -> bool:
-    return isinstance(key, int) and any(key in each for each in numbers)
 
 
 def whole(value: float, slip: float = INTEGER) -> int:
@@ -295,6 +282,7 @@ RS274 = Arithmetic(
     whole_slip=INTEGER,
     local=range(1, 31),
     machine=MachineParameters(
+        outputs=(range(5061, 5071),),
         signals=(range(5070, 5071), range(5399, 5401), range(5599, 5600)),
         names=SIGNAL_NAMES,
         measured=(range(5061, 5070), range(5161, 5400), range(5401, 5411)),
@@ -390,9 +378,24 @@ MACRO_B = Arithmetic(
     local=range(1, 34),
     digits=12,
     machine=MachineParameters(
-        outputs=(range(1100, 1200), *(range(n, n + 1) for n in (3000, 3003, 3006, 3901, 3902))),
+        outputs=(
+            range(1100, 1200),
+            range(3000, 3005),
+            *(range(n, n + 1) for n in (3006, 3901, 3902)),
+        ),
+        lengths=(
+            *(range(first, first + 200) for first in (2001, 2201, 2401, 2601)),
+            *(range(first, first + 999) for first in (10001, 11001, 12001, 13001)),
+        ),
+        zeros=(range(5201, 5400), range(7001, 8000), range(14001, 20001)),
         signals=(range(1000, 1200), range(3000, 4000)),
-        measured=(range(2001, 3000), range(5061, 5069), range(5201, 5400), range(7001, 8000)),
+        measured=(
+            range(2001, 3000),
+            range(5061, 5069),
+            range(5201, 5400),
+            range(7001, 8000),
+            range(10001, 20001),
+        ),
         null=0,
     ),
 )

@@ -110,8 +110,9 @@ class CycleRule:
                     the first one of the program
     stores          a block without X, Y, Z, R, or with no repeats, stores words and drills nothing;
                     otherwise it is refused
-    alone           the setting of the control that must be "drills" for a block to drill which
-                    names no place in the plane; "": it always drills
+    alone           the setting of the control that says "drills" if a block drills which names no
+                    place in the plane; "": it always drills. Where the setting is not given such a
+                    block stays, and the level behind it is not known
     one_plane       the plane may not change while a cycle is in force
     repeats         the word that counts the repeats
     initial_level   whether a program starts in G98

@@ -36,6 +36,7 @@ class Centres:
         Words of full circles that would make them others are taken out of `positions.write`.
         """
         anew = ~self.copying.lines[self.path.block] & (self.kind >= Kind.ARC_CW)
+        anew &= self.path.is_free
         if not anew.any():
             return self.centre
         start = self._starts()

@@ -31,10 +31,12 @@ WHAT = {
     Form.SYNCHRONISED: "a move tied to the spindle",
     Form.SPLINE: "a spline",
     Form.THREAD: "a thread",
+    Form.BLIND: "a move by distances from where it is not known",
 }
 HINTS = {
     Form.CYCLE: put_before("cycles"),
     Form.SPLINE: put_before("segment"),
+    Form.BLIND: "program its axes in G90 before, so that it is known where they stand",
     Form.PROBE: "leave the pass out that changes its coordinates: what it finds counts in them",
 }
 

@@ -172,9 +172,9 @@ def motion_kinds(task: Task, positions: Positions) -> Small:
     """
     path = task.path
     kind = path.kind.copy()
-    arcs = np.flatnonzero(path.is_arc)
+    arcs = np.flatnonzero(path.is_arc & path.is_free)
     if not len(arcs):
-        return kind
+        return as_written(path, kind)
     chord = np.abs(positions.held[arcs, :3] - positions.before[arcs, :3])
     radius = np.nan_to_num(path.centre[arcs] - path.end[arcs, :3])
     length = path.sweep[arcs] * np.sqrt((radius**2).sum(axis=1))

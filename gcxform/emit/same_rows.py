@@ -85,7 +85,8 @@ class SameRows:
         framed = (self.path.form[rows] == Form.HOME) & (self.path.nth[rows] == 0)
         framed |= one_move | cycle[:, 0]
         as_far = incremental[:, 0] & self.frames(rows, others)
-        return np.asarray(good & (alike.all(axis=1) | as_far | ~framed))
+        blind = self.path.form[rows] == Form.BLIND
+        return np.asarray(good & ((alike.all(axis=1) & ~blind) | as_far | ~(framed | blind)))
 
     def frames(self, rows: Ints, others: Ints) -> Flags | bool:
         """Return which rows are in frames that turn words as those of the source did."""

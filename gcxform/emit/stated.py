@@ -157,7 +157,7 @@ class _Needs:
         said = pieces.leads & ~silent & (pieces.role != Role.GONE)
         sets = np.where(said, group[pieces.line], NOTHING)
         form = pieces.of_rows(self.task.path.form, Form.PLAIN)
-        moves = pieces.has_row & ((form == Form.PLAIN) | (form == Form.MACHINE))
+        moves = pieces.has_row & np.isin(form, (Form.PLAIN, Form.MACHINE, Form.BLIND))
         sets[moves] = pieces.of_rows(self.kind, NOTHING)[moves]
         after = fill(sets, sets >= 0, self.believed.motion)
         before = self._held(sets, "motion", self.believed.motion)

@@ -154,6 +154,7 @@ class Writing:
         shape = int(self.task.shape[line])
         row = int(pieces.row[piece])
         arc = bool(pieces.has_row[piece]) and int(stated.kind[row]) >= Kind.ARC_CW
+        arc = arc and not pieces.special[piece]
         key = Key(
             Role(int(pieces.role[piece])),
             int(stated.motion.code[piece]),

@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from abc import abstractmethod
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -156,9 +157,12 @@ class Branches:
         """Keep an assignment that may be made or not."""
         run = self.run
         key, _ = run.assignment(statement.tree.children[-1], (statement.start, statement.end))
+        if run.arithmetic.writes_table(key):
+            message = "a table of the control is written, or not: only the machine knows"
+            raise run.refusal("GX220", message, HINT)
         self.keep(block, statement)
         run.lasting.account(key, UNKNOWN, block.text[statement.start : statement.end])
-        run.set({key: UNKNOWN})
+        run.set(run.arithmetic.behind(key, UNKNOWN))
 
     def keep(self, block: Block, statement: Statement) -> None:
         """Write a block with a flow word as it stands, but for what is known."""
@@ -333,8 +337,26 @@ class Branches:
             run.line = line
             number = self._label_of(line)
             if number is not None and written.get(number) != 1:
+                if (loop := self._repeated_around(line)) is not None:
+                    raise Again(replace(run.settled, loops=run.settled.loops | {loop}))
                 message = f"N{number} would stand {written.get(number, 0)} times where calls are"
                 raise run.refusal("GX220", f"{message} written out, and a jump names it", HINT)
+
+    def _repeated_around(self, line: int) -> tuple[int, int] | None:
+        """Return the shortest loop around a line that can be kept, as it waits, counts or tells."""
+        run = self.run
+        steps = [step for step in run.walked if not step.depth]
+        loops = {(to.first, by.stop - 1) for by, to in pairwise(steps) if to.first < by.stop}
+        around = [(first, last) for first, last in loops if first <= line <= last]
+        fit = [loop for loop in around if loop not in run.settled.loops and self._is_still(*loop)]
+        return min(fit, key=lambda loop: loop[1] - loop[0], default=None)
+
+    def _is_still(self, first: int, last: int) -> bool:
+        """Whether lines move nothing and change no mode."""
+        lines = range(first, last + 1)
+        blocks = [(self.run.listing.meaning(n), self.run.listing.block(n)) for n in lines]
+        flows = [any(isinstance(i, Statement) for i in block.items) for _, block in blocks]
+        return all(f or is_still(*each) for f, each in zip(flows, blocks, strict=True))
 
 
 def _differ(one: float | None, other: float | None) -> bool:

@@ -301,7 +301,8 @@ class Execution(RunState):
         statements = _statements(block)
         changes = [self._assigned(statement) for statement in statements]
         texts = [self.kept_assignment(*both) for both in zip(statements, changes, strict=True)]
-        self.set(dict(changes))
+        for change in changes:
+            self.set(self.arithmetic.behind(*change))
         for statement, change, text in zip(statements, changes, texts, strict=True):
             edits.append((statement.start, statement.end, self.lasting.account(*change, text)))
         edits += self.lasting.messages(block)

@@ -165,7 +165,7 @@ class MacroWords(Jumping):
             key, value = self.assignment(tree, (statement.start, statement.end))
             made = Statement(*span_of(tree), "assignment", tree)
             kept = self.kept_assignment(made, (key, value))
-            self.set({key: value})
+            self.set(self.arithmetic.behind(key, value))
             if text := self.lasting.account(key, value, kept):
                 self.write_line(text)
 

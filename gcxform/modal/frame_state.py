@@ -32,6 +32,7 @@ class FrameState:
 
     work, first   the work offset in force, and that from whose zero positions count
     known         whether `work` is what the program has stated, or the control's first for certain
+    unsettled     zeros have been set of which it is not known when they act
     zeros         positions of the zeros of work offsets; what is not here is not known
     machine       position of the machine's zero
     rotation      deg, about Z, of work offsets (G10 L2 R)
@@ -55,6 +56,7 @@ class FrameState:
     work: str = "G54"
     first: str = "G54"
     known: bool = False
+    unsettled: bool = False
     zeros: Mapping[str, Vector] = field(default_factory=dict)
     machine: Vector = ()
     rotation: Mapping[str, float] = field(default_factory=dict)

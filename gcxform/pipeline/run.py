@@ -20,6 +20,7 @@ from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.modal.program_end import Ending, Frame, frame_for, with_ends
 from gcxform.modal.reader import Apart, WindowReader
 from gcxform.modal.state import Reading
+from gcxform.pipeline.blind_moves import check_blind
 from gcxform.pipeline.cutter_comp import check_compensated, whole_stretches
 from gcxform.pipeline.mixed_feeds import check_mixed
 from gcxform.pipeline.output import Output
@@ -369,6 +370,7 @@ class Run:
 
     def _apply(self, step: Pass, path: Toolpath, window: Window) -> Toolpath:
         with placing(window, self.source.name):
+            check_blind(step, path)
             after = step.apply(path, self.plan.context)
             if not step.demands.resolves:
                 check_compensated(step, path, after)

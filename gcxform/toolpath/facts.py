@@ -40,7 +40,11 @@ def _absolute(path: Toolpath) -> bool:
     return not path.blocks.incremental[plain].any()
 
 
-ABSOLUTE = Fact("ABSOLUTE", "every block but returns to reference and cycles is in G90", _absolute)
+ABSOLUTE = Fact(
+    "ABSOLUTE",
+    "every block but returns to reference, cycles and moves from nowhere known is in G90",
+    _absolute,
+)
 
 
 def inseparable_cycles(path: Toolpath) -> Flags:

@@ -52,7 +52,8 @@ class Form(IntEnum):
     CYCLE: a canned cycle. HOME: G28, G30. MACHINE: a move in machine coordinates (G53). PROBE: it
     ends where something is touched, its target at the latest. SYNCHRONISED: it is tied to the
     spindle. SPLINE: a cubic Bezier curve; its kind is LINE, because it cuts. THREAD: tied to the
-    spindle as well, one straight move (G33), which is written anew if its ends move.
+    spindle as well, one straight move (G33), which is written anew if its ends move. BLIND: a plain
+    move by distances, of an axis of which it is not known where it stands.
     """
 
     PLAIN = 0
@@ -63,13 +64,14 @@ class Form(IntEnum):
     SYNCHRONISED = 5
     SPLINE = 6
     THREAD = 7
+    BLIND = 8
 
 
 FREE = (Form.PLAIN, Form.THREAD)
 """Forms whose blocks may be written anew."""
 WHOLE = (Form.PROBE, Form.SYNCHRONISED, Form.THREAD)
 """Forms that stay one move, as they are."""
-OWN_DISTANCES = (Form.CYCLE, Form.HOME, Form.PROBE, Form.SYNCHRONISED)
+OWN_DISTANCES = (Form.CYCLE, Form.HOME, Form.PROBE, Form.SYNCHRONISED, Form.BLIND)
 """Forms whose blocks may stay in G91 where all others are written in G90."""
 
 

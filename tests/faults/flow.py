@@ -127,8 +127,8 @@ MUTATIONS = (
     _flow(
         "a message counts from before its block",
         "gcxform/flow/execution.py",
-        "self.set(dict(changes))\n        for",
-        "for",
+        "self.set(self.arithmetic.behind(*change))",
+        "pass",
     ),
     _flow(
         "a subprogram that is called is kept",

@@ -161,8 +161,8 @@ MUTATIONS = (
     Mutation(
         "lines: behind G53 G0 it is taken for G1",
         "gcxform/emit/stated.py",
-        "moves = pieces.has_row & ((form == Form.PLAIN) | (form == Form.MACHINE))",
-        "moves = pieces.has_row & (form == Form.PLAIN)",
+        "(Form.PLAIN, Form.MACHINE, Form.BLIND)",
+        "(Form.PLAIN, Form.BLIND)",
         STANDS,
     ),
 )

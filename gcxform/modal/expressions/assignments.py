@@ -25,7 +25,14 @@ from gcxform.dialect.null import Null
 from gcxform.modal.expressions.compiled import NO_VALUE, NoColumnError
 from gcxform.modal.expressions.functions import computed_in, functions_of, whole_columns
 from gcxform.modal.expressions.unknown import bare_text, hangs_on, may_be_unknown
-from gcxform.modal.expressions.value import Evaluator, LocatedError, forgotten, settable
+from gcxform.modal.expressions.value import (
+    Evaluator,
+    LocatedError,
+    forgotten,
+    key_set,
+    settable,
+    written,
+)
 from gcxform.modal.findings import Findings
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.meaning import Meaning
@@ -59,6 +66,8 @@ class _Run:
         self.having = having
         self.value = lines.window.value.copy()
         self.row = self.value.tolist()
+        assert lines.dialect.flow_rule.arithmetic is not None
+        self.arithmetic = lines.dialect.flow_rule.arithmetic
         self.functions = [
             functions_of(lines.table, shape) if used else None
             for shape, used in enumerate(np.bincount(lines.shape[having]))
@@ -117,7 +126,8 @@ class _Run:
         for slot, computed in found:
             self.value[first + slot] = computed
         if made:
-            lines.parameters.update(made)
+            for key, result in made:
+                lines.parameters.update(self.arithmetic.behind(key, result))
             at = lines.window.first_line + line
             lines.assigned += [Assigned(at, key, result) for key, result in made]
 
@@ -151,7 +161,8 @@ class _Block:
             self.value[first + slot] = self._word(word)
         changes = [self._assigned(statement) for statement in self.assignments]
         made = [change for change in changes if change is not None]
-        self.lines.parameters.update({each.key: each.value for each in made})
+        for each in made:
+            self.lines.parameters.update(self.arithmetic.behind(each.key, each.value))
         self.lines.assigned += made
         if self.meaning.runs_macro and not self.meaning.lost_by <= self.lines.reading.inert_m:
             self.lines.parameters = forgotten(
@@ -222,6 +233,11 @@ class _Block:
         except NoValueError as why:
             self._refuse(why, statement)
             return None
+        if self.arithmetic.writes_table(key) and key_set(statement) is None:
+            message = (
+                f"{written(key)} belongs to a table of the control, and its number is computed"
+            )
+            self._refuse(NoValueError(message, code="GX206"), statement)
         try:
             return Assigned(line, key, evaluator.value(expression))
         except NoValueError as why:

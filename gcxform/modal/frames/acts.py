@@ -11,6 +11,7 @@ from gcxform.modal.frames.act import Act, Asked
 
 ACTS: Mapping[str, Act] = {
     "call": offsets.behind_call,
+    "table": offsets.table,
     "change-tool": lengths.change_tool,
     "set-tool": lengths.set_tool,
     "user-code": lengths.user_code,

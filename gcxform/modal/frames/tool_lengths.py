@@ -168,7 +168,12 @@ def written(state: FrameState, asked: Asked) -> FrameState:
     number = asked.words.get("P", np.nan)
     if not number >= 1 or number % 1:
         raise ActError("GX213", "P is not a number of a tool")
-    times = {**state.written, int(number): state.written.get(int(number), 0) + 1}
+    return set_in_table(state, int(number))
+
+
+def set_in_table(state: FrameState, number: int) -> FrameState:
+    """Return the state behind a number of a tool that was set to what is not known."""
+    times = {**state.written, number: state.written.get(number, 0) + 1}
     state = replace(state, written=times)
     if not state.tool_name:
         return state

@@ -65,7 +65,10 @@ class Break:
 
 
 class Track:
-    """Follows position and frame; `state.position` and `state.frames` are left up to date."""
+    """Follows position and frame; `state.position` and `state.frames` are left up to date.
+
+    `may_step` (lines,) are the moves that may go by distances from where it is not known.
+    """
 
     def __init__(self, lines: Lines, modes: Modes, axes: str) -> None:
         self.lines = lines
@@ -80,6 +83,7 @@ class Track:
             self.frames.insert(0, self.state.row_frame)
         self.breaks: list[Break] = []
         self._columns: dict[str, tuple[Floats, Flags] | None] = {}
+        self.may_step = np.zeros(lines.live, np.bool_)
 
     @property
     def frame(self) -> Frame:
@@ -327,6 +331,7 @@ class Track:
             return fill(value, placed, before)
         position = _with_increments(value, placed, incremental, before)
         nowhere = incremental & ~np.isfinite(position) & np.isfinite(value)
+        nowhere &= ~(self.may_step[here] & np.isnan(position))
         self._refuse_steps(nowhere, axis, here.start, lost)
         return position
 
@@ -348,12 +353,10 @@ class Track:
                 "GX207",
                 f"{axis} is incremental, but where {axis} stands is not known",
                 axis,
-                self._way_out(
-                    axis, line + first, lost is not None and bool(lost[: line + 1].any())
-                ),
+                self._way_out(axis, line + first, lost is not None and lost[: line + 1].any()),
             )
 
-    def _way_out(self, axis: str, line: int, lost: bool) -> str:
+    def _way_out(self, axis: str, line: int, lost: bool | np.bool_) -> str:
         """Return how an axis becomes known; behind a block that loses it the start is no help."""
         absolute = f"write an absolute {axis} before"
         before = self.state.lost_once >> self.axes.index(axis) & 1

@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from gcxform.dialect.machine_parameters import among
 from gcxform.modal.frame_state import FrameState, rotation
 from gcxform.modal.frames.act import ActError, Asked
-from gcxform.modal.frames.tool_lengths import written
+from gcxform.modal.frames.tool_lengths import set_in_table, written
 from gcxform.toolpath.frames import Vector
 
 
@@ -40,8 +41,26 @@ def behind_call(state: FrameState, asked: Asked) -> FrameState:
     return replace(state, zeros={}, machine=unknown)
 
 
+def table(state: FrameState, asked: Asked) -> FrameState:
+    """`#5221 = 5`: a number of the control's tables of tools and of zeros.
+
+    When it acts no manual says that is at hand: at once, or with the next code that names it.
+    """
+    arithmetic, key = asked.dialect.flow_rule.arithmetic, int(asked.code[1:])
+    if asked.reading.crosses or not asked.reading.tables_stay:
+        message = f"{asked.code} is a number of a table of the control, which is not followed"
+        hint = "say in the machine file what the table has, and leave this block out"
+        raise ActError("GX213", message, hint)
+    assert arithmetic is not None
+    if among(key, arithmetic.machine.lengths):
+        return set_in_table(state, arithmetic.machine.tool_of(key))
+    return replace(state.shifted(), unsettled=True)
+
+
 def work(state: FrameState, asked: Asked) -> FrameState:
     """G54 and its like: another work offset; a code that takes words names one by each of them."""
+    if state.unsettled:
+        state = replace(state.shifted(), unsettled=False)
     name = asked.dialect.offset_rule.names.get(asked.code, asked.code)
     for address in asked.numbers:
         number = asked.words.get(address)

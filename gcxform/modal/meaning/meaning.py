@@ -55,6 +55,7 @@ class Act:
 
 ACT_ORDER = (
     "call",
+    "table",
     "change-tool",
     "set-tool",
     "user-code",

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+from lark import Token
+
 from gcxform.dialect.dialect import Dialect
 from gcxform.modal.meaning.meaning import Act, EventShape, Meaning
 from gcxform.syntax.shapes import Shape
-from gcxform.syntax.tree import CODES, Number, Word
+from gcxform.syntax.tree import BLANKS, CODES, Number, Statement, Word
 
 
 def code_of(word: Word) -> str:
@@ -47,3 +51,12 @@ def length_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Non
     taken = (("H", meaning.slots.pop("H")),)
     meaning.acts.append(Act("length-number", "H", taken, word.start, word.end - word.start))
     meaning.events.append(EventShape(46, "H", taken))
+
+
+def table_acts(item: Statement, dialect: type[Dialect]) -> Iterator[Act]:
+    """Yield the act of an assignment that writes into a table of the control, by its number."""
+    arithmetic = dialect.flow_rule.arithmetic
+    number = item.tree.children[0].children[0] if item.kind == "assignment" else ""
+    digits = str(number).translate(BLANKS) if isinstance(number, Token) else ""
+    if arithmetic is not None and digits.isdigit() and arithmetic.writes_table(int(digits)):
+        yield Act("table", f"#{int(digits)}", (), item.start, item.end - item.start)

@@ -22,7 +22,13 @@ from gcxform.modal.meaning.meaning import (
     Meaning,
     Refusal,
 )
-from gcxform.modal.meaning.numbered import code_of, length_number, offset_word, spindle_number
+from gcxform.modal.meaning.numbered import (
+    code_of,
+    length_number,
+    offset_word,
+    spindle_number,
+    table_acts,
+)
 from gcxform.modal.meaning.printed import is_output, print_hangs_on, prints_values, read_output
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import CODES, Comment, Expression, Mark, Number, Statement, Word
@@ -80,6 +86,7 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
         elif isinstance(item, Statement):
             yield from _statement(item, shape, dialect)
             meaning.assignments.append(item)
+            meaning.acts += table_acts(item, dialect)
         elif isinstance(item, Mark):
             yield from _mark(item, shape, dialect, meaning)
         elif isinstance(item, Comment):

@@ -121,6 +121,7 @@ FLAGS = (
     "lends",
     "calls",
     "prints",
+    "sets_tables",
 )
 
 
@@ -203,6 +204,7 @@ class MeaningTable:
             bool(meaning.lent),
             bool(meaning.call),
             bool(meaning.prints),
+            any(act.name == "table" for act in meaning.acts),
         )
 
     def flag(self, name: str, shape: Ints) -> Flags:

@@ -16,7 +16,7 @@ from gcxform.modal.findings import Findings
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import SAME_POINT, TURN, swept
 from gcxform.toolpath.frames import Frame, by_frame
-from gcxform.toolpath.path import Plane, Toolpath
+from gcxform.toolpath.path import Form, Plane, Toolpath
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,8 @@ class ArcWords:
     """The words of arcs, in mm; nan where a word is missing.
 
     line (n,) in the window; offset (n, 3) is I, J, K; named (n, 3): which of X, Y, Z stand there;
-    absolute (n,): the centre itself is given; inch (n,): the block is in inches.
+    absolute (n,): the centre itself is given; inch (n,): the block is in inches; way (n, 3): its
+    distances along X, Y, Z where it is in G91.
     """
 
     line: Ints
@@ -34,6 +35,7 @@ class ArcWords:
     named: Flags
     absolute: Flags
     inch: Flags
+    way: Floats
 
 
 def resolve_arcs(
@@ -49,6 +51,10 @@ def resolve_arcs(
     lost = np.asarray((np.isnan(ends[0]) & ~np.isnan(ends[1])).any(axis=1))
     frames = path.frames, path.frame[rows]
     start, end = (by_frame(Frame.local, *frames, place[:, :3], -1.0) for place in ends)
+    nowhere = np.isnan(start) & (path.form[rows] == Form.BLIND)[:, None] & ~words.absolute[:, None]
+    if nowhere.any():  # such an arc is worked out as if it began at 0
+        lost &= ~nowhere.any(axis=1)
+        start, end = np.where(nowhere, 0.0, start), np.where(nowhere, words.way, end)
     for plane in Plane:
         here = path.plane[rows] == plane
         if here.any():
@@ -57,6 +63,7 @@ def resolve_arcs(
             part = _Part(plane, chosen, start[here], end[here], unknown, dialect, findings)
             middle, angle = part.resolve(path.sense[rows[here]])
             centre[rows[here]], sweep[rows[here]] = middle, angle
+    centre[rows] = np.where(nowhere, np.nan, centre[rows])
     return _as_positions(path.replace(centre=centre, sweep=sweep), findings)
 
 

@@ -58,6 +58,9 @@ def _written_anew(lines: Lines) -> Flags:
             slot = dict(act.slots).get("L") if act.name == "set-work" else None
             if slot is not None and lines.window.value[int(lines.first[line]) + slot] in kinds:
                 written[line:] = True
+    tables = np.flatnonzero(lines.flag("sets_tables"))
+    if len(tables):
+        written[int(tables[0]) :] = True
     return written
 
 

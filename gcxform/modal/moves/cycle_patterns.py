@@ -20,7 +20,7 @@ from gcxform.modal.frames.track import Break, Track
 from gcxform.modal.moves.cycle_calls import CallColumns
 from gcxform.modal.moves.rows import Rows
 from gcxform.modal.state import CYCLE_OFF
-from gcxform.system.arrays import Floats, Ints
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Event, Form, Plane
 
@@ -67,7 +67,11 @@ class Drilling:
         if not calls.any():
             return np.empty(0, np.int64)
         way = np.where(calls, 1 + modes.plane + 256 * modes.inch, 0)
-        return np.flatnonzero(np.diff(way, prepend=0))
+        borders = np.flatnonzero(np.diff(way, prepend=0))
+        if not self._placeless.any():
+            return borders
+        alone = np.flatnonzero(self._placeless)
+        return np.concatenate([borders, alone, alone + 1])
 
     def moved(self) -> None:
         """Note that a block has moved in a way of its own, perhaps while a cycle is in force."""
@@ -117,6 +121,8 @@ class Drilling:
         frame = len(track.frames) - 1
         self._followed.append(_Followed(first, last, plane, unit, words, frame, dwell, stretch))
         track.state.position = track.frame.positions(after[None, :])[0].copy()
+        if self._placeless[first]:
+            self._leave_open(first, words, after)
         if self._has_manual and (self.modes.cycle[first:last] == MANUAL).any():
             track.breaks.append(Break(last, 1 << plane.axes[2]))
 
@@ -210,20 +216,42 @@ class Drilling:
             self.track.findings.add(line, "GX215", message, "L", hint)
 
     def _refuse_without_place(self) -> None:
-        """Refuse calls that name no place in the plane, where a setting decides if they drill."""
+        """Refuse calls of which a setting decides if they drill, where that matters."""
+        if self._stays:
+            return
+        rule = self.lines.dialect.cycle_rule
+        for line in np.flatnonzero(self._placeless).tolist():
+            first, second, _ = ("XYZ"[k] for k in Plane(int(self.modes.plane[line])).axes)
+            message = f"a cycle without {first} and {second}: a setting decides if it drills"
+            say = f'{rule.alone if rule else ""} = "drills" in [control] of the machine file'
+            hint = f"give {first} or {second}, or say {say}"
+            self.track.findings.add(line, "GX215", message, hint=hint)
+
+    @property
+    def _stays(self) -> bool:
+        """Whether cycles are not written anew, so that what a setting decides may stay open."""
+        return self.cycles is not None and self.cycles.open_pecks
+
+    @cached_property
+    def _placeless(self) -> Flags:
+        """The calls that name no place in the plane, where a setting decides if they drill."""
+        found = np.zeros(self.lines.live, np.bool_)
         rule, control = self.lines.dialect.cycle_rule, self.lines.reading.control
         if rule is None or not rule.alone or control.get(rule.alone) == "drills":
-            return
+            return found
         drills = self.calls & (self.columns.word(self.columns.repeats, slice(None)) != 0)
         has = {letter: ~np.isnan(self.columns.word(letter, slice(None))) for letter in "XYZR"}
         for plane in Plane:
             first, second, normal = ("XYZ"[axis] for axis in plane.axes)
             here = drills & (self.modes.plane == plane) & (has[normal] | has["R"])
-            for line in np.flatnonzero(here & ~has[first] & ~has[second]).tolist():
-                message = f"a cycle without {first} and {second}: a setting decides if it drills"
-                say = f'{rule.alone} = "drills" in [control] of the machine file'
-                hint = f"give {first} or {second}, or say {say}"
-                self.track.findings.add(line, "GX215", message, hint=hint)
+            found |= here & ~has[first] & ~has[second]
+        return found
+
+    def _leave_open(self, line: int, words: Floats, after: Floats) -> None:
+        """Let go of the level behind a call, if it depends on whether the call drills."""
+        normal = Plane(int(self.modes.plane[line])).axes[2]
+        if after[normal] != words[normal]:
+            self.track.lose(line + 1, "XYZ"[normal] if self.track.frame.matrix is None else "XYZ")
 
     def _stretches(self, followed: list[_Followed], line: Ints, bounds: Ints) -> list[Stretch]:
         """Return the columns of stretches, those of plain ones as one."""

@@ -20,6 +20,7 @@ from gcxform.modal.frames.track import Track
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import MANY_WORK, NUMBER, of_splines
 from gcxform.modal.moves.arcs import ArcWords, resolve_arcs
+from gcxform.modal.moves.blind_moves import blind_rows, may_be_blind, ways
 from gcxform.modal.moves.cutter_comp import compensation, refuse_ends
 from gcxform.modal.moves.cycle_patterns import Drilling
 from gcxform.modal.moves.home import own_moves
@@ -62,6 +63,7 @@ class Moves:
     def path(self) -> Toolpath:
         """Return the moves as a toolpath."""
         moving = self._moving()
+        self.track.may_step = may_be_blind(self.lines, self.modes, moving, self.pointing is None)
         lost = self.lines.loses_position()
         of = self._stretches(moving, lost)
         if len(of.borders) > 1 and not (lost.any() or of.lost or self.lines.kept_calls):
@@ -201,6 +203,8 @@ class Moves:
         work = np.append(np.int8(self.state.groups["frame"]), self.modes.work)
         again = self.lines.flag("work_only") & (work[1:] == work[:-1])
         again &= (self.modes.work != MANY_WORK) & ~reset
+        if self.state.frames.unsettled or self.lines.flag("sets_tables").any():
+            again[:] = False
         if not self.state.frames.known and again.any():
             again[int(np.argmax(again))] = False
         return np.flatnonzero((acts & ~again) | reset)
@@ -274,7 +278,7 @@ class Moves:
 
     def _path(self, rows: Rows) -> Toolpath:
         """Return the rows as a toolpath; arcs get their centres."""
-        line = rows.line
+        line, rows = rows.line, blind_rows(self.track, rows)
         path = self._fed(self._unfinished(rows), rows).replace(after_side=self.state.at_side)
         if len(line):
             self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
@@ -387,4 +391,5 @@ class Moves:
             np.stack([~np.isnan(column(a)) for a in "XYZ"], axis=1),
             self.modes.absolute_centre[lines],
             self.modes.inch[lines],
+            ways(self.track, lines),
         )

@@ -58,7 +58,8 @@
 | ATAN, ASIN below 0 | a parameter may add 360 degrees: refused |
 | ROUND in a word | rounds to the increment of the word: refused |
 | computed S T F D H L P | must be whole numbers |
-| #1000 and above | belong to the control: what they go into is lost; only outputs may be set |
+| #1000 and above | belong to the control: what they go into is lost; outputs, timers may be set |
+| #2001, #5221, #7001, #10001, #14001 ... | tables that may be set: lengths, zeros are lost behind |
 | IF WHILE GOTO | executed, or kept where only the machine decides; almost equal: refused |
 | POPEN DPRNT BPRNT PCLOS | alone in a block; kept, what they print is set before |
 """
@@ -186,7 +187,7 @@ class Fanuc(gx.Dialect):
         last_code_wins=True,
         mill=True,
         m_order_chosen=True,
-        unknown_m=gx.MCode("user", loses_position=True),
+        unknown_m=gx.MCode("user", loses_position=True, takes="PQ"),
     )
     flow_rule = gx.FlowRule(
         "macro-b", v.MACRO_B, macro_levels=4, lookup=FILES, null_compare="distinct"

@@ -22,9 +22,10 @@ refused. What is not named here is as in `fanuc`.
 | G10 L10 to L13 | as Fanuc's: lengths and radii of tools are not known from there on | manual |
 | G28 | without axis words every axis goes home at once | manual |
 | a tool length behind G28 | cancelled, or not: it says both, so that it is not known | manual |
+| G53 | goes in G0 or in G1, whichever is in force | manual |
 | G52, G92 | Setting 33: refused unless `[control] g52 = "fanuc"` says that it is FANUC | manual |
 | canned cycles | L counts the holes, L0 stores; I, J, K, and P of G73, G83: refused | known |
-| a cycle without X and Y | Setting 28: refused unless `cycle-without-place = "drills"` | manual |
+| a cycle without X and Y | Setting 28: stays, or `cycle-without-place = "drills"` | manual |
 | G12 G13 G70 G71 G72 G150, drilling | cycles: refused by name | manual |
 | G31 | as Fanuc's | manual |
 | G47 G35 G36 G37 G136 | engraving and probing: refused by name | manual |
@@ -34,6 +35,7 @@ refused. What is not named here is as in `fanuc`.
 | M97 M98 M99 | executed where what they call is found, as Fanuc; P of M98 holds no count | manual |
 | G65 | as Fanuc's, nine deep; L keeps what the macro did to its variables; list II | manual |
 | null EQ 0 | true or not: refused, or `[control] null-compare` | known |
+| #10000 to #10999 | may be set; #10100 and above are other names of #100 to #999 | manual |
 | M96 M198 | jumps at an input, other programs: refused | manual |
 | M16 | is M6 | known |
 | M29, M48, M49 | are no tapping mode and no overrides: as any unknown M code | known |
@@ -63,6 +65,18 @@ NOT_HERE_M = frozenset((29, 48, 49))
 MORE_OFFSETS = tuple(f"G{number}" for number in range(110, 130) if number not in (112, 113))
 CYCLES = {number: replace(one, takes="PQL") for number, one in Fanuc.cycle_rule.cycles.items()}
 CYCLES |= {number: replace(CYCLES[number], takes="QL", open_words="P") for number in (73, 83)}
+OWN = v.MACRO_B.machine
+ARITHMETIC = replace(
+    v.MACRO_B,
+    machine=replace(
+        OWN,
+        outputs=(*OWN.outputs, range(10000, 11000)),
+        lengths=OWN.lengths[:4],
+        aliases=((range(10100, 11000), 10_000),),
+        signals=(*OWN.signals, range(1601, 2001)),
+    ),
+)
+"""#10100 is another name of #100 (NGC); #1601 and above: flutes and the like of tools."""
 POCKETS = ("G12", "G13", "G70", "G71", "G72", "G150")
 FIVE_AXIS_CYCLES = ("G153", "G155", *(f"G{n}" for n in (161, 162, 163, 164, 165, 166, 169)))
 
@@ -114,6 +128,7 @@ class Haas(Fanuc):
     flow_rule = replace(
         Fanuc.flow_rule,
         calls_own_lines=True,
+        arithmetic=ARITHMETIC,
         macro_levels=9,
         repeats_keep=True,
         argument_list="II",
@@ -127,7 +142,9 @@ class Haas(Fanuc):
         dwell={"P": 0.001},
         dwell_in_seconds=True,
     )
-    motion_rule = replace(Fanuc.motion_rule, g28_without_axes=True, g28_ends_length=True)
+    motion_rule = replace(
+        Fanuc.motion_rule, g28_without_axes=True, g28_ends_length=True, g53_is_rapid=False
+    )
     offset_rule = replace(
         Fanuc.offset_rule,
         names={code: f"G154 P{int(code[1:]) - 109}" for code in MORE_OFFSETS},

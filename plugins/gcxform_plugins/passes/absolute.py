@@ -14,7 +14,8 @@ class Absolute(gx.Pass):
     """Write positions instead of distances: G91 becomes G90.
 
     Positions are summed exactly as the control does and rounded once, so nothing drifts. Returns to
-    reference (`G91 G28 Z0`) and canned cycles stay as they are.
+    reference (`G91 G28 Z0`) and canned cycles stay as they are, and so do moves of an axis of which
+    it is not known where it stands, behind a tool change for example.
     """
 
     name = "absolute"

@@ -77,6 +77,10 @@ class Segment(gx.Pass):
         if path.has_splines and self.arcs == "lines":
             path = splines_as_lines(path, self.chord_error)
         arcs = path.is_arc
+        blind = np.flatnonzero(arcs & (path.form == gx.Form.BLIND))
+        if len(blind):
+            hint = "begin with a line to a known point"
+            raise path.refuse("GX208", blind, "an arc, but where it starts is not known", hint)
         pieces = np.ones(len(path), np.int64)
         if arcs.any():
             pieces = np.where(arcs, self._pieces_of_arcs(path), 1)

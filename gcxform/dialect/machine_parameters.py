@@ -1,0 +1,43 @@
+"""What is known of the parameters that belong to the control: it alone knows their values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class MachineParameters:
+    """What is known of the parameters of a control whose values only the machine knows.
+
+    outputs    those that a program may set without any effect on positions
+    lengths    entries of the table of tools, a hundred or two for each kind of number
+    zeros      entries of the table of work offsets
+    aliases    numbers that are other names of a program's own parameters, and how much higher
+    signals    those that mean the same in any unit, mode and place: inputs, clocks, counters
+    names      names of such
+    measured   those that do in any mode and place, in one unit: offsets, results of probes
+    hidden     names that have another value where calls and loops are written out
+    highest    the highest number; a higher one is an error
+    null       the parameter without a value (`gcxform/dialect/null.py`); None: there is none
+    """
+
+    outputs: tuple[range, ...] = ()
+    lengths: tuple[range, ...] = ()
+    zeros: tuple[range, ...] = ()
+    aliases: tuple[tuple[range, int], ...] = ()
+    signals: tuple[range, ...] = ()
+    names: frozenset[str] = frozenset()
+    measured: tuple[range, ...] = ()
+    hidden: frozenset[str] = frozenset()
+    highest: int = 2**31
+    null: int | None = None
+
+    def tool_of(self, number: int) -> int:
+        """Return the number of the tool that an entry of the table of tools belongs to."""
+        of = next(each for each in self.lengths if number in each)
+        return number - of.start + 1
+
+
+def among(key: int | str, numbers: tuple[range, ...]) -> bool:
+    """Whether a parameter has one of some numbers."""
+    return isinstance(key, int) and any(key in each for each in numbers)

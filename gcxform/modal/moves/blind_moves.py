@@ -1,0 +1,81 @@
+"""Moves by distances of axes of which it is not known where they stand: G91 behind a tool change.
+
+Such a move is known from where it begins to where it ends, and not where that is. Its block stays
+as it stands, and the axis is lost as before. What it goes by is noted as an event, in positions: so
+the proof compares it though no end is known. It is refused where what is written would depend on
+more: under cutter compensation, along vectors of the tool, and in another dialect.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gcxform.dialect.dialect import INCH
+from gcxform.modal.frames.track import Track
+from gcxform.modal.lines import Lines
+from gcxform.modal.moves.rows import Rows
+from gcxform.modal.noted import Unknown
+from gcxform.modal.state import Modes
+from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.toolpath.frames import Frame
+from gcxform.toolpath.path import Form, Kind, Plane
+
+KEPT = "moves by distances from where it is not known that an axis stands are kept in G91"
+
+
+def may_be_blind(lines: Lines, modes: Modes, moving: Flags, alone: bool) -> Flags:
+    """Return the lines that may go by distances from nowhere known; `alone`: without vectors."""
+    if lines.reading.crosses or not alone:
+        return np.zeros(lines.live, np.bool_)
+    plain = moving & modes.incremental & (modes.comp == 0)
+    return np.asarray(plain & (modes.motion <= Kind.ARC_CCW))
+
+
+def ways(track: Track, lines: Ints) -> Floats:
+    """Return the distances (n, 3) along X, Y, Z that lines in G91 name, 0 where they name none."""
+    found = np.zeros((len(lines), 3))
+    for k, axis in enumerate("XYZ"):
+        word = track.column(axis)
+        if word is not None:
+            there = word[1][lines] & track.modes.incremental[lines]
+            found[:, k] = np.where(there, word[0][lines], 0.0)
+    return found
+
+
+def blind_rows(track: Track, rows: Rows) -> Rows:
+    """Return rows with the form of those that begin nowhere known, and note what they go by."""
+    may = track.may_step[rows.line] & (rows.form == Form.PLAIN)
+    if not may.any() or not np.isnan(rows.end[may]).any():
+        return rows
+    blind = np.zeros(len(may), np.bool_)
+    for k, axis in enumerate(track.axes):
+        word = track.column(axis)
+        if word is not None:
+            blind |= may & np.isnan(rows.end[:, k]) & word[1][rows.line]
+    arcs = may & (rows.kind >= Kind.ARC_CW)
+    for plane in Plane if arcs.any() else ():
+        here = arcs & (track.modes.plane[rows.line] == plane)
+        blind |= here & np.isnan(rows.end[:, plane.axes[:2]]).any(axis=1)
+    for row in np.flatnonzero(blind).tolist():
+        line, frame = int(rows.line[row]), track.frames[int(rows.frame[row])]
+        track.lines.unknown.append(Unknown(line, _said(track, line, frame), ""))
+    if blind.any():
+        track.state.assumed.setdefault(KEPT, None)
+    form = np.where(blind, np.int8(Form.BLIND), rows.form)
+    return Rows(rows.line, rows.kind, rows.end, rows.nth, form, rows.frame)
+
+
+def _said(track: Track, line: int, frame: Frame) -> str:
+    """Return what a move goes by, mm and degrees in positions, and the words of an arc."""
+    words = track.words_on(line)
+    step = np.array([[words.get(axis, 0.0) for axis in track.axes]])
+    if frame.diameter:
+        step[0, 0] *= 0.5
+    way = zip(track.axes, frame.turned(step)[0].tolist(), strict=True)
+    parts = [f"{axis}{value:.6f}" for axis, value in way if value]
+    scale = INCH if track.modes.inch[line] else 1.0
+    for address in "IJKR" + track.dialect.arc_rule.turns if track.modes.motion[line] > 1 else "":
+        word = track.lines.word(address)
+        if word is not None and word[1][line]:
+            parts.append(f"{address}{word[0][line] * scale:.6f}")
+    return "BY " + " ".join(parts)
