@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from gcxform.dialect.machine_parameters import MachineParameters, among
+from gcxform.dialect.machine_parameters import FANUC, MachineParameters, among
 
 PI = np.longdouble("3.14159265358979323846264338327950288")
 NEAR = 1e-9  # of a number: so far may another control's arithmetic be off
@@ -377,25 +377,5 @@ MACRO_B = Arithmetic(
     beside_words=False,
     local=range(1, 34),
     digits=12,
-    machine=MachineParameters(
-        outputs=(
-            range(1100, 1200),
-            range(3000, 3005),
-            *(range(n, n + 1) for n in (3006, 3901, 3902)),
-        ),
-        lengths=(
-            *(range(first, first + 200) for first in (2001, 2201, 2401, 2601)),
-            *(range(first, first + 999) for first in (10001, 11001, 12001, 13001)),
-        ),
-        zeros=(range(5201, 5400), range(7001, 8000), range(14001, 20001)),
-        signals=(range(1000, 1200), range(3000, 4000)),
-        measured=(
-            range(2001, 3000),
-            range(5061, 5069),
-            range(5201, 5400),
-            range(7001, 8000),
-            range(10001, 20001),
-        ),
-        null=0,
-    ),
+    machine=FANUC,
 )

@@ -41,3 +41,27 @@ class MachineParameters:
 def among(key: int | str, numbers: tuple[range, ...]) -> bool:
     """Whether a parameter has one of some numbers."""
     return isinstance(key, int) and any(key in each for each in numbers)
+
+
+FANUC = MachineParameters(
+    outputs=(
+        range(1100, 1200),
+        range(3000, 3005),
+        *(range(n, n + 1) for n in (3006, 3901, 3902)),
+    ),
+    lengths=(
+        *(range(first, first + 200) for first in (2001, 2201, 2401, 2601)),
+        *(range(first, first + 999) for first in (10001, 11001, 12001, 13001)),
+    ),
+    zeros=(range(5201, 5400), range(7001, 8000), range(14001, 20001)),
+    signals=(range(1000, 1200), range(3000, 4000)),
+    measured=(
+        range(2001, 3000),
+        range(5061, 5069),
+        range(5201, 5400),
+        range(7001, 8000),
+        range(10001, 20001),
+    ),
+    null=0,
+)
+"""Fanuc 16i to 32i, as in manuals of macro B."""
