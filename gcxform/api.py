@@ -68,6 +68,10 @@ class Program:
         """Return the line of the text, from 1, of an executed line; 0 stands for none."""
         return self._executed.line_of(line)
 
+    def place_of(self, line: int) -> tuple[str, int]:
+        """Return the file, and its line, from 1, of an executed line."""
+        return self._executed.place_of(line)
+
     def located(self, error: InputError) -> InputError:
         """Return an error about executed lines as one about those of the text, which it shows."""
         texts, found = self.executed.split(b"\n"), []

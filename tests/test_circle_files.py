@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from circle_kit import CENTRE, FEED, ROUGH, both, errors, read_tests, run, written
 from cli_kit import call
+from picture_kit import drawn
 
 from gcxform.calibrate.circles.causes import SetUp
 from gcxform.calibrate.circles.file import circles_csv
@@ -282,3 +283,17 @@ def test_what_holds_by_direction_or_feed_is_reported_and_in_no_model(here):
     assert np.abs(model.error(np.add(CENTRE, [[70.0, 70, 0]]))).max() < 2e-5
     assert "depends on direction or feed" in Path("m.toml").read_text()
     assert "backlash X        +X +10.00" in done.stdout
+
+
+def test_the_sheet_shows_both_senses_the_causes_and_what_is_left(here):
+    pytest.importorskip("matplotlib")
+    written("r.csv", table(slopes={"EXY": 5e-5}))
+    for file in ("one.svg", "two.svg"):
+        done = call("calibrate", "circles", "--plot", file, "r.csv")
+        assert done.exit_code == 0, done.stderr
+    assert Path("one.svg").read_bytes() == Path("two.svg").read_bytes()
+    groups, text = drawn("one.svg")
+    names = [f"test 1 {part}" for part in ("ccw", "cw", "least", "most", "share squareness")]
+    assert [name for name in names if name not in groups] == []
+    assert {"+X", "-Y", "CCW", "CW", "G(b)", "squareness", "100 %"} <= set(text.splitlines())
+    assert "C0Y: -50.00 +- " in text

@@ -169,8 +169,10 @@ def test_the_picture_has_every_axis_and_its_sense(here: Path) -> None:
     root = ElementTree.parse(here / "mill.svg").getroot()
     shown = {group.get("id") for group in root.iter(f"{SVG}g")}
     assert {"axis A", "A+", "axis C", "C+", "tool", "carries"} <= shown
+    assert {"pivot A", "table", "bearing", "spindle", "tip", "distance"} <= shown
     texts = {(text.text or "").strip() for text in root.iter(f"{SVG}text")}
-    assert {"A+ (table)", "C+ (table)", "trunnion mill"} <= texts
+    assert {"A+ (table)", "C+ (table)", "trunnion mill", "A, turns the table"} <= texts
+    assert {"Y 12", "Z 35", "pivot X5 Y-32 Z-95 mm", "tip"} <= texts
     first = (here / "mill.svg").read_bytes()
     assert call("machine", "draw", "mill.toml", "--tool", "1", "-o", "mill.svg").exit_code == 0
     assert (here / "mill.svg").read_bytes() == first

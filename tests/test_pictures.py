@@ -124,9 +124,13 @@ def test_programs_in_whole_millimetres(here):
         (
             BALLBAR,
             ["XY before cw", "XY after ccw"],
-            ["XY before, 2 um/div", "G(b) 3.65", "+X", "-Y"],
+            ["XY before, 2 um/div", "G(b) 3.65", "+X", "-Y", "CCW", "+2"],
         ),
-        (LINES, ["X before mean up", "Z after low down"], ["deviation, um", "X before"]),
+        (
+            LINES,
+            ["X before mean up", "Z after low down", "Y after band up"],
+            ["deviation, um", "X before", "mean up +- 2 s"],
+        ),
         ((*DIAGONAL, "body"), ["PPP before", "PPN after"], ["body diagonals before", "PPP  E 12"]),
     ],
 )
@@ -223,6 +227,8 @@ def test_the_error_along_a_program_before_and_after(here):
     assert "before: at most 13.85 um" in text
     assert "after: at most 1.35 um" in text
     assert "distance from the programmed path, um" in text
+    assert {"before start", "before end", "before worst", "after worst", "frame"} <= set(groups)
+    assert {"X, mm", "13.85 um, line 12", "1.35 um, line 13"} <= set(text.splitlines())
     colours = {path.get("style") for path in groups["before"].iter(f"{SVG}path")}
     assert len(colours) > 50
     assert call(*SHOW, "-o", "heat.png", PROGRAM).exit_code == 0

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 import numpy as np
 
 from gcxform.diagnostics import Location, UsageError
-from gcxform.system.arrays import Floats
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,6 +32,7 @@ RINGS = 67.5  # degrees at which the rings of a polar diagram have their numbers
 BEFORE, AFTER, MEAN, GREY = "#d55e00", "#0072b2", "#009e73", "#7f8488"
 """Colours that eyes tell apart which do not see red and green (Okabe and Ito), and a grey."""
 INK = "#22272b"  # of what is written and not drawn
+BAR = "#56b4e9"
 STYLE: Any = {
     "svg.hashsalt": "gcxform",  # names inside the file do not change from run to run
     "svg.fonttype": "none",  # text stays text
@@ -122,28 +122,3 @@ def empty(axes: Axes, text: str) -> None:
     """Leave a place of a grid empty but for a word."""
     axes.set_axis_off()
     axes.text(0.5, 0.5, text, ha="center", va="center", color=GREY, transform=axes.transAxes)
-
-
-def isometric(points: Floats) -> Floats:
-    """Return points (..., 3) as they are seen from the front right above, (..., 2)."""
-    right = np.array([1.0, 1.0, 0.0]) / math.sqrt(2.0)
-    up = np.array([-1.0, 1.0, 2.0]) / math.sqrt(6.0)
-    return np.stack([points @ right, points @ up], axis=-1)
-
-
-def triad(axes: Axes, corner: Floats, length: float) -> None:
-    """Draw the directions of X, Y and Z, from a point (3,) in mm."""
-    start = isometric(corner)
-    for k, letter in enumerate("XYZ"):
-        way = np.zeros(3)
-        way[k] = length
-        end = isometric(corner + way)
-        axes.update_datalim([tuple(start.tolist()), tuple(end.tolist())])
-        axes.annotate(
-            letter,
-            xy=(float(start[0]), float(start[1])),
-            xytext=(float(end[0]), float(end[1])),
-            arrowprops={"arrowstyle": "<-", "color": GREY},
-            ha="center",
-            va="center",
-        )

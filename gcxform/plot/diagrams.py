@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gcxform.plot.canvas import AFTER, BEFORE, empty, figure, styled
+from gcxform.plot.canvas import AFTER, BEFORE, GREY, empty, figure, styled
 from gcxform.plot.polar import circle_diagram
 from gcxform.simulate.circles import Circles
 from gcxform.simulate.figures import Positioning
@@ -52,7 +52,7 @@ def _polar(axes: Any, found: Circles, plane: str, name: str) -> None:
 @styled
 def positioning(outcome: Outcome[Positioning], title: str) -> Figure:
     """Return the deviations over the targets: a column an axis, before above after."""
-    made = figure(4.2 * len(outcome.before), 6.4, title)
+    made = figure(4.4 * len(outcome.before), 7.6, title)
     grid = made.subplots(2, len(outcome.before), squeeze=False)
     for row, (side, read) in enumerate((("before", outcome.before), ("after", outcome.after))):
         for axes, (name, found) in zip(grid[row], read.items(), strict=True):
@@ -61,27 +61,35 @@ def positioning(outcome: Outcome[Positioning], title: str) -> Figure:
 
 
 def _positions(axes: Axes, found: Positioning, name: str) -> None:
-    """Draw every reading, the means of both directions, and the limits of 2 s about them."""
+    """Draw every reading, the means of both directions, and the bands of 2 s about them."""
     high_up, low_up, high_down, low_down = (UM * limit for limit in found.limits())
     ways = (
-        ("up", found.up, found.mean_up, low_up, high_up, BEFORE),
-        ("down", found.down, found.mean_down, low_down, high_down, AFTER),
+        ("up", found.up, found.mean_up, low_up, high_up, ("^", AFTER, "-")),
+        ("down", found.down, found.mean_down, low_down, high_down, ("v", BEFORE, (0, (4, 1.6)))),
     )
-    for way, readings, mean, low, high, colour in ways:
-        runs = np.broadcast_to(found.target[:, None], readings.shape)
-        axes.plot(runs.ravel(), UM * readings.ravel(), ".", color=colour, markersize=2.0)
-        axes.plot(
-            found.target, UM * mean, color=colour, label=f"mean {way}", gid=f"{name} mean {way}"
-        )
+    axes.axhline(0.0, color=GREY, linewidth=0.6)
+    for way, readings, mean, low, high, (mark, colour, line) in ways:
         if np.isfinite(low).all():
-            band: dict[str, Any] = {"color": colour, "linewidth": 0.6, "linestyle": ":"}
-            axes.plot(found.target, low, gid=f"{name} low {way}", **band)
-            axes.plot(found.target, high, gid=f"{name} high {way}", **band)
-    figures = "  ".join(_figure(found.figures, s) for s in ("A", "R", "E", "M", "B"))
-    axes.set_title(f"{name}\n{figures} um")
+            band: dict[str, Any] = {"color": colour, "alpha": 0.16, "linewidth": 0.0}
+            label = f"mean {way} +- 2 s"
+            axes.fill_between(
+                found.target, low, high, label=label, gid=f"{name} band {way}", **band
+            )
+            edge: dict[str, Any] = {"color": colour, "linewidth": 0.6, "linestyle": ":"}
+            axes.plot(found.target, low, gid=f"{name} low {way}", **edge)
+            axes.plot(found.target, high, gid=f"{name} high {way}", **edge)
+        runs = np.broadcast_to(found.target[:, None], readings.shape)
+        axes.plot(runs.ravel(), UM * readings.ravel(), mark, color=colour, markersize=2.2)
+        style: dict[str, Any] = {"color": colour, "linestyle": line, "linewidth": 1.2}
+        axes.plot(found.target, UM * mean, label=f"mean {way}", gid=f"{name} mean {way}", **style)
+    axes.set_title(name)
     axes.set_xlabel("target, mm")
     axes.set_ylabel("deviation, um")
-    axes.legend(loc="best")
+    rows = (("A", "R", "E"), ("M", "B"))
+    lines = ["   ".join(_figure(found.figures, symbol) for symbol in row) for row in rows]
+    place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.16), "ncols": 2}
+    key = axes.legend(title="   ".join(lines) + " um", **place)
+    key.get_title().set(weight="bold", fontsize=7.5)
 
 
 def _figure(figures: Mapping[str, float], symbol: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +11,8 @@ from gcxform.errormodel.model import AXES, ErrorModel, Outside
 from gcxform.errormodel.pitch import PitchTables
 from gcxform.errormodel.sum import Sum
 from gcxform.errormodel.thermal import ThermalScrew
-from gcxform.plot.canvas import AFTER, BEFORE, GREY, empty, figure, isometric, nice, styled, triad
+from gcxform.plot.canvas import AFTER, BAR, BEFORE, GREY, INK, MEAN, figure, nice, styled
+from gcxform.plot.space import frame, isometric
 from gcxform.simulate.virtual import ranges
 from gcxform.system.arrays import Floats
 
@@ -111,46 +112,90 @@ def _slope(curve: tuple[Floats, Floats]) -> float:
 
 @styled
 def model(shown: ErrorModel, title: str) -> Figure:
-    """Return the picture of a model: the grid of functions, if it has any, above the volume."""
+    """Return the picture of a model: the functions it has, the squareness, and the volume.
+
+    There are panes for functions that the model has and for no others: beside the volume where
+    they are few, above it where angular errors make them many.
+    """
     found = curves(shown)
     if not found:
-        made = figure(8.0, 7.0, title)
+        made = figure(8.0, 7.4, title)
         _volume(made.add_subplot(), shown)
         return made
-    made = figure(13.0, 13.0, title)
-    grid = made.add_gridspec(4, 6, height_ratios=[1.0, 1.0, 1.0, 3.0])
-    for row, axis in enumerate(AXES):
-        for column, letter in enumerate(AXES + TURNS):
-            _function(made.add_subplot(grid[row, column]), f"E{letter}{axis}", found)
-    _squareness(made.add_subplot(grid[3, :2]), found)
-    _volume(made.add_subplot(grid[3, 2:]), shown)
+    rows = [axis for axis in AXES if any(name[2] == axis for name in found)]
+    columns = [letter for letter in AXES + TURNS if any(name[1] == letter for name in found)]
+    wide = len(columns) > len(AXES)
+    angles = squareness(found)
+    if wide:
+        made = figure(2.25 * len(columns), 1.9 * len(rows) + 5.6, title)
+        both = made.add_gridspec(2, 1, height_ratios=[1.9 * len(rows), 5.6])
+    else:
+        made = figure(2.6 * len(columns) + 5.8, max(5.4, 2.5 * len(rows)), title)
+        both = made.add_gridspec(1, 2, width_ratios=[2.6 * len(columns), 5.8])
+    panes = both[0].subgridspec(len(rows), len(columns))
+    for row, axis in enumerate(rows):
+        for column, letter in enumerate(columns):
+            if f"E{letter}{axis}" in found:
+                _function(made.add_subplot(panes[row, column]), f"E{letter}{axis}", found)
+    _lower(made, both[1], shown, (angles, wide))
     return made
 
 
+def _lower(
+    made: Figure, place: Any, shown: ErrorModel, said: tuple[Mapping[str, float], bool]
+) -> None:
+    """Draw the volume, and the squareness if there is any: beside it, or below."""
+    angles, beside = said
+    if not angles:
+        _volume(made.add_subplot(place), shown)
+    elif beside:
+        parts = place.subgridspec(3, 2, width_ratios=[1.0, 2.4], height_ratios=[1.0, 1.6, 1.0])
+        _squareness(made.add_subplot(parts[1, 0]), angles)
+        _volume(made.add_subplot(parts[:, 1]), shown)
+    else:
+        parts = place.subgridspec(2, 1, height_ratios=[4.4, 1.0])
+        _volume(made.add_subplot(parts[0]), shown)
+        _squareness(made.add_subplot(parts[1]), angles)
+
+
 def _function(axes: Axes, name: str, found: Curves) -> None:
-    """Draw one function over the travel of its axis."""
-    if name not in found:
-        empty(axes, f"{name}: none")
-        return
-    position, value = found[name]
-    axes.plot(
-        position,
-        UM * value if name[1] in AXES else 1e6 * value,
-        color=BEFORE if name[1] in AXES else AFTER,
-        gid=name,
-    )
+    """Draw one function over the travel of its axis, in both directions where they differ."""
+    scale, unit, colour = (UM, "um", AFTER) if name[1] in AXES else (1e6, "urad", MEAN)
+    ways: dict[str, dict[str, Any]] = {
+        name: {"color": colour, "label": "forward"},
+        name + REVERSE: {"color": BEFORE, "label": "reverse", "linestyle": (0, (4, 1.6))},
+    }
+    axes.axhline(0.0, color=GREY, linewidth=0.6)
+    for curve, style in ways.items():
+        if curve not in found:
+            continue
+        position, value = found[curve]
+        axes.plot(position, scale * value, gid=curve, **style)
+        if len(position) < FINE:
+            axes.plot(position, scale * value, ".", color=style["color"], markersize=2.5)
     if name + REVERSE in found:
-        position, value = found[name + REVERSE]
-        axes.plot(position, UM * value, color=AFTER, gid=name + REVERSE)
-        axes.legend(["forward", "reverse"])
-    axes.set_title(f"{name}, {'um' if name[1] in AXES else 'urad'}")
-    axes.set_xlabel(f"{name[2]}, mm")
+        axes.legend()
+    axes.set_title(f"{name}, {unit}")
+    axes.set_xlabel(f"{name[2]}, mm", fontsize=7.0, labelpad=1.0)
+    axes.tick_params(labelsize=7.0)
 
 
-def _squareness(axes: Axes, found: Curves) -> None:
-    """Write the angles between the axes."""
-    lines = [f"{name} {1e6 * value:+.3f} urad" for name, value in squareness(found).items()]
-    empty(axes, "\n".join(["squareness, from the ends of the curves", *lines]))
+def _squareness(axes: Axes, angles: Mapping[str, float]) -> None:
+    """Draw the angles between the axes as bars, with their numbers."""
+    names = [*angles]
+    values = [1e6 * angles[name] for name in names]
+    most = max([1e-9, *map(abs, values)])
+    axes.barh(range(len(names)), values, 0.55, color=BAR, gid="squareness")
+    axes.axvline(0.0, color=INK, linewidth=0.8)
+    axes.set_yticks([])
+    axes.invert_yaxis()
+    axes.set_xlim(-2.6 * most, 2.6 * most)
+    for row, (name, value) in enumerate(zip(names, values, strict=True)):
+        side = "left" if value >= 0.0 else "right"
+        words = f" {name} {value:+.3f} urad "
+        axes.text(value, row, words, va="center", ha=side, fontsize=7.0, color=INK)
+    axes.set_title("squareness, from the ends of the curves, urad")
+    axes.grid(visible=False, axis="y")
 
 
 # --- the volume ---
@@ -170,18 +215,42 @@ def _volume(axes: Axes, shown: ErrorModel) -> None:
     lines = [line for line in _lines(places)]
     plain = [isometric(line) for line in lines]
     bent = [isometric(line + factor * shown.error(line, Outside.CLAMP)) for line in lines]
-    axes.add_collection(LineCollection(plain, colors=GREY, linewidths=0.4, gid="nominal"))
-    axes.add_collection(LineCollection(bent, colors=BEFORE, linewidths=0.7, gid="actual"))
+    axes.add_collection(LineCollection(plain, colors=GREY, linewidths=0.5, gid="nominal"))
+    axes.add_collection(LineCollection(bent, colors=BEFORE, linewidths=0.9, gid="actual"))
     start, tip = isometric(points), isometric(points + factor * error)
-    arrows: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.0022}
+    arrows: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.0026}
     axes.quiver(*start.T, *(tip - start).T, color=AFTER, gid="errors", zorder=3, **arrows)
     low, high = box.T
-    triad(axes, low - 0.12 * (high - low), 0.15 * size)
+    frame(axes, low, high)
+    _scale_bar(axes, factor, largest, box)
     axes.autoscale_view()
     axes.set_aspect("equal")
     axes.margins(0.05)
     axes.set_axis_off()
     axes.set_title(f"errors x {factor:g}, largest {UM * largest:.2f} um at the places shown")
+    axes.legend(handles=_volume_key(), loc="upper right")
+
+
+def _volume_key() -> list[Any]:
+    """Return what the lines of a volume are."""
+    from matplotlib.lines import Line2D
+
+    styles = (("nominal", GREY, 0.8), ("as the machine has it", BEFORE, 1.2), ("error", AFTER, 1.6))
+    return [Line2D([], [], color=c, linewidth=w, label=name) for name, c, w in styles]
+
+
+def _scale_bar(axes: Axes, factor: float, largest: float, box: Floats) -> None:
+    """Draw how long a round number of micrometres is, above the volume."""
+    if not largest > 0.0:
+        return
+    length = nice(UM * largest / 2.0) / UM  # mm
+    corner = isometric(np.array([box[0, 0], box[1, 0], box[2, 1]]))
+    left, up = float(corner[0]), float(isometric(box[:, 1] * [0, 1, 1] + box[:, 0] * [1, 0, 0])[1])
+    ends = left, left + factor * length
+    axes.plot(ends, (up, up), color=AFTER, linewidth=2.4, gid="scale bar", solid_capstyle="butt")
+    axes.annotate(
+        f"{UM * length:g} um", (left, up), (0, 4), textcoords="offset points", color=INK, fontsize=7
+    )
 
 
 def _shown_box(shown: ErrorModel) -> Floats:

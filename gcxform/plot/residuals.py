@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 UM = 1000.0  # per mm
 COLOURS = (BEFORE, AFTER, MEAN)
+MARKS = ("o", "^", "s")
 AROUND = np.arange(0.0, 361.0, 5.0)  # degrees
 WIDTH = 4.2  # inches, of a diagram
 
@@ -90,9 +91,9 @@ def _points(
     """Draw residuals, um, over the angle of an axis; those not kept as crosses, near the rim."""
     turns = np.radians(degrees)
     most = max(float(np.abs(values[kept]).max()) for values in parts.values())
-    for (name, values), colour in zip(parts.items(), COLOURS, strict=False):
-        style: dict[str, Any] = {"color": colour, "linestyle": "none"}
-        axes.plot(turns[kept], values[kept], ".", gid=f"{letter} {name}", label=name, **style)
+    for (name, values), colour, mark in zip(parts.items(), COLOURS, MARKS, strict=False):
+        style: dict[str, Any] = {"color": colour, "linestyle": "none", "markersize": 4.0}
+        axes.plot(turns[kept], values[kept], mark, gid=f"{letter} {name}", label=name, **style)
         if not kept.all():
             out = np.clip(values[~kept], -1.5 * most, 1.5 * most)
             axes.plot(turns[~kept], out, "x", gid=f"{letter} {name} left out", **style)

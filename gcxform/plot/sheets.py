@@ -13,7 +13,7 @@ import numpy as np
 from gcxform.calibrate.circles.circles import Fitted
 from gcxform.calibrate.circles.machine import Identified
 from gcxform.calibrate.circles.report import machine, share_words, sheet
-from gcxform.plot.canvas import GREY, INK, figure, styled
+from gcxform.plot.canvas import BAR, GREY, INK, figure, styled
 from gcxform.plot.polar import LINES, circle_diagram
 
 if TYPE_CHECKING:
@@ -24,7 +24,6 @@ UM = 1000.0  # per mm
 WIDE, HIGH = 11.0, 4.9  # inches, of a test
 COLUMNS = (0.0, 0.21, 0.755, 0.78)  # name, sizes, effect (its right end), bar
 PANEL = 0.10  # of the width, for the number of a share
-BAR = "#56b4e9"
 LINE = 0.2  # inches, of a line about the machine
 LEAST = 0.5  # the share for which a bar is as long as can be, at least
 ROWS = 14.0  # for which a table has room

@@ -6,7 +6,7 @@ the compensated program belongs to which move of the program says its source map
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,12 +33,30 @@ class Heat:
     start, end  (n, 3) mm, positions of the program
     deviation   (n,) mm, an upper bound over the piece; of a rapid, of its end
     rapid       (n,) whether the piece is of a rapid
+    line        (n,) the executed line, from 1, of the program's move that it belongs to
+    worst_at    the place of the worst in words: line 12, line 3 of sub.nc
     """
 
     start: Floats
     end: Floats
     deviation: Floats
     rapid: Flags
+    line: Ints
+    worst_at: str = ""
+
+    @property
+    def worst(self) -> int | None:
+        """The piece that is farthest off, of what is no rapid; None if there is nothing else."""
+        feeds = np.flatnonzero(~self.rapid)
+        return int(feeds[np.argmax(self.deviation[feeds])]) if len(feeds) else None
+
+    def placed(self, program: Program) -> Heat:
+        """Return the same with the place of the worst in the files of a program."""
+        if self.worst is None:
+            return self
+        file, line = program.place_of(int(self.line[self.worst]))
+        beside = "" if file == program.name else f" of {file.rpartition('/')[2]}"
+        return replace(self, worst_at=f"line {line}{beside}")
 
     @property
     def largest(self) -> float:
@@ -65,7 +83,8 @@ def before_and_after(program: Program, pipeline: Pipeline) -> tuple[Heat, Heat, 
     for step in reversed(pipeline.path_passes):
         written = step.undo(written, context)
     before = deviations(nominal, bare, _same_moves(nominal, bare))
-    return before, deviations(nominal, written, owners(nominal, written, line)), result
+    after = deviations(nominal, written, owners(nominal, written, line))
+    return before.placed(program), after.placed(program), result
 
 
 def _bare(path: Toolpath, pipeline: Pipeline) -> Toolpath:
@@ -92,7 +111,8 @@ def deviations(nominal: Toolpath, actual: Toolpath, owner: Ints) -> Heat:
     start, end = fine.start, fine.end
     known = np.isfinite(start).all(axis=1) & np.isfinite(end).all(axis=1) & np.isfinite(found)
     rapid = nominal.kind[owner[which]] == Kind.RAPID
-    return Heat(start[known], end[known], found[known], rapid[known])
+    line = nominal.source[owner[which]] + 1
+    return Heat(start[known], end[known], found[known], rapid[known], line[known])
 
 
 def _see_splines(nominal: Toolpath, fine: Toolpath, owner: Ints, found: Floats) -> None:
