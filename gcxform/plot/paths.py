@@ -27,9 +27,14 @@ def heat(before: Heat, after: Heat, title: str) -> Figure:
     made = figure(13.0, 6.2, title)
     grid = made.subplots(1, 2)
     most = UM * max(before.largest, after.largest) or 1.0
+    ends = np.vstack([before.start, before.end, after.start, after.end])
     drawn = None
     for axes, found, name in zip(grid, (before, after), ("before", "after"), strict=True):
-        drawn = _path(axes, found, name, most) or drawn
+        if found.worst is None:
+            empty(axes, f"{name}: nothing but rapids")
+            continue
+        frame(axes, ends.min(axis=0), ends.max(axis=0))
+        drawn = _path(axes, found, name, most)
     if drawn is not None:
         bar = made.colorbar(
             drawn, ax=list(grid), label="distance from the programmed path, um", shrink=0.8
@@ -50,12 +55,6 @@ def heat(before: Heat, after: Heat, title: str) -> Figure:
 
 def _path(axes: Axes, found: Heat, name: str, most: float) -> Any:
     """Draw one path, the worst pieces on top; return what the colours are of."""
-    feeds = np.flatnonzero(~found.rapid)
-    if not len(feeds):
-        empty(axes, f"{name}: nothing but rapids")
-        return None
-    both = np.vstack([found.start, found.end])
-    frame(axes, both.min(axis=0), both.max(axis=0))
     drawn = _pieces(axes, found, name, most)
     _marks(axes, found, name)
     axes.autoscale_view()

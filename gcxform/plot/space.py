@@ -103,7 +103,7 @@ def ticks(low: float, high: float, size: float) -> list[float]:
 
     count = max(1, round(TICKS * min(1.0, 1.6 * (high - low) / size)))
     values = MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
-    slack = 1e-9 * (high - low)
+    slack = 1e-3 * (high - low)
     return [float(v) + 0.0 for v in values if low - slack <= v <= high + slack]
 
 

@@ -277,8 +277,8 @@ MUTATIONS = (
     Mutation(
         "picture: arrows turn against +",
         "gcxform/plot/chains.py",
-        "AROUND)  # the sense of +",
-        "-AROUND)  # the sense of +",
+        "AROUND) + point  # the sense of +",
+        "-AROUND) + point  # the sense of +",
         WORDS,
     ),
 )
