@@ -20,6 +20,7 @@ from gcxform.dialect.codes import (
     call,
     frame,
     inert,
+    measures,
 )
 from gcxform.dialect.cycle_rule import (
     BORE_STOP,
@@ -89,6 +90,7 @@ __all__ = [
     "feed",
     "frame",
     "inert",
+    "measures",
     "rapid",
     "tap",
 ]

@@ -148,3 +148,32 @@ def test_a_table_that_cannot_be_added_to_is_refused(shop: Path) -> None:
     found = call(*NEW)
     assert (found.exit_code, "GX435" in found.stderr) == (2, True)
     assert (shop.parent / "m.toml").read_text() == 'format = 1\ncontrol.g52 = "fanuc"\n'
+
+
+CALLS = """%
+O1
+G21 G90 G94 G17 G54 G0 X0. Y0. Z5.
+G100 T1
+G65 P9832
+X60.
+M30
+%
+"""
+
+
+def test_calls_and_codes_that_cannot_be_looked_up_are_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is asked may be pasted, left open, and filled in."""
+    here = workplace(tmp_path, monkeypatch)
+    (here / "calls.nc").write_text(CALLS)
+    new = ("machine", "new", "-f", "fanuc", "calls.nc", "-o", "m.toml")
+    assert call(*new).exit_code == 0
+    text = (here / "m.toml").read_text()
+    asked = '# where axes are behind it: "unchanged", "unknown" or "at XYZ"\n'
+    assert f"[control.macro.G100]\n{asked}" in text
+    assert f"[control.macro.P9832]\n{asked}" in text
+    check = ("check", "-f", "fanuc", "-x", "absolute", "-m", "m.toml", "calls.nc")
+    assert call(*check).exit_code != 0
+    fill_in(here / "m.toml", ends='"unknown"')
+    assert call(*check).exit_code == 0

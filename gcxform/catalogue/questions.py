@@ -38,6 +38,7 @@ MEANINGS: Final[Mapping[Question, str]] = {
     ("input", "units"): 'units before the first G20 or G21: "mm" or "in"',
     ("input", "parameters"): "what a parameter is worth that the program reads and does not set",
     ("control", "inert-m"): "which of these M codes move no axis and set no variable: [20, 21]",
+    ("control", "macro"): 'where axes are behind it: "unchanged", "unknown" or "at XYZ"',
     ("tool", "length"): "from the gauge point of the spindle to the tip, mm: what H calls",
     ("tool", "radius"): "mm: what D calls, half of it where the control has diameters",
     ("work-offset",): "the zero of the work offset in the machine, as the page of offsets has it",
@@ -70,6 +71,9 @@ def questions(hint: str) -> Iterator[tuple[Question, Any]]:
         section, *name = setting.section.split(".", 1)
         if section == PIPELINE and setting.key in _INPUT:
             yield from _of_input(setting)
+        elif name and section == "control":
+            table, _, call = name[0].partition(".")
+            yield (section, table, call.strip('"'), setting.key), setting.worth()
         elif section in _MACHINE:
             yield (section, *(part.strip('"') for part in name), setting.key), setting.worth()
 

@@ -26,7 +26,8 @@ class Effect(Enum):
 class Code:
     """One G code. `takes` are the address letters of the words that are parameters to it.
 
-    `act` names what a code with Effect.FRAME does (`gcxform/modal/frames/acts.py`). `lengths` are
+    `act` names what a code with Effect.FRAME does (`gcxform/modal/frames/acts.py`), and of one with
+    Effect.CALL where it ends, as a machine file would say it. `lengths` are
     those of the words it takes that are in the unit of the program; of a code with an act, all axis
     words.
     `after`: it acts at the end of its block, which is that of the last piece where the block is
@@ -105,6 +106,11 @@ def barrier(group: str, reason: str, takes: str = "") -> Code:
 def call(group: str, takes: str) -> Code:
     """Return a code that calls a program with values, by its number in P."""
     return Code(group, Effect.CALL, takes)
+
+
+def measures(takes: str) -> Code:
+    """Return a code that moves by itself and writes an offset: it is kept, and both are lost."""
+    return Code("non-modal", Effect.CALL, takes, act="unknown")
 
 
 ISO: Mapping[str, Code] = {

@@ -127,6 +127,7 @@ class FlowRule:
     macro_levels    how many calls with values may be inside each other; 0: there are none
     repeats_keep    variables keep what a call did to them when L calls again; None: not known
     argument_list   "II" if I, J, K may come again; "" where a parameter decides
+    kept_codes      codes of the machine file whose blocks are kept as calls
     null_compare    whether null is equal to 0: "distinct", "zero", or "" where that is not known
     """
 
@@ -138,3 +139,4 @@ class FlowRule:
     repeats_keep: bool | None = None
     argument_list: str = ""
     null_compare: str = ""
+    kept_codes: frozenset[str] = frozenset()

@@ -14,7 +14,7 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.flow.oword_names import STANDS
 from gcxform.syntax.source import COMMENT, Source
 
-CODE = re.compile("[GM][0-9]+")
+CODE = re.compile("[GM][0-9]+|T")
 TO_THE_END = re.compile(rb";[^\r\n]*")
 NUMBERED = rb"(?:N[ \t]*[0-9.]+[ \t]*)?"
 MODES = rb"M[ \t]*0*(?:98|7[0-3])(?![0-9])"
@@ -68,7 +68,11 @@ PROOFS = {
 def aliases(control: Mapping[str, str | float]) -> dict[str, int]:
     """Return the programs that codes call, by code, as a machine file says: G100 calls O9010."""
     said = ((name.removeprefix("macro "), value) for name, value in control.items())
-    return {name: int(value) for name, value in said if CODE.fullmatch(name)}
+    return {
+        name: int(value)
+        for name, value in said
+        if CODE.fullmatch(name) and not isinstance(value, str)
+    }
 
 
 def has_flow(source: Source, dialect: type[Dialect], control: Mapping[str, str | float]) -> bool:

@@ -187,7 +187,9 @@ class Listing:
 
 
 def code_name(word: Word) -> str:
-    """Return a G or M code as it is called; "" for one that is computed, and for other words."""
+    """Return a G or M code as it is called, "T" for a T word; "" for others and computed ones."""
+    if word.address == "T":
+        return "T"
     named = word.address in "GM" and isinstance(word.value, Number)
     return f"{word.address}{word.value.value:g}" if named else ""
 

@@ -18,6 +18,9 @@ from gcxform.syntax.tree import Word
 
 LOCALS = MACRO_B.local
 LOCALS_AT_START, REPEATS = "local-variables", "macro-repeat"
+BY = " by "
+T_VALUE = 149
+"""The variable that has the value of a T that calls (6001#5, executor B-62093E-1 p. 32)."""
 NO_VALUES = "PLGN"
 """Addresses of a call that give no values: what is called, and how often."""
 
@@ -58,7 +61,7 @@ class ValueCalls:
             name = code_name(word)
             if name not in self.aliases:
                 continue
-            inside = any(call.name in self.aliases for call in self.run.calls)
+            inside = any(call.name.rpartition(BY)[2] in self.aliases for call in self.run.calls)
             if nth or inside:
                 what = "behind other words" if nth else "inside a program that such a code calls"
                 place = (word.start, word.end)
@@ -67,6 +70,10 @@ class ValueCalls:
                 )
             return name, self.aliases[name]
         return None
+
+    def shares(self, name: str) -> bool:
+        """Whether a code calls a program that has the variables of its caller."""
+        return f"shared {name}" in self.run.reading.control
 
     def give(self, call: Call) -> None:
         """Make the variables of a call."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from gcxform.flow.execution import HINT
 from gcxform.flow.listing import Definition, Listing, bare
-from gcxform.flow.macro_calls import ValueCalls
+from gcxform.flow.macro_calls import BY, T_VALUE, ValueCalls
 from gcxform.flow.macro_words import Loop, MacroWords, statement_of
 from gcxform.flow.modal_calls import BEGINS, ENDS, Modal, ModalCalls
 from gcxform.flow.numbered_files import begins_program, file_of, first_block, program_number
@@ -121,6 +121,9 @@ class MacroB(MacroWords):
         items = bare(block)
         words = [item for item in items if isinstance(item, Word)]
         alias = self.values.alias(words)
+        if alias and self.values.shares(alias[0]):
+            self._call_sharing(block, items, *alias)
+            return True
         if alias or (
             words and words[0] is items[0] and self.values.levels and _code(words[0]) == "G65"
         ):
@@ -205,6 +208,19 @@ class MacroB(MacroWords):
             target, times = self._unpacked(target, times, block)
             first = self._start(target)
         self.enter(Call(name, self.at, first, times))
+
+    def _call_sharing(
+        self, block: Block, items: list[Word | Statement], name: str, number: int
+    ) -> None:
+        """Call the program of a code, with the variables of its caller."""
+        self.refuse_more(items, name[0])
+        first = self._start(number)
+        if name == "T":
+            value = self.number(block, "T")
+            self.set({T_VALUE: value})
+            if text := self.lasting.account(T_VALUE, value):
+                self.write_line(text)
+        self.enter(Call(f"M98 P{number}{BY}{name}", self.at, first))
 
     def _call_with_values(
         self, block: Block, words: list[Word], name: str = "", number: int = 0

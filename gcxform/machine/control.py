@@ -14,16 +14,12 @@ from typing import Any, ClassVar, Final
 from gcxform.config.quantities import LENGTH
 from gcxform.config.toml_text import TomlText, did_you_mean
 from gcxform.diagnostics import Diagnostic
+from gcxform.machine import macro_tables
 from gcxform.machine.machine import SWITCHES, TIP_AT_START
+from gcxform.machine.macro_tables import MACRO
 
 INERT: Final = "inert-m"
 """The setting that lists M codes which move nothing."""
-MACRO: Final = "macro"
-"""The table that says what calls do whose programs are not at hand."""
-ENDS: Final = ("unchanged", "unknown", "at XYZ")
-_ENDS = re.compile("unchanged|unknown|at [XYZABCUVW]{1,9}")
-_CALLED = re.compile("P[1-9][0-9]{0,7}")
-_ALIAS = re.compile("[GM][1-9][0-9]{0,2}")
 Value = str | float | list[int] | dict[str, dict[str, str | int]]
 LIKE: Final = "like"
 """The key that names a preset, which is gone when the settings are read."""
@@ -119,8 +115,7 @@ def settings_of(control: Mapping[str, Value]) -> dict[str, str | float]:
     """Return the values of a section that has no findings; lengths in mm."""
     found = {k: _KNOWN[k].read(v) for k, v in control.items() if k not in (INERT, MACRO)}
     calls = control.get(MACRO, {})
-    said = calls.items() if isinstance(calls, dict) else ()
-    return found | {f"{MACRO} {name}": next(iter(each.values())) for name, each in said}
+    return found | (macro_tables.calls_of(calls) if isinstance(calls, dict) else {})
 
 
 def inert_of(control: Mapping[str, Value]) -> frozenset[int]:
@@ -133,7 +128,7 @@ def findings(document: TomlText, control: Mapping[str, Value]) -> Iterator[Diagn
     """Yield what is wrong with a section."""
     for name, value in control.items():
         if name == MACRO:
-            yield from _macro_findings(document, value)
+            yield from macro_tables.findings(document, value)
             continue
         if name != INERT and name not in _KNOWN:
             known = [*_KNOWN, INERT, MACRO]
@@ -148,31 +143,6 @@ def findings(document: TomlText, control: Mapping[str, Value]) -> Iterator[Diagn
             where = document.where("control", name)
             yield Diagnostic(document.codes.wrong_value, f"{name}: {error}", where, hint)
     yield from _switch_findings(document, control)
-
-
-def _macro_findings(document: TomlText, value: Value) -> Iterator[Diagnostic]:
-    """Yield what is wrong with what is said of calls."""
-    code = document.codes.wrong_value
-    if not isinstance(value, dict):
-        message = f'{MACRO}: expected tables, such as [control.macro."P9810"]'
-        yield Diagnostic(code, message, document.where("control", MACRO))
-        return
-    for name, said in value.items():
-        where = document.where("control", MACRO, name)
-        if _ALIAS.fullmatch(name):
-            number = said.get("program") if isinstance(said, dict) and len(said) == 1 else None
-            if type(number) is not int or not 0 < number < 10**8:
-                yield Diagnostic(code, f"{name}: expected program = 9010, or its like", where)
-        elif not _CALLED.fullmatch(name):
-            message = f'{name}: expected a call or a code, such as "P9810", "G100" or "M50"'
-            yield Diagnostic(code, message, where)
-        elif (
-            not isinstance(said, dict)
-            or said.keys() != {"ends"}
-            or not _ENDS.fullmatch(str(said["ends"]))
-        ):
-            wanted = " or ".join(f'ends = "{each}"' for each in ENDS)
-            yield Diagnostic(code, f"{name}: expected {wanted}", where)
 
 
 def _switch_findings(document: TomlText, control: Mapping[str, Value]) -> Iterator[Diagnostic]:
@@ -191,19 +161,9 @@ def _switch_findings(document: TomlText, control: Mapping[str, Value]) -> Iterat
 def schema() -> dict[str, Any]:
     """Return the JSON Schema of the section."""
     codes = {"type": "array", "items": {"type": "integer"}}
-    ends = {
-        "ends": {
-            "type": "string",
-            "pattern": f"^({_ENDS.pattern})$",
-            "description": "where the axes are behind the call",
-        }
-    }
-    ends["program"] = {"type": "integer", "description": "the program that the code calls"}
-    one = {"type": "object", "properties": ends, "minProperties": 1, "maxProperties": 1}
-    macro = {"type": "object", "additionalProperties": {**one, "additionalProperties": False}}
     known = {name: setting.schema() for name, setting in _KNOWN.items()}
     like = {"type": "string", "description": "a preset of a machine"}
-    properties = {**known, INERT: codes, MACRO: macro, LIKE: like}
+    properties = {**known, INERT: codes, MACRO: macro_tables.schema(), LIKE: like}
     return {"type": "object", "properties": properties, "additionalProperties": False}
 
 

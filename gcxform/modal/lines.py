@@ -9,6 +9,7 @@ import numpy as np
 from gcxform.dialect.dialect import INCH, LINEAR, Dialect
 from gcxform.modal.columns import fill
 from gcxform.modal.findings import Findings
+from gcxform.modal.meaning.calls import NUMBERED
 from gcxform.modal.meaning.lathe import LATHE
 from gcxform.modal.meaning.tables import (
     COLUMNS,
@@ -101,10 +102,13 @@ class Lines:
         found = []
         for line in np.flatnonzero(self.flag("calls")).tolist():
             meaning = self.table.meanings[int(self.shape[line])]
-            slot = dict(meaning.call_slots).get("P", 0)
-            number = float(self.window.value[int(self.first[line]) + slot])
-            ends = str(self.reading.control.get(f"macro P{number:g}", ""))
-            found.append(KeptCall(line, f"P{number:g}", ends))
+            name = meaning.call
+            if name == NUMBERED:
+                slot = dict(meaning.call_slots).get("P", 0)
+                name = f"P{float(self.window.value[int(self.first[line]) + slot]):g}"
+            code = self.dialect.codes.get(name)
+            ends = self.reading.control.get(f"macro {name}", code.act if code else "")
+            found.append(KeptCall(line, name, str(ends)))
         return tuple(found)
 
     @cached_property

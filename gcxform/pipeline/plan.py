@@ -28,6 +28,7 @@ import numpy as np
 from gcxform.config import arguments
 from gcxform.config.to_fill_in import Open
 from gcxform.contract.options import taken
+from gcxform.contract.own_codes import with_own_codes
 from gcxform.contract.passes import Pass, PassContext, TextPass, resolved
 from gcxform.contract.tip_codes import with_refusal, with_switches, with_vectors, without_tip_codes
 from gcxform.diagnostics import Diagnostic, UsageError
@@ -115,9 +116,10 @@ class Plan:
             arguments.instance("numbers", numbers, NumberFormat, "a NumberFormat")
         if machine is not None:
             arguments.instance("machine", machine, Machine, "a machine, as load_machine gives it")
+        control = machine.control if machine is not None else {}
         return {
-            "source": dialect_of(self.source),
-            "target": dialect_of(self.target),
+            "source": with_own_codes(dialect_of(self.source), control),
+            "target": with_own_codes(dialect_of(self.target), control),
             "passes": tuple(taken(step) for step in steps),
             "budget": None if self.budget is None else limit("budget", self.budget),
             "growth": None if self.growth is None else limit("growth", self.growth),

@@ -86,7 +86,7 @@ def _done(code: Code) -> bool:
 def _acts(dialect: type[Dialect]) -> Complaints:
     for name, code in dialect.codes.items():
         if code.effect is not Effect.FRAME:
-            if code.act:
+            if code.act and code.effect is not Effect.CALL:
                 yield name, f"{name} has the act {code.act!r} and does not change frames"
             continue
         if code.act not in ACT_ORDER:

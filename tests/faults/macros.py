@@ -11,6 +11,41 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 
 MUTATIONS = (
     _macro(
+        "a code that the control has is declared",
+        "gcxform/contract/own_codes.py",
+        "if taken or not dialect.flow_rule.macro_levels:",
+        "if not dialect.flow_rule.macro_levels:",
+        "flow/own-code-of-the-control",
+    ),
+    _macro(
+        "where a declared code ends is not asked",
+        "gcxform/modal/lines.py",
+        'ends = self.reading.control.get(f"macro {name}", code.act if code else "")',
+        'ends = code.act if code else ""',
+        "flow/own-code",
+    ),
+    _macro(
+        "a tool that is measured leaves the axes where they were",
+        "gcxform/dialect/codes.py",
+        'return Code("non-modal", Effect.CALL, takes, act="unknown")',
+        'return Code("non-modal", Effect.CALL, takes, act="unchanged")',
+        "hazards/measure-lost",
+    ),
+    _macro(
+        "all codes of a range call the first program",
+        "gcxform/machine/macro_tables.py",
+        'yield from ((f"{letter}{n}", program + n - first)',
+        'yield from ((f"{letter}{n}", program)',
+        "flow/own-codes-in-a-row",
+    ),
+    _macro(
+        "a program of a code has variables of its own",
+        "gcxform/flow/macro_calls.py",
+        'return f"shared {name}" in self.run.reading.control',
+        'return name == "T"',
+        "flow/own-code-shared",
+    ),
+    _macro(
         "null is no 0 on a Haas, whatever is said",
         "gcxform/flow/relations.py",
         "if said == ZERO:",

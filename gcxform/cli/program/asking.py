@@ -13,6 +13,8 @@ from gcxform.catalogue.settings import ON_COMMAND_LINE
 from gcxform.config.to_fill_in import TO_FILL_IN as OPEN
 from gcxform.machine.control import answers
 
+DEEP = 2
+"""Keys of a setting of the control by itself; one more table is what is said of a call."""
 Notes = Mapping[Question, str]
 """Who asks a question, in words that follow "asked by"."""
 
@@ -28,6 +30,8 @@ def sections(asked: Iterable[Question]) -> dict[str, list[Question]]:
 def header(question: Question) -> str:
     """Return the table of a question, as its header names it."""
     table, *name = question
+    if table == "control" and len(question) > DEEP:
+        return f"{table}.{name[0]}.{_quoted(name[1])}"
     return table if table in (PIPELINE, "control") else f"{table}.{_quoted(name[0])}"
 
 
@@ -50,7 +54,8 @@ def _keys(questions: Iterable[Question]) -> dict[str, list[Question]]:
     """Return questions by their key; those of one inline table are together."""
     found: dict[str, list[Question]] = {}
     for question in questions:
-        key = question[1] if question[0] in (PIPELINE, "control") else question[-1]
+        flat = question[0] == PIPELINE or (question[0] == "control" and len(question) <= DEEP)
+        key = question[1] if flat else question[-1]
         found.setdefault(key, []).append(question)
     return found
 

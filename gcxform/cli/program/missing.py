@@ -29,6 +29,7 @@ ROUNDS: Final = 30
 ON_TRIAL: Final[Mapping[Question, Any]] = {
     ("tool", "radius"): 0.001,
     ("input", "parameters"): 1.0,
+    ("control", "macro"): "unchanged",
 }
 """Values on trial where 0 would not be one: mm, less than contours are wide; 0 has no unit."""
 LOST: Final = frozenset({"GX207", "GX208", "GX311", "GX506"})
@@ -37,6 +38,7 @@ WHERE_LOST: Final[tuple[Question, ...]] = (
     ("tool", ANY, "length"),
     ("home", ANY, "X"),
     ("work-offset", ANY, "X"),
+    ("control", "macro", ANY, "ends"),
 )
 
 Look = Callable[[Pipeline, Source], list[Diagnostic]]
@@ -180,7 +182,8 @@ class Visit:
             return False
         self.tried_where_lost = True
         for whole in WHERE_LOST:
-            more = {q: 0.0 for q in self.used.named(whole) if q not in self.so_far.given}
+            new = (q for q in self.used.named(whole) if q not in self.so_far.given)
+            more = {q: ON_TRIAL.get(kind_of(q), 0.0) for q in new}
             left = self._again({**self.so_far.given, **more}) if more else errors
             ended = [each for each in errors if each.code in LOST and each not in left]
             if ended:
@@ -245,7 +248,12 @@ def _said(pipeline: Pipeline, given: Mapping[Question, Any]) -> Iterator[tuple[s
 
 def _machine(machine: Machine, given: Mapping[Question, Any]) -> Machine:
     """Return a machine of which more is said."""
-    control = {q[1]: v for q, v in given.items() if q[0] == "control"}
+    control: dict[str, Any] = {}
+    for (table, name, *key), value in given.items():
+        if table == "control" and key:
+            control.setdefault(name, {})[key[0]] = {key[1]: value}
+        elif table == "control":
+            control[name] = value
     tools = dict(machine.tools)
     places = {"work-offset": dict(machine.work_offsets), "home": dict(machine.homes)}
     for (table, name, *key), value in given.items():

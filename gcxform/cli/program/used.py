@@ -12,6 +12,7 @@ from gcxform.catalogue.questions import Question
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.dialect import LINEAR, Dialect
 from gcxform.flow.straightened import written_out
+from gcxform.modal.meaning.calls import NUMBERED
 from gcxform.modal.meaning.meaning import Act, Meaning
 from gcxform.modal.reader import windows_of
 from gcxform.modal.state import Reading
@@ -28,7 +29,8 @@ ANY = "*"
 class Used:
     """What a program names of its machine, as machine files call it.
 
-    `own_codes` are M codes that the dialect does not have; `of_home` are the axes that go there.
+    `own_codes` are M codes that the dialect does not have, `calls` are those that are kept as their
+    programs are not at hand; `of_home` are the axes that go there.
     """
 
     first_offset: str = "G54"
@@ -39,10 +41,14 @@ class Used:
     own_codes: Places = field(default_factory=dict)
     axes: str = "XYZ"
     of_home: dict[str, str] = field(default_factory=dict)
+    calls: Places = field(default_factory=dict)
 
     def named(self, question: Question) -> Iterator[Question]:
         """Yield the questions that one of all tools, or of a place, stands for in this program."""
         table, name, *key = question
+        if table == "control" and key and key[0] == ANY:
+            yield from ((table, name, call, *key[1:]) for call in self.calls)
+            return
         if table == "tool" and name == ANY:
             numbers = self.radii if key == ["radius"] else self.lengths
             yield from ((table, number, *key) for number in numbers)
@@ -96,6 +102,9 @@ class _Block:
 def _look(used: Used, dialect: type[Dialect], block: _Block) -> None:
     """Note what a block uses."""
     meaning = block.meaning
+    if meaning.call:
+        called = f"P{block.value(dict(meaning.call_slots).get('P', 0)):g}"
+        used.calls.setdefault(called if meaning.call == NUMBERED else meaning.call, block.place)
     for act in meaning.acts:
         _act(used, dialect, act, block)
     number = block.value(meaning.slots["D"]) if "D" in meaning.slots else 0.0

@@ -17,6 +17,8 @@ from gcxform.syntax.tree import BLANKS, CODES, Block, Expression, Mark, Number, 
 
 ORDER = 25
 CALL = "call"
+NUMBERED = "G65"
+"""The code that calls a program by its number in P; others are calls by themselves."""
 
 
 def calling(shape: Shape, dialect: type[Dialect]) -> Word | None:
@@ -29,26 +31,33 @@ def calling(shape: Shape, dialect: type[Dialect]) -> Word | None:
 
 
 def _calls(word: Word, dialect: type[Dialect]) -> bool:
-    if word.address != "G" or not isinstance(word.value, Number):
+    if word.address not in "GM" or not isinstance(word.value, Number):
         return False
-    code = dialect.codes.get(f"G{round(word.value.value, 6):g}")
-    return code is not None and code.effect is Effect.CALL
+    name = _name(word)
+    code = dialect.codes.get(name)
+    declared = name in dialect.flow_rule.kept_codes
+    return declared or (code is not None and code.effect is Effect.CALL)
+
+
+def _name(word: Word) -> str:
+    assert isinstance(word.value, Number)
+    return f"{word.address}{round(word.value.value, 6):g}"
 
 
 def read_call(
     shape: Shape, word: Word, dialect: type[Dialect], meaning: Meaning
 ) -> Iterator[Refusal]:
     """Fill the meaning of a call, and yield what speaks against it."""
-    assert isinstance(word.value, Number)
-    name = f"G{round(word.value.value, 6):g}"
+    name = _name(word)
     yield from _others(shape)
-    meaning.groups[dialect.codes[name].group] = name
+    if name in dialect.codes:
+        meaning.groups[dialect.codes[name].group] = name
     meaning.call, meaning.call_slots = name, _slots(shape)
     meaning.marked = any(isinstance(item, Mark) for item in shape.block.items)
     meaning.deleted = any(
         isinstance(item, Mark) and item.kind == "block_delete" for item in shape.block.items
     )
-    if all(address != "P" for address, _ in meaning.call_slots):
+    if name == NUMBERED and all(address != "P" for address, _ in meaning.call_slots):
         message = f"{name} calls a program by a number in P, and that is not written here"
         yield Refusal("GX210", word.start, word.end - word.start, message)
     meaning.loses_position = meaning.runs_macro = True

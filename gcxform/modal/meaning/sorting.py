@@ -168,7 +168,9 @@ def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         code = dialect.codes.get(name)
         width = word.end - word.start
         if code is None:
-            yield Refusal("GX201", word.start, width, f"{dialect.name} has no code {name}")
+            message, levels = f"{dialect.name} has no code {name}", dialect.flow_rule.macro_levels
+            hint = f'is it one of the machine\'s own? ends = "unknown" in [control.macro.{name}]'
+            yield Refusal("GX201", word.start, width, message, hint if levels else "")
             continue
         if not dialect.block_rule.g80_beside_motion:
             pass

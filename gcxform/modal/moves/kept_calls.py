@@ -17,6 +17,7 @@ from gcxform.modal.noted import Unknown
 from gcxform.modal.state import CYCLE_OFF, Modes
 from gcxform.system.arrays import Flags
 
+UNKNOWN = "unknown"
 SAID_BY = {"motion": "a motion code", "distance": "G90 or G91"}
 
 
@@ -31,7 +32,8 @@ def refuse_lost_modes(lines: Lines, modes: Modes) -> None:
         known = _known(lines, group)
         for line in _first_of_each(needs & ~known, lines):
             message = f"{SAID_BY[group]} is needed here: {_name_before(lines, line)} may have"
-            hint = "write it in this block, or say in the machine file what the call does"
+            hint = "write it in this block, or say what the call does: "
+            hint += f'ends = "{UNKNOWN}" in [control.macro.{_name_before(lines, line)}]'
             lines.findings.add(line, "GX210", f"{message} changed it", hint=hint)
     lines.state.lost_by = _name_before(lines, lines.live)
 
@@ -83,6 +85,8 @@ def _note_computed(lines: Lines, line: int) -> None:
 
 
 def _taken(ends: str) -> str:
+    if ends == UNKNOWN:
+        return "positions, offsets and variables are lost behind it"
     if ends:
         return f"the machine file says that it ends {ends}; variables are lost behind it"
     modes = "units, plane, feed mode, work offset and compensation are as before"

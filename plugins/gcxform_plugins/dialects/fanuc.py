@@ -44,7 +44,8 @@
 | local variables across M98 | shared (macro executor B-62093E-1 p. 32) |
 | G65 | new ones, null but for those given by letter (16i B-63684EN p. 278); four deep |
 | G65 of what is not found | stays; positions, variables, offsets, G0, G90, F are lost behind it |
-| G65 P9810, G100, M50 | `[control.macro]` says how a call ends, and what a code calls |
+| G65 P9810, G100, M50, T | `[control.macro]` says how it ends, and what a code calls |
+| G36 G37 | move to a signal and write an offset: kept, places and offsets are lost |
 | G65 L2 | the second run finds arguments anew or not: refused, or `[control] macro-repeat` |
 | I, J, K again in G65 | list II or not (6008#7): refused, or `[control] argument-list` |
 | G66 G67 | calls behind each G0 and G1 with axis words; behind arcs, cycles, G28: refused |
@@ -162,7 +163,7 @@ class Fanuc(gx.Dialect):
         **{code: v.barrier("motion", "it cuts a spline", "PRK") for code in ("G6.2",)},
         **{code: v.barrier("motion", "it cuts a spiral", "IJKRLPQ") for code in ("G2.2", "G3.2")},
         "G31": v.frame("non-modal", "probe", "PQ"),
-        **{code: v.barrier("non-modal", v.PROBE, "PQRIJKH") for code in ("G36", "G37")},
+        **{code: v.measures("ABCDEFHIJKLPQRSTUVWXYZ") for code in ("G36", "G37")},
         "G65": v.call("macro", "ABCDEFHIJKLMPQRSTUVW"),
         **{code: v.barrier("macro", v.CALL, "ABCDEFHIJKLMPQRSTUVW") for code in ("G66", "G66.1")},
     }

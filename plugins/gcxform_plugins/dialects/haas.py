@@ -28,7 +28,8 @@ refused. What is not named here is as in `fanuc`.
 | a cycle without X and Y | Setting 28: stays, or `cycle-without-place = "drills"` | manual |
 | G12 G13 G70 G71 G72 G150, drilling | cycles: refused by name | manual |
 | G31 | as Fanuc's | manual |
-| G47 G35 G36 G37 G136 | engraving and probing: refused by name | manual |
+| G47 | engraving: refused by name | manual |
+| G35 G36 G37 G136 | move to a signal and write an offset: kept, both are lost | manual |
 | G68, G101, G100 | as Fanuc's G68, G51.1, G50.1; G101 with zeros only; G51 is refused | manual |
 | G107 G112 G113 G234 G253 to G255 G268 G269 | another frame: refused | manual |
 | G103, G187 | look-ahead, smoothness: change no position | manual |
@@ -105,7 +106,7 @@ class Haas(Fanuc):
         "G234": v.barrier("tool-length", v.FOLLOWING, "H"),
         **{code: v.barrier("transform", v.TRANSFORM, "IJKPQ") for code in ("G268", "G269")},
         **{code: v.barrier("transform", v.TRANSFORM) for code in ("G253", "G254", "G255")},
-        **{code: v.barrier("non-modal", v.PROBE, "DHIJKPQR") for code in ("G35", "G136")},
+        **{code: Fanuc.codes["G37"] for code in ("G35", "G136")},
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
         **{number: code for number, code in Fanuc.m_codes.items() if number not in NOT_HERE_M},

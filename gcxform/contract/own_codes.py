@@ -1,0 +1,59 @@
+"""Codes that a machine file declares: their blocks are kept, and it says where they end.
+
+`[control.macro.G100] ends = "at XYZ"` is said of a code that the dialect does not have, or that it
+refuses as one that moves by itself in its own block. All words of such a block belong to the code,
+as those of G65 do. A code that stays in force, or that the dialect resolves, cannot be declared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
+from typing import Any, cast
+
+from gcxform.diagnostics import UsageError
+from gcxform.dialect.codes import Code, Effect
+from gcxform.dialect.dialect import Dialect
+
+ALL_WORDS = "ABCDEFHIJKLMPQRSTUVWXYZ"
+MACRO = "macro "
+ONE_BLOCK = "non-modal"
+
+
+def with_own_codes(dialect: type[Dialect], control: Mapping[str, str | float]) -> type[Dialect]:
+    """Return the dialect with the codes that a machine file declares; itself without any.
+
+    Raises UsageError for codes that the dialect has.
+    """
+    said = ((name.partition(MACRO)[2], value) for name, value in control.items())
+    names = {name for name, ends in said if name[:1] in ("G", "M") and isinstance(ends, str)}
+    return _with(cast(Any, dialect), tuple(sorted(names))) if names else dialect
+
+
+@cache
+def _with(dialect: Any, names: tuple[str, ...]) -> type[Dialect]:
+    codes = {name: Code(MACRO.strip(), Effect.CALL, ALL_WORDS) for name in names if name[0] == "G"}
+    for name in names:
+        _check(dialect, name)
+    flow = replace(dialect.flow_rule, kept_codes=dialect.flow_rule.kept_codes | {*names})
+    if flow == dialect.flow_rule:
+        return cast("type[Dialect]", dialect)
+    own = {"codes": {**dialect.codes, **codes}, "flow_rule": flow}
+    made: type[Dialect] = type(dialect.__name__, (dialect,), own)
+    return made
+
+
+def _check(dialect: type[Dialect], name: str) -> None:
+    """Refuse a code that is none of the machine's own."""
+    if name in dialect.flow_rule.kept_codes:
+        return
+    known = dialect.codes.get(name) if name[0] == "G" else None
+    taken = known is not None and (
+        known.effect not in (Effect.BARRIER, Effect.CALL) or known.group != ONE_BLOCK
+    )
+    taken |= name[0] == "M" and int(float(name[1:])) in dialect.m_codes
+    if taken or not dialect.flow_rule.macro_levels:
+        why = "has this code" if taken else "has no calls with values"
+        message = f"[control.macro.{name}]: {dialect.name} {why}, so that it is not kept as a call"
+        raise UsageError.one("GX405", message)
