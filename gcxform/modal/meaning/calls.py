@@ -66,6 +66,14 @@ def read_call(
     meaning.events.append(EventShape(ORDER, _text(shape), meaning.call_slots))
 
 
+def not_there(word: Word, name: str, dialect: type[Dialect]) -> Refusal:
+    """Refuse a code that the dialect does not have, and ask whether it is the machine's own."""
+    hint = f'is it one of the machine\'s own? ends = "unknown" in [control.macro.{name}]'
+    asked = hint if dialect.flow_rule.macro_levels else ""
+    message = f"{dialect.name} has no code {name}"
+    return Refusal("GX201", word.start, word.end - word.start, message, asked)
+
+
 def _others(shape: Shape) -> Iterator[Refusal]:
     """Refuse what is neither a word nor a comment."""
     if shape.block.error is not None:

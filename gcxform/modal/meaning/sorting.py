@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.dialect import LINEAR, Dialect
-from gcxform.modal.meaning.calls import calling, read_call
+from gcxform.modal.meaning.calls import calling, not_there, read_call
 from gcxform.modal.meaning.choices import choices_of
 from gcxform.modal.meaning.lathe import lathe_signs
 from gcxform.modal.meaning.meaning import (
@@ -168,9 +168,7 @@ def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         code = dialect.codes.get(name)
         width = word.end - word.start
         if code is None:
-            message, levels = f"{dialect.name} has no code {name}", dialect.flow_rule.macro_levels
-            hint = f'is it one of the machine\'s own? ends = "unknown" in [control.macro.{name}]'
-            yield Refusal("GX201", word.start, width, message, hint if levels else "")
+            yield not_there(word, name, dialect)
             continue
         if not dialect.block_rule.g80_beside_motion:
             pass
