@@ -9,6 +9,7 @@ where it would have to be.
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 
@@ -18,6 +19,8 @@ from gcxform.syntax.tree import Block, Number
 UNITS, FEED, SPEED, SPINDLE, MIST, FLOOD = "units", "F", "S", "spindle", "M7", "M8"
 DECIMALS = {FEED: 1, SPEED: 0}
 """With how many decimals the control writes what it restores."""
+OPEN = "?"
+"""What stands for F or S with a value that only the machine knows, with a number of its own."""
 PRESET = "G92"
 COUNTS, COUNTS_NOT = "G92.3", "G92.2"
 PRESETS = {
@@ -55,7 +58,7 @@ class StoredModes:
         }
         self.now |= {SPINDLE: "M5", MIST: "", FLOOD: "", "cutter-comp": "G40"}
         self.now |= {PRESET: COUNTS_NOT}
-        self.seen = 0
+        self.seen = self.open = 0
 
     def enter(self) -> None:
         """Begin a call, which has nothing stored."""
@@ -93,7 +96,8 @@ class StoredModes:
 
     def speed(self) -> float:
         """Return the S word in force; nan if none was written."""
-        return float(self._in_force().get(SPEED, "nan"))
+        speed = self._in_force().get(SPEED, OPEN)
+        return math.nan if speed.startswith(OPEN) else float(speed)
 
     def _in_force(self) -> Codes:
         """Return the codes in force after the blocks that have been executed."""
@@ -110,7 +114,10 @@ class StoredModes:
     def _look(self, block: Block) -> None:
         """Note the codes of a block, those that take words with these."""
         number = {w.address: w.value.text for w in block.words if isinstance(w.value, Number)}
-        self.now.update((a, number[a]) for a in (FEED, SPEED) if a in number)
+        for word in block.words:
+            if word.address in (FEED, SPEED):
+                self.open += 1
+                self.now[word.address] = number.get(word.address, f"{OPEN}{self.open}")
         for word in block.words:
             if word.address in "GM" and isinstance(word.value, Number):
                 self._note(f"{word.address}{word.value.value:g}", number)
@@ -150,8 +157,9 @@ class StoredModes:
         known = {*RESTORED, UNITS, SPINDLE, MIST, FLOOD, FEED, SPEED, PRESET}
         for group in sorted(differ):
             before = stored.get(group, "")
-            if group not in known or (group not in stored):
-                message = f"{now[group]} would have to go back to {before or 'what was before'}"
+            if group not in known or group not in stored or before.startswith(OPEN):
+                back = before if before and not before.startswith(OPEN) else "what was before"
+                message = f"{now[group]} would have to go back to {back}"
                 raise self.program.refusal("GX210", f"the modes are restored here: {message}")
 
     def _machine_codes(self, differ: set[str], stored: Codes) -> list[list[str]]:
@@ -173,7 +181,7 @@ class StoredModes:
 
 def _same(group: str, now: str, stored: str | None) -> bool:
     """Whether what is in force is what was stored."""
-    if group in DECIMALS and stored is not None:
+    if group in DECIMALS and stored is not None and OPEN not in (now[0], stored[0]):
         return float(now) == float(stored)
     return now == stored
 

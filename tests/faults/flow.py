@@ -565,6 +565,13 @@ MUTATIONS = (
         "gcxform/flow/detection.py",
         'or (dialect.flow_rule.language == "o-words" and PRINTED.search(text))',
         "",
-        "tests/test_corpus.py::test_case[flow/message-modes]",
+        "tests/test_corpus.py::test_case[flow/message-alone]",
+    ),
+    _flow(
+        "a stored speed is the last one that was a number",
+        "gcxform/flow/modes.py",
+        'number.get(word.address, f"{OPEN}{self.open}")',
+        "number.get(word.address, self.now.get(word.address, OPEN))",
+        "tests/test_corpus.py::test_case[flow/stored-speed-unknown]",
     ),
 )

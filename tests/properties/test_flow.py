@@ -29,6 +29,10 @@ NOT_RESOLVED = (
     "is incremental, but where",  # behind a word that only the machine knows
     "an arc, but where it starts is not known",
     "is known in two ways here",
+    "and calls have it that are written out",
+    "from where it stands, and that is not known",
+    "where this spline starts or ends in X and Y is not known",
+    "an arc in a plane that is turned",
 )
 """Why programs are refused that the interpreter runs, in the way that its own faults decide."""
 
