@@ -21,6 +21,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
 
+import numpy as np
+
 from gcxform.emit.spelled import Spelled, Text
 from gcxform.emit.values_left import Values
 from gcxform.flow.walk import Walk, parts_of
@@ -152,9 +154,9 @@ class _Folding:
     def _calls(self) -> dict[int, list[int]]:
         """The steps that call, by their lines."""
         found: dict[int, list[int]] = {}
-        for step, at in enumerate(self.walk.steps):
-            if self.walk.calls(step):
-                found.setdefault(at.first, []).append(step)
+        first, depth = self.walk.table[:, 0], self.walk.table[:, 3]
+        for step in np.flatnonzero(np.diff(depth) > 0).tolist():
+            found.setdefault(int(first[step]), []).append(step)
         return found
 
     def _sub_of(self, line: int) -> Unit | None:

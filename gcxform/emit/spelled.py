@@ -11,6 +11,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -93,8 +94,10 @@ class Spelled:
         With each text comes the first step in which the line became that.
         """
         found: dict[int, dict[bytes, int]] = {}
+        changed = self._changed()
+        if not changed:
+            return found
         steps = self.walk.steps
-        changed = [step for step in range(len(steps)) if self._changed(step)]
         for step in changed:
             for line, old, new in self._pieces(step, range(*steps[step][:2])):
                 if old != new:
@@ -107,9 +110,17 @@ class Spelled:
                 found[line].setdefault(new, step)
         return found
 
-    def _changed(self, step: int) -> bool:
-        blocks = self.walk.steps[step].block, self.walk.block_end(step)
-        return self.old(*blocks) != self.new(*blocks)
+    def _changed(self) -> list[int]:
+        """Return the steps of which a block became another text."""
+        old, new = self._old.tolist(), self._new.tolist()
+        changed = [
+            self.executed[a:b] != self.written[c:d]
+            for (a, b), (c, d) in zip(pairwise(old), pairwise(new), strict=False)
+        ]
+        before = np.concatenate([[0], np.cumsum(changed)])
+        first = self.walk.table[:, 2]
+        behind = np.append(first[1:], self.walk.blocks)
+        return np.flatnonzero(before[behind] > before[first]).tolist()
 
     def _pieces(self, step: int, lines: Iterable[int]) -> Iterator[tuple[int, bytes, bytes]]:
         """Yield lines of a step with what was executed, and what was written."""

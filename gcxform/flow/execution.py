@@ -65,7 +65,8 @@ class Execution(RunState):
             before, line = self.blocks, self.at
             plain = stop > self.at
             behind = min(stop, self.next_stop()) if plain else self.at + 1
-            self.walked.append(Step(self.at, behind, self.blocks, len(self.calls), self._level()))
+            level = self.levels_of_values()
+            self.walked.append(Step(self.at, behind, self.blocks, len(self.calls), level))
             if plain:
                 self._copy(behind)
             else:
@@ -74,6 +75,15 @@ class Execution(RunState):
 
     def begins(self) -> bool:
         """Do what is to be done before a line; return whether nothing is left to do there."""
+        return False
+
+    def steady(self) -> bool:
+        """Whether lines do what they did before, wherever in the executed blocks they stand."""
+        return True
+
+    def decides(self, line: int) -> bool:
+        """Whether a line does more than its words, calls, codes and statements say."""
+        del line
         return False
 
     def next_stop(self) -> int:
@@ -90,7 +100,7 @@ class Execution(RunState):
             message = "the file of a subprogram ends here, without a return to what has called it"
             raise self.refusal("GX223", message)
 
-    def _level(self) -> int:
+    def levels_of_values(self) -> int:
         """Count the calls that have parameters of their own: not those by M97 and M98."""
         return sum(call.given is not None or not call.name.startswith("M9") for call in self.calls)
 
@@ -108,13 +118,13 @@ class Execution(RunState):
             self._leave_file()
         self._count()
         self._refuse_lone_cr()
-        block = self.listing.block(self.line)
+        line, block = self.line, self.listing.block(self.line)
         if self._skips(block):
             self.skipped.add(self.line)
             self.copy_line()
         elif block.error is None and self.act(block):
             self.acted = True
-            self.deciding.add(self.walked[-1].first)
+            self.deciding.add(line)
         else:
             self.write(block)
 
@@ -181,7 +191,7 @@ class Execution(RunState):
 
     def walk(self, callees: Mapping[int, tuple[Definition, ...]]) -> Walk:
         """Return what was done, once the program is closed."""
-        steps, jumps, made = split(self.walked, self.jumps, self.lasting.made)
+        steps, jumps, made = split(self.walked.table, self.jumps, self.lasting.made)
         return Walk(
             self.listing,
             steps,

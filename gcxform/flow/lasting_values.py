@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
+from collections.abc import Sequence
 
 from gcxform.dialect.arithmetic import Key, NoValueError
 from gcxform.dialect.null import MAYBE
@@ -40,12 +42,8 @@ class Lasting:
             self.outputs.refuse_levels(key)
             self.outputs.assign(key, value)
             return kept
-        local = not self.program.arithmetic.outlives(key)
-        if local and key not in self.program.settled.needed:
-            self.program.dropped.add(key)
-            self.locals_set += 1
-            return ""
-        if not self.program.keeps:
+        if not self.says(key):
+            self._drop(key, 1)
             return ""
         self.outputs.refuse_levels(key)
         if value is MAYBE:
@@ -53,6 +51,29 @@ class Lasting:
             raise self.program.refusal("GX221", message)
         self.outputs.assign(key, value)
         return assignment(key, value, self.program.arithmetic)
+
+    def says(self, key: Key) -> bool:
+        """Whether the assignments of a parameter are written whose values are known."""
+        return self.program.keeps and not self._is_dropped(key)
+
+    def _is_dropped(self, key: Key) -> bool:
+        local = not self.program.arithmetic.outlives(key)
+        return local and key not in self.program.settled.needed
+
+    def _drop(self, key: Key, times: int) -> None:
+        """Count assignments that are not written, of a parameter that ends with the run."""
+        if self._is_dropped(key):
+            self.program.dropped.add(key)
+            self.locals_set += times
+
+    def account_all(self, made: Sequence[tuple[int, Made]]) -> None:
+        """Account for assignments of many rounds, each with its line; their values are known."""
+        self.made += [each for _, each in made]
+        times = Counter(each.key for _, each in made)
+        said = frozenset(filter(self.says, times))
+        for key in times.keys() - said:
+            self._drop(key, times[key])
+        self.outputs.assign_all([(line, e.key, e.value) for line, e in made if e.key in said])
 
     def messages(self, block: Block) -> list[Edit]:
         """Return the executed comments that print values, with the values in them.

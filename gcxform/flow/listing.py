@@ -131,9 +131,7 @@ class Listing:
                 return True
             if isinstance(item, Comment) and prints_values(block.text[item.start : item.end]):
                 return True
-            if isinstance(item, Word) and (
-                isinstance(item.value, Expression) or item.address in "O@^" or _calls(item)
-            ):
+            if isinstance(item, Word) and (isinstance(item.value, Expression) or decides(item)):
                 return True
         return False
 
@@ -194,8 +192,10 @@ def code_name(word: Word) -> str:
     return f"{word.address}{word.value.value:g}" if named else ""
 
 
-def _calls(word: Word) -> bool:
-    """Whether a word is a code that calls, returns, or stores modes."""
+def decides(word: Word) -> bool:
+    """Whether a word is a code that calls, returns, or stores modes, or is not of all controls."""
+    if word.address in "O@^":
+        return True
     value = word.value.value if isinstance(word.value, Number) else -1.0
     if word.address == "G":
         return value in CALLS_WITH_VALUES

@@ -12,6 +12,8 @@ from gcxform.dialect.arithmetic import Arithmetic
 from gcxform.flow.branches import Branches, Jumping, number_of
 from gcxform.flow.listing import Listing
 from gcxform.flow.relations import COMPARES, relations
+from gcxform.flow.round_body import Repeated
+from gcxform.flow.rounds import Rounds
 from gcxform.modal.expressions.value import Evaluator, LocatedError
 from gcxform.modal.state import Reading
 from gcxform.syntax.grammar import span_of
@@ -35,6 +37,7 @@ class MacroWords(Jumping):
         self.loops: dict[int, Loop] = {}
         self.bounds: list[int] = []
         self.branches = Branches(self)
+        self.many = Rounds(self)
 
     def forget_sequences(self) -> None:
         """Forget which lines have which numbers: there are more of them."""
@@ -62,6 +65,12 @@ class MacroWords(Jumping):
         )
 
     # --- what only the machine decides ---
+
+    def steady(self) -> bool:
+        """Whether no jump that only the machine decides leads here, or ahead."""
+        branches = self.branches
+        waits = branches.open or branches.over or self.settled.loops
+        return not waits and self.blocks not in branches.labels
 
     def begins(self) -> bool:
         """Do what is to be done where a jump may lead, or a loop begins."""
@@ -183,7 +192,12 @@ class MacroWords(Jumping):
         """Go on."""
 
     def _end(self, statement: Statement) -> None:
-        self.back_to(self.loops[self.line].first)
+        loop = self.loops[self.line]
+        self.back_to(loop.first)
+        opening = statement_of(self.listing.block(loop.first))
+        if opening is not None and opening.kind == "while":
+            flow = frozenset((loop.first, loop.last))
+            self.many.go(Repeated(loop.first, loop.last, flow, opening.tree.children[1]))
 
 
 def statement_of(block: Block) -> Statement | None:

@@ -266,6 +266,10 @@ class MacroB(MacroWords):
         call.first = modal.first
         return call
 
+    def steady(self) -> bool:
+        """Whether no move calls a program."""
+        return not self.modals.open and super().steady()
+
     def next_stop(self) -> int:
         """Return the next line to which a jump may lead, or behind which a program is called."""
         stop = super().next_stop()

@@ -37,6 +37,11 @@ class Outputs:
         self.stands[key] = value
         self.assigned.append((self.program.line, key, value))
 
+    def assign_all(self, made: list[tuple[int, Key, float]]) -> None:
+        """Take account of assignments that are written, each with its line."""
+        self.stands.update((key, value) for _, key, value in made)
+        self.assigned += made
+
     def refuse_levels(self, key: Key) -> None:
         """Refuse to write parameters of two calls that have one name: they would become one."""
         if self.program.arithmetic.outlives(key):

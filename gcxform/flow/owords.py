@@ -14,10 +14,10 @@ from collections.abc import Iterator
 from gcxform.diagnostics import InputError
 from gcxform.dialect.arithmetic import NoValueError, whole
 from gcxform.flow.constructs import Construct, OWord
-from gcxform.flow.execution import Execution
 from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.modes import StoredModes
 from gcxform.flow.named_files import Subprograms
+from gcxform.flow.oword_loops import OWordLoops
 from gcxform.flow.oword_names import LOCALS, STANDS, is_local, is_named_local, name_of
 from gcxform.flow.places import FIRST, Places
 from gcxform.flow.run_state import Call, Edit, whole_number
@@ -32,19 +32,16 @@ NAMES_POSITION = re.compile(
 )
 
 
-class OWords(Execution):
-    """Runs programs of LinuxCNC; `left` are the `repeat` loops that a jump has left."""
+class OWords(OWordLoops):
+    """Runs programs of LinuxCNC."""
 
     deepest = 9
 
     def __init__(self, listing: Listing, reading: Reading, keeps: bool = False) -> None:
         super().__init__(listing, reading, keeps)
         self.ahead: set[str] = set()
-        self.broken = self.continued = False
         self.modes = StoredModes(self)
         self.places = Places(self)
-        self.counters: dict[int, int] = {}
-        self.left: set[int] = set()
         self.returned()
         self.subprograms = Subprograms(self)
 
@@ -90,6 +87,15 @@ class OWords(Execution):
             return True
         return False
 
+    def steady(self) -> bool:
+        """Whether the parameters that say where the axes stand are not set."""
+        return FIRST not in self.parameters
+
+    def decides(self, line: int) -> bool:
+        """Whether a line has an O-word, or reads where the axes stand."""
+        text = self.listing.window.line(line).decode("latin-1")
+        return line in self.words or NAMES_POSITION.search(text) is not None
+
     def edits(self, block: Block) -> list[Edit]:
         """Return what is written otherwise: values, and polar words."""
         polar = self.places.polar_edits(block)
@@ -101,11 +107,6 @@ class OWords(Execution):
         """Whether a block cannot be judged before it is written out: also one of polar words."""
         polar = any(word.address in "@^" for word in block.words)
         return polar or super().becomes_other(block)
-
-    def _truth(self, word: OWord) -> bool:
-        if len(word.values) != 1:
-            raise self.refusal("GX221", f"{word.keyword} takes one condition in brackets")
-        return self.value(word.values[0]) != 0
 
     # --- subprograms ---
 
@@ -285,7 +286,7 @@ class OWords(Execution):
         for line in construct.lines:
             self.line = line
             other = self.words[line]
-            if other.keyword in ("else", "endif") or self._truth(other):
+            if other.keyword in ("else", "endif") or self.truth(other):
                 self.at = line + 1
                 return
 
@@ -297,96 +298,6 @@ class OWords(Execution):
 
     def _endif(self, word: OWord) -> None:
         """Go on."""
-
-    # --- loops ---
-
-    def _while(self, word: OWord) -> None:
-        construct = self.construct[self.line]
-        again = self._truth(word)
-        if construct.kind == "do":
-            self._refuse_after_break()
-            if again:
-                self.back_to(construct.lines[0] + 1)
-            return
-        self.broken |= self._has(construct, "break")
-        if not again:
-            self.at = construct.last + 1
-
-    def _has(self, construct: Construct, keyword: str) -> bool:
-        """Whether a keyword stands in a construct behind the line that is executed."""
-        behind = (line for line in construct.lines if line > self.line)
-        return any(self.words[line].keyword == keyword for line in behind)
-
-    def _refuse_after_break(self) -> None:
-        """Refuse a `do` loop behind a `while` loop with `break`, taken or not.
-
-        The interpreter may run it once, whatever its condition says.
-        """
-        if self.broken:
-            message = "behind a loop with break the control may run this loop once only"
-            raise self.refusal("GX223", message, "write it as a while loop")
-
-    def _refuse_after_continue(self, what: str = "counts this loop wrong") -> None:
-        """Refuse `repeat` and `break` behind `continue` in a `do` loop.
-
-        The interpreter may run a `repeat` too often, and take the next `break` for a `continue`.
-        """
-        if self.continued:
-            message = f"behind continue in a do loop the control {what}"
-            raise self.refusal("GX223", message, "write the do loop as a while loop")
-
-    def _endwhile(self, word: OWord) -> None:
-        self.back_to(self.construct[self.line].lines[0])
-
-    def _do(self, word: OWord) -> None:
-        """Go on."""
-
-    def _repeat(self, word: OWord) -> None:
-        self._refuse_after_continue()
-        if len(word.values) != 1:
-            raise self.refusal("GX221", "repeat takes a count in brackets")
-        if self.line in self.left:
-            message = "this loop was left by a jump before: the control goes on counting from there"
-            raise self.refusal("GX223", message, "leave it at its end")
-        times = round(self.value(word.values[0]))
-        self.counters[self.line] = times
-        if times <= 0:
-            self._leave(self.construct[self.line])
-
-    def _endrepeat(self, word: OWord) -> None:
-        self._refuse_after_continue()
-        first = self.construct[self.line].lines[0]
-        self.counters[first] -= 1
-        if self.counters[first] > 0:
-            self.at = first + 1
-        else:
-            self._leave(self.construct[self.line])
-
-    def _break(self, word: OWord) -> None:
-        """Leave a loop; on its way to the end the interpreter notes a `continue` that it passes."""
-        self._refuse_after_continue("may go on with this loop")
-        construct = self.construct[self.line]
-        self.continued |= construct.kind == "do" and self._has(construct, "continue")
-        self._note_left(construct)
-        self._leave(construct)
-
-    def _note_left(self, construct: Construct) -> None:
-        """Note the `repeat` loops inside a construct that a jump leaves."""
-        for line in [n for n in self.counters if construct.lines[0] < n < construct.last]:
-            self.left.add(line)
-            del self.counters[line]
-
-    def _continue(self, word: OWord) -> None:
-        """Go to the condition; the interpreter notes a `break` that it passes."""
-        construct = self.construct[self.line]
-        self.continued |= construct.kind == "do"
-        self.broken |= self._has(construct, "break")
-        self._note_left(construct)
-        self.at = construct.last
-
-    def _leave(self, construct: Construct) -> None:
-        self.counters.pop(construct.lines[0], None)
-        self.at = construct.last + 1
 
 
 def _returns(block: Block) -> bool:

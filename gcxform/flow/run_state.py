@@ -21,7 +21,7 @@ from gcxform.dialect.null import NULL, Null
 from gcxform.flow.listing import CODES_OF_CALLS, STORED_MODES, Listing
 from gcxform.flow.residual import edited, residual
 from gcxform.flow.text import DECIMALS, decimal
-from gcxform.flow.walk import Step
+from gcxform.flow.walk import Steps
 from gcxform.modal.expressions.compiled import NO_VALUE, Compiled, Compiler
 from gcxform.modal.expressions.value import (
     DOUBTFUL,
@@ -110,7 +110,7 @@ class RunState:
         self.text: list[bytes] = []
         self.origin: list[Ints] = []
         self.size = self.blocks = self.changes = 0
-        self.walked: list[Step] = []
+        self.walked = Steps()
         self.assumed: dict[str, None] = {}
         self.inch = (reading.units or self.dialect.initial["units"]) in ("in", "G20")
         self.seen = 0
@@ -198,12 +198,16 @@ class RunState:
                 (why.start, why.end) if isinstance(why, LocatedError) else (word.start, word.end)
             )
             raise self.refusal(why.code, why.message, why.hint, (start, end)) from None
+        return self.spelled(word, [value])[0]
+
+    def spelled(self, word: Word, values: list[float]) -> list[str]:
+        """Return values of a word of the line as they are written."""
         if self.dialect.point_rule.feed_required and word.address == "F":
             message = "F is computed: its unit depends on the control"
             raise self.refusal("GX205", message, place=(word.start, word.end))
         if self.dialect.point_rule.required and word.address in DISTANCES:
-            return self._on_increment(word, value)
-        return decimal(value).removesuffix(".")
+            return self._on_increment(word, values)
+        return [decimal(value).removesuffix(".") for value in values]
 
     def handed_over(self, word: Word) -> str:
         """Return the value of a word of a call that is kept, in all its digits.
@@ -233,8 +237,8 @@ class RunState:
             message = f"M{value:g} decides what is executed, and is computed: it must be written"
             raise self.refusal("GX206", message, place=(word.start, word.end))
 
-    def _on_increment(self, word: Word, value: float) -> str:
-        """Return a distance as the control rounds it."""
+    def _on_increment(self, word: Word, values: list[float]) -> list[str]:
+        """Return distances as the control rounds them."""
         inch, said = self.in_inch(), self.reading.increments
         steps = None if said is None else said.per_unit(word.address, inch)
         if said is None or steps is None:
@@ -242,8 +246,13 @@ class RunState:
             hint = hint_of_rounding(word.address, inch)
             raise self.refusal("GX205", message, hint, (word.start, word.end))
         self.assumed[assumed_rounding(word.address, inch, said)] = None
-        count = math.floor(abs(value) * steps + 0.5)
-        return decimal(math.copysign(round(count / steps, DECIMALS), value))
+        if not all(math.isfinite(value * steps) for value in values):
+            raise self.refusal("GX221", f"{word.address} is too large", "", (word.start, word.end))
+        counts = [math.floor(abs(value) * steps + 0.5) for value in values]
+        return [
+            decimal(math.copysign(round(count / steps, DECIMALS), value))
+            for count, value in zip(counts, values, strict=True)
+        ]
 
     def in_inch(self) -> bool:
         """Whether the line is in inches, behind the blocks that have been written."""

@@ -6,11 +6,14 @@ Who writes a program with its calls and loops needs to know which executed block
 from __future__ import annotations
 
 import re
-from bisect import bisect_left, bisect_right
+from bisect import bisect_left
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
+
+import numpy as np
 
 from gcxform.dialect.arithmetic import Arithmetic, Key
 from gcxform.flow.executed import WrittenOut
@@ -36,6 +39,37 @@ class Step(NamedTuple):
     level: int
 
 
+class Steps:
+    """Steps as they are done, one by one or many at once; a row of `table` is a `Step`."""
+
+    def __init__(self) -> None:
+        self._parts: list[Ints] = []
+        self._last: list[Step] = []
+        self._before = 0
+
+    def __len__(self) -> int:
+        return self._before + len(self._last)
+
+    def append(self, step: Step) -> None:
+        """Add one."""
+        self._last.append(step)
+
+    def extend(self, steps: Ints) -> None:
+        """Add many, (n, 5)."""
+        self._parts += [_table(self._last), steps]
+        self._before += len(self._last) + len(steps)
+        self._last = []
+
+    @property
+    def table(self) -> Ints:
+        """All of them, (n, 5)."""
+        return np.concatenate([*self._parts, _table(self._last)])
+
+
+def _table(steps: list[Step]) -> Ints:
+    return np.array(steps, np.int64).reshape(-1, len(Step._fields))
+
+
 class Made(NamedTuple):
     """An assignment that a step made."""
 
@@ -48,6 +82,7 @@ class Made(NamedTuple):
 class Walk:
     """One execution.
 
+    table        its steps, (n, 5), as columns
     blocks       how many blocks were executed; what is kept behind the end follows them
     loops        first and last line of each loop, branches too
     definitions  the subprograms of the file, and those of them that stay: see `Execution.close`
@@ -61,7 +96,7 @@ class Walk:
     """
 
     listing: Listing
-    steps: tuple[Step, ...]
+    table: Ints
     blocks: int
     loops: tuple[tuple[int, int], ...]
     definitions: tuple[Definition, ...]
@@ -74,6 +109,11 @@ class Walk:
     tied: str
     times: Ints
     arithmetic: Arithmetic
+
+    @cached_property
+    def steps(self) -> tuple[Step, ...]:
+        """The steps of the table, one by one."""
+        return tuple(map(Step._make, self.table.tolist()))
 
     @cached_property
     def reads(self) -> dict[int, frozenset[Key | None]]:
@@ -167,20 +207,23 @@ def parts_of(first: int, last: int, others: Iterable[tuple[int, int]]) -> tuple[
 
 
 def split(
-    steps: list[Step], jumps: set[int], made: list[Made]
-) -> tuple[tuple[Step, ...], frozenset[int], tuple[Made, ...]]:
+    table: Ints, jumps: set[int], made: list[Made]
+) -> tuple[Ints, frozenset[int], tuple[Made, ...]]:
     """Return steps in which every line that was jumped to begins one; jumps and assignments so."""
-    targets = sorted({steps[j + 1].first for j in jumps if j + 1 < len(steps)})
+    begin = np.array(sorted(jumps), np.int64) + 1
+    targets = np.unique(table[begin[begin < len(table)], 0])
+    low = np.searchsorted(targets, table[:, 0], "right")
+    high = np.searchsorted(targets, table[:, 1], "left")
+    more = np.maximum(high - low, 0)
+    if not more.any():
+        return table, frozenset(jumps), tuple(made)
     found: list[Step] = []
-    places: list[int] = []
-    for step in steps:
-        first = step.first
-        for target in targets[bisect_right(targets, first) : bisect_left(targets, step.stop)]:
-            found.append(
-                step._replace(first=first, stop=target, block=step.block + first - step.first)
-            )
-            first = target
-        found.append(step._replace(first=first, block=step.block + first - step.first))
-        places.append(len(found) - 1)
-    moved = tuple(each._replace(step=places[each.step]) for each in made)
-    return tuple(found), frozenset(places[j] for j in jumps), moved
+    for step, first, last in zip(
+        map(Step._make, table.tolist()), low.tolist(), high.tolist(), strict=True
+    ):
+        begins = [step.first, *targets[first:last].tolist()]
+        for at, stop in pairwise([*begins, step.stop]):
+            found.append(step._replace(first=at, stop=stop, block=step.block + at - step.first))
+    places = np.cumsum(more + 1) - 1
+    moved = tuple(each._replace(step=int(places[each.step])) for each in made)
+    return _table(found), frozenset(places[[*jumps]].tolist()), moved

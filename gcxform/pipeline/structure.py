@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -93,13 +93,20 @@ class Structure:
         proved = self._spelled().new(0, self.source.walk.blocks)
         written = Source.of_bytes(folded.text, self.given.name)
         written.folder, written.suffix = self.given.folder, self.given.suffix
-        check_executed(written, folded.lines, proved, target, reading)
+        known = self.source if self._is_as_read(folded, reading) else None
+        check_executed(written, folded.lines, proved, target, reading, known)
         gone = None if folded.whole else folded.gone
         check_kept(folded.text, self.source.walk, gone, self.given.name)
         held = held_by(folded.text, target)
         account.rule("definitions, calls and loops that are kept", held - account.output)
         account.output = held
         findings.output_line = self._line_in(folded, findings.output_line)
+
+    def _is_as_read(self, folded: Folded, reading: Reading) -> bool:
+        """Whether a program is the one that was read, and is executed on the same machine."""
+        same = replace(self.plan.machine_reading, units=reading.units) == reading
+        same &= self.plan.read_as is self.plan.target
+        return same and b"".join(self.given.windows()) == folded.text
 
     def _line_in(self, folded: Folded, line: int) -> int:
         """Return the line of a program, from 1, for one of the text that was proved; 0 for none."""

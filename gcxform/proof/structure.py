@@ -34,14 +34,16 @@ def check_executed(
     proved: bytes,
     dialect: type[Dialect],
     reading: Reading,
+    known: Walked | None = None,
 ) -> None:
     """Check that what was written executes what was proved. Raises VerificationError.
 
-    `lines` are those of the program, from 0, that its lines are for.
+    `lines` are those of the program, from 0, that its lines are for. `known` is what a program of
+    the same bytes has executed, with the same reading.
     """
     file = written.name
     try:
-        executed = written_out(written, dialect, reading, dialect)
+        executed = known or written_out(written, dialect, reading, dialect)
     except GcxformError as error:
         why = "; ".join(each.message for each in error.diagnostics)
         where = next((each.where.line - 1 for each in error.diagnostics if each.where), 0)

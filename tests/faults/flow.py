@@ -12,7 +12,74 @@ def _flow(name: str, file: str, old: str, new: str, tests: str = CASES) -> Mutat
     return Mutation(f"flow: {name}", file, old, new, tests)
 
 
+ROUNDS = "gcxform/flow/rounds.py"
+BODY = "gcxform/flow/round_body.py"
+MANY = "tests/properties/test_rounds.py"
+MINDED = f"{MANY}::test_what_rounds_at_once_have_to_mind"
 MUTATIONS = (
+    _flow(
+        "rounds: a line reads what it sets", ROUNDS, "put.line < line", "put.line <= line", MINDED
+    ),
+    _flow(
+        "rounds: a difference is a sum",
+        BODY,
+        "_function(arithmetic, right), -1.0",
+        "_function(arithmetic, right), 1.0",
+        MANY,
+    ),
+    _flow(
+        "rounds: one too many",
+        ROUNDS,
+        "return self.size if holds.all() else int(np.argmin(holds))",
+        "return min(self.size, int(np.argmin(holds)) + 1)",
+        MANY,
+    ),
+    _flow(
+        "rounds: sums in pairs",
+        ROUNDS,
+        "every = np.add.accumulate(every)",
+        "every = every[0] + np.arange(len(every)) * every[-1]",
+        MANY,
+    ),
+    _flow(
+        "rounds: nobody has set a parameter",
+        ROUNDS,
+        "if not -np.inf < start < np.inf or isinstance(start, Null):",
+        "if False:",
+        MINDED,
+    ),
+    _flow(
+        "rounds: moves call nothing",
+        "gcxform/flow/macros.py",
+        "return not self.modals.open and super().steady()",
+        "return super().steady()",
+        MINDED,
+    ),
+    _flow(
+        "rounds: units may change",
+        BODY,
+        "(run.listing.units[lines.start : lines.stop] >= 0).any() or ",
+        "",
+        MINDED,
+    ),
+    _flow("rounds: a parameter is set once", BODY, " or len(keys) != len(set(keys))", "", MINDED),
+    _flow(
+        "rounds: they are not counted", ROUNDS, "run.steps += rounds * body.special", "pass", MANY
+    ),
+    _flow(
+        "rounds: a repeat has one more",
+        "gcxform/flow/oword_loops.py",
+        "self.counters[first] - 1 if",
+        "self.counters[first] if",
+        MANY,
+    ),
+    _flow(
+        "rounds: loops that begin on a line are one",
+        ROUNDS,
+        "if loop.last not in self.bodies:",
+        "if not self.bodies:",
+        MANY,
+    ),
     _flow(
         "what a file does besides defining is passed over",
         "gcxform/flow/subprogram_file.py",
@@ -122,7 +189,10 @@ MUTATIONS = (
         "key in LOCALS",
     ),
     _flow(
-        "nothing lasts", "gcxform/flow/lasting_values.py", "if not self.program.keeps:", "if True:"
+        "nothing lasts",
+        "gcxform/flow/lasting_values.py",
+        "if not self.says(key):",
+        "if True:",
     ),
     _flow(
         "a message counts from before its block",
@@ -164,10 +234,12 @@ MUTATIONS = (
         "in (None,) for w",
         "tests/test_corpus.py::test_case[flow/kept-with-called]",
     ),
-    _flow("a count is cut", "gcxform/flow/owords.py", "times = round(", "times = int(", AGREES),
+    _flow(
+        "a count is cut", "gcxform/flow/oword_loops.py", "times = round(", "times = int(", AGREES
+    ),
     _flow(
         "a loop ends a round late",
-        "gcxform/flow/owords.py",
+        "gcxform/flow/oword_loops.py",
         "self.counters[first] > 0",
         "self.counters[first] >= 0",
     ),
@@ -181,7 +253,7 @@ MUTATIONS = (
         "self.returned()",
         FACTS,
     ),
-    _flow("else is always taken", "gcxform/flow/owords.py", "self._truth(other)", "True", AGREES),
+    _flow("else is always taken", "gcxform/flow/owords.py", "self.truth(other)", "True", AGREES),
     _flow(
         "M73 is forgotten",
         "gcxform/flow/modes.py",
@@ -230,7 +302,7 @@ MUTATIONS = (
     ),
     _flow(
         "break behind continue leaves its loop",
-        "gcxform/flow/owords.py",
+        "gcxform/flow/oword_loops.py",
         'self._refuse_after_continue("may go on with this loop")',
         "pass",
         "tests/test_corpus.py::test_case[flow/do-continue-next-break]",
@@ -314,8 +386,8 @@ MUTATIONS = (
     _flow(
         "END leaves the loop",
         "gcxform/flow/macro_words.py",
-        "self.back_to(self.loops[self.line].first)",
-        "self.at = self.loops[self.line].last + 1",
+        "self.back_to(loop.first)",
+        "self.at = loop.last + 1",
     ),
     _flow(
         "P is never packed",
@@ -457,21 +529,21 @@ MUTATIONS = (
     ),
     _flow(
         "a loop behind break is run as it says",
-        "gcxform/flow/owords.py",
+        "gcxform/flow/oword_loops.py",
         'self.broken |= self._has(construct, "break")\n        if not again',
         "if not again",
         "tests/test_corpus.py::test_case[flow/break-do]",
     ),
     _flow(
         "continue in a do loop forgets a break that is passed",
-        "gcxform/flow/owords.py",
+        "gcxform/flow/oword_loops.py",
         'self.broken |= self._has(construct, "break")\n        self._note_left',
         "self._note_left",
         "tests/test_corpus.py::test_case[flow/do-continue-break]",
     ),
     _flow(
         "repeat behind continue is run as it says",
-        "gcxform/flow/owords.py",
+        "gcxform/flow/oword_loops.py",
         'self.continued |= construct.kind == "do"\n',
         "self.continued = False\n",
         "tests/test_corpus.py::test_case[flow/do-continue-repeat]",

@@ -2,7 +2,7 @@
 
 An expression of an outline is the same on all its lines but for its numbers. What is made of it
 here takes the parameters and these numbers: of one line, or, as arrays, of many lines between which
-no parameter changes.
+no parameter changes. Where columns are made a parameter may be one as well.
 
 It has a value or it has none: whatever `Evaluator` would refuse, or do in a way of its own, is
 `NO_VALUE` here, and the line is computed again by `Evaluator`, whose errors have a place. So
@@ -12,9 +12,9 @@ there is one definition of what is refused. Both use the functions of the same `
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from itertools import count
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from lark import Token
@@ -25,7 +25,14 @@ from gcxform.modal.expressions.value import parameter_of
 from gcxform.syntax.grammar import rule_of
 from gcxform.syntax.tree import BLANKS
 
-Parameters = Mapping[Key, float]
+
+class Parameters(Protocol):
+    """Values by parameter, as a mapping has them; arrays of finite numbers for columns."""
+
+    def get(self, key: Key, default: Any, /) -> Any:
+        """Return the value of a parameter."""
+
+
 Operands = Sequence[Any]
 """Numbers by slot: floats, or arrays of one length."""
 Compiled = Callable[[Parameters, Operands], Any]
@@ -80,12 +87,16 @@ class Compiler:
             return _refused
 
         def read(parameters: Parameters, _: Operands) -> float:
-            value = parameters.get(key, np.nan)
+            value: float = parameters.get(key, np.nan)
             if not -math.inf < value < math.inf or isinstance(value, Null):
                 raise NoColumnError
             return value
 
-        return read
+        def column(parameters: Parameters, operands: Operands) -> Any:
+            value = parameters.get(key, None)
+            return value if isinstance(value, np.ndarray) else read(parameters, operands)
+
+        return column if self.columns else read
 
     def _operation(self, left: Any, operator: Token, right: Any) -> Compiled:
         function = self.arithmetic.operators.get(str(operator).upper())

@@ -8,8 +8,15 @@ from typing import Any
 import numpy as np
 
 from gcxform.dialect.arithmetic import Key, NoValueError, whole
-from gcxform.modal.expressions.compiled import NO_VALUE, Compiled, Compiler, NoColumnError, Operands
-from gcxform.modal.expressions.value import Parameters, parameter_of, settable
+from gcxform.modal.expressions.compiled import (
+    NO_VALUE,
+    Compiled,
+    Compiler,
+    NoColumnError,
+    Operands,
+    Parameters,
+)
+from gcxform.modal.expressions.value import parameter_of, settable
 from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.syntax.tree import CODES, Block, Expression, Statement, Word

@@ -1,0 +1,146 @@
+"""Loops of O-words: while, do, repeat, and what leaves them."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import Any
+
+from gcxform.flow.constructs import Construct, OWord
+from gcxform.flow.execution import Execution
+from gcxform.flow.listing import Listing
+from gcxform.flow.round_body import Repeated
+from gcxform.flow.rounds import MOST, Rounds
+from gcxform.modal.state import Reading
+
+
+class OWordLoops(Execution):
+    """A run of loops.
+
+    counters  the rounds that are left of each `repeat` loop that runs, by its first line
+    left      those that a jump has left
+    """
+
+    def __init__(self, listing: Listing, reading: Reading, keeps: bool = False) -> None:
+        super().__init__(listing, reading, keeps)
+        self.broken = self.continued = False
+        self.counters: dict[int, int] = {}
+        self.left: set[int] = set()
+        self.many = Rounds(self)
+
+    @property
+    @abstractmethod
+    def words(self) -> dict[int, OWord]:
+        """The O-word of each line that has one."""
+
+    @property
+    @abstractmethod
+    def construct(self) -> dict[int, Construct]:
+        """What each of these lines belongs to."""
+
+    def truth(self, word: OWord) -> bool:
+        """Whether a condition holds. Raises InputError."""
+        if len(word.values) != 1:
+            raise self.refusal("GX221", f"{word.keyword} takes one condition in brackets")
+        return self.value(word.values[0]) != 0
+
+    def _while(self, word: OWord) -> None:
+        construct = self.construct[self.line]
+        again = self.truth(word)
+        if construct.kind == "do":
+            self._refuse_after_break()
+            if again:
+                self.back_to(construct.lines[0] + 1)
+                self._many(construct, word.values[0])
+            return
+        self.broken |= self._has(construct, "break")
+        if not again:
+            self.at = construct.last + 1
+
+    def _has(self, construct: Construct, keyword: str) -> bool:
+        """Whether a keyword stands in a construct behind the line that is executed."""
+        behind = (line for line in construct.lines if line > self.line)
+        return any(self.words[line].keyword == keyword for line in behind)
+
+    def _refuse_after_break(self) -> None:
+        """Refuse a `do` loop behind a `while` loop with `break`, taken or not.
+
+        The interpreter may run it once, whatever its condition says.
+        """
+        if self.broken:
+            message = "behind a loop with break the control may run this loop once only"
+            raise self.refusal("GX223", message, "write it as a while loop")
+
+    def _refuse_after_continue(self, what: str = "counts this loop wrong") -> None:
+        """Refuse `repeat` and `break` behind `continue` in a `do` loop.
+
+        The interpreter may run a `repeat` too often, and take the next `break` for a `continue`.
+        """
+        if self.continued:
+            message = f"behind continue in a do loop the control {what}"
+            raise self.refusal("GX223", message, "write the do loop as a while loop")
+
+    def _endwhile(self, word: OWord) -> None:
+        construct = self.construct[self.line]
+        self.back_to(construct.lines[0])
+        opening = self.words[construct.lines[0]]
+        if len(opening.values) == 1:
+            self._many(construct, opening.values[0])
+
+    def _do(self, word: OWord) -> None:
+        """Go on."""
+
+    def _repeat(self, word: OWord) -> None:
+        self._refuse_after_continue()
+        if len(word.values) != 1:
+            raise self.refusal("GX221", "repeat takes a count in brackets")
+        if self.line in self.left:
+            message = "this loop was left by a jump before: the control goes on counting from there"
+            raise self.refusal("GX223", message, "leave it at its end")
+        times = round(self.value(word.values[0]))
+        self.counters[self.line] = times
+        if times <= 0:
+            self._leave(self.construct[self.line])
+
+    def _endrepeat(self, word: OWord) -> None:
+        self._refuse_after_continue()
+        first = self.construct[self.line].lines[0]
+        self.counters[first] -= 1
+        if self.counters[first] > 0:
+            self.at = first + 1
+            self.counters[first] -= self._many(self.construct[self.line])
+        else:
+            self._leave(self.construct[self.line])
+
+    def _many(self, construct: Construct, condition: Any = None) -> int:
+        """Execute rounds of a loop at once, where that can be done; return how many."""
+        first, last = construct.lines[0], construct.last
+        begin = first if construct.kind == "while" else first + 1
+        flow = frozenset((first, last))
+        loop = Repeated(begin, last, flow, condition, construct.kind == "do")
+        return self.many.go(loop, self.counters[first] - 1 if condition is None else MOST)
+
+    def _break(self, word: OWord) -> None:
+        """Leave a loop; on its way to the end the interpreter notes a `continue` that it passes."""
+        self._refuse_after_continue("may go on with this loop")
+        construct = self.construct[self.line]
+        self.continued |= construct.kind == "do" and self._has(construct, "continue")
+        self._note_left(construct)
+        self._leave(construct)
+
+    def _note_left(self, construct: Construct) -> None:
+        """Note the `repeat` loops inside a construct that a jump leaves."""
+        for line in [n for n in self.counters if construct.lines[0] < n < construct.last]:
+            self.left.add(line)
+            del self.counters[line]
+
+    def _continue(self, word: OWord) -> None:
+        """Go to the condition; the interpreter notes a `break` that it passes."""
+        construct = self.construct[self.line]
+        self.continued |= construct.kind == "do"
+        self.broken |= self._has(construct, "break")
+        self._note_left(construct)
+        self.at = construct.last
+
+    def _leave(self, construct: Construct) -> None:
+        self.counters.pop(construct.lines[0], None)
+        self.at = construct.last + 1
