@@ -27,13 +27,13 @@ WORDS = "XYZTXY"
 LINES = ("G1 X1. Y2.", "G91", "G90", "M8", "(said)", "G20", "", "N10 G0 Z5.", "/G1 X3.")
 READING = Reading(start=dict.fromkeys("XYZ", 0.0), increment="IS-B", block_delete="skip")
 OWORDS = "G21 G90 G94 G17 F100\n#1=0\no1 while [#1 LT 40]\n{}\no1 endwhile\nM2\n"
-MACRO = "G21 G90 G94 G17 F100.\n#1=0\n#2=#0\n#3=#0\nWHILE[#1LT40]DO1\n{}\nEND1\nM30\n"
+MACRO = "G21 G90 G94 G17 F100.\n#1=0\n#2=#0\n#3=#0\n#4=#0\nWHILE[#1LT40]DO1\n{}\nEND1\nM30\n"
 MINDED = {
     "a line that reads what it sets": OWORDS.format("G1 X#1 Y[#1*2] #1=[#1+1]"),
     "a parameter set twice": OWORDS.format("#2=#1\nX#2\n#2=[#1+1]\nX#2\n#1=[#1+1]"),
     "one that is set and added to": OWORDS.format("#2=1\nX#2\n#2=[#2+1]\nX#2\n#1=[#1+1]"),
     "a line that is skipped": OWORDS.format("/X[#1*2] #3=#1\n#1=[#1+1]"),
-    "null in the first round": MACRO.format("G0 X#2 Y1.\n#2=#3\n#3=#1+1.\n#1=#1+1."),
+    "null in the first round": MACRO.format("G0 X#2 Y1.\n#2=#3\n#3=#4\n#4=#1+1.\n#1=#1+1."),
     "moves that call": "O1\n"
     + MACRO.format("G66 P9\nG0 X#1\nG67\n#1=#1+1.")
     + "O9\nG91 G1 Z-1.\nG90\nM99\n",
