@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -49,6 +49,9 @@ class Steps:
 
     def __len__(self) -> int:
         return self._before + len(self._last)
+
+    def __iter__(self) -> Iterator[Step]:
+        return map(Step._make, self.table.tolist())
 
     def append(self, step: Step) -> None:
         """Add one."""
