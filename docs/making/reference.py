@@ -14,6 +14,11 @@ from typing import Any
 
 import click
 
+from gcxform.calibrate import csv_text
+from gcxform.calibrate.ballbar import file as ballbar
+from gcxform.calibrate.circles import file as circles
+from gcxform.calibrate.diagonal import file as diagonals
+from gcxform.calibrate.rotary import ball_file as balls
 from gcxform.catalogue import CATALOGUE
 from gcxform.cli import VERBS
 from gcxform.cli import verbs as command_line
@@ -213,6 +218,23 @@ def _list(kind: str | list[str]) -> list[str]:
     return [kind] if isinstance(kind, str) else kind
 
 
+# --- tables of readings ---
+
+READINGS = {
+    "What they have in common": csv_text,
+    "Diagonals and linear tests": diagonals,
+    "Centres of balls": balls,
+    "Circles of the linear axes": circles,
+    "Circular tests with RTCP on": ballbar,
+}
+
+
+def readings() -> Iterator[str]:
+    """Yield a section for each kind of tables, as the module that reads it says."""
+    for title, module in READINGS.items():
+        yield from (f"## {title}", "", *described(inspect.getdoc(module) or ""))
+
+
 # --- what else plugins offer ---
 
 
@@ -250,7 +272,7 @@ def facts() -> Iterator[str]:
 MADE: Mapping[str, Callable[[], Iterator[str]]] = {
     made.__name__: made
     for made in (
-        *(passes, dialects, diagnostics, verbs, files),
+        *(passes, dialects, diagnostics, verbs, files, readings),
         *(formats, controls, kinematics, presets, facts),
     )
 }

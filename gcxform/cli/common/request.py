@@ -159,7 +159,8 @@ def needed_dialect(name: str | None, option: str = "-f") -> str:
     raise UsageError.one(
         "GX722",
         "which dialect is the program in?",
-        hint=f"{option} fanuc; `gcxform list dialects`",
+        hint=f"{option} DIALECT; `gcxform info FILE` says which it may be, "
+        "`gcxform list dialects` which there are",
     )
 
 

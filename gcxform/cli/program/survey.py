@@ -159,5 +159,5 @@ def dialect_of(files: Iterable[Path], known: Mapping[str, type[Dialect]]) -> Pro
     if len(best) != 1:
         several = f"{' or '.join(sorted(best))} fit as well" if best else "none fits"
         message = f"which dialect are the programs in? {several}"
-        raise UsageError.one("GX722", message, hint="-f fanuc; `gcxform list dialects`")
+        raise UsageError.one("GX722", message, hint="-f DIALECT; `gcxform list dialects`")
     return Programs(best[0], programs, others)
