@@ -101,7 +101,7 @@ def compare(
     for one in (a, b):
         arguments.instance("program", one, Program, "a program, as `read` returns it")
     tolerance = arguments.positive("tolerance", tolerance)
-    path_a, path_b = _same_axes(a.path, b.path)
+    path_a, path_b = same_axes(a.path, b.path)
     left = _Left(path_b, path_b, np.zeros(len(path_b), np.bool_))
     if through is not None:
         numbers = b.dialect.numbers
@@ -208,7 +208,7 @@ def _in_lines_of(a: Program, b: Program, found: Comparison) -> Comparison:
     )
 
 
-def _same_axes(a: Toolpath, b: Toolpath) -> tuple[Toolpath, Toolpath]:
+def same_axes(a: Toolpath, b: Toolpath) -> tuple[Toolpath, Toolpath]:
     """Return the paths over the axes that any of them has; the position of others is unknown."""
     axes = a.axes + "".join(axis for axis in b.axes if axis not in a.axes)
     return _over(a, axes), _over(b, axes)

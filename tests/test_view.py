@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,8 +13,15 @@ import pytest
 from browser_kit import Sight, started
 from cli_kit import call
 
+from gcxform.machine.chain import chain_of
+from gcxform.machine.file import load_machine
+from gcxform.plugin.registry import default_registry
+
 pytestmark = pytest.mark.xdist_group("browser")  # it is started once
 
+EXAMPLES = Path(__file__).parents[1] / "examples"
+BRACKET = EXAMPLES / "bracket"
+DOME = EXAMPLES / "rtcp-loop"
 PART = rb"""%
 (</script><img src=x onerror="document.title='bad'"> & <!-- {{data}} \u003c)
 G90 G21 G17 G94
@@ -35,12 +44,28 @@ def browser() -> Iterator[Any]:
         yield found
 
 
+def page_of(folder: Path, *words: str) -> Path:
+    page = folder / "page.html"
+    found = call("view", "-o", str(page), *words)
+    assert found.exit_code == 0, found.output
+    return page
+
+
 @pytest.fixture(scope="module")
 def part(browser, tmp_path_factory) -> Iterator[Sight]:
     folder = tmp_path_factory.mktemp("view")
     (folder / "part.nc").write_bytes(PART)
-    page = folder / "part.html"
-    assert call("view", "-f", "linuxcnc", "-o", str(page), str(folder / "part.nc")).exit_code == 0
+    page = page_of(folder, "-f", "linuxcnc", str(folder / "part.nc"))
+    sight = Sight.of(browser, page, has_touch=True)
+    yield sight
+    sight.close()
+
+
+@pytest.fixture(scope="module")
+def bracket(browser, tmp_path_factory) -> Iterator[Sight]:
+    """A program and what a pipeline makes of it."""
+    folder = tmp_path_factory.mktemp("view")
+    page = page_of(folder, "-p", str(BRACKET / "bracket.toml"), str(BRACKET / "bracket.nc"))
     sight = Sight.of(browser, page)
     yield sight
     sight.close()
@@ -51,19 +76,29 @@ def coloured(pixels: np.ndarray) -> int:
     return int((np.abs(pixels[:, :, :3].astype(int) - pixels[0, 0, :3]).sum(axis=2) > 40).sum())
 
 
-def line_rows(sight: Sight) -> list[str]:
-    count = sight.run("return view.programs[0].text.count")
-    return [sight.run("return view.programs[0].lineAt(value)", line) for line in range(count)]
+def texts(sight: Sight, nth: int = 0) -> list[str]:
+    """Return the lines of a program as the page has them."""
+    script = "return Promise.all([...Array(view.programs[value].text.count).keys()]"
+    found: list[str] = sight.run(f"{script}.map((line) => view.programs[value].lineAt(line)))", nth)
+    return found
 
 
-def test_the_page_loads_nothing_and_complains_of_nothing(part) -> None:
-    assert len(part.requests) == 1
-    assert part.requests[0].endswith("part.html")
-    assert part.complaints == []
+def chosen(sight: Sight, nth: int) -> tuple[int, list[int]]:
+    """Return the line of a program that is chosen, and those that are linked to the choice."""
+    script = "const { list } = view.programs[value]; return [list.chosen, [...list.linked]]"
+    line, linked = sight.run(script, nth)
+    return line, linked
+
+
+def test_the_page_loads_nothing_and_complains_of_nothing(part, bracket) -> None:
+    for sight in (part, bracket):
+        assert len(sight.requests) == 1
+        assert sight.requests[0].endswith("page.html")
+        assert sight.complaints == []
 
 
 def test_what_a_program_says_is_text_and_never_markup(part) -> None:
-    assert line_rows(part) == PART.decode("latin-1").split("\n")
+    assert texts(part) == PART.decode("latin-1").split("\n")
     assert part.page.title() == "part.nc"
     assert part.page.query_selector("#lists img") is None
     assert "</script><img" in part.text("#lists")
@@ -81,44 +116,176 @@ def test_the_path_is_drawn_and_follows_the_time(part) -> None:
     assert (whole == part.pixels()).all()
 
 
+def test_it_plays(part) -> None:
+    part.run("view.goTo(0)")
+    part.page.select_option("#speed", "4")
+    part.page.click("#play")
+    part.page.wait_for_selector("#clock:not(:text('0:00:00 of'))")
+    part.page.click("#play")
+    assert 0 < part.run("return view.player.at") < part.run("return view.player.total")
+    part.run("view.goTo(view.player.total)")
+
+
 def test_a_line_leads_to_its_move(part) -> None:
     before = part.pixels()
     part.page.click(".line[data-line='7']")
+    part.page.wait_for_selector("#told pre")
     told = part.text("#told")
     assert "word I, number 0" in told
+    assert "modal G1 G17 G90 G94 G21 G40, F 500" in told
     assert "clockwise arc at 500 mm/min" in told
     assert "from X20 Y0 Z-1" in told
     assert "about X20 Y10, radius 10 mm, in the plane XY" in told
     assert "through 270 degrees" in told
-    marked = part.pixels()
-    assert (marked != before).any()
+    assert (part.pixels() != before).any()
     assert part.page.url.endswith("#1:8")
 
 
-def test_a_move_leads_to_its_line(part) -> None:
+@pytest.mark.parametrize("way", ["click", "tap"])
+def test_a_move_leads_to_its_line(part, way: str) -> None:
     rows = part.run("return view.programs[0].path.count")
     for row in range(1, rows - 1):
         line = part.run("return view.programs[0].lineOfRow(value)", row)
-        part.page.mouse.click(*part.place_of(0, row))
-        assert part.run("return view.programs[0].list.chosen") == line
+        part.page.keyboard.press("Escape")
+        place = part.place_of(0, row)
+        part.page.mouse.click(*place) if way == "click" else part.page.touchscreen.tap(*place)
+        assert chosen(part, 0)[0] == line
     part.page.keyboard.press("Escape")
 
 
-def test_dark_and_light(part, browser) -> None:
-    light = part.pixels()[0, 0, :3].mean()
+def test_the_keys(part) -> None:
+    whole = part.pixels()
+    for key in ("r", "2", "+", "c"):
+        before = part.pixels()
+        part.page.keyboard.press(key)
+        assert (part.pixels() != before).any(), key
+    for key in ("r", "c", "c", "1"):
+        part.page.keyboard.press(key)
+    part.page.select_option("#colour", "kind")
+    assert (part.pixels() == whole).all()
+    part.page.keyboard.press("ArrowLeft")
+    assert chosen(part, 0)[0] >= 0
+    part.page.focus("#lists .rows")
+    line = chosen(part, 0)[0]
+    part.page.keyboard.press("ArrowUp")
+    assert chosen(part, 0)[0] == line - 1
+    part.page.keyboard.press("Escape")
+    part.run("view.goTo(view.player.total)")
+
+
+def test_dark_and_light(part) -> None:
+    light = part.pixels()[0, 0, :3]
     part.page.keyboard.press("d")
-    assert part.pixels()[0, 0, :3].mean() < light - 100
+    dark = part.pixels()[0, 0, :3]
+    assert light.tolist() == [0xFF, 0xFF, 0xFF]
+    assert dark.tolist() == [0x12, 0x15, 0x1A]
     part.page.click("#theme")
-    assert part.pixels()[0, 0, :3].mean() == light
+    assert (part.pixels()[0, 0, :3] == light).all()
+
+
+def test_a_run_is_shown_with_its_certificate(bracket) -> None:
+    source = (BRACKET / "bracket.nc").read_text("latin-1").replace("\r", "").rstrip("\n")
+    assert texts(bracket) == source.split("\n")
+    assert bracket.page.is_hidden("#certificate")
+    bracket.page.click("#tabs button:nth-child(2)")
+    told = bracket.text("#certificate")
+    assert "PASS: largest deviation 0.000" in told
+    assert "rapids: only their ends" in told
+    bracket.picture("view-certificate.png")
+    bracket.page.click("#tabs button:nth-child(1)")
+
+
+def test_lines_of_source_and_output_are_linked(bracket) -> None:
+    bracket.page.click("#lists .list:nth-child(1) .line[data-line='13']")
+    line, linked = chosen(bracket, 1)
+    assert line == -1
+    assert texts(bracket, 1)[linked[0]].startswith(texts(bracket)[13].split()[0])
+    bracket.page.click(f"#lists .list:nth-child(2) .line[data-line='{linked[0]}']")
+    assert chosen(bracket, 0) == (-1, [13])
+    bracket.page.wait_for_selector("#told pre:text('deviation')")
+
+
+def test_every_colour_is_another(bracket) -> None:
+    names = bracket.run("return [...document.getElementById('colour').options].map((o) => o.value)")
+    assert names == ["kind", "feed", "deviation", "error", "tool", "pass"]
+    seen = set()
+    for name in names:
+        bracket.page.select_option("#colour", name)
+        seen.add(bracket.pixels().tobytes())
+        assert bracket.text("#legend")
+        bracket.picture(f"view-{name}.png")
+    assert len(seen) == len(names)
+    assert "volumetric" in bracket.text("#legend")
+
+
+def test_what_stands_around_the_path_is_seen(bracket) -> None:
+    for name in ("grid", "envelope", "errors", "rapids", "before"):
+        before = bracket.pixels()
+        bracket.page.click(f".tools button:text-is('{name}')")
+        assert (bracket.pixels() != before).any(), name
+    assert "errors of the machine" in bracket.text("#legend")
+    for name in ("grid", "envelope", "errors", "rapids", "both"):
+        bracket.page.click(f".tools button:text-is('{name}')")
+
+
+def test_time_is_that_of_info(bracket, monkeypatch) -> None:
+    monkeypatch.chdir(BRACKET)
+    found = call("info", "--json", "-f", "linuxcnc", "-m", "machine.toml", "bracket.nc")
+    times = json.loads(found.stdout)["time_s"]
+    script = "const { times, path } = view.programs[0]; return [...path.kind]"
+    sums = "reduce((sum, kind, k) => sum + (kind ? times[k + 1] - times[k] : 0), 0)"
+    assert bracket.run(f"{script}.{sums}") == pytest.approx(times["feed"], rel=1e-3)
+
+
+def test_two_programs_with_what_lies_beside(browser, tmp_path: Path) -> None:
+    source, output = tmp_path / "in.nc", tmp_path / "out.nc"
+    source.write_bytes(PART.replace(b"G90 G21", b"G90 (inch) G20"))
+    words = ["-f", "linuxcnc", "-x", "absolute | metric", "--no-stamp"]
+    beside = ["--map", str(tmp_path / "out.map.json"), "--certificate", str(tmp_path / "out.json")]
+    assert call("run", *words, "-o", str(output), *beside, str(source)).exit_code == 0
+    shutil.copy(tmp_path / "out.json", tmp_path / "out-old.json")
+    text = (tmp_path / "out-old.json").read_text()
+    (tmp_path / "out-old.json").write_text(text.replace('"sha256": "', '"sha256": "0'))
+    page = page_of(tmp_path, "-f", "linuxcnc", str(source), str(output))
+    sight = Sight.of(browser, page, "#1:2", color_scheme="dark")
+    assert sight.pixels()[0, 0, 0] == 0x12
+    assert chosen(sight, 1)[1] == [1]
+    assert "PASS" in sight.text("#certificate")
+    assert "out-old.json is about other programs" in sight.text("#note")
+    assert sight.complaints == []
+    sight.close()
+
+
+def test_the_tool_axis_is_that_of_the_chain(browser, tmp_path: Path) -> None:
+    page = page_of(tmp_path, "-p", str(DOME / "axes.toml"), str(DOME / "dome.nc"))
+    sight = Sight.of(browser, page)
+    chain = chain_of(load_machine(DOME / "set.toml", default_registry().machines))
+    script = "const { path } = view.programs[0]; const at = path.axes;"
+    script += "return [view.toolAxis(0, value), path.ends[at.indexOf('A')][value],"
+    for row in (10, 40):
+        axis, a, c = sight.run(f"{script} path.ends[at.indexOf('C')][value]]", row)
+        angles = np.array([{"A": a, "C": c}[letter] for letter in chain.letters])
+        assert np.allclose(axis, chain.tool_axis(angles), atol=1e-6)
+    assert sight.page.query_selector("button:text-is('tool axes')") is not None
+    sight.run("view.goTo(0.5 * view.player.total)")
+    sight.picture("view-five-axes.png")
+    assert sight.complaints == []
+    sight.close()
 
 
 def test_it_is_packed(tmp_path: Path) -> None:
-    """What a move takes in the file, text included, of which most is not the same as before."""
+    """What a move takes in the file, text included, where no move is like the one before."""
     here = tmp_path / "many.nc"
     way = np.cumsum(np.random.default_rng(4).integers(-900, 900, (20_000, 3)), axis=0) / 1000
     here.write_text("G90 G21 G94 F900\n" + "\n".join(f"G1X{x}Y{y}Z{z}" for x, y, z in way))
-    assert call("view", "-f", "linuxcnc", "-o", str(tmp_path / "a"), str(here)).exit_code == 0
+    large = page_of(tmp_path, "-f", "linuxcnc", str(here)).stat().st_size
     here.write_text("G90 G21 G94 F900\nG1 X1 Y1 Z1\n")
-    assert call("view", "-f", "linuxcnc", "-o", str(tmp_path / "b"), str(here)).exit_code == 0
-    sizes = [(tmp_path / name).stat().st_size for name in "ab"]
-    assert (sizes[0] - sizes[1]) / 20_000 < 15
+    small = page_of(tmp_path, "-f", "linuxcnc", str(here)).stat().st_size
+    assert (large - small) / 20_000 < 15
+
+
+def test_one_of_two_ways_to_name_an_output(tmp_path: Path) -> None:
+    (tmp_path / "part.nc").write_bytes(PART)
+    found = call("view", "-x", "absolute", "-f", "linuxcnc", *[str(tmp_path / "part.nc")] * 2)
+    assert found.exit_code == 2
+    assert "GX728" in found.output

@@ -47,7 +47,11 @@ class Certificate:
     assumed: list[str] = field(default_factory=list)
     warnings: list[Diagnostic] = field(default_factory=list)
 
+    def described(self) -> dict[str, Any]:
+        """Return the certificate as plain values, as it is written."""
+        said = {name: value for name, value in asdict(self).items() if name != "warnings"}
+        return {"format": FORMAT, **said}
+
     def to_json(self) -> str:
         """Return the certificate as JSON text."""
-        said = {name: value for name, value in asdict(self).items() if name != "warnings"}
-        return json.dumps({"format": FORMAT, **said}, indent=2) + "\n"
+        return json.dumps(self.described(), indent=2) + "\n"

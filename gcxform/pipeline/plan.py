@@ -233,6 +233,13 @@ class Plan:
         zeros = {axis: 0.0 for axis in axes if axis in LINEAR}
         return replace(reading, start={**zeros, **reading.start})
 
+    def reading_of_output(self, reading: Reading) -> Reading:
+        """Return what is known of the text written, which may be for another machine."""
+        for file in filter(None, (step.demands.written_for for step in self.path_passes)):
+            offsets, homes = file.machine.work_offsets, file.machine.homes
+            reading = replace(reading, work_offsets=offsets, homes=homes)
+        return replace(reading, units=self.first_units)
+
     @property
     def first_units(self) -> str:
         """The units the output starts in: those of its control before the program."""

@@ -19,7 +19,6 @@ from gcxform.modal.inventory import Account
 from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.modal.program_end import Ending, Frame, frame_for, with_ends
 from gcxform.modal.reader import Apart, WindowReader
-from gcxform.modal.state import Reading
 from gcxform.pipeline.blind_moves import check_blind
 from gcxform.pipeline.cutter_comp import check_compensated, whole_stretches
 from gcxform.pipeline.mixed_feeds import check_mixed
@@ -136,7 +135,7 @@ class Run:
         verifier = Verifier(
             self.steps[resolved(self.steps) :],
             plan.context,
-            self._reading_of_output(reading),
+            self.plan.reading_of_output(reading),
             axes,
             plan.limit_of_written,
             plan.angle_limits(written=True),
@@ -154,13 +153,6 @@ class Run:
             return frame_for(self.source, self.dialect, self.plan.target, executes)
         except GcxformError as error:
             raise located(error, self.source) from None
-
-    def _reading_of_output(self, reading: Reading) -> Reading:
-        """Return what is known of the text written, which may be for another machine."""
-        for file in filter(None, (step.demands.written_for for step in self.steps)):
-            offsets, homes = file.machine.work_offsets, file.machine.homes
-            reading = replace(reading, work_offsets=offsets, homes=homes)
-        return replace(reading, units=self.plan.first_units)
 
     def _switches(self) -> frozenset[str]:
         """Return the M codes that a pass takes over from the control."""
@@ -217,7 +209,7 @@ class Run:
             self._put(structure.text, structure.lines.tolist(), out)
             return
         if self.verify != "off":
-            reading = self._reading_of_output(self.plan.machine_reading)
+            reading = self.plan.reading_of_output(self.plan.machine_reading)
             structure.prove(folded, reading, self.account, self.findings)
         out.lines_in = structure.lines_read
         out.put(*self.text.edit(folded.text, list(folded.lines)))

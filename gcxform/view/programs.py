@@ -2,28 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
 
-from gcxform.system.arrays import Ints
+from gcxform.system.arrays import Floats, Ints
+from gcxform.toolpath.path import Toolpath
+from gcxform.toolpath.tools import ToolInSpindle
 from gcxform.view import lines, paths
-from gcxform.view.packing import Store
+from gcxform.view.packing import Section, Store
 from gcxform.view.reading import Shown
 
 RAPID_SPEED: Final = 10_000.0  # mm/min or degrees/min of axes of which no file says theirs
+FINE: Final = 0.01  # um
+UM: Final = 1000.0  # per mm
 
 
-def described(
-    shown: Shown, store: Store, speeds: Mapping[str, float], source: Ints | None = None
-) -> dict[str, Any]:
-    """Add a program to a store; return what the page is told of it.
+@dataclass(frozen=True)
+class Told:
+    """What is known of the moves of a program besides: sizes (n,) in mm, and sorts (n,) by name.
 
     `source` (lines of the text,) is the line of the program it was made of, from 0, -1 for none.
     """
+
+    sizes: Mapping[str, Floats] = field(default_factory=dict)
+    sorts: Mapping[str, tuple[Sequence[str], Ints]] = field(default_factory=dict)
+    source: Ints | None = None
+
+
+def described(
+    shown: Shown, store: Store, speeds: Mapping[str, float], told: Told | None = None
+) -> dict[str, Any]:
+    """Add a program to a store; return what the page is told of it.
+
+    `speeds` are the top speeds of axes in mm/min or degrees/min, for rapids.
+    """
+    told = told or Told()
     count, blocks = lines.packed(shown.text, store)
     plain = len(shown.line) == count and bool((shown.line == np.arange(count)).all())
+    sorts = {"tool": _tools(shown), **told.sorts}
     return {
         "name": shown.name,
         "dialect": shown.dialect.name,
@@ -34,8 +53,43 @@ def described(
         "mode": store.ints(shown.mode),
         "modes": shown.modes,
         "path": paths.packed(shown.path, store),
-        "from": None if source is None else store.ints(source),
+        "follows": [shown.tips or bool(frame.following) for frame in shown.path.frames],
+        "from": None if told.source is None else store.ints(told.source[:count]),
         "speeds": {"assumed": RAPID_SPEED, **speeds},
-        "sizes": [],
-        "sorts": [],
+        "sizes": [_size(name, values, store) for name, values in told.sizes.items()],
+        "sorts": [_sort(name, *sort, store) for name, sort in sorts.items() if len(sort[0]) > 1],
     }
+
+
+def _size(name: str, values: Floats, store: Store) -> Section:
+    """Add a column of mm as um; what is not known is -1."""
+    known = np.where(np.isfinite(values), UM * values, -1.0)
+    return {"name": name, "unit": "um", "of": store.lengths(known, FINE)}
+
+
+def _sort(name: str, names: Sequence[str], values: Ints, store: Store) -> Section:
+    return {"name": name, "names": list(names), "of": store.ints(values)}
+
+
+def _tools(shown: Shown) -> tuple[list[str], Ints]:
+    """Return the tools by name, and which of them makes each move."""
+    path = shown.path
+    spindle = ToolInSpindle(shown.dialect, {event.what for event in path.events})
+    names, found = [spindle.loaded], np.zeros(len(path), np.int64)
+    for event in path.events:
+        if spindle.see(event):
+            if spindle.loaded not in names:
+                names.append(spindle.loaded)
+            found[event.row :] = names.index(spindle.loaded)
+    return _used(names, found)
+
+
+def _used(names: list[str], found: Ints) -> tuple[list[str], Ints]:
+    """Leave out names that nothing has."""
+    used, which = np.unique(found, return_inverse=True)
+    return [names[k] for k in used.tolist()], which.astype(np.int64)
+
+
+def line_of_rows(path: Toolpath, line: Ints) -> Ints:
+    """Return the line of the text, from 0, of each move."""
+    return np.asarray(line[path.source])

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,10 @@ from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.meaning.tables import FAMILIES, NUMBER
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Modes, Reading
+from gcxform.pipeline.plan import Plan
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Ints
+from gcxform.toolpath.facts import AXIS_POSITIONS, TIP_POSITIONS
 from gcxform.toolpath.path import Toolpath
 
 GROUPS = {
@@ -35,24 +38,48 @@ GROUPS = {
 class Shown:
     """A program that is shown.
 
+    sha256  of what was written
     text    what was written, and after it the files that it calls
     path    its moves; `source` counts executed blocks, from 0
     line    (blocks,) line of the text, from 0, that each executed block stands for
+    tips    whether X, Y and Z are the tip of the tool, whatever the control says
     mode    (blocks,) index into `modes`, the codes in force after each executed block
     """
 
     name: str
+    sha256: str
     dialect: type[Dialect]
     text: bytes
     path: Toolpath
     line: Ints
     mode: Ints
     modes: tuple[str, ...]
+    tips: bool = False
 
 
 def read(source: Source, dialect: type[Dialect], reading: Reading) -> Shown:
     """Return a program as it is shown. Raises InputError where it is refused."""
-    executed = written_out(source, dialect, reading)
+    return _shown(source, written_out(source, dialect, reading), dialect, reading)
+
+
+def read_for(plan: Plan, source: Source) -> Shown:
+    """Return a program as a pipeline reads it. Raises InputError where it is refused."""
+    executed = written_out(source, plan.read_as, plan.machine_reading)
+    executed, dialect = plan.without_tip_codes(executed)
+    return _shown(source, executed, dialect, plan.reading_at_start(dialect.axes))
+
+
+def with_tips(plan: Plan, source: Shown, output: Shown) -> tuple[Shown, Shown]:
+    """Return a program and what a pipeline made of it, each with whether it is one of tips."""
+    reads = any(TIP_POSITIONS in step.requires for step in plan.path_passes)
+    writes = reads
+    for step in plan.path_passes:
+        said = [fact for fact in (TIP_POSITIONS, AXIS_POSITIONS) if fact in step.ensures]
+        writes = said[0] is TIP_POSITIONS if said else writes
+    return replace(source, tips=reads), replace(output, tips=writes)
+
+
+def _shown(source: Source, executed: Source, dialect: type[Dialect], reading: Reading) -> Shown:
     try:
         windows = _interpreted(executed, dialect, reading)
     except InputError as error:
@@ -60,10 +87,11 @@ def read(source: Source, dialect: type[Dialect], reading: Reading) -> Shown:
     path = joined([window.path for window in windows])
     mode, modes = _codes([window.modes for window in windows])
     text = b"".join(source.windows())
+    sha256 = hashlib.sha256(text).hexdigest()
     for file in getattr(executed, "files", ()):
         text = text + (b"" if text.endswith(b"\n") else b"\n") + file.text
     line = getattr(executed, "origin", np.arange(len(path.blocks.inch)))
-    return Shown(source.name, dialect, text, path, np.asarray(line), mode, modes)
+    return Shown(source.name, sha256, dialect, text, path, np.asarray(line), mode, modes)
 
 
 def _interpreted(source: Source, dialect: type[Dialect], reading: Reading) -> list[Interpreted]:

@@ -12,8 +12,7 @@ from gcxform.system.arrays import Flags, Floats
 from gcxform.toolpath.circles import arc_extremes
 from gcxform.toolpath.path import Event, FeedMode, Kind, Toolpath
 from gcxform.toolpath.splines import spline_extremes
-
-NONE = "none"
+from gcxform.toolpath.tools import NONE, ToolInSpindle
 
 
 class Range:
@@ -86,9 +85,7 @@ class Tools:
     """
 
     def __init__(self, dialect: type[Dialect], codes: set[str]) -> None:
-        self.change = {f"M{n}" for n, code in dialect.m_codes.items() if code.group == "tool"}
-        self.changes = bool(self.change & codes)
-        self.ready = self.loaded = NONE
+        self.spindle = ToolInSpindle(dialect, codes)
         self.uses: dict[str, Use] = {}
 
     def add(self, path: Toolpath, seconds: Floats) -> None:
@@ -102,21 +99,17 @@ class Tools:
 
     def _event(self, event: Event) -> None:
         """Change the tool or the speed of the spindle."""
-        values = dict(event.values)
-        number = values.get("T", values.get("Q") if event.what in self.change else None)
-        if number is not None:
-            self.ready = f"T{number:g}"
-        if event.what in self.change or (event.what == "T" and not self.changes):
-            self.loaded = self.ready
-            self.uses.setdefault(self.loaded, Use())
+        if self.spindle.see(event):
+            self.uses.setdefault(self.spindle.loaded, Use())
         elif event.what == "S":
-            self.uses.setdefault(self.loaded, Use()).speed.add([values["S"]])
+            speed = dict(event.values)["S"]
+            self.uses.setdefault(self.spindle.loaded, Use()).speed.add([speed])
 
     def _rows(self, path: Toolpath, seconds: Floats, first: int, last: int) -> None:
         """Take some rows of a path into account."""
         if first == last:
             return
-        use = self.uses.setdefault(self.loaded, Use())
+        use = self.uses.setdefault(self.spindle.loaded, Use())
         rows = np.zeros(len(path), np.bool_)
         rows[first:last] = True
         cuts = path.kind != Kind.RAPID

@@ -16,7 +16,7 @@ const STILL = 220; // ms without movement, after which the picture is drawn shar
 const VERTEX = `
 precision highp float; precision highp int; precision highp sampler2D;
 uniform mat4 modelViewMatrix, projectionMatrix;
-uniform vec2 viewport; uniform float width; uniform int per;
+uniform vec2 viewport; uniform float width, behind; uniform int per;
 uniform sampler2D corners, colours; uniform vec4 single;
 out vec3 shade; out float along, travelled; flat out int dashed;
 vec4 cornerAt(int k) { return texelFetch(corners, ivec2(k % ${ACROSS}, k / ${ACROSS}), 0); }
@@ -37,6 +37,7 @@ void main() {
     float side = nth == 2 || nth == 3 || nth == 5 ? 1.0 : -1.0;
     gl_Position.xy += (vec2(-unit.y, unit.x) * side + unit * (2.0 * part - 1.0)) * width / viewport;
   }
+  gl_Position.z += behind;
   along = part * size;
   dashed = colour.a < 0.9 ? 1 : 0;
   shade = mix(colour.rgb, single.rgb, single.a);
@@ -53,6 +54,7 @@ void main() {
 
 export function drawingOn(canvas) {
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+  renderer.outputColorSpace = "srgb-linear"; // colours go to the screen as they are given
   renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
   const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -1, 1);
   camera.up.set(0, 0, 1);
@@ -68,7 +70,7 @@ export function drawingOn(canvas) {
 }
 
 export function setGround(drawing, colour) {
-  drawing.ground.setStyle(colour, "");
+  drawing.ground.setStyle(colour, "srgb-linear");
   drawing.renderer.setClearColor(drawing.ground);
   for (const shown of drawing.paths) shown.uniforms.ground.value = drawing.ground;
   redraw(drawing);
@@ -141,7 +143,7 @@ export function addPath(drawing, path) {
   const colours = new Uint8Array(4 * TEXELS * rows).fill(FULL);
   const texture = new THREE.DataTexture(colours, TEXELS, rows, THREE.RGBAFormat, THREE.UnsignedByteType);
   const uniforms = {
-    viewport: { value: new THREE.Vector2(1, 1) }, width: { value: 2 }, played: { value: Infinity },
+    viewport: { value: new THREE.Vector2(1, 1) }, width: { value: 2 }, behind: { value: 0 }, played: { value: Infinity },
     colours: { value: texture }, ground: { value: drawing.ground }, single: { value: [0, 0, 0, 0] },
     corners: { value: null }, per: { value: 6 },
   };

@@ -8,6 +8,7 @@ import { lineOf, textOf } from "./lines.js";
 import { RAPID, pathOf, pointOn, timesOf } from "./path.js";
 import { rowAt } from "./picking.js";
 import { goTo, playerOf, rowAtTime, setTimes, toggle } from "./player.js";
+import { hairsOf, placeTool, sceneOf, toolAxis } from "./scene.js";
 import { toldOf } from "./told.js";
 
 const byId = (id) => document.getElementById(id);
@@ -37,10 +38,12 @@ async function start() {
   linkAll();
   buildControls();
   setDark(matchMedia("(prefers-color-scheme: dark)").matches);
+  surround();
   lookAt(view.drawing, boxOf(view.drawing), VIEWS.iso);
   view.player = playerOf({ play: byId("play"), time: byId("time"), clock: byId("clock"), speed: byId("speed") }, { show });
   setTimes(view.player, main().times);
   chooseByName(location.hash);
+  byId("note").textContent = head.notes.join(" ");
   globalThis.gcxformView = Object.assign(view, forConsole());
   document.documentElement.dataset.ready = "yes";
 }
@@ -50,6 +53,7 @@ function forConsole() {
   return {
     drawNow: () => drawNow(view.drawing),
     goTo: (seconds) => goTo(view.player, seconds),
+    toolAxis: (nth, row) => toolAxis(view.scene, view.programs[nth], row),
     middleOf: (nth, row) => fromMiddle(pointOn(view.programs[nth].path, row, 0.5)),
   };
 }
@@ -57,6 +61,32 @@ function forConsole() {
 // A point as it is drawn: from the middle of the first program.
 function fromMiddle(point) {
   return point.map((value, axis) => value - view.drawing.middle[axis]);
+}
+
+// What stands around the paths, and a button for each kind of it.
+function surround() {
+  view.scene = sceneOf(view.drawing, view.head.scene, boxOf(view.drawing));
+  const { layers } = view.scene;
+  for (const program of view.programs) {
+    const hairs = hairsOf(view.scene, program);
+    if (hairs) program.shown.group.parent.add(hairs);
+    if (hairs) layers["tool axes"] = layers["tool axes"] ? layers["tool axes"].add(hairs) : hairs;
+  }
+  for (const name of Object.keys(layers)) {
+    if (name === "axes") continue;
+    layers[name].visible = !["envelope", "errors"].includes(name);
+    const press = button("parts", name, () => setLayer(name, press));
+    press.ariaPressed = String(layers[name].visible);
+  }
+}
+
+function setLayer(name, press) {
+  const { layers } = view.scene;
+  layers[name].visible = !layers[name].visible;
+  if (name === "grid") layers.axes.visible = layers.grid.visible;
+  press.ariaPressed = String(layers[name].visible);
+  showLegend();
+  redraw(view.drawing);
 }
 
 // The program that is played: the last, which is what the machine is given.
@@ -70,7 +100,7 @@ async function programOf(head, open) {
   const path = await pathOf(head.path, open);
   const get = (section) => column(open, section);
   const program = {
-    name: head.name, words: head.words, modes: head.modes, path, text: textOf(head, open),
+    name: head.name, words: head.words, follows: head.follows, modes: head.modes, path, text: textOf(head, open),
     mode: await get(head.mode), line: head.line ? Uint32Array.from(await get(head.line)) : null,
     from: head.from ? Int32Array.from(await get(head.from)) : null, sizes: [], sorts: [],
   };
@@ -200,7 +230,8 @@ function show(seconds) {
   const { row, part } = rowAtTime(program.times, seconds);
   view.at = { row, part };
   program.shown.uniforms.played.value = seconds >= view.player.total ? Infinity : row - 1 + part;
-  if (view.tool) view.tool.position.set(...fromMiddle(pointOn(program.path, row, part)));
+  placeTool(view.scene, program, fromMiddle(pointOn(program.path, row, part)), row);
+  view.scene.tool.visible = seconds < view.player.total || view.chosen !== null;
   redraw(view.drawing);
 }
 
@@ -221,6 +252,7 @@ function paintAll() {
     const behind = view.programs.length > 1 && program !== main() && view.alone < 0;
     program.shown.uniforms.single.value = behind ? [...GREY.map((each) => each / 255), 1] : [0, 0, 0, 0];
     program.shown.uniforms.width.value = behind ? 1.2 : 2;
+    program.shown.uniforms.behind.value = behind ? 1e-4 : 0;
   }
   showLegend();
 }
@@ -237,7 +269,8 @@ function colourer(program) {
 
 function sized(program, values, [low, high]) {
   const span = high - low || 1;
-  return (row) => (program.path.kind[row] === RAPID ? GREY : ramp((values[row] - low) / span, view.dark));
+  const plain = (row) => program.path.kind[row] === RAPID || !(values[row] >= 0);
+  return (row) => (plain(row) ? GREY : ramp((values[row] - low) / span, view.dark));
 }
 
 function rangeOf(name) {
@@ -245,7 +278,7 @@ function rangeOf(name) {
   for (const { path, sizes } of view.programs) {
     const values = name === "feed" ? path.feed : sizes.find((each) => each.name === name)?.of ?? [];
     for (let row = 0; row < values.length; row++) {
-      if (path.kind[row] === RAPID || !(values[row] > -Infinity)) continue;
+      if (path.kind[row] === RAPID || !(values[row] >= 0)) continue;
       low = Math.min(low, values[row]);
       high = Math.max(high, values[row]);
     }
@@ -264,6 +297,10 @@ function showLegend() {
   legend.replaceChildren();
   const sort = view.programs.flatMap(({ sorts }) => sorts).find((each) => each.name === view.colour);
   const names = view.colour === "kind" ? KINDS : sort?.names;
+  if (view.scene?.layers.errors?.visible) {
+    const { factor, most } = view.scene;
+    legend.append(made("div", `errors of the machine × ${factor}, largest ${Number((1000 * most).toPrecision(4))} um`));
+  }
   if (names) {
     names.slice(0, 24).forEach((name, k) => {
       const colour = view.colour !== "kind" ? OKABE_ITO[k % OKABE_ITO.length] : k ? OKABE_ITO[k - 1] : GREY;

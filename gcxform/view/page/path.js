@@ -22,6 +22,7 @@ export async function pathOf(head, open) {
     entryUnknown: head.entryUnknown, kind: Uint8Array.from(kind), form: Uint8Array.from(form),
     unknown: Uint32Array.from(unknown), block: Uint32Array.from(block), frame, feed,
     mode: Uint8Array.from(mode), ends, arcs: await arcsOf(head, get), splines: await splinesOf(head, get),
+    vectors: head.vectors ? await Promise.all(head.vectors.map(get)) : null,
   };
   path.arcAt = places(path.kind, (value) => value >= CW);
   path.splineAt = places(path.form, (value) => value === SPLINE_FORM);

@@ -63,7 +63,7 @@ function moveOf(program, row) {
   const parts = [`  ${name}${rapid ? "" : ` at ${shown(path.feed[row])} ${UNITS[path.mode[row]]}`}`];
   parts.push(`    from ${pointBefore(path, row)}`, `    to   ${pointAfter(path, row)}`);
   if (path.kind[row] >= 2) parts.push(...arcOf(path, row));
-  for (const { name: what, of, unit } of program.sizes) parts.push(`    ${what} ${shown(of[row])} ${unit}`);
+  for (const { name: what, of, unit } of program.sizes) parts.push(`    ${what} ${of[row] < 0 ? "not known" : `${shown(of[row])} ${unit}`}`);
   for (const { name: what, of, names } of program.sorts) parts.push(`    ${what} ${names[of[row]]}`);
   return parts;
 }
