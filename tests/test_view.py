@@ -154,6 +154,7 @@ def test_a_move_leads_to_its_line(part, way: str) -> None:
 
 
 def test_the_keys(part) -> None:
+    part.page.keyboard.press("1")
     whole = part.pixels()
     for key in ("r", "2", "+", "c"):
         before = part.pixels()
