@@ -48,7 +48,7 @@ MUTATIONS = (
     ),
     Mutation(
         "lines: the output is read with the work offset of the other machine",
-        "gcxform/pipeline/run.py",
+        "gcxform/pipeline/plan.py",
         "reading = replace(reading, work_offsets=offsets, homes=homes)",
         "reading = replace(reading, homes=homes)",
         OFFSET,
