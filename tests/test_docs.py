@@ -325,6 +325,14 @@ def test_the_readme_is_a_door():
     assert len(README.read_text("utf-8").splitlines()) < 150
 
 
+def test_the_figures_of_the_door_are_those_of_the_first_program():
+    door = README.read_text("utf-8")
+    shown = (ROOT / "docs" / "start.md").read_text("utf-8")
+    before, after = re.search(r"up to (\S+) um off .*? at most (\S+) um", door, re.DOTALL).groups()
+    found = re.findall(r"largest deviation (\S+) mm", shown[shown.index("examples/bracket/") :])
+    assert [f"{float(each) * 1000:.2f}" for each in found] == [after, before]
+
+
 def test_commands_of_the_first_screen_exist():
     first = "\n".join(README.read_text("utf-8").splitlines()[:24])
     scripts = re.findall(r"^(\./\S+)", first, re.MULTILINE)
