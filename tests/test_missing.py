@@ -3,26 +3,14 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from pathlib import Path
-from typing import Any
 
 import pytest
 from cli_kit import call, workplace
+from missing_kit import as_toml, filled, pasted
 
 from gcxform.machine.file import load_machine
 
-ANSWERS: dict[str, Any] = {
-    "increment": "IS-B",
-    "feed-increment": 1.0,
-    "feed": 100.0,
-    "block-delete": "skip",
-    "peck-return": 0.5,
-    "peck-clearance": 1.0,
-    "g52": "fanuc",
-    "cycle-without-place": "drills",
-    "user-codes": "keep",
-}
 BODIES = {
     "a start in G91": (
         "fanuc",
@@ -56,38 +44,6 @@ BODIES = {
 def check(here: Path, dialect: str, chain: str, *more: str) -> tuple[int, str, str]:
     found = call("check", "-f", dialect, "-x", chain, *more, str(here / "p.nc"))
     return found.exit_code, found.stdout, found.stderr
-
-
-def pasted(stdout: str) -> dict[str, Any]:
-    """Return the block of TOML that ends what check says, as values."""
-    return tomllib.loads(stdout[stdout.index("\n\n#") :])
-
-
-def filled(node: Any, key: str = "") -> Any:
-    if isinstance(node, dict):
-        return {name: filled(value, name) for name, value in node.items()}
-    return ANSWERS.get(key, 1.5) if node == "?" else node
-
-
-def as_toml(values: dict[str, Any]) -> str:
-    """Return tables as text; a table in a table has its own header."""
-    lines = [f"{key} = {inline(v)}" for key, v in values.items() if not isinstance(v, dict)]
-    for name, table in values.items():
-        if name in ("tool", "home", "work-offset"):
-            lines += [t for k, v in table.items() for t in _table(f'{name}."{k}"', v)]
-        elif isinstance(table, dict):
-            lines += _table(name, table)
-    return "\n".join(lines) + "\n"
-
-
-def _table(name: str, table: dict[str, Any]) -> list[str]:
-    return [f"[{name}]", *(f"{key} = {inline(value)}" for key, value in table.items())]
-
-
-def inline(value: Any) -> str:
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f'"{k}" = {inline(v)}' for k, v in value.items()) + " }"
-    return f'"{value}"' if isinstance(value, str) else repr(value)
 
 
 @pytest.fixture

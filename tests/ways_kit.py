@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shlex
 from collections.abc import Iterator, Mapping
+from contextlib import chdir
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import tomlkit
 from cli_kit import call
+from missing_kit import filled, pasted
 
 from gcxform.catalogue.offers import Edit, Offer, StepBefore, ways
+from gcxform.catalogue.questions import Question, kind_of, questions
 from gcxform.catalogue.settings import ON_COMMAND_LINE, Setting, for_chain
 from gcxform.cli.program.used import used_by
 from gcxform.contract.options import describe
@@ -25,6 +27,8 @@ from gcxform.testing.cases import Case, Outcome, outcome
 
 MACHINE = "machine.toml"
 OF_MACHINE = ("control", "tool", "work-offset", "home")
+OPEN = 'fill in what is "?"'
+ASKED: set[frozenset[Question]] = set()
 TYPED: set[str] = set()
 """The ways that have been typed: each kind of them once."""
 
@@ -48,6 +52,47 @@ def go_out(case: Case, found: Outcome, folder: Path, places: Mapping[str, Path])
         if (words := typed(case, way)) is not None:
             _type(words, case.sections["input.nc"], trial, diagnostic, way)
     return len(tried)
+
+
+def one_round(case: Case, found: Outcome, folder: Path) -> bool:
+    """Fill in what `check` asks for, and check again: nothing that a setting helps may be left.
+
+    Return whether there was anything to ask; of cases that ask the same, one is enough.
+    """
+    asked = frozenset(kind_of(q) for each in found.diagnostics for q, _ in questions(each.hint))
+    if not asked or asked in ASKED or "pipeline.toml" not in case.sections:
+        return False
+    ASKED.add(asked)
+    (folder / "input.nc").write_bytes(case.sections["input.nc"])
+    with chdir(folder):
+        first = call("check", "-p", "pipeline.toml", "input.nc")
+        assert OPEN in first.stdout, f"nothing is asked for:\n{first.stdout}\n{first.stderr}"
+        _fill_in(filled(pasted(first.stdout)))
+        again = call("check", "-p", "pipeline.toml", "input.nc")
+    assert OPEN not in again.stdout, f"asked for in a second round:\n{again.stdout}"
+    assert again.exit_code in (0, 1), again.stderr
+    return True
+
+
+def _fill_in(answers: dict[str, Any]) -> None:
+    """Write answers into the pipeline file and the machine file of the folder."""
+    pipeline = tomlkit.parse(Path("pipeline.toml").read_text())
+    _deepen(pipeline.setdefault("input", {}), answers.pop("input", {}))
+    if answers:
+        name = pipeline.setdefault("machine", {}).setdefault("file", MACHINE)
+        file = Path(name)
+        machine = tomlkit.parse(file.read_text() if file.exists() else "format = 1\n")
+        _deepen(machine, answers)
+        file.write_text(tomlkit.dumps(machine))
+    Path("pipeline.toml").write_text(tomlkit.dumps(pipeline))
+
+
+def _deepen(table: Any, more: dict[str, Any]) -> None:
+    for name, value in more.items():
+        if isinstance(value, dict) and name in table:
+            _deepen(table[name], value)
+        else:
+            table[name] = value
 
 
 def _shape(found: Diagnostic) -> tuple[str, str]:
@@ -224,13 +269,9 @@ def _word(value: Any) -> str:
 def _type(
     words: list[str], program: bytes, folder: Path, found: Diagnostic, way: tuple[Offer, ...]
 ) -> None:
-    here = Path.cwd()
-    os.chdir(folder)
-    try:
+    with chdir(folder):
         Path("input.nc").write_bytes(program)
         done = call(*words, "input.nc", "-o", "output.nc")
-    finally:
-        os.chdir(here)
     again = f"error[{found.code}]: {found.message}" in done.stderr
     assert not again, f"{way}, typed as {words}, does not lead out:\n{done.stderr}"
     assert done.exit_code in (0, 2, 3, 4), done.stderr

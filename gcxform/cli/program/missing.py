@@ -100,6 +100,8 @@ class Visit:
     def __init__(self, pipeline: Pipeline, source: Source, look: Look) -> None:
         self.pipeline, self.source, self.look = pipeline, source, look
         self.used: Used = used_by(source, pipeline.source, pipeline.machine_reading)
+        if pipeline.machine is not None:
+            self.used.keep_axes(pipeline.machine.axes)
         self.so_far = Missing()
         self.tried_where_lost = False
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 
@@ -42,6 +42,13 @@ class Used:
     axes: str = "XYZ"
     of_home: dict[str, str] = field(default_factory=dict)
     calls: Places = field(default_factory=dict)
+
+    def keep_axes(self, letters: Collection[str]) -> None:
+        """Keep the axes that a machine file names, if it names any: it takes no others."""
+        if letters:
+            self.axes = "".join(axis for axis in self.axes if axis in letters)
+            homes = self.of_home.items()
+            self.of_home = {n: "".join(a for a in axes if a in letters) for n, axes in homes}
 
     def named(self, question: Question) -> Iterator[Question]:
         """Yield the questions that one of all tools, or of a place, stands for in this program."""
