@@ -2,6 +2,7 @@
 
 from gcxform.api import Program as Program
 from gcxform.api import read as read
+from gcxform.api import read_model as read_model
 from gcxform.api import write as write
 from gcxform.catalogue.offers import Hint as Hint
 from gcxform.catalogue.offers import put_before as put_before

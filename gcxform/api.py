@@ -13,16 +13,22 @@ import numpy as np
 from gcxform.config import arguments
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.dialect import Dialect
+from gcxform.errormodel.model import ErrorModel
+from gcxform.errormodel.model_file import load_model
 from gcxform.flow.straightened import located, written_out
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
+from gcxform.notebook import drawn, shown
 from gcxform.pipeline.pipeline import Result
-from gcxform.plugin.registry import dialect_of
+from gcxform.plugin.registry import default_registry, dialect_of
 from gcxform.syntax.source import Source, program_of
 from gcxform.system.files import write_atomically
 from gcxform.toolpath.columns import COLUMNS
+from gcxform.toolpath.drawn import strokes
 from gcxform.toolpath.path import BLOCK_MODES, Toolpath
+
+SHOWN = 400  # characters of a program that a notebook shows
 
 
 def write(result: Result | bytes, path: str | Path) -> None:
@@ -86,6 +92,20 @@ class Program:
             found.append(diagnostic)
         return InputError(tuple(found))
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows: the moves, where they go, and a picture; or the refusal."""
+        rows: list[tuple[str, object]] = [("dialect", self.dialect.name)]
+        try:
+            path = self.path
+        except InputError as error:
+            return shown(self.name, rows, text=str(error))
+        rows.append(("moves", len(path)))
+        for axis, ends in zip(path.axes, path.end.T, strict=True):
+            if len(known := ends[np.isfinite(ends)]):
+                rows.append((axis, f"{known.min():g} to {known.max():g}"))
+        head = self.text[:SHOWN].decode("latin-1").rpartition("\n")[0]
+        return shown(self.name, rows, drawn(strokes(path), "the path"), head)
+
     def _read(self, source: Source) -> Toolpath:
         axes = source.axes(self.dialect.axes)
         interpreter = Interpreter(self.dialect, self.reading, axes, self.name)
@@ -106,6 +126,12 @@ def read(program: bytes | str | Path, dialect: str | type[Dialect], **reading: A
     source = program_of(program)
     with source.stream as stream:
         return Program(stream.read(), kind, said, source.name)
+
+
+def read_model(path: str | Path) -> ErrorModel:
+    """Return the error model of a file, TOML or a format of a plugin. Raises UsageError."""
+    arguments.instance("path", path, (str, Path), "a path")
+    return load_model(Path(path), tuple(default_registry().formats.values()))
 
 
 def joined(parts: Sequence[Toolpath]) -> Toolpath:

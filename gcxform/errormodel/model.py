@@ -19,6 +19,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from gcxform.diagnostics import InputError, Location, UsageError
+from gcxform.errormodel.drawn import cell
 from gcxform.system.arrays import Flags, Floats
 
 AXES = "XYZ"
@@ -87,6 +88,10 @@ class ErrorModel(ABC):
         `Outside.ZERO` makes the whole error zero where any one coordinate is outside.
         A coordinate which is nan makes the error nan if the field depends on it.
         """
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows: ranges, and the volume with its error, magnified."""
+        return cell(self)
 
     @property
     @abstractmethod

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from gcxform.diagnostics import Diagnostic
+from gcxform.notebook import shown
 
 FORMAT = 1
 
@@ -51,6 +52,19 @@ class Certificate:
         """Return the certificate as plain values, as it is written."""
         said = {name: value for name, value in asdict(self).items() if name != "warnings"}
         return {"format": FORMAT, **said}
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows: whether it is proved, within what, and what was assumed."""
+        off = self.largest.get("deviation")
+        rows: list[tuple[str, object]] = [
+            ("verified", "yes" if self.verified else "no"),
+            ("passes", " | ".join(str(step.get("use", "")) for step in self.steps) or "none"),
+            ("moves compared", self.checked.get("moves", 0)),
+        ]
+        if off is not None:
+            rows.append(("largest deviation", f"{off * 1000.0:.4g} um"))
+        rows += [("assumed", each) for each in self.assumed]
+        return shown("certificate", rows)
 
     def to_json(self) -> str:
         """Return the certificate as JSON text."""

@@ -7,11 +7,13 @@ grow with the program. Nothing here touches the file system: see `gcxform.system
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from gcxform.config import arguments
 from gcxform.config.to_fill_in import told_open
+from gcxform.contract.passes import Pass, TextPass
 from gcxform.diagnostics import InputError, UsageError
 from gcxform.dialect.dialect import Dialect, NumberFormat
 from gcxform.flow.subprogram_file import is_subprogram
@@ -43,6 +45,10 @@ class Result:
     certificate: Certificate
     source_map: list[int]
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows: the certificate."""
+        return self.certificate._repr_html_()
+
 
 @dataclass(frozen=True)
 class Pipeline(Plan):
@@ -51,9 +57,17 @@ class Pipeline(Plan):
     # --- ways to build one ---
 
     @classmethod
-    def load(cls, path: str | Path, registry: Registry | None = None) -> Pipeline:
-        """Return the pipeline of a TOML file. Raises UsageError."""
-        registry = registry or default_registry()
+    def load(
+        cls,
+        path: str | Path,
+        registry: Registry | None = None,
+        passes: Sequence[type[Pass] | type[TextPass]] = (),
+    ) -> Pipeline:
+        """Return the pipeline of a TOML file; `passes` may be named besides those of plugins.
+
+        Raises UsageError.
+        """
+        registry = (registry or default_registry()).with_passes(passes)
         return cls.of_spec(load(Path(path), registry), registry)
 
     @classmethod
@@ -63,11 +77,16 @@ class Pipeline(Plan):
         dialect: str = "",
         base: Path | None = None,
         registry: Registry | None = None,
+        passes: Sequence[type[Pass] | type[TextPass]] = (),
     ) -> Pipeline:
-        """Return the pipeline of a chain like `absolute | segment chord-error=5um`."""
-        registry = registry or default_registry()
-        passes = tuple(parse_chain(chain, base or Path.cwd(), registry))
-        spec = PipelineSpec(passes=passes, warnings=chain_doubts(chain))
+        """Return the pipeline of a chain like `absolute | segment chord-error=5um`.
+
+        `passes` are classes that the chain may name besides those of plugins: of a script, or of
+        the cell of a notebook. Raises UsageError.
+        """
+        registry = (registry or default_registry()).with_passes(passes)
+        steps = tuple(parse_chain(chain, base or Path.cwd(), registry))
+        spec = PipelineSpec(passes=steps, warnings=chain_doubts(chain))
         return cls.of_spec(spec, registry, dialect)
 
     @classmethod

@@ -10,9 +10,9 @@ from __future__ import annotations
 import importlib.metadata
 import re
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import redirect_stdout
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from importlib.metadata import EntryPoint
 from inspect import getattr_static
@@ -86,6 +86,23 @@ class Registry:
                 point = points[implementation.plugin_name]
                 registry._take(kind, implementation, point)
         return registry
+
+    def with_passes(self, passes: Sequence[type[Pass] | type[TextPass]]) -> Registry:
+        """Return the registry with passes that no plugin offers: of a script, or of a notebook.
+
+        Raises UsageError for what is not a pass, and for a name that is taken.
+        """
+        own = dict(self.passes)
+        for each in passes:
+            try:
+                name = _CHECKS["pass"](each)
+            except Exception as error:
+                raise UsageError.one("GX702", f"passes: {each!r:.80}: {_reason(error)}") from None
+            if name in self.passes:
+                message = f"there is a pass {name!r} already: {self.origin('pass', name)}"
+                raise UsageError.one("GX801", message, hint="give the class another name")
+            own[name] = each
+        return replace(self, passes=own)
 
     def origin(self, kind: str, name: str) -> str:
         """Return the distribution, with its version, that a thing came with."""

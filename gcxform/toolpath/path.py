@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from dataclasses import replace as dataclass_replace
 from enum import IntEnum
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from gcxform.system.distinct import distinct
 from gcxform.system.limits import how_to_raise, limits
 from gcxform.toolpath.columns import COLUMNS, TYPES, picked, typed
 from gcxform.toolpath.frames import Frame, by_frame
+from gcxform.toolpath.table import Tabled
 
 
 class Kind(IntEnum):
@@ -152,7 +153,7 @@ class Given:
 
 
 @dataclass(frozen=True)
-class Toolpath:
+class Toolpath(Tabled):
     """Rows of canonical moves.
 
     axes            letters of the columns of `end`, X Y Z first
@@ -192,6 +193,7 @@ class Toolpath:
     refit_centres   whether centres may be moved so that both ends are on the circle as formatted
     """
 
+    words_of: ClassVar = {"kind": Kind, "form": Form, "feed_mode": FeedMode}
     axes: str
     kind: Small
     end: Floats
