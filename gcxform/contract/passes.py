@@ -139,6 +139,9 @@ class TextPass:
     `edit` gets the tree of a block and its number, counted from 0 over the blocks that `counts`
     names and that stay; None drops the block. The words of a block, but for N, must stay as they
     are: this is checked on every run.
+
+    Where a block `asks` for the whole program, `rewritten` gets all blocks at once, and may change
+    the numbers of lines that jumps name as well: that they lead where they led is checked.
     """
 
     name: ClassVar[str] = ""
@@ -154,6 +157,18 @@ class TextPass:
     def refuse(self, block: Block) -> str:
         """Return why a program that has this block cannot be edited, or nothing."""
         return ""
+
+    def asks(self, block: Block) -> bool:
+        """Return whether a program that has this block is to be seen as a whole."""
+        return False
+
+    def refused(self, blocks: Sequence[Block], dialect: type[Dialect]) -> tuple[int, str] | None:
+        """Return a block by which a whole program cannot be edited, and why."""
+        return None
+
+    def rewritten(self, blocks: Sequence[Block], dialect: type[Dialect]) -> list[str]:
+        """Return the new texts of all blocks of a program."""
+        raise NotImplementedError
 
 
 def resolved(passes: Sequence[Pass]) -> int:

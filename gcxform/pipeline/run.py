@@ -184,9 +184,10 @@ class Run:
         """
         texts = self.source.windows(size)
         if self.plan.copies:
+            texts, whole = self.text.gathered(lambda: self.source.windows(size))
             for text in texts:
                 out.read.update(text)
-                self._copy(text, out)
+                self._copy(text, out, whole)
                 progress(len(text))
             return
         if any(step.demands.resolves for step in self.steps):
@@ -206,13 +207,13 @@ class Run:
         """Hand the program on with its calls and loops, or written out where that cannot be."""
         folded = structure.fold()
         if folded is None:
-            self._put(structure.text, structure.lines.tolist(), out)
+            self._put(structure.text, structure.lines.tolist(), out, True)
             return
         if self.verify != "off":
             reading = self.plan.reading_of_output(self.plan.machine_reading)
             structure.prove(folded, reading, self.account, self.findings)
         out.lines_in = structure.lines_read
-        out.put(*self.text.edit(folded.text, list(folded.lines)))
+        out.put(*self.text.edit(folded.text, list(folded.lines), True))
 
     def _check(self, *given: Any) -> Findings:
         """Check a window that is to be proved: see `Verifier.check`."""
@@ -310,7 +311,7 @@ class Run:
         else:
             self._put(emitted.text, emitted.source.tolist(), out)
 
-    def _copy(self, text: bytes, out: Output) -> None:
+    def _copy(self, text: bytes, out: Output, whole: bool = False) -> None:
         """Hand a window on as it is, but for passes that change text."""
         if out.source_map is None and not self.text.passes:
             first, count = out.lines_in, lines_in(text)
@@ -322,10 +323,10 @@ class Run:
         if self.heads is not None:
             text, kept = self.heads.edit(text)
             lines = lines if kept is None else [lines[k] for k in kept]
-        self._put(text, lines, out)
+        self._put(text, lines, out, whole)
 
-    def _put(self, text: bytes, lines: list[int], out: Output) -> None:
-        text, lines = self.text.edit(text, lines)
+    def _put(self, text: bytes, lines: list[int], out: Output, whole: bool = False) -> None:
+        text, lines = self.text.edit(text, lines, whole)
         if out.source_map is not None and self.source is not self.given:
             lines = [self.source.line_of(k + 1) - 1 for k in lines]
         out.put(text, lines)

@@ -80,7 +80,7 @@ class Structure:
         """Raise WholeError where a pass that changes text does not take calls and loops."""
         run = TextRun(self.plan.text_passes, self.plan.target, self.source.name)
         try:
-            run.edit(folded.text, list(folded.lines))
+            run.edit(folded.text, list(folded.lines), True)
         except InputError as error:
             raise WholeError(error.diagnostics[0].message) from None
 

@@ -9,7 +9,50 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
     return Mutation(f"macros: {name}", file, old, new, f"{CORPUS}[{case}]")
 
 
+RENUMBER = "plugins/gcxform_plugins/passes/renumber.py"
 MUTATIONS = (
+    _macro(
+        "a jump names a line of another program",
+        RENUMBER,
+        "return self.labels.get((self.program[nth], number), [])",
+        "return self.labels.get((self.program[0], number), [])",
+        "text/renumber-goto",
+    ),
+    _macro(
+        "numbers that begin again are named",
+        RENUMBER,
+        "if named and counted >",
+        "if False and counted >",
+        "text/renumber-goto-wraps",
+    ),
+    _macro(
+        "of two lines of one number the first is taken",
+        RENUMBER,
+        "if len(found) != 1:",
+        "if not found:",
+        "text/renumber-goto-twice",
+    ),
+    _macro(
+        "a program of another file comes back to no number",
+        RENUMBER,
+        "if codes & CALLS and there.labels and not _is_here(block, there):",
+        "if False:",
+        "text/renumber-other-file",
+    ),
+    _macro(
+        "a block that reads its number has another one",
+        RENUMBER,
+        'map("#{}".format, EXECUTED_NUMBER)',
+        'map("#{}".format, ())',
+        "text/renumber-number-read",
+    ),
+    Mutation(
+        "macros: where jumps lead is not compared",
+        "gcxform/proof/references.py",
+        'said.append(f"to {places.get((programs[nth], number), number)}")',
+        'said.append("to")',
+        "tests/test_textpasses.py",
+    ),
     _macro(
         "a code that the control has is declared",
         "gcxform/contract/own_codes.py",
