@@ -65,15 +65,15 @@ def findings(document: TomlText, value: object) -> Iterator[Diagnostic]:
     for name, said in value.items():
         if said == {}:
             continue
-        wrong = _wrong(name, said)
+        wrong = expected(name, said)
         if wrong:
             yield Diagnostic(
                 code, f"{name}: expected {wrong}", document.where("control", MACRO, name)
             )
 
 
-def _wrong(name: str, said: object) -> str:
-    """Return what was expected of a table, nothing where it is right."""
+def expected(name: str, said: object) -> str:
+    """Return what was expected of a table of a call or a code, nothing where it is right."""
     ends = _RANGE.fullmatch(name)
     if ends and (ends[1][0] != ends[2][0] or int(ends[1][1:]) >= int(ends[2][1:])):
         return "the first and the last of some codes, such as G100-G109"

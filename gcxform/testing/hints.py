@@ -13,6 +13,7 @@ from gcxform.diagnostics import Location, UsageError
 from gcxform.machine.control import answers, settings_of
 from gcxform.machine.file import FILLED_IN
 from gcxform.machine.machine import Offset, Tool
+from gcxform.machine.macro_tables import expected
 from gcxform.pipeline.file import SECTIONS
 from gcxform.plugin.registry import Registry
 
@@ -46,6 +47,10 @@ def _try(setting: Setting, registry: Registry) -> None:
 
 def _try_machine(table: str, name: list[str], key: str, value: Any) -> None:
     """Raise ValueError if a machine file does not take a value; `*` is any name."""
+    if table == "control" and name:
+        if wrong := expected(name[0].partition(".")[2].strip('"'), {key: value}):
+            raise ValueError(f"[{table}.{name[0]}]: expected {wrong}")
+        return
     if table == "control":
         if not answers(key):
             raise ValueError(f"[control] has no key {key!r}")
