@@ -165,6 +165,8 @@ def test_angles_of_the_way_travelled_are_turned_around():
     assert found.degrees.tolist() == ROUGH.tolist()
     assert plain.degrees[0] == ROUGH[-1]
     assert "--cw-angles travelled" in refusal(own)
+    falling = HEAD + "".join(f"XY,ccw,100,1000,{angle},{angle}\n" for angle in ROUGH[::-1])
+    assert "angles of the counter-clockwise run fall" in refusal(falling)
 
 
 def test_points_of_an_instrument_and_of_a_probe_are_off_to_opposite_sides():
@@ -246,6 +248,7 @@ def test_the_way_in_and_out_is_cut_off_where_that_is_said():
         (("[mm/min]", "[rpm]"), "GX470", "'rpm' is not a unit of a feed"),
         (("reading [um]", "reading"), "GX470", "has no unit"),
         (("feed [", "fed ["), "GX470", "the column 'fed' means nothing"),
+        (("100,1000", "100,0"), "GX471", "a feed is above 0"),
         (("plane,", "test,"), "GX470", "no column 'plane'"),
         (("radius [mm]", "temperature [mm]"), "GX470", "no column 'radius'"),
     ],

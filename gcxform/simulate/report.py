@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gcxform.calibrate.circles.causes import SetUp
+from gcxform.calibrate.circles.causes import PLANES, SetUp
 from gcxform.calibrate.circles.circles import Run
 from gcxform.calibrate.circles.file import circles_csv
 from gcxform.simulate.circles import Circles
@@ -102,16 +102,22 @@ def circles_table(test: Ballbar, read: Mapping[str, Circles], count: int) -> str
     for plane, circles in read.items():
         setup = SetUp(plane, test.radius, test.feed / 60.0, test.centre)
         paths = {1: circles.ccw, -1: circles.cw}
-        runs = [_run(sense, circles, path, count) for sense, path in paths.items()]
+        pivot = np.array(test.pivot)[list(PLANES[plane])]
+        runs = [_run(sense, circles, path, (count, pivot)) for sense, path in paths.items()]
         tests.append((setup, runs))
     return circles_csv(tests)
 
 
-def _run(sense: int, circles: Circles, path: Floats, count: int) -> Run:
-    """Return so many readings of a path, in the order of travel."""
+def _run(sense: int, circles: Circles, path: Floats, said: tuple[int, Floats]) -> Run:
+    """Return so many readings of a path about its pivot (2,), in the order of travel.
+
+    Angles are those of where the machine is, whatever the pivot: the instrument has them by time.
+    """
+    count, pivot = said
     step = len(path) / count
     rows = ((np.arange(count) + 0.5) * step).astype(np.int64)
-    degrees = np.degrees(np.arctan2(path[rows, 1], path[rows, 0])) % 360.0
+    place = path[rows] + pivot
+    degrees = np.degrees(np.arctan2(place[:, 1], place[:, 0])) % 360.0
     return Run(sense, degrees.round(6), circles.radial(path)[rows].round(9))
 
 

@@ -40,6 +40,12 @@ MUTATIONS = (
     _circles(
         CIRCLES, "what no reading depends on is told", "~(free > NEGLIGIBLE)", "~(free > 2.0)"
     ),
+    _circles(
+        CIRCLES,
+        "a pivot far off is squareness",
+        "readings - second[used]",
+        "readings + 0.0 * second[used]",
+    ),
     _circles(MACHINE, "B0Z of the other sign", '("B0Z", -1.0)', '("B0Z", 1.0)'),
     _circles(MACHINE, "a slope of the other sign", "(1, 2, -1.0)", "(1, 2, 1.0)", FILES),
     _circles(
@@ -59,7 +65,7 @@ MUTATIONS = (
     _circles(
         TABLE,
         "rising angles are those of the place",
-        "if not rising or said",
+        "if not _rising(degrees) or said",
         "if True or said",
         FILES,
     ),

@@ -4,19 +4,20 @@
     XY,    ccw,   100,         1000,          0.25,        3.517
     XY,    cw,    100,         1000,          359.75,      3.525
 
-A row for each reading, actual less nominal radius. The angle is that of the place, from the first
-axis of the plane towards the second; in a run in the sense cw it falls. Where `ccw [um]` and `cw
-[um]` stand in place of sense and reading, a row has both senses. Where there are coordinates
+A row for each reading, actual less nominal radius. The angle is that of the place as commanded,
+from the first axis of the plane towards the second; in a run in the sense cw it falls. Where `ccw
+[um]` and `cw [um]` stand in place of sense and reading, a row has both senses. Where there are
+coordinates
 
     plane, sense,  X [mm],  Y [mm],  Z [mm]
     XY,    probed, 131.204, 80.011,  25
 
-the points of an instrument that measures them are readings about their circle; those of a probe
-that touched a ring or a bore (probed) are so with the other sign: it is the displayed place that is
-off by as much as the tool is the other way. What holds for all rows may be said once (`Given`); a
-column for it must then not be there. `centre X [mm]` and so on are where the circle was, and `test`
-tells tests of one set-up apart. Columns that begin with temperature, pressure or humidity go to the
-report.
+the points of an instrument that measures them are readings about their least-squares circle; those
+of a probe that touched a ring or a bore (probed) are so with the other sign: it is the displayed
+place that is off by as much as the tool is the other way. What holds for all rows may be said once
+(`Given`); a column for it must then not be there. `centre X [mm]` and so on are where the circle
+was, and `test` tells tests of one set-up apart. Columns that begin with temperature, pressure or
+humidity go to the report.
 
 Of Renishaw's result files (.b5r and others) no page says what is in them, and they are refused; of
 its exports of readings, as of any other, `Layout` says which columns there are.
@@ -118,7 +119,7 @@ def _setups(table: CsvTable, given: Given) -> list[SetUp]:
     radii = _column(table, "radius", _radius(table, given))
     feeds: list[float | None] = [given.feed] * count
     if "feed" in table.headings:
-        feeds = [*table.scaled("feed", "a feed", FEEDS).tolist()]
+        feeds = [*_above_nothing(table, "feed", table.scaled("feed", "a feed", FEEDS))]
     centres = _centres(table, given)
     names = table.texts("test")
     rows = zip(planes, radii, feeds, centres, names, strict=True)
@@ -158,7 +159,11 @@ def _radius(table: CsvTable, given: Given) -> float:
 def _column(table: CsvTable, name: str, value: float) -> list[float]:
     if name not in table.headings:
         return [value] * len(table)
-    values = table.lengths(name)
+    return _above_nothing(table, name, table.lengths(name))
+
+
+def _above_nothing(table: CsvTable, name: str, values: Floats) -> list[float]:
+    """Return the values of a column. Raises InputError (GX471) unless all are above 0."""
     for row in np.flatnonzero(~(values > 0.0)).tolist():
         message = f"a {name} is above 0"
         raise InputError.one("GX471", message, table.where(row, name))
@@ -219,6 +224,13 @@ def _run(table: CsvTable, sense: int, rows: Ints, readings: Floats, given: Given
     degrees = table.angles("angle")[rows]
     if sense < 0:
         degrees = _of_place(table, rows, degrees, given.cw_angles)
+    elif sense > 0 and _rising(-degrees):
+        raise InputError.one(
+            "GX477",
+            "the angles of the counter-clockwise run fall",
+            table.where(int(rows[0]), "angle"),
+            "rows stand in the order of travel: turn them around, or the sense is cw",
+        )
     if given.arc is not None:
         low, high = given.arc
         keep = (degrees >= low) & (degrees <= high)
@@ -235,8 +247,7 @@ def _run(table: CsvTable, sense: int, rows: Ints, readings: Floats, given: Given
 
 def _of_place(table: CsvTable, rows: Ints, degrees: Floats, said: str | None) -> Floats:
     """Return the angles of a clockwise run as places; where they rise it must be said."""
-    rising = len(degrees) > 1 and float(np.sum(np.sign(np.diff(degrees)))) > 0.0
-    if not rising or said == "position":
+    if not _rising(degrees) or said == "position":
         return degrees
     if said == "travelled":
         return -degrees
@@ -247,6 +258,11 @@ def _of_place(table: CsvTable, rows: Ints, degrees: Floats, said: str | None) ->
         table.where(int(rows[0]), "angle"),
         "say which: --cw-angles position, or --cw-angles travelled",
     )
+
+
+def _rising(degrees: Floats) -> bool:
+    """Return whether angles mostly rise from row to row."""
+    return float(np.sum(np.sign(np.diff(degrees)))) > 0.0
 
 
 def _of_points(table: CsvTable, setup: SetUp, rows: Ints) -> tuple[SetUp, tuple[Run, ...]]:
@@ -260,7 +276,7 @@ def _of_points(table: CsvTable, setup: SetUp, rows: Ints) -> tuple[SetUp, tuple[
     except ValueError as error:
         raise InputError.one("GX477", str(error), table.where(int(rows[0]))) from None
     setup = _placed(table, setup, rows, (centre, radius))
-    away = points - [setup.offset(0), setup.offset(1)]
+    away = points - centre  # and not from where the circle should be: that is second order
     degrees = np.degrees(np.arctan2(away[:, 1], away[:, 0])) % 360.0
     longer = np.hypot(*away.T) - setup.radius
     runs = []
