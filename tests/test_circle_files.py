@@ -290,7 +290,7 @@ def test_what_holds_by_direction_or_feed_is_reported_and_in_no_model(here):
 
 def test_the_sheet_shows_both_senses_the_causes_and_what_is_left(here):
     pytest.importorskip("matplotlib")
-    written("r.csv", table(slopes={"EXY": 5e-5}))
+    written("r.csv", table(slopes={"EXY": 5e-5}, pivot=(0.05, 0.0)))
     for file in ("one.svg", "two.svg"):
         done = call("calibrate", "circles", "--plot", file, "r.csv")
         assert done.exit_code == 0, done.stderr
@@ -300,3 +300,4 @@ def test_the_sheet_shows_both_senses_the_causes_and_what_is_left(here):
     assert [name for name in names if name not in groups] == []
     assert {"+X", "-Y", "CCW", "CW", "G(b)", "squareness", "100 %"} <= set(text.splitlines())
     assert "C0Y: -50.00 +- " in text
+    assert "2 um/div" in text  # 2.5 um about the circle, where the pivot is off by 50 um

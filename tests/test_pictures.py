@@ -277,6 +277,18 @@ def test_the_largest_deviation_is_that_of_the_proof():
     assert np.sqrt((drawn**2).sum(axis=1)).max() < 3.0  # mm: fine enough to see
 
 
+def test_the_worst_place_is_named_by_the_line_of_the_file():
+    """A loop goes three times: the worst is where the last of them ends, and not in line 8."""
+    text = b"G21 G90 G17 G94 F500\nG1 X0 Y0 Z0\no1 repeat [3]\nG91 G1 X20\no1 endrepeat\nM2\n"
+    model = functions(EZX=1e-4)
+    steps = pipeline("linuxcnc", model=file_of(model), part_origin=(0.0, 0.0, 0.0))
+    before, _, _ = before_and_after(gx.read(text, "linuxcnc"), steps)
+    assert before.worst is not None
+    assert before.worst_at == "line 4"
+    assert before.line[before.worst] > 4
+    assert before.end[before.worst][0] == pytest.approx(60.0, abs=0.01)
+
+
 CYCLES = b"""G21 G90 G17 G94 F500
 G0 X10 Y10 Z20
 G1 Z5

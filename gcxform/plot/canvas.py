@@ -33,6 +33,7 @@ BEFORE, AFTER, MEAN, GREY = "#d55e00", "#0072b2", "#009e73", "#7f8488"
 """Colours that eyes tell apart which do not see red and green (Okabe and Ito), and a grey."""
 INK = "#22272b"  # of what is written and not drawn
 BAR = "#56b4e9"
+MANY = (AFTER, BEFORE, MEAN, "#cc79a7", "#e69f00", INK)  # of what is more than two
 STYLE: Any = {
     "svg.hashsalt": "gcxform",  # names inside the file do not change from run to run
     "svg.fonttype": "none",  # text stays text

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gcxform.plot.canvas import AFTER, BEFORE, GREY, empty, figure, styled
+from gcxform.plot.canvas import AFTER, BEFORE, GREY, MANY, empty, figure, styled
 from gcxform.plot.polar import circle_diagram
 from gcxform.simulate.circles import Circles
 from gcxform.simulate.figures import Positioning
@@ -100,7 +100,7 @@ def _figure(figures: Mapping[str, float], symbol: str) -> str:
 @styled
 def diagonals(outcome: Outcome[Positioning], title: str) -> Figure:
     """Return the mean deviations along body and face diagonals, before above after."""
-    made = figure(9.6, 6.4, title)
+    made = figure(9.6, 7.6, title)
     grid = made.subplots(2, 2, squeeze=False)
     for row, (side, read) in enumerate((("before", outcome.before), ("after", outcome.after))):
         for column, (kind, names) in enumerate((("body", BODY), ("face", FACES))):
@@ -116,12 +116,14 @@ def _diagonals(
     if not there:
         empty(axes, f"{title}: none")
         return
-    for name in there:
+    axes.axhline(0.0, color=GREY, linewidth=0.6)
+    for name, colour, mark in zip(there, MANY, "o^svDx", strict=False):
         found = read[name]
         value = UM * (found.mean - found.mean[0])
         label = f"{name}  E {UM * found.figures['E']:.2f} um"
-        axes.plot(found.target, value, ".-", label=label, gid=f"{name} {title.split()[-1]}")
+        style: dict[str, Any] = {"color": colour, "marker": mark, "markersize": 3.5}
+        axes.plot(found.target, value, label=label, gid=f"{name} {title.split()[-1]}", **style)
     axes.set_title(title)
     axes.set_xlabel("way along the diagonal, mm")
     axes.set_ylabel("deviation from the start, um")
-    axes.legend(loc="best")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3)

@@ -122,23 +122,31 @@ def model(shown: ErrorModel, title: str) -> Figure:
         made = figure(8.0, 7.4, title)
         _volume(made.add_subplot(), shown)
         return made
-    rows = [axis for axis in AXES if any(name[2] == axis for name in found)]
-    columns = [letter for letter in AXES + TURNS if any(name[1] == letter for name in found)]
-    wide = len(columns) > len(AXES)
+    rows = _rows(found)
+    high, columns = len(rows), max(map(len, rows))
+    wide = columns > len(AXES)
     angles = squareness(found)
     if wide:
-        made = figure(2.25 * len(columns), 1.9 * len(rows) + 5.6, title)
-        both = made.add_gridspec(2, 1, height_ratios=[1.9 * len(rows), 5.6])
+        made = figure(2.25 * columns, 1.9 * high + 5.6, title)
+        both = made.add_gridspec(2, 1, height_ratios=[1.9 * high, 5.6])
     else:
-        made = figure(2.6 * len(columns) + 5.8, max(5.4, 2.5 * len(rows)), title)
-        both = made.add_gridspec(1, 2, width_ratios=[2.6 * len(columns), 5.8])
-    panes = both[0].subgridspec(len(rows), len(columns))
-    for row, axis in enumerate(rows):
-        for column, letter in enumerate(columns):
-            if f"E{letter}{axis}" in found:
-                _function(made.add_subplot(panes[row, column]), f"E{letter}{axis}", found)
+        made = figure(2.6 * columns + 5.8, max(5.4, 2.5 * high), title)
+        both = made.add_gridspec(1, 2, width_ratios=[2.6 * columns, 5.8])
+    panes = both[0].subgridspec(high, columns)
+    for row, names in enumerate(rows):
+        for column, name in enumerate(names):
+            _function(made.add_subplot(panes[row, column]), name, found)
     _lower(made, both[1], shown, (angles, wide))
     return made
+
+
+def _rows(found: Curves) -> list[list[str]]:
+    """Return the functions in rows, one an axis; few that fill no rows are one below the other."""
+    every = [name for name in found if not name.endswith(REVERSE)]
+    rows = [[name for name in every if name[2] == axis] for axis in AXES]
+    rows = [row for row in rows if row]
+    even = len({tuple(name[1] for name in row) for row in rows}) == 1
+    return rows if even or len(every) > len(AXES) else [[name] for name in every]
 
 
 def _lower(

@@ -70,6 +70,13 @@ MUTATIONS = (
         FILES,
     ),
     _circles(TABLE, "the way in is a part of the run", "> TURN:", "> 1e9:", FILES),
+    _circles(
+        "gcxform/plot/polar.py",
+        "a diagram about the pivot",
+        "_about(path - centre, radius)",
+        "_about(path - 0.0 * centre, radius)",
+        FILES,
+    ),
     _circles(DRIVES, "an axis leads its command", "-= self.lag[axis]", "+= self.lag[axis]", FILES),
     _circles(
         "gcxform/calibrate/csv_text.py",

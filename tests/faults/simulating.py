@@ -103,6 +103,20 @@ MUTATIONS = (
         MODELS,
     ),
     Mutation(
+        "show: the worst place by its executed line",
+        "gcxform/simulate/heat.py",
+        'f"line {line}{beside}"',
+        'f"line {self.line[self.worst]}{beside}"',
+        PICTURES,
+    ),
+    Mutation(
+        "show: rapids are the worst",
+        "gcxform/simulate/heat.py",
+        "feeds[np.argmax(self.deviation[feeds])]",
+        "np.argmin(self.deviation)",
+        PICTURES,
+    ),
+    Mutation(
         "show: moves of a cycle are taken for one another",
         "gcxform/simulate/heat.py",
         "far <= far.min() + NEAR",
