@@ -166,6 +166,17 @@ def test_what_is_refused(
     assert hint in found[4]
 
 
+def test_a_machine_has_linear_axes_of_which_its_file_says_nothing(folder: Path) -> None:
+    """So what `gcxform machine new` writes and `kinematics` can stand in one file."""
+    path = folder / "machine.toml"
+    axes = "[axis.A]\npoint = [0, 0, 0]\n[axis.C]\npoint = [0, 0, 0]\n"
+    offsets = "[work-offset.G54]\nX = 1.0\nC = 2.0\n[home.G28]\nZ = 0.0\n"
+    path.write_text(f'format = 1\nkinematics = "ac-trunnion"\n{axes}{offsets}')
+    machine = load_machine(path, default_registry().machines)
+    assert machine.work_offsets == {"G54": {"X": 1.0, "C": 2.0}}
+    assert machine.homes == {"G28": {"Z": 0.0}}
+
+
 @pytest.mark.parametrize("section", ["axis", "work-offset", "tool"])
 def test_a_section_that_is_no_table(folder: Path, section: str) -> None:
     (found,) = refused(folder, f"format = 1\n{section} = 5\n")

@@ -405,3 +405,16 @@ def test_each_way_is_a_pass_of_its_own(tmp_path, said, hints):
     with pytest.raises(gx.UsageError) as refused:
         gx.Pipeline.load(file)
     assert [(d.code, d.hint) for d in refused.value.diagnostics] == [("GX701", h) for h in hints]
+
+
+def test_what_a_tool_change_loses_is_not_asked_as_a_start(tmp_path):
+    """To say where axes stand before the first block would not help; to name them all does."""
+    text = machine_text("ac-trunnion", chain_of_kind("ac-trunnion", 1))
+    step = pipeline(tmp_path, text, tolerance=0.01, rapids="ends")
+    head = "G21 G90 G94 G17 G54\nT1 M6\nG43 H1\n{}\nG1 X5. A5. C5. F100.\nM30\n"
+    with pytest.raises(gx.InputError) as refused:
+        step.run(head.format("G0 Z80.").encode())
+    found = refused.value.diagnostics[0]
+    assert found.code == "GX311"
+    assert found.hint.startswith("name all axes in the first rapid behind a tool change")
+    assert step.run(head.format("G0 X0. Y0. Z80. A0. C0.").encode()).certificate.verified

@@ -301,8 +301,9 @@ def _offset_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnost
 def _strange_axes(
     document: TomlText, file: MachineFile, keys: tuple[str, str], place: Offset
 ) -> Iterator[Diagnostic]:
-    """Yield the axes of a place which the machine does not have."""
-    known = [letter for letter in AXIS_LETTERS if letter in (file.axis or AXIS_LETTERS)]
+    """Yield the axes of a place which the machine does not have; X, Y and Z it always has."""
+    said = {*"XYZ", *file.axis} if file.axis else AXIS_LETTERS
+    known = [letter for letter in AXIS_LETTERS if letter in said]
     for letter in _given(place):
         if letter not in known:
             yield from document.unknown_key((*keys, letter), known).diagnostics

@@ -223,6 +223,8 @@ class Cutting:
         hint = "program all axes before, or say where they are with start in [input]"
         if self.place.off.any():
             hint = "after a switch with axes turned, name X, Y and Z together in a rapid"
+        elif self.path.lost[: int(np.argmax(unknown)) + 1].any():
+            hint = "name all axes in the first rapid behind a tool change, which moves them"
         message = "where the axes stand is not known here"
         self._refuse("GX311", unknown & ~self.own, message, hint)
 
