@@ -284,6 +284,27 @@ def test_explain_a_block(here: Path) -> None:
     assert "moves nothing" in call("explain", "-f", "grbl", "end.nc:3").stdout
 
 
+def test_explain_follows_a_call_into_another_file(here: Path) -> None:
+    (here / "O100.nc").write_bytes(b"O100\nG1 Z-1. F100.\nX5.\nM99\n")
+    text = b"%\nO1\nG21 G90 G94 G17 G54\nG0 X0. Y0. Z5.\nM98 P100\nG0 Z5.\nM30\n%\n"
+    (here / "main.nc").write_bytes(text)
+    at_call = call("explain", "-f", "fanuc", "main.nc:5").stdout
+    assert "O100.nc:2  G1 Z-1. F100." in at_call
+    assert "refused" not in at_call
+    assert "to   X5 Y0 Z-1" in at_call
+    behind = call("explain", "-f", "fanuc", "main.nc:6").stdout
+    assert "modal G1 G17 G90 G91.1 G94 G21 G54 G40, F 100" in behind
+    assert "from X5 Y0 Z-1" in behind
+    assert "no line 99" in call("explain", "-f", "fanuc", "main.nc:99").stderr
+
+
+def test_explain_says_what_a_round_of_a_loop_does_first(here: Path) -> None:
+    text = b"G21 G90 G94 G0 X0 Y0 Z0\n#1=0\no1 while [#1 LT 3]\n#1=[#1+1]\nX#1\no1 endwhile\nM2\n"
+    (here / "p.ngc").write_bytes(text)
+    assert "to   X1 Y0 Z0" in call("explain", "-f", "linuxcnc", "p.ngc:5").stdout
+    assert "at    X3 Y0 Z0" in call("explain", "-f", "linuxcnc", "p.ngc:7").stdout
+
+
 @pytest.mark.parametrize(
     ("block", "code"),
     [

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from types import MappingProxyType
 from typing import Any
 
@@ -13,8 +14,10 @@ import numpy as np
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked, needed_dialect
 from gcxform.cli.program.tolerant import Tolerant
-from gcxform.diagnostics import Diagnostic, UsageError
+from gcxform.diagnostics import Diagnostic, InputError, UsageError
 from gcxform.dialect.dialect import INCH, Dialect
+from gcxform.flow.executed import WrittenOut
+from gcxform.flow.straightened import written_out
 from gcxform.flow.translation import translated_so_far
 from gcxform.modal.meaning.tables import GROUPS, code_of
 from gcxform.modal.state import Reading, State
@@ -46,6 +49,9 @@ def explained(file: str, line: int, dialect: str | None, asked: Mapping[str, Any
         with opened(file) as source:
             return _foreign(source, line, kind, reading)
     with opened(file) as source:
+        if (ran := _executed(source, kind, reading)) is not None:
+            return _as_executed(source, ran, line, kind, reading)
+    with opened(file) as source:
         tolerant = Tolerant(kind, source, reading)
         text = _up_to(tolerant, source, line)
         earlier = sorted(tolerant.refused)
@@ -55,6 +61,42 @@ def explained(file: str, line: int, dialect: str | None, asked: Mapping[str, Any
     lines = [f"{file}:{line}  {block.text}", "", *_items(block)]
     told = _told(before, tolerant.interpreter.axes, earlier, tolerant.refused.get(line), path)
     return [*lines, *told]
+
+
+def _executed(source: Source, kind: type[Dialect], reading: Reading) -> WrittenOut | None:
+    """Return the blocks that a program with calls or loops executes, if that is known."""
+    with suppress(InputError):
+        ran = written_out(source, kind, reading)
+        return ran if isinstance(ran, WrittenOut) else None
+    return None
+
+
+def _as_executed(
+    source: Source, ran: WrittenOut, line: int, kind: type[Dialect], reading: Reading
+) -> list[str]:
+    """Return a line in words as it is executed first, and what stands for it: a call's blocks."""
+    own = b"".join(source.windows()).splitlines()
+    if not 0 < line <= len(own):
+        message = f"{source.name} has {len(own)} lines and no line {line}"
+        raise UsageError.one("GX731", message)
+    first, last = _run_of(line - 1, ran.origin)
+    called = last == first and first < len(ran.origin) and ran.origin[first] >= len(own)
+    if called:  # of other files, whose lines are counted on behind these
+        back = np.flatnonzero(ran.origin[first:] < len(own))
+        last = first + int(back[0]) if len(back) else len(ran.origin)
+    text = b"".join(ran.windows()).splitlines(keepends=True)
+    tolerant = Tolerant(kind, ran, reading)
+    tolerant.window(b"".join(text[:first]))
+    earlier = sorted({ran.line_of(number) for number in tolerant.refused})
+    before = copy.deepcopy(tolerant.interpreter.state)
+    _, path = tolerant.window(b"".join(text[first:last]))
+    block = kind.load_grammar().parse(own[line - 1].decode("latin-1"))
+    lines = [f"{source.name}:{line}  {block.text}", "", *_items(block)]
+    for number in range(first, last if called else first):
+        file, place = ran.place_of(number + 1)
+        lines.append(f"  runs {file}:{place}  {text[number].decode('latin-1').strip()}")
+    wrong = (found for number, found in tolerant.refused.items() if first < number <= last)
+    return [*lines, *_told(before, tolerant.interpreter.axes, earlier, next(wrong, None), path)]
 
 
 def _foreign(source: Source, line: int, kind: type[Dialect], reading: Reading) -> list[str]:
