@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import resource
+import shutil
 import stat
 import statistics
 import subprocess
@@ -94,6 +95,35 @@ def test_help_names_every_verb() -> None:
         found = call(*words)
         assert all(verb in found.output for verb in VERBS)
     assert call("--version").output.startswith("gcxform ")
+
+
+def test_a_verb_that_is_misspelt_is_proposed() -> None:
+    found = call("rum", "part.nc")
+    assert found.exit_code == 2
+    assert "there is no verb 'rum'; did you mean 'run'?" in found.stderr
+    assert "No such command 'xyzzy'" in call("xyzzy").stderr
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+def test_bash_completes_verbs_and_options(tmp_path: Path) -> None:
+    """What the verb prints is read by a real bash, whose function then asks the command line."""
+    (tmp_path / "complete.sh").write_text(call("completion", "bash").stdout)
+    (tmp_path / "gcxform").write_text(f'#!/bin/sh\nexec {sys.executable} -m gcxform.cli "$@"\n')
+    (tmp_path / "gcxform").chmod(0o755)
+    asked = (
+        "source complete.sh; COMP_WORDS=(gcxform {0}); COMP_CWORD={1}; "
+        '_gcxform_completion gcxform; printf "%s\\n" "${{COMPREPLY[@]}}"'
+    )
+    for words, at, wanted in (("re", 1, ["resume"]), ("run --incr", 2, ["--increment"])):
+        done = subprocess.run(
+            ["bash", "-c", asked.format(words, at)],
+            cwd=tmp_path,
+            env={**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"},
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
+        assert done.stdout.split() == wanted, done.stderr
 
 
 @pytest.mark.parametrize("verb", VERBS)

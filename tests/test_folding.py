@@ -73,6 +73,15 @@ def test_what_is_said_of_a_program_that_keeps_its_structure() -> None:
     assert said.growth["ratio"] == pytest.approx(18 / 16)
 
 
+def test_a_file_beside_that_is_written_out_names_its_line(tmp_path: Path) -> None:
+    (tmp_path / "O200.nc").write_bytes(b"O200\nG91 G1 X1. F100.\nG90\nM99\n")
+    main = tmp_path / "main.nc"
+    main.write_bytes(b"%\nO1\nG21 G90 G94 G17 G54\nG0 X0. Y0. Z5.\nM98 P200\nM30\n%\n")
+    (why,) = gx.Pipeline.parse("absolute", "fanuc").run(main).certificate.written_out
+    assert "line 2 of" in why
+    assert "O200.nc became 'G90 G1 X1. F100.'" in why
+
+
 def test_both_files_are_counted_as_they_stand() -> None:
     held = absolute().run(PROGRAM).certificate.inventory
     for kind, (source, output) in {

@@ -8,6 +8,7 @@ failed; 70 a bug; 128 and the signal that ended it: 130 interrupted, 143 termina
 
 from __future__ import annotations
 
+import difflib
 import gc
 import os
 import sys
@@ -40,8 +41,10 @@ VERBS: Final = {
     "list": "List what is installed, or the options of one thing.",
     "explain": "Explain a diagnostic code, or what a block does.",
     "schema": "Print the JSON Schema of a kind of files.",
+    "completion": "Print what a shell needs to complete words of a command line.",
 }
 FILES: Final = {"list": "listing"}  # a module named `list` would hide the builtin in this one
+COMPLETE: Final = "_GCXFORM_COMPLETE"
 OBJECTS_BETWEEN: Final = 50_000  # new objects before garbage is looked for
 
 
@@ -67,6 +70,15 @@ class Verbs(click.Group):
         equip(command)
         return command
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the verb of a command line; the error for a misspelt one names the nearest."""
+        near = difflib.get_close_matches(args[0].lower(), VERBS, n=1)
+        if args[0] not in VERBS and near and not ctx.resilient_parsing:
+            ctx.fail(f"there is no verb {args[0]!r}; did you mean {near[0]!r}?")
+        return super().resolve_command(ctx, args)
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the list of verbs without importing any."""
         with formatter.section("Verbs"):
@@ -82,7 +94,7 @@ class Verbs(click.Group):
         **extra: Any,
     ) -> NoReturn:
         """Run a command line and exit."""
-        if "_GCXFORM_COMPLETE" in os.environ:
+        if COMPLETE in os.environ:
             super().main(args, prog_name, complete_var, **extra)
         from gcxform.cli.common.failures import guarded
 

@@ -187,8 +187,10 @@ class _Folding:
         """Write out subprograms that what is not executed calls too: it needs them as they are."""
         changed = [*self.variants, *self.texts, *(unit.first for unit in self.ranges)]
         for unit in self._needed():
-            if any(unit.has(line) for line in changed):
-                self._write_out(unit, self.out.get(unit) or OTHERS)
+            line = min((line for line in changed if unit.has(line)), default=None)
+            if line is not None:
+                why = self._differs(line, self.variants.get(line, ())) + f", and {OTHERS}"
+                self._write_out(unit, self.out.get(unit) or why)
 
     def _write_out(self, unit: Unit | None, why: str) -> None:
         if unit is None:
@@ -215,7 +217,7 @@ class _Folding:
     def _differs(self, line: int, texts: Iterable[bytes]) -> str:
         """Return how the texts of a line differ."""
         shown = [repr(text.decode("latin-1").strip()) for text in islice(texts, SHOWN)]
-        return f"{self._told(line)} became {' and '.join(shown)}"
+        return f"{self._told(line)} " + (f"became {' and '.join(shown)}" if shown else "changes")
 
     def _told(self, line: int) -> str:
         """Return which line it is, of which file."""
