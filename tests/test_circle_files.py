@@ -291,10 +291,8 @@ def test_what_holds_by_direction_or_feed_is_reported_and_in_no_model(here):
 def test_the_sheet_shows_both_senses_the_causes_and_what_is_left(here):
     pytest.importorskip("matplotlib")
     written("r.csv", table(slopes={"EXY": 5e-5}, pivot=(0.05, 0.0)))
-    for file in ("one.svg", "two.svg"):
-        done = call("calibrate", "circles", "--plot", file, "r.csv")
-        assert done.exit_code == 0, done.stderr
-    assert Path("one.svg").read_bytes() == Path("two.svg").read_bytes()
+    done = call("calibrate", "circles", "--plot", "one.svg", "r.csv")
+    assert done.exit_code == 0, done.stderr
     groups, text = drawn("one.svg")
     names = [f"test 1 {part}" for part in ("ccw", "cw", "least", "most", "share squareness")]
     assert [name for name in names if name not in groups] == []

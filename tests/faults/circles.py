@@ -75,7 +75,7 @@ MUTATIONS = (
         "a diagram about the pivot",
         "_about(path - centre, radius)",
         "_about(path - 0.0 * centre, radius)",
-        FILES,
+        f"{FILES}::test_the_sheet_shows_both_senses_the_causes_and_what_is_left",
     ),
     _circles(DRIVES, "an axis leads its command", "-= self.lag[axis]", "+= self.lag[axis]", FILES),
     _circles(

@@ -107,14 +107,14 @@ MUTATIONS = (
         "gcxform/simulate/heat.py",
         'f"line {line}{beside}"',
         'f"line {self.line[self.worst]}{beside}"',
-        PICTURES,
+        f"{PICTURES}::test_the_worst_place_is_named_by_the_line_of_the_file",
     ),
     Mutation(
         "show: rapids are the worst",
         "gcxform/simulate/heat.py",
         "feeds[np.argmax(self.deviation[feeds])]",
         "np.argmin(self.deviation)",
-        PICTURES,
+        f"{PICTURES}::test_the_worst_place_is_named_by_the_line_of_the_file",
     ),
     Mutation(
         "show: moves of a cycle are taken for one another",

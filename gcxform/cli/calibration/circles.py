@@ -72,7 +72,12 @@ model by position holds them.
     "--scale-from", words=["none", "X", "Y", "Z", "bar"], help="Which scale is taken to be right."
 )
 @one_of("--limits", words=["circles", "none"], help="Where the model ends.")
-@found_options("Standard deviation of a reading.", "1 um")
+@found_options(
+    "Standard deviation of a reading.",
+    "1 um",
+    "Write the error model (TOML).",
+    "Draw the sheet: diagrams, figures, causes (SVG or PNG).",
+)
 def circles(data: str, noise: float, output: str | None, **given: Any) -> None:
     """Turn circles in the planes of the linear axes into squareness, scales, and causes.
 

@@ -61,15 +61,20 @@ class Files:
             plot.check(self.plot)
 
 
-def found_options(noise: str, default: str) -> Callable[[Command], Command]:
-    """Return a decorator for the options of measurements that say where rotary axes are."""
+def found_options(
+    noise: str,
+    default: str,
+    output: str = "Write the machine file (TOML).",
+    plot: str = "Draw the residuals (SVG or PNG).",
+) -> Callable[[Command], Command]:
+    """Return a decorator for what measurements of machines are asked: noise, and files."""
     parts = (
         click.option("--noise", type=ABOVE_NOTHING, default=default, show_default=True, help=noise),
-        click.option("-o", "--output", metavar="FILE", help="Write the machine file (TOML)."),
+        click.option("-o", "--output", metavar="FILE", help=output),
         click.option(
             "--report", metavar="FILE", help="Write what was found, with covariance (JSON)."
         ),
-        click.option("--plot", metavar="FILE", help="Draw the residuals (SVG or PNG)."),
+        click.option("--plot", metavar="FILE", help=plot),
         click.argument("data", metavar="DATA"),
     )
 
