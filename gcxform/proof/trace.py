@@ -70,6 +70,12 @@ class Trace:
         index = output_line - self.first
         return int(self.source[index]) if 0 <= index < len(self.source) else 0
 
+    def lines_of(self, output_lines: Ints) -> Ints:
+        """Return the input lines of output lines, (n,), both from 0."""
+        index = output_lines - self.first
+        inside = (index >= 0) & (index < len(self.source))
+        return np.where(inside, self.source[np.where(inside, index, 0)], 0)
+
     def stands_before(self, written_row: int, row: int, short: float) -> bool:
         """Whether what stands before a written move stands before that row of the input.
 

@@ -24,6 +24,7 @@ from gcxform.dialect.arithmetic import NoValueError, whole
 from gcxform.dialect.null import Null
 from gcxform.modal.expressions.compiled import NO_VALUE, NoColumnError
 from gcxform.modal.expressions.functions import computed_in, functions_of, whole_columns
+from gcxform.modal.expressions.straight import Group, Straight
 from gcxform.modal.expressions.unknown import bare_text, hangs_on, may_be_unknown
 from gcxform.modal.expressions.value import (
     Evaluator,
@@ -65,7 +66,6 @@ class _Run:
         self.undecided = frozenset(undecided)
         self.having = having
         self.value = lines.window.value.copy()
-        self.row = self.value.tolist()
         assert lines.dialect.flow_rule.arithmetic is not None
         self.arithmetic = lines.dialect.flow_rule.arithmetic
         self.functions = [
@@ -73,8 +73,44 @@ class _Run:
             for shape, used in enumerate(np.bincount(lines.shape[having]))
         ]
 
+    @cached_property
+    def row(self) -> list[float]:
+        """The numbers of the window, as they were before anything was computed."""
+        numbers: list[float] = self.value.tolist()
+        return numbers
+
     def run(self) -> None:
         """Compute them all, and give the window its values."""
+        if len(self.having) < FEW or not self._straight():
+            self._in_turn()
+        self.lines.window = replace(self.lines.window, value=self.value)
+
+    def _straight(self) -> bool:
+        """Compute all lines as columns, if that can be done; return whether it was."""
+        lines, having = self.lines, self.having
+        shapes = lines.shape[having]
+        used = np.unique(shapes).tolist()
+        functions = [(shape, self.functions[shape]) for shape in used]
+        groups = [
+            Group(each, same := having[shapes == shape], lines.first[same])
+            for shape, each in functions
+            if each is not None and not self.undecided
+        ]
+        if len(groups) < len(used):
+            return False
+        straight = Straight(groups, lines.parameters, self.arithmetic, self.value)
+        try:
+            found = straight.compute(lines.window.first_line)
+        except NoColumnError:
+            return False
+        for places, column in found.words:
+            self.value[places] = column
+        lines.assigned += found.assigned
+        lines.parameters.update(found.parameters)
+        return True
+
+    def _in_turn(self) -> None:
+        """Compute lines one by one, and those between which no parameter changes as columns."""
         meanings = self.lines.table.meanings
         writes = np.array([_writes(meaning) for meaning in meanings], np.bool_)
         writers = np.flatnonzero(writes[self.lines.shape[self.having]]).tolist()
@@ -91,7 +127,6 @@ class _Run:
             begin = writer + 1
             if len(self.lines.findings.found) >= Findings.enough:
                 break
-        self.lines.window = replace(self.lines.window, value=self.value)
 
     def _columns(self, stretch: Ints) -> Ints:
         """Compute lines between which no parameter changes; return those that are left."""

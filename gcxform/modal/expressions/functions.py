@@ -27,13 +27,15 @@ from gcxform.system.arrays import Floats, Ints
 class Functions:
     """The words of an outline that are computed, by slot, and the parameters that it sets.
 
-    `slots` is how many slots its lines have; `columns` are the words for many lines at once.
+    `slots` is how many slots its lines have; `columns` are the words for many lines at once, and
+    `assigned_columns` the parameters.
     """
 
     slots: int
     words: tuple[tuple[int, Compiled], ...]
     columns: tuple[tuple[int, Compiled], ...]
     assigned: tuple[tuple[Key, Compiled], ...]
+    assigned_columns: tuple[tuple[Key, Compiled], ...]
 
 
 def computed_in(block: Block) -> tuple[list[tuple[int, Word]], list[Statement]]:
@@ -82,18 +84,22 @@ def _made(table: MeaningTable, shape: int) -> Functions | None:
         words.append((slot, _word(word, meaning, Compiler(arithmetic, operand, in_word=True))))
         many = Compiler(arithmetic, operand, in_word=True, columns=True)
         columns.append((slot, _word(word, meaning, many)))
-    assigned = []
+    assigned, many_assigned = [], []
     for statement in meaning.assignments:
-        compiler = Compiler(arithmetic, next(first), in_word=False)
+        operand = next(first)
+        compiler = Compiler(arithmetic, operand, in_word=False)
+        many = Compiler(arithmetic, operand, in_word=False, columns=True)
         parameter, expression = statement.tree.children
         key = parameter_of(parameter)
         try:
             if key is None or (isinstance(key, str) and not arithmetic.named):
                 return None
             assigned.append((settable(arithmetic, key), compiler.compiled(expression)))
+            many_assigned.append((key, many.compiled(expression)))
         except NoValueError:
             return None
-    return Functions(len(layout), tuple(words), tuple(columns), tuple(assigned))
+    made = tuple(words), tuple(columns), tuple(assigned), tuple(many_assigned)
+    return Functions(len(layout), *made)
 
 
 def _word(word: Word, meaning: Meaning, compiler: Compiler) -> Compiled:
