@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import json
+import pickle
 from pathlib import Path
+from typing import Any
 
 import pytest
 from cli_kit import call
@@ -10,6 +13,7 @@ from rtcp_kit import chain_of_kind, machine_text
 from rtcp_kit import pipeline as rtcp
 
 import gcxform as gx
+from gcxform.catalogue.offers import StepBefore, put_before, ways
 from gcxform.catalogue.settings import ON_COMMAND_LINE, for_chain, settings
 from gcxform.cli.common.options import pipeline_options
 from gcxform.pipeline.file import SECTIONS
@@ -148,6 +152,35 @@ def test_a_tolerance_without_unit_is_asked_about(tmp_path: Path) -> None:
     pipeline = tmp_path / "p.toml"
     pipeline.write_text("format = 1\n[input]\ndialect = 'grbl'\n[budget]\ndeviation = 20\n")
     assert "deviation = 20 is 20 mm" in call("check", "-p", str(pipeline)).stderr
+
+
+def found_of(file: Path, text: bytes, *words: str) -> list[dict[str, Any]]:
+    file.write_bytes(text)
+    done = call("check", "--json", *words, str(file))
+    assert done.stderr == ""
+    found: list[dict[str, Any]] = json.loads(done.stdout)["findings"]
+    assert done.exit_code == (1 if found else 0)
+    return found
+
+
+def test_findings_are_values_with_their_ways_out(tmp_path: Path) -> None:
+    file = tmp_path / "p.nc"
+    (found,) = found_of(file, DRILL, "-f", "fanuc", "-t", "grbl", "-x", "absolute")
+    assert found["ways"] == [[{"kind": "pass", "name": "cycles"}]]
+    assert found["place"] == {"file": str(file), "line": 3, "column": 1, "width": 3}
+    text = b"G21 G90 G94\nG0 X0 Y0 Z0\n/G1 X1. F9.\nM30\n"
+    (found,) = found_of(file, text, "-f", "fanuc", "-x", "absolute")
+    keys = {"kind": "setting", "file": "pipeline", "section": "input", "key": "block-delete"}
+    assert found["ways"] == [[{**keys, "value": '"execute"'}], [{**keys, "value": '"skip"'}]]
+    assert found_of(file, DRILL, "-f", "fanuc", "-x", "absolute") == []
+
+
+def test_what_a_hint_offers_goes_with_it() -> None:
+    hint = pickle.loads(pickle.dumps(put_before("feed", "rtcp", "mode=inverse-time") + ", or so"))
+    assert hint == 'put the pass "feed" before "rtcp", with mode = "inverse-time", or so'
+    assert ways(hint) == [(StepBefore("feed", "rtcp", "mode=inverse-time"),)]
+    places = "X = ... in [work-offset.G55], length = ... in [tool.*]"
+    assert [len(way) for way in ways(places)] == [2]
 
 
 # --- hints that do no harm ---

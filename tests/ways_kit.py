@@ -200,8 +200,6 @@ def _edit(sections: dict[str, bytes], offer: Edit, found: Diagnostic) -> None:
     if offer.how == "replace":
         at = line.index(offer.instead, where.column - 1)
         lines[where.line - 1] = line[:at] + offer.text + line[at + len(offer.instead) :]
-    elif offer.how == "line-before":
-        lines.insert(where.line - 1, offer.text + "\n")
     else:
         del lines[where.line - 1]
     sections[name] = "".join(lines).encode("latin-1")

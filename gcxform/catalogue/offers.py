@@ -28,11 +28,11 @@ class StepBefore(NamedTuple):
 class Edit(NamedTuple):
     """A change of the text at the place of a diagnostic.
 
-    how      "replace": `instead`, which stands at the place, by `text`; "line-before": `text` as a
-             line before the block; "line-out": the block
+    how      "replace": `instead`, which stands at the place, by `text`; "line-out": the block,
+             which does nothing
     """
 
-    how: Literal["replace", "line-before", "line-out"]
+    how: Literal["replace", "line-out"]
     text: str = ""
     instead: str = ""
 
@@ -124,11 +124,6 @@ def put_before(name: str, step: str = "", options: str = "", why: str = "") -> H
 def write_instead(text: str, wrong: str, said: str) -> Hint:
     """Offer a word for a wrong one, in a sentence."""
     return Hint(said, Edit("replace", text, wrong))
-
-
-def write_before(text: str, said: str = "") -> Hint:
-    """Offer a line before the block."""
-    return Hint(said or f"write {text} before", Edit("line-before", text))
 
 
 def leave_out_block(said: str = "leave the block out") -> Hint:

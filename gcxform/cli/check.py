@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, NamedTuple
 
 import click
 import numpy as np
@@ -12,6 +13,7 @@ from gcxform.catalogue.questions import PIPELINE
 from gcxform.cli import VERBS
 from gcxform.cli.common import options
 from gcxform.cli.common.failures import warn
+from gcxform.cli.common.findings import described
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked
 from gcxform.cli.program.asking import block, sections
@@ -40,14 +42,18 @@ ENOUGH = 100 * PRINTED_AT_MOST
 
 @click.command("check", help=VERBS["check"], short_help=VERBS["check"])
 @options.pipeline_options
+@click.option("--json", "as_json", is_flag=True, help="Print findings, with ways out, as JSON.")
 @click.argument("file", metavar="[FILE]", required=False)
-def command(file: str | None, **asked: Any) -> int:
+def command(file: str | None, as_json: bool, **asked: Any) -> int:
     """Check a pipeline, and a program with it; exit 1 if there are findings."""
     what = Asked(**asked)
     if not what.says_chain and file is not None and what.dialect:
         what = Asked(**{**asked, "chain": ""})
     pipeline = what.build()
-    warn((*default_registry().diagnostics, *pipeline.warnings))
+    before = (*default_registry().diagnostics, *pipeline.warnings)
+    if as_json:
+        return _as_json(pipeline, file, before)
+    warn(before)
     text = "\n".join(chain(pipeline))
     if file is None:
         click.echo(text)
@@ -55,6 +61,17 @@ def command(file: str | None, **asked: Any) -> int:
     with opened(file) as source:
         click.echo(text)
         return _check(pipeline, source, what)
+
+
+def _as_json(pipeline: Pipeline, file: str | None, before: Iterable[Diagnostic]) -> int:
+    """Print findings as JSON; return the exit code."""
+    found, taken = Found([], [], Missing()), list[str]()
+    if file is not None:
+        with opened(file) as source:
+            found = _found(pipeline, source, taken)
+    said = [described(each) for each in (*before, *found.wrong, *found.others)]
+    click.echo(json.dumps({"findings": said, "assumed": taken}, indent=2))
+    return 1 if found.wrong else 0
 
 
 # --- the chain ---
@@ -111,6 +128,24 @@ def _limits(pipeline: Pipeline) -> str:
 # --- the program ---
 
 
+class Found(NamedTuple):
+    """What speaks against a program, what else is to be said of it, and what is missing."""
+
+    wrong: list[Diagnostic]
+    others: list[Diagnostic]
+    open: Missing
+
+
+def _found(pipeline: Pipeline, source: Source, taken: list[str]) -> Found:
+    """Return what speaks against a program; `taken` gets what was assumed on the way."""
+    done = _again(pipeline, source)
+    seen = done or speaks_against(pipeline, source, taken)
+    errors = [each for each in seen if each.severity is Severity.ERROR]
+    missing = Visit(pipeline, source, speaks_against).run([] if done else errors)
+    wrong = errors if done else list(told_open(missing.told(), pipeline.to_fill_in))
+    return Found(wrong, [each for each in seen if each.severity is not Severity.ERROR], missing)
+
+
 def _check(pipeline: Pipeline, source: Source, what: Asked) -> int:
     """Say what speaks against a program; return the exit code."""
     stamps = stamps_in(source)
@@ -118,13 +153,9 @@ def _check(pipeline: Pipeline, source: Source, what: Asked) -> int:
         click.echo(f"stamp     {line}")
     warn(edited(stamps.edited, source.name, stamps.line))
     taken: list[str] = []
-    done = _again(pipeline, source)
-    seen = done or speaks_against(pipeline, source, taken)
+    found, others, open_ = _found(pipeline, source, taken)
     lines = sum(len(window) for window, _ in windows_of(source, pipeline.read_as))
-    errors = [each for each in seen if each.severity is Severity.ERROR]
-    open_ = Visit(pipeline, source, speaks_against).run([] if done else errors)
-    found = errors if done else list(told_open(open_.told(), pipeline.to_fill_in))
-    warn([*found, *(each for each in seen if each.severity is not Severity.ERROR)])
+    warn([*found, *others])
     said = pipeline.machine.taken if pipeline.machine else ()
     for line in (each for each in dict.fromkeys(taken) if each not in said):
         click.echo(f"assumed   {line}")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gcxform.catalogue.offers import leave_out_block
 from gcxform.dialect.cycle_rule import RESUME, Cycle, CycleRule
 from gcxform.modal.cycles.stretch import Stretch
 from gcxform.system.arrays import Flags, Floats, Ints
@@ -99,7 +100,7 @@ class Checks:
                 "{code} without an axis word",
                 "write G80 to end the cycle",
             )
-            yield repeats == 0, "{code} with no repeats at all", "leave out the block"
+            yield repeats == 0, "{code} with no repeats at all", leave_out_block()
         count = rule.repeats
         placed = (repeats == 0) & ~(np.isnan(calls.first) & np.isnan(calls.second))
         message = f"{{code}} with {count}0: whether it goes to the place given is not certain"

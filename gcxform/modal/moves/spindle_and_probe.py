@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from gcxform.catalogue.offers import leave_out_block
 from gcxform.dialect.dialect import INCH
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames.track import SPATIAL, Break, Track
@@ -132,7 +133,7 @@ def probe(track: Track, line: int) -> Rows:
     named = track.words_on(line)
     if not named or np.array_equal(start, end):
         message = "a probing move that goes nowhere"
-        track.findings.add(line, "GX216", message, hint="leave the block out")
+        track.findings.add(line, "GX216", message, hint=leave_out_block())
     lost = sum(1 << track.axes.index(axis) for axis in named)
     if lost & SPATIAL and track.frame.matrix is not None:
         lost |= SPATIAL
