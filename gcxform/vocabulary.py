@@ -41,6 +41,7 @@ from gcxform.dialect.cycle_rule import (
     rapid,
     tap,
 )
+from gcxform.dialect.logic import with_logic
 from gcxform.machine.formats import control_lines
 from gcxform.machine.machine import Axis, Machine, Tool
 from gcxform.system.arrays import Bytes, Flags, Floats, Ints, Small
@@ -93,4 +94,5 @@ __all__ = [
     "measures",
     "rapid",
     "tap",
+    "with_logic",
 ]

@@ -12,6 +12,27 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 RENUMBER = "plugins/gcxform_plugins/passes/renumber.py"
 MUTATIONS = (
     _macro(
+        "AND without brackets is known",
+        "gcxform/modal/expressions/value.py",
+        "alone = _stands_alone(left, name) and _stands_alone(right, name)",
+        "alone = True",
+        "flow/fanuc-conditions-unbracketed",
+    ),
+    _macro(
+        "a Fanuc takes the bits of numbers",
+        "gcxform/dialect/logic.py",
+        "made = _of_bits if bits else _of_truths",
+        "made = _of_bits",
+        "flow/fanuc-bits",
+    ),
+    _macro(
+        "digits of four bits are of eight",
+        "gcxform/dialect/logic.py",
+        'return float(int(f"{_counted(a)}", 16))',
+        "return float(_counted(a))",
+        "flow/fanuc-conditions",
+    ),
+    _macro(
         "a jump names a line of another program",
         RENUMBER,
         "return self.labels.get((self.program[nth], number), [])",

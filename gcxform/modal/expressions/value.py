@@ -14,6 +14,7 @@ from typing import Any
 from lark import Token, Tree
 
 from gcxform.dialect.arithmetic import RS274, Arithmetic, Key, NoValueError, whole
+from gcxform.dialect.logic import operator_of
 from gcxform.dialect.null import MAYBE, NULL, Null, as_argument
 from gcxform.syntax.grammar import rule_of, span_of
 from gcxform.syntax.tree import BLANKS, Statement
@@ -21,6 +22,8 @@ from gcxform.syntax.tree import BLANKS, Statement
 DOUBTFUL = math.inf
 SET_IT = "set it to a number in the program before"
 """Stands for the value of a parameter that controls are known to set in two ways."""
+ALONE = frozenset({"bracketed", "parameter", "call", "arctangent"})
+"""Rules of operands that are worth the same whatever stands beside them."""
 Parameters = Mapping[Key, float]
 """Values by parameter; nan for one that is no longer known."""
 
@@ -105,7 +108,8 @@ class Evaluator:
 
     def _operation(self, left: Any, operator: Token, right: Any) -> float:
         name = str(operator).upper()
-        function = self.arithmetic.operators.get(name)
+        alone = _stands_alone(left, name) and _stands_alone(right, name)
+        function = operator_of(self.arithmetic, name, alone)
         if function is None:
             raise NoValueError(f"{name} is not computed in this dialect", code="GX206")
         return function(self.value(left), self.value(right))
@@ -163,6 +167,14 @@ class Evaluator:
                 f"only the control knows whether {written(key)} exists", code="GX220", lost=True
             )
         return 0.0
+
+
+def _stands_alone(node: Any, name: str) -> bool:
+    """Whether an operand hangs on no order of operators, but for others of the same name."""
+    if isinstance(node, Token) or rule_of(node) in ALONE:
+        return True
+    children = node.children
+    return len(children) == 3 and str(children[1]).upper() == name
 
 
 def _name(token: Token) -> str:

@@ -54,7 +54,8 @@
 | a null variable | leaves its word out, is 0 in expressions, and equal to null alone |
 | a computed distance | in mm, rounded to `[input] increment`, which must be given |
 | an assignment beside words | when it acts is not certain: refused |
-| AND OR XOR | known in two ways: refused |
+| AND OR XOR | of conditions in brackets; of other numbers, and without brackets: refused |
+| BIN BCD | whole numbers from 0; ADP: refused |
 | FIX, FUP, MOD of negative numbers, ROUND of halves below 0 | known in two ways: refused |
 | ATAN, ASIN below 0 | a parameter may add 360 degrees: refused |
 | ROUND in a word | rounds to the increment of the word: refused |
@@ -191,7 +192,7 @@ class Fanuc(gx.Dialect):
         unknown_m=gx.MCode("user", loses_position=True, takes="PQ"),
     )
     flow_rule = gx.FlowRule(
-        "macro-b", v.MACRO_B, macro_levels=4, lookup=FILES, null_compare="distinct"
+        "macro-b", v.with_logic(v.MACRO_B), macro_levels=4, lookup=FILES, null_compare="distinct"
     )
     point_rule = gx.PointRule(required=True, dwell={"X": 1.0, "U": 1.0, "P": 0.001})
     feed_rule = gx.FeedRule(change_clears=True)

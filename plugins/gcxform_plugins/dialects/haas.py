@@ -35,6 +35,7 @@ refused. What is not named here is as in `fanuc`.
 | G103, G187 | look-ahead, smoothness: change no position | manual |
 | M97 M98 M99 | executed where what they call is found, as Fanuc; P of M98 holds no count | manual |
 | G65 | as Fanuc's, nine deep; L keeps what the macro did to its variables; list II | manual |
+| AND OR XOR in brackets | bits of whole parts | manual |
 | null EQ 0 | true or not: refused, or `[control] null-compare` | known |
 | #10000 to #10999 | may be set; #10100 and above are other names of #100 to #999 | manual |
 | M96 M198 | jumps at an input, other programs: refused | manual |
@@ -68,7 +69,7 @@ CYCLES = {number: replace(one, takes="PQL") for number, one in Fanuc.cycle_rule.
 CYCLES |= {number: replace(CYCLES[number], takes="QL", open_words="P") for number in (73, 83)}
 OWN = v.MACRO_B.machine
 ARITHMETIC = replace(
-    v.MACRO_B,
+    v.with_logic(v.MACRO_B, bits=True),
     machine=replace(
         OWN,
         outputs=(*OWN.outputs, range(10000, 11000)),
