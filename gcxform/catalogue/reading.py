@@ -243,7 +243,8 @@ CODES: dict[str, tuple[str, str]] = {
         "G5 takes X and Y (at least one), P and Q, and I and J, which may be left out directly "
         "behind another G5; G5.1 takes X and Y, I and J. LinuxCNC refuses other words and other "
         "planes than G17. In G93 it does not time splines, and a series that is interrupted goes "
-        "on from the last G5 that it met: both are refused here. Correct the block.",
+        "on from the last G5 that it met: both are refused here. Between G5.2 and G5.3 stand "
+        "control points alone, in G90: X, Y and the weight P. Correct the block.",
     ),
     "GX309": (
         "The compensated position does not converge",

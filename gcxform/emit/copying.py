@@ -32,6 +32,7 @@ WHAT = {
     Form.SPLINE: "a spline",
     Form.THREAD: "a thread",
     Form.BLIND: "a move by distances from where it is not known",
+    Form.NURBS: "a spline of NURBS",
 }
 HINTS = {
     Form.CYCLE: put_before("cycles"),
@@ -321,9 +322,13 @@ class Copying:
         own = np.flatnonzero(~plain)
         if len(own):
             good[own] &= self.same.words(rows[own], others[own])
-        turned = plain | (self.path.form[rows] == Form.SPLINE)
+        turned = plain | np.isin(self.path.form[rows], (Form.SPLINE, Form.NURBS))
         good &= ~turned | self.same.frames(rows, others)
         starts_exact, exact = self._exactness(rows, others, good & ~converted[lines])
+        points = np.flatnonzero(self.path.form[rows] == Form.NURBS)
+        if len(points):
+            placed = self.same.starts(rows[points], others[points])
+            good[points] &= starts_exact[points] | placed
         incremental = self.path.blocks.incremental[self.path.block[rows]]
         doubtful = np.flatnonzero(good & plain & incremental & ~starts_exact)
         if len(doubtful):

@@ -72,7 +72,7 @@ class SameRows:
         same = (np.abs(end - old) <= EXACT) | unknown
         incremental = self.path.blocks.incremental[self.path.block[rows]][:, None]
         still = np.abs(old_way) <= EXACT
-        cycle = np.isin(self.path.form[rows], (Form.CYCLE, Form.SPLINE))[:, None]
+        cycle = np.isin(self.path.form[rows], (Form.CYCLE, Form.SPLINE, Form.NURBS))[:, None]
         as_far = (np.abs(way - old_way) <= EXACT) & (incremental | (still & ~cycle))
         good = (same | as_far | self._other_axes(rows, others)).all(axis=1)
         if self.path.frames == self.original.frames:

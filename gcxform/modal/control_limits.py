@@ -9,6 +9,7 @@ import numpy as np
 
 from gcxform.modal.findings import Findings
 from gcxform.modal.lines import Lines
+from gcxform.modal.meaning.tables import NURBS
 from gcxform.modal.state import Modes
 from gcxform.toolpath.path import Event, Kind
 
@@ -98,5 +99,6 @@ def _turns_without_arc(lines: Lines, modes: Modes) -> None:
         return
     arc = (modes.motion >= Kind.ARC_CW) & ~lines.flag("own_moves")
     arc &= lines.flag("moves") | lines.flag("has_centre")
+    arc |= modes.motion == NURBS  # a weight
     for line in np.flatnonzero(turns[1] & ~arc & (modes.cycle == 80)).tolist():
         lines.findings.add(line, "GX203", f"{address} belongs to an arc, and this is none", address)

@@ -24,7 +24,7 @@ from gcxform.modal.expressions.unknown import note_prints
 from gcxform.modal.expressions.value import parameter_key
 from gcxform.modal.frame_state import FrameState
 from gcxform.modal.lines import Lines
-from gcxform.modal.meaning.tables import GROUPS, NUMBER, SPLINES, MeaningTable
+from gcxform.modal.meaning.tables import GROUPS, NUMBER, NURBS_END, SPLINES, MeaningTable
 from gcxform.modal.moves.kept_calls import refuse_lost_modes
 from gcxform.modal.moves.moves import Moves
 from gcxform.modal.noted import Assigned, Unknown
@@ -162,7 +162,7 @@ class Interpreter:
             "cutter-comp": modes.comp,
         }
         self.state.groups = {name: int(column[-1]) for name, column in last.items()}
-        if self.state.groups["motion"] in SPLINES:
+        if self.state.groups["motion"] in (*SPLINES, NURBS_END):
             self.state.groups["motion"] = NUMBER["G80"]
         self.state.feed = float(modes.feed[-1])
         self.state.feed_unit = float(modes.feed_unit[-1])

@@ -18,6 +18,7 @@ from gcxform.modal.meaning.tables import (
     GROUPS,
     MEMORY,
     NUMBER,
+    NURBS_END,
     MeaningTable,
     of_splines,
 )
@@ -276,7 +277,7 @@ class Lines:
         """
         if not self._stated[COLUMNS.index("motion")]:
             return motion
-        over = of_splines(motion) & ~self.stated("motion")
+        over = (of_splines(motion) | (motion == NURBS_END)) & ~self.stated("motion")
         return np.where(over, np.int8(NUMBER["G80"]), motion) if over.any() else motion
 
     def remembered(self, name: str) -> Small:

@@ -166,6 +166,7 @@ class State:
                   `cancelled`: G40 has been in force since
     selected      the T word; `tool`: the tool in the spindle; `stored`: the D word; nan: not known
     pull   P and Q of the last move if that was a G5, in units of the program
+    nurbs  how many control points a spline has that G5.3 has not ended, and its order
     assumed  what was chosen among several meanings that a word can have, in sentences; those that
              may surprise with a warning
     feed_lost  a feed is in force that only the machine knows
@@ -200,6 +201,7 @@ class State:
     parameters: dict[int | str, float] = field(default_factory=dict)
     cycles: Cycles | None = None
     pull: tuple[float, float] | None = None
+    nurbs: tuple[int, float] | None = None
     vector: tuple[float, float, float] = (np.nan, np.nan, np.nan)
     memory: dict[str, int] = field(default_factory=dict)
     lost_modes: frozenset[str] = frozenset()

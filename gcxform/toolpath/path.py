@@ -54,7 +54,8 @@ class Form(IntEnum):
     ends where something is touched, its target at the latest. SYNCHRONISED: it is tied to the
     spindle. SPLINE: a cubic Bezier curve; its kind is LINE, because it cuts. THREAD: tied to the
     spindle as well, one straight move (G33), which is written anew if its ends move. BLIND: a plain
-    move by distances, of an axis of which it is not known where it stands.
+    move by distances, of an axis of which it is not known where it stands. NURBS: a leg between
+    control points of a spline (G5.2), which stays inside of their hull; its kind is LINE.
     """
 
     PLAIN = 0
@@ -66,6 +67,7 @@ class Form(IntEnum):
     SPLINE = 6
     THREAD = 7
     BLIND = 8
+    NURBS = 9
 
 
 FREE = (Form.PLAIN, Form.THREAD)

@@ -69,4 +69,37 @@ MUTATIONS = (
             ),
         )
     ),
+    *(
+        Mutation(f"splines of NURBS: {name}", file, old, new, tests)
+        for name, file, old, new, tests in (
+            (
+                "they begin anywhere",
+                "gcxform/emit/copying.py",
+                "good[points] &= starts_exact[points] | placed",
+                "pass",
+                "tests/test_corpus.py::test_case[splines/nurbs-moved]",
+            ),
+            (
+                "G91 is G90",
+                "gcxform/modal/moves/nurbs.py",
+                "if modes.incremental[line]:",
+                "if False:",
+                "tests/test_nurbs.py",
+            ),
+            (
+                "no end is an end",
+                "gcxform/modal/moves/nurbs.py",
+                "if self.state.nurbs is not None and line != last + 1:",
+                "if False:",
+                "tests/test_nurbs.py",
+            ),
+            (
+                "what stands between acts behind",
+                "gcxform/modal/moves/nurbs.py",
+                "acts = meaning.acts or meaning.events or",
+                "acts = meaning.acts or",
+                "tests/test_nurbs.py",
+            ),
+        )
+    ),
 )

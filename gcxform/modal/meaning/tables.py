@@ -33,10 +33,14 @@ PROBES = (38, 39, 40, 41)
 """The numbers of G38.2 to G38.5."""
 CYCLES = tuple(n for n in range(73, 90) if n not in (75, 77, 78, 79, 80))
 SPLINES = CUBIC, QUADRATIC = (5, 51)
+NURBS, NURBS_END = 52, 53
+"""The numbers of G5.2, that stays in force, and of G5.3."""
 NUMBER = {
     **{f"G{n}": n for n in (0, 1, 2, 3, 80, *CYCLES)},
     "G5": CUBIC,
     "G5.1": QUADRATIC,
+    "G5.2": NURBS,
+    "G5.3": NURBS_END,
     "G33": THREAD,
     "G33.1": TAP,
     **{f"G38.{2 + k}": n for k, n in enumerate(PROBES)},
@@ -69,6 +73,7 @@ NUMBER = {
 FAMILIES = {
     "motion": (
         *("G0", "G1", "G2", "G3", "G80", "G5", "G5.1", "G33", "G33.1"),
+        *("G5.2", "G5.3"),
         *(f"G38.{2 + k}" for k in range(len(PROBES))),
         *(f"G{n}" for n in CYCLES),
     ),

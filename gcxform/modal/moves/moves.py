@@ -24,6 +24,7 @@ from gcxform.modal.moves.blind_moves import blind_rows, may_be_blind, ways
 from gcxform.modal.moves.cutter_comp import compensation, refuse_ends
 from gcxform.modal.moves.cycle_patterns import Drilling
 from gcxform.modal.moves.home import own_moves
+from gcxform.modal.moves.nurbs import Nurbs
 from gcxform.modal.moves.rows import Rows, Stretches
 from gcxform.modal.moves.spindle_and_probe import Tied
 from gcxform.modal.moves.splines import read_splines, with_splines
@@ -55,6 +56,7 @@ class Moves:
         self.pointing = Pointing(lines, modes, axes) if vectors else None
         self.splines = of_splines(modes.motion)
         self.bends = bool(self.splines.any())
+        self.nurbs = Nurbs(lines, modes)
         self._new_units: list[int] = []  # lines that change it, where that spoils tool lengths
         if self.dialect.tool_rule.units_spoil_length:
             before = np.append(self.state.groups["units"] == 1, modes.inch)
@@ -62,6 +64,7 @@ class Moves:
 
     def path(self) -> Toolpath:
         """Return the moves as a toolpath."""
+        self.nurbs.check()
         moving = self._moving()
         self.track.may_step = may_be_blind(self.lines, self.modes, moving, self.pointing is None)
         lost = self.lines.loses_position()
@@ -111,7 +114,7 @@ class Moves:
             moves |= self.pointing.named & ~own & ~drilling
             centre &= ~self.pointing.named
         stray = self.lines.flag("drill_words") & ~drilling
-        stray &= ~self.splines
+        stray &= ~(self.splines | self.nurbs.lines)
         for line in np.flatnonzero(stray)[: Findings.enough].tolist():
             words = self.lines.table.meanings[int(self.lines.shape[line])].drill_words
             message = f"{words[0]} belongs to no code of this block"
@@ -264,6 +267,7 @@ class Moves:
     def _plain(self, line: Ints, ends: Floats, frame: Ints) -> Rows:
         """Return rows that are one plain move a line, threads and splines among them."""
         plain = self.tied.plain(line, ends, frame)
+        plain = self.nurbs.marked(plain)
         return with_splines(plain) if self.bends else plain
 
     def _refuse_other_units(self, first: int, last: int) -> None:
@@ -286,6 +290,7 @@ class Moves:
         refuse_ends(self.lines, self.modes, path.side, path.kind, line)
         if self.side.any():
             self._refuse_mirrored(path)
+        self.nurbs.refuse_unknown_start(path)
         if len(line) and (self.state.pull or self.bends):
             path = read_splines(path, self.lines, self.modes)
         if not path.has_arcs:

@@ -32,7 +32,7 @@
 | G5.1 | a quadratic one: I J from its start |
 | G5, G5.1 | refused: other planes, axes but X and Y, one of two words, neither X nor Y; in G93 |
 | after G5, G5.1 | no motion code is in force |
-| G5.2, G5.3 | NURBS: refused |
+| G5.2, G5.3 | a spline of weights and knots in G17 and G90: copied; its end is known |
 | G33 | needs a turning spindle, an axis word and K in every block; F beside it is refused |
 | G33.1 | to the end and back to the start; no rotary words |
 | G38.2 to G38.5 | end at the target at the latest; the axes named then stand nowhere known |
@@ -144,13 +144,9 @@ class LinuxCNC(gx.Dialect):
         "G43": v.frame("tool-length", "length", "H"),
         "G43.1": v.frame("tool-length", "length-vector", v.AXES),
         "G43.2": v.frame("tool-length", "length-add", "H"),
-        **{code: gx.Code("motion") for code in ("G5", "G5.1")},
+        **{code: gx.Code("motion") for code in ("G5", "G5.1", "G5.2", "G5.3")},
         **{f"G{number}": gx.Code("motion") for number in CYCLES if number != 76},
         "G76": v.barrier("motion", v.SYNCHRONISED, "EHIJKLPQR"),
-        **{
-            code: v.barrier("motion", "it cuts a spline of NURBS", "IJKPQL")
-            for code in ("G5.2", "G5.3")
-        },
         **{code: gx.Code("motion") for code in ("G33", "G33.1")},
         **{code: gx.Code("motion") for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
         **{
