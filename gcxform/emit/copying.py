@@ -69,7 +69,7 @@ class Copying:
         self.same = SameRows(self.path, self.original, positions)
         self.lines = (old_count == 0) & (pieces.count == 0) & ~pieces.expanded_line
         stands, converted, self.exact = self._standing(old_count, pieces, stated)
-        self._refuse_changed(stands, pieces)
+        self._refuse_changed(stands, pieces, stated)
         self._refuse_presets()
         self._refuse_other_values()
         self._refuse_calls()
@@ -92,7 +92,7 @@ class Copying:
         self._refuse_polar()
         self._refuse_perhaps(stated, pieces)
 
-    def _refuse_changed(self, stands: Flags, pieces: Pieces) -> None:
+    def _refuse_changed(self, stands: Flags, pieces: Pieces, stated: Stated) -> None:
         """Refuse blocks that move in a way of their own and would have to move otherwise.
 
         A thread may end elsewhere, but it stays one block in its unit.
@@ -102,6 +102,8 @@ class Copying:
         if len(threads):
             other = (pieces.count[threads] != 1) | ~self.same.units()[threads]
             wrong = np.union1d(wrong, threads[other])
+        points = distinct(self.path.block[self.path.form == Form.NURBS])
+        wrong = np.union1d(wrong, points[np.isin(points, pieces.line[stated.repaired])])
         if not len(wrong):
             return
         form = Form(int(self.path.form[np.searchsorted(self.path.block, wrong[0])]))

@@ -176,25 +176,25 @@ def _events_differ(
             if int(np.searchsorted(rows, mine[0])) != int(np.searchsorted(others, their[0])):
                 return f"line {mine[2]}: {mine[1]} stands elsewhere"
             first, second = first + 1, second + 1
-        elif mine is not None and _says_again([each[1] for each in ours[: first + 1]]):
+        elif mine is not None and _says_again(mine[1], theirs[:second]):
             first += 1
-        elif their is not None and _says_again([each[1] for each in theirs[: second + 1]]):
+        elif their is not None and _says_again(their[1], theirs[:second]):
             second += 1
         else:
             return f"line {mine[2] if mine else 0}: event {mine} for {their}"
     return ""
 
 
-def _says_again(events: list[str]) -> bool:
-    """Whether the last event is an S that says the speed in force again, as far as is printed.
+def _says_again(name: str, before: list[tuple[int, str]]) -> bool:
+    """Whether an event is an S that says the speed again that LinuxCNC has, as far as is printed.
 
-    Where M72 brings a speed back that is that of before but for rounding, one of both may say it.
+    Where M72 brings a speed back that is that of before but for rounding, or that only the machine
+    knows in between, one of both may say it.
     """
-    said = [each for each in events if each.startswith("S")]
-    known = (
-        len(said) > 1 and events[-1] is said[-1] and not any(s.endswith(LOST) for s in said[-2:])
+    said = [each for _, each in before if each.startswith("S")]
+    return (
+        bool(said) and name.startswith("S") and not name.endswith(LOST) and _alike(name, said[-1])
     )
-    return known and _alike(*said[-2:])
 
 
 def _alike(ours: str, theirs: str) -> bool:
