@@ -1,8 +1,7 @@
 """A real browser for the tests of the page: Debian's Chromium, driven by Playwright.
 
 It is started once for all of them and draws in software. Where it is missing they are skipped,
-visibly. `PICTURES=folder` keeps the pictures that tests take there, which is how those of the
-documentation are made.
+visibly. With `PICTURES=docs/pictures` the tests of `test_view.py` draw the pictures of the manual.
 """
 
 from __future__ import annotations
@@ -12,6 +11,7 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 
 SOFTWARE = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
+COLOURS = 128  # of a picture that is kept
 PLACE = os.environ.get("PICTURES", "")
 
 
@@ -46,8 +47,10 @@ class Sight:
     @classmethod
     def of(cls, browser: Any, file: Path, name: str = "", **manner: Any) -> Sight:
         """Open a file without a network, and wait until the page is ready."""
-        size = {"width": 1280, "height": 800}
-        context = browser.new_context(offline=True, **{"viewport": size} | manner)
+        manner = {"viewport": {"width": 1280, "height": 800}} | manner
+        if PLACE:
+            manner["device_scale_factor"] = 2
+        context = browser.new_context(offline=True, **manner)
         sight = cls(context.new_page())
         sight.page.set_default_timeout(20_000)
         sight.page.on("request", lambda request: sight.requests.append(request.url))
@@ -104,5 +107,8 @@ class Sight:
     def picture(self, name: str) -> None:
         """Keep a picture of the page, where pictures are wanted."""
         if PLACE:
+            from PIL import Image
+
             self.pixels()
-            self.page.screenshot(path=str(Path(PLACE) / name))
+            shot = Image.open(BytesIO(self.page.screenshot()))
+            shot.quantize(COLOURS).save(Path(PLACE) / name, optimize=True)

@@ -54,8 +54,8 @@ def _place(step: Pass, origin: Floats | None) -> Floats:
     """Return where in the model the zero of the path is, mm."""
     part = origin if origin is not None else getattr(step, "part_origin", None)
     table = getattr(step, "table_origin", None)
-    zero = np.zeros(3)
-    return np.asarray((zero if part is None else part) - (zero if table is None else table))
+    zero = (0.0, 0.0, 0.0)
+    return np.subtract(zero if part is None else part, zero if table is None else table)
 
 
 def _envelope(machine: Machine, origin: Floats | None) -> dict[str, Any]:

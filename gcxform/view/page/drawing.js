@@ -8,10 +8,13 @@ const ACROSS = 256; // a row of the texture of corners
 const MANY = 60_000; // pieces of which a picture is made; more are drawn as thin lines
 const SHARP = 0.4; // pixels that a line may be off when the picture stands still
 const COARSEST = 6; // pixels, while it moves and is slow
+const THIN = 1.5; // pixels; where the picture is coarser, lines are thin too
 const [SLOW, FAST] = [45, 24]; // ms between pictures
 const STILL = 220; // ms without movement, after which the picture is drawn sharp
+const SQUARE = [0, 2, 1, 1, 2, 3]; // the corners of its two triangles
+let shared = null; // the index of all rectangles
 
-// A piece of path is a rectangle that faces the screen (6 corners) or a thin line (2); where it lies
+// A piece of path is a rectangle that faces the screen (4 corners) or a thin line (2); where it lies
 // is in a texture, because software renderers are slow at instances.
 const VERTEX = `
 precision highp float; precision highp int; precision highp sampler2D;
@@ -30,11 +33,11 @@ void main() {
   vec4 b = projectionMatrix * modelViewMatrix * vec4(second.xyz, 1.0);
   vec2 way = 0.5 * (b.xy - a.xy) * viewport;
   float size = length(way);
-  float part = per == 2 ? float(nth) : nth == 1 || nth > 3 ? 1.0 : 0.0;
+  float part = per == 2 ? float(nth) : float(nth / 2);
   gl_Position = mix(a, b, part);
   if (per > 2) {
     vec2 unit = size > 0.0 ? way / size : vec2(1.0, 0.0);
-    float side = nth == 2 || nth == 3 || nth == 5 ? 1.0 : -1.0;
+    float side = nth % 2 == 1 ? 1.0 : -1.0;
     gl_Position.xy += (vec2(-unit.y, unit.x) * side + unit * (2.0 * part - 1.0)) * width / viewport;
   }
   gl_Position.z += behind;
@@ -53,7 +56,8 @@ void main() {
 }`;
 
 export function drawingOn(canvas) {
-  const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+  const antialias = !drawsInSoftware();
+  const renderer = new THREE.WebGLRenderer({ canvas, antialias, preserveDrawingBuffer: true });
   renderer.outputColorSpace = "srgb-linear"; // colours go to the screen as they are given
   renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
   const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -1, 1);
@@ -62,11 +66,21 @@ export function drawingOn(canvas) {
   controls.zoomToCursor = true;
   const drawing = {
     canvas, renderer, camera, controls, scene: new THREE.Scene(), paths: [], ground: new THREE.Color(),
-    coarse: SHARP, moved: 0, asked: false, last: 0, size: 100, middle: [0, 0, 0], frames: 0, onDrawn: [],
+    coarse: SHARP, moved: 0, asked: false, last: 0, size: 100, middle: [0, 0, 0], frames: 0, beforeDrawn: [],
   };
   controls.addEventListener("change", () => stir(drawing));
   new ResizeObserver(() => resized(drawing)).observe(canvas.parentElement);
   return drawing;
+}
+
+// Whether no graphics card helps: then smooth edges would cost more than they are worth.
+function drawsInSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) throw new Error("this browser has no WebGL 2");
+  const said = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = gl.getParameter(said ? said.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return /SwiftShader|llvmpipe|softpipe|Basic Render/i.test(name);
 }
 
 export function setGround(drawing, colour) {
@@ -95,8 +109,8 @@ export function redraw(drawing) {
   requestAnimationFrame((now) => drawn(drawing, now));
 }
 
-// The camera moves: be fast rather than sharp.
-function stir(drawing) {
+// The camera or the time moves: be fast rather than sharp.
+export function stir(drawing) {
   drawing.moved = performance.now();
   redraw(drawing);
 }
@@ -124,10 +138,11 @@ function render(drawing) {
   const seen = drawing.paths.filter((shown) => shown.group.visible);
   for (const shown of seen) levelled(shown, least);
   const pieces = seen.flatMap((shown) => shown.chunks).reduce((sum, chunk) => sum + chunk.pieces, 0);
-  for (const shown of seen) widen(shown, pieces < MANY);
+  for (const shown of seen) widen(shown, pieces < MANY && drawing.coarse < THIN);
+  drawing.camera.updateMatrixWorld();
+  for (const act of drawing.beforeDrawn) act();
   drawing.renderer.render(drawing.scene, drawing.camera);
   drawing.frames += 1;
-  for (const act of drawing.onDrawn) act();
 }
 
 // How many mm a pixel of the screen is.
@@ -145,7 +160,7 @@ export function addPath(drawing, path) {
   const uniforms = {
     viewport: { value: new THREE.Vector2(1, 1) }, width: { value: 2 }, behind: { value: 0 }, played: { value: Infinity },
     colours: { value: texture }, ground: { value: drawing.ground }, single: { value: [0, 0, 0, 0] },
-    corners: { value: null }, per: { value: 6 },
+    corners: { value: null }, per: { value: 4 },
   };
   const material = new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms, side: THREE.DoubleSide,
@@ -174,7 +189,7 @@ function mannersOf(path) {
 function chunkOf(shown, first, last) {
   const chunk = {
     first, last, level: NaN, weight: null, pieces: 0, sphere: sphereOf(shown.path.corners, first, last),
-    wide: pieceOf(shown, THREE.Mesh, 6), thin: pieceOf(shown, THREE.LineSegments, 2),
+    wide: pieceOf(shown, THREE.Mesh, 4), thin: pieceOf(shown, THREE.LineSegments, 2),
   };
   return chunk;
 }
@@ -189,14 +204,25 @@ function pieceOf(shown, kind, per, material = shown.material) {
     uniforms.per.value = per;
     material.uniformsNeedUpdate = true;
   };
-  object.userData.per = per;
+  object.userData.count = per === 4 ? SQUARE.length : per; // of points to draw a piece
+  if (per === 4) object.geometry.setIndex(squares());
   shown.group.add(object);
   return object;
 }
 
+// The corners of rectangles, two triangles each, as many as a chunk can have.
+function squares() {
+  if (!shared) {
+    const found = new Uint16Array(SQUARE.length * CHUNK);
+    for (let k = 0; k < found.length; k++) found[k] = 4 * Math.floor(k / SQUARE.length) + SQUARE[k % SQUARE.length];
+    shared = new THREE.BufferAttribute(found, 1);
+  }
+  return shared;
+}
+
 function give(object, texture, pieces, sphere) {
   object.userData.corners = texture;
-  object.geometry.setDrawRange(0, object.userData.per * pieces);
+  object.geometry.setDrawRange(0, object.userData.count * pieces);
   object.geometry.boundingSphere = sphere;
 }
 
@@ -262,7 +288,7 @@ export function highlight(drawing, shown, rows, colour) {
   for (const row of rows) {
     if (shown.manner[row] === HIDDEN) continue;
     const [from, to] = [path.last[row], path.last[row + 1]];
-    const mesh = pieceOf(shown, THREE.Mesh, 6, markMaterial(shown, colour));
+    const mesh = pieceOf(shown, THREE.Mesh, 4, markMaterial(shown, colour));
     give(mesh, textureOf(path.corners.slice(FIELDS * from, FIELDS * (to + 1))), to - from, new THREE.Sphere());
     mesh.frustumCulled = false;
     mesh.renderOrder = 2;
@@ -273,7 +299,7 @@ export function highlight(drawing, shown, rows, colour) {
 
 function markMaterial(shown, colour) {
   const uniforms = {
-    ...shown.uniforms, corners: { value: null }, per: { value: 6 }, width: { value: 5 }, played: { value: Infinity }, single: { value: [...colour.map((c) => c / 255), 1] },
+    ...shown.uniforms, corners: { value: null }, per: { value: 4 }, width: { value: 5 }, played: { value: Infinity }, single: { value: [...colour.map((c) => c / 255), 1] },
   };
   return new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms,
@@ -327,6 +353,15 @@ export function lookAt(drawing, box, way) {
   const high = 1.12 * Math.max(seen.y, seen.x / aspect, 1e-3);
   Object.assign(camera, { top: high / 2, bottom: -high / 2, left: (-high * aspect) / 2, right: (high * aspect) / 2 });
   camera.updateProjectionMatrix();
+  controls.update();
+  stir(drawing);
+}
+
+// Turn the picture about the vertical, by an angle in rad.
+export function turnBy(drawing, angle) {
+  const { camera, controls } = drawing;
+  const arm = camera.position.clone().sub(controls.target).applyAxisAngle(camera.up, angle);
+  camera.position.copy(controls.target).add(arm);
   controls.update();
   stir(drawing);
 }

@@ -2,7 +2,7 @@
 import { fromBase64, column, opener } from "./bytes.js";
 import { showCertificate } from "./certificate.js";
 import { GREY, OKABE_ITO, css, gradient, ramp } from "./colours.js";
-import { VIEWS, addPath, boxOf, drawNow, drawingOn, highlight, lookAt, paint, redraw, setGround, unmark } from "./drawing.js";
+import { VIEWS, addPath, boxOf, drawNow, drawingOn, highlight, lookAt, paint, redraw, setGround, stir, turnBy, unmark } from "./drawing.js";
 import { listOf, mark } from "./list.js";
 import { lineOf, textOf } from "./lines.js";
 import { RAPID, pathOf, pointOn, timesOf } from "./path.js";
@@ -43,7 +43,8 @@ async function start() {
   view.player = playerOf({ play: byId("play"), time: byId("time"), clock: byId("clock"), speed: byId("speed") }, { show });
   setTimes(view.player, main().times);
   chooseByName(location.hash);
-  byId("note").textContent = head.notes.join(" ");
+  const still = view.programs.filter((program) => !program.path.count);
+  byId("note").textContent = [...head.notes, ...still.map(({ name }) => `${name} moves nothing.`)].join(" ");
   globalThis.gcxformView = Object.assign(view, forConsole());
   document.documentElement.dataset.ready = "yes";
 }
@@ -53,6 +54,7 @@ function forConsole() {
   return {
     drawNow: () => drawNow(view.drawing),
     goTo: (seconds) => goTo(view.player, seconds),
+    turnBy: (angle) => turnBy(view.drawing, angle),
     toolAxis: (nth, row) => toolAxis(view.scene, view.programs[nth], row),
     middleOf: (nth, row) => fromMiddle(pointOn(view.programs[nth].path, row, 0.5)),
   };
@@ -232,11 +234,12 @@ function show(seconds) {
   program.shown.uniforms.played.value = seconds >= view.player.total ? Infinity : row - 1 + part;
   placeTool(view.scene, program, fromMiddle(pointOn(program.path, row, part)), row);
   view.scene.tool.visible = seconds < view.player.total || view.chosen !== null;
-  redraw(view.drawing);
+  stir(view.drawing);
 }
 
 function stepMove(by) {
   const program = main();
+  if (!program.path.count) return;
   const row = Math.min(program.path.count - 1, Math.max(0, (view.at?.row ?? 0) + by));
   goTo(view.player, program.times[row + 1]);
   view.at = { row, part: 1 };

@@ -18,7 +18,7 @@ export function sceneOf(drawing, told, box) {
   if (told.lattice) scene.layers.errors = latticeOf(scene);
   for (const layer of Object.values(scene.layers)) drawing.scene.add(layer);
   scene.tool = toolOf(scene);
-  drawing.onDrawn.push(() => placeLabels(scene));
+  drawing.beforeDrawn.push(() => placeLabels(scene));
   return scene;
 }
 
