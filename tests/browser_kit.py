@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 SOFTWARE = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
-COLOURS = 128  # of a picture that is kept
+COLOURS = 256  # of a picture that is kept
 PLACE = os.environ.get("PICTURES", "")
 
 
@@ -111,4 +111,5 @@ class Sight:
 
             self.pixels()
             shot = Image.open(BytesIO(self.page.screenshot()))
-            shot.quantize(COLOURS).save(Path(PLACE) / name, optimize=True)
+            few = shot.convert("RGB").quantize(COLOURS, Image.Quantize.FASTOCTREE)
+            few.save(Path(PLACE) / name, optimize=True)

@@ -134,13 +134,41 @@ def test_a_line_leads_to_its_move(part) -> None:
     part.page.wait_for_selector("#told pre")
     told = part.text("#told")
     assert "word I, number 0" in told
-    assert "modal G1 G17 G90 G94 G21 G40, F 500" in told
     assert "clockwise arc at 500 mm/min" in told
     assert "from X20 Y0 Z-1" in told
     assert "about X20 Y10, radius 10 mm, in the plane XY" in told
     assert "through 270 degrees" in told
     assert (part.pixels() != before).any()
     assert part.page.url.endswith("#1:8")
+
+
+FRAMED = b"""G21 G90 G17 G94 G54
+G0 X0. Y0. Z5.
+G92 X10. Y-3.
+G1 X12. Y4. Z-1. F300.
+G68 X0. Y0. R30.
+G1 X16. Y5.
+G3 X20. Y9. R4.
+G69
+G1 X1.25 Y2.
+M30
+"""
+
+
+def test_what_a_line_does_is_told_as_explain_tells_it(browser, tmp_path: Path) -> None:
+    """In the coordinates of its frame: shifted by G92 and turned by G68."""
+    (tmp_path / "framed.nc").write_bytes(FRAMED)
+    place = str(tmp_path / "framed.nc")
+    sight = Sight.of(browser, page_of(tmp_path, "-f", "fanuc", place))
+    for line in (4, 6, 7, 9):
+        told = call("explain", "-f", "fanuc", f"{place}:{line}").stdout.splitlines()
+        said = told[told.index("before it") :]
+        sight.page.click(f".line[data-line='{line - 1}']")
+        sight.page.wait_for_selector(f"#told h2:text-matches(', line {line}$')")
+        shown = sight.text("#told").splitlines()
+        sizes = [" ".join(each.split()) for each in shown[shown.index("before it") :]]
+        assert sizes[: len(said)] == [" ".join(each.split()) for each in said]
+    sight.close()
 
 
 @pytest.mark.parametrize("way", ["click", "tap"])

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
 from gcxform.system.arrays import Floats, Ints
+from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Toolpath
 from gcxform.toolpath.tools import ToolInSpindle
 from gcxform.view import lines, paths
@@ -44,7 +46,7 @@ def described(
     plain = len(shown.line) == count and bool((shown.line == np.arange(count)).all())
     sorts = {"tool": _tools(shown), **told.sorts}
     return {
-        "name": shown.name,
+        "name": Path(shown.name).name,  # a page may be mailed: where files lie is nobody's business
         "dialect": shown.dialect.name,
         "words": shown.dialect.translator is None,
         "lines": count,
@@ -53,12 +55,25 @@ def described(
         "mode": store.ints(shown.mode),
         "modes": shown.modes,
         "path": paths.packed(shown.path, store),
+        "frames": [_frame(frame) for frame in shown.path.frames],
         "follows": [shown.tips or bool(frame.following) for frame in shown.path.frames],
         "from": None if told.source is None else store.ints(told.source[:count]),
         "speeds": {"assumed": RAPID_SPEED, **speeds},
         "sizes": [_size(name, values, store) for name, values in told.sizes.items()],
         "sorts": [_sort(name, *sort, store) for name, sort in sorts.items() if len(sort[0]) > 1],
     }
+
+
+def _frame(frame: Frame) -> dict[str, Any]:
+    """Return how positions become words: they are shifted back, turned back, and X doubled."""
+    found: dict[str, Any] = {"work": frame.work}
+    if any(frame.shift):
+        found["shift"] = np.nan_to_num(frame.shift).tolist()
+    if frame.matrix is not None:
+        found["inverse"] = np.linalg.inv(np.array(frame.matrix)).tolist()
+    if frame.diameter:
+        found["diameter"] = True
+    return found
 
 
 def _size(name: str, values: Floats, store: Store) -> Section:

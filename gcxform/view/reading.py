@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -27,11 +26,15 @@ GROUPS = {
     "motion": "motion",
     "plane": "plane",
     "distance": "incremental",
+    "arc-distance": "absolute_centre",
     "feed-mode": "feed_mode",
     "units": "inch",
+    "frame": "",
     "cutter-comp": "comp",
 }
-"""Groups of codes that are shown, and the column of `Modes` that has each."""
+"""Groups of codes that are shown, and the column of `Modes` that has each; frames have names."""
+WORK = "@"
+"""What stands for the name of the frame among the codes of a block."""
 
 
 @dataclass(frozen=True)
@@ -107,16 +110,23 @@ def _codes(windows: list[Modes]) -> tuple[Ints, tuple[str, ...]]:
     """Return for each executed block which codes are in force after it, and these."""
     columns = [
         np.concatenate([getattr(modes, column) for modes in windows]).astype(np.int64)
-        for column in GROUPS.values()
+        for column in filter(None, GROUPS.values())
     ]
     key = np.zeros(len(columns[0]), np.int64)
     for column in columns:
         key = key * (int(column.max(initial=0)) + 1) + column
     _, first, mode = np.unique(key, return_index=True, return_inverse=True)
-    told = [" ".join(map(_code, GROUPS, (int(c[k]) for c in columns))) for k in first.tolist()]
+    told = [_told([int(column[k]) for column in columns]) for k in first.tolist()]
     return mode.astype(np.int64), tuple(told)
 
 
-def _code(group: str, number: Any) -> str:
+def _told(numbers: list[int]) -> str:
+    """Return the codes of the groups, of which the frame has no number here."""
+    numbered = [group for group, column in GROUPS.items() if column]
+    codes = dict(zip(numbered, map(_code, numbered, numbers), strict=True))
+    return " ".join(codes.get(group, WORK) for group in GROUPS)
+
+
+def _code(group: str, number: int) -> str:
     """Return the code of a group by its number; empty where none is in force."""
     return next((code for code in FAMILIES[group] if NUMBER[code] == number), "")

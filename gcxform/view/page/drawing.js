@@ -199,7 +199,7 @@ function pieceOf(shown, kind, per, material = shown.material) {
   const object = new kind(new THREE.BufferGeometry(), material);
   const { uniforms } = material;
   object.onBeforeRender = (renderer) => {
-    renderer.getDrawingBufferSize(uniforms.viewport.value);
+    renderer.getSize(uniforms.viewport.value);
     uniforms.corners.value = object.userData.corners;
     uniforms.per.value = per;
     material.uniformsNeedUpdate = true;

@@ -102,7 +102,7 @@ async function programOf(head, open) {
   const path = await pathOf(head.path, open);
   const get = (section) => column(open, section);
   const program = {
-    name: head.name, words: head.words, follows: head.follows, modes: head.modes, path, text: textOf(head, open),
+    name: head.name, words: head.words, follows: head.follows, frames: head.frames, modes: head.modes, path, text: textOf(head, open),
     mode: await get(head.mode), line: head.line ? Uint32Array.from(await get(head.line)) : null,
     from: head.from ? Int32Array.from(await get(head.from)) : null, sizes: [], sorts: [],
   };

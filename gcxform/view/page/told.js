@@ -35,25 +35,41 @@ function wordsOf(program, text) {
 function before(program, row) {
   const { path } = program;
   const block = path.block[row];
-  const feed = row ? `${shown(path.feed[row - 1])}` : "none";
-  const codes = block ? program.modes[program.mode[block - 1]] : "none yet";
-  return [`  modal ${codes}, F ${feed}`, `  at    ${pointBefore(path, row)}`];
+  const feed = row && path.feed[row - 1] ? shown(path.feed[row - 1]) : "none";
+  const { work } = program.frames[path.frame[Math.max(0, row - 1)]];
+  const codes = block ? program.modes[program.mode[block - 1]].replace("@", work) : "none yet";
+  return [`  modal ${codes}, F ${feed}`, `  at    ${pointBefore(program, row)}`];
 }
 
 function shown(value) {
-  return String(Number(value.toPrecision(6)));
+  return String(Number(Number(value.toFixed(4)).toPrecision(6))); // no finer than they are packed
 }
 
-function placed(path, value, known, axis) {
-  return known || axis < 3 ? `${path.axes[axis]}${known ? shown(value) : "?"}` : "";
+// A position as the words of a block say it: shifted and turned back into the frame of a move.
+function wordsAt(program, row, position) {
+  const { shift, inverse, diameter } = program.frames[program.path.frame[row]];
+  const words = shift ? position.map((value, axis) => value - shift[axis]) : [...position];
+  if (inverse) {
+    const [x, y, z] = words;
+    inverse.forEach((line, axis) => { words[axis] = line[0] * x + line[1] * y + line[2] * z; });
+  }
+  if (diameter) words[0] *= 2;
+  return words;
 }
 
-function pointBefore(path, row) {
-  return [...path.axes].map((_, axis) => placed(path, endOf(path, row - 1, axis), startsKnown(path, row, axis), axis)).filter(Boolean).join(" ");
+function pointOf(program, row, at, known) {
+  const { path } = program;
+  const words = wordsAt(program, row, [...path.axes].map((_, axis) => endOf(path, at, axis)));
+  const told = words.map((value, axis) => (known(axis) ? path.axes[axis] + shown(value) : axis < 3 ? `${path.axes[axis]}?` : ""));
+  return told.filter(Boolean).join(" ");
 }
 
-function pointAfter(path, row) {
-  return [...path.axes].map((_, axis) => placed(path, path.ends[axis][row], isKnown(path, row, axis), axis)).filter(Boolean).join(" ");
+function pointBefore(program, row) {
+  return pointOf(program, row, row - 1, (axis) => startsKnown(program.path, row, axis));
+}
+
+function pointAfter(program, row) {
+  return pointOf(program, row, row, (axis) => isKnown(program.path, row, axis));
 }
 
 function moveOf(program, row) {
@@ -61,19 +77,22 @@ function moveOf(program, row) {
   const rapid = path.kind[row] === 0;
   const name = path.form[row] === SPLINE_FORM ? "spline" : NAMES[path.kind[row]];
   const parts = [`  ${name}${rapid ? "" : ` at ${shown(path.feed[row])} ${UNITS[path.mode[row]]}`}`];
-  parts.push(`    from ${pointBefore(path, row)}`, `    to   ${pointAfter(path, row)}`);
-  if (path.kind[row] >= 2) parts.push(...arcOf(path, row));
+  parts.push(`    from ${pointBefore(program, row)}`, `    to   ${pointAfter(program, row)}`);
+  if (path.kind[row] >= 2) parts.push(...arcOf(program, row));
   for (const { name: what, of, unit } of program.sizes) parts.push(`    ${what} ${of[row] < 0 ? "not known" : `${shown(of[row])} ${unit}`}`);
   for (const { name: what, of, names } of program.sorts) parts.push(`    ${what} ${names[of[row]]}`);
   return parts;
 }
 
-function arcOf(path, row) {
+function arcOf(program, row) {
+  const { path } = program;
   const { u, v, centre, sweep } = circleOf(path, row);
   const radius = Math.hypot(endOf(path, row - 1, u) - centre[0], endOf(path, row - 1, v) - centre[1]);
+  const middle = [...path.axes].map((_, axis) => path.ends[axis][row]);
+  [middle[u], middle[v]] = centre;
+  const words = wordsAt(program, row, middle);
+  const about = `${path.axes[u]}${shown(words[u])} ${path.axes[v]}${shown(words[v])}`;
   const plane = PLANES[path.arcs.plane[path.arcAt[row]]];
-  const about = `${path.axes[u]}${shown(centre[0])} ${path.axes[v]}${shown(centre[1])}`;
   const degrees = shown((sweep * 180) / Math.PI);
   return [`    about ${about}, radius ${shown(radius)} mm, in the plane ${plane}`, `    through ${degrees} degrees`];
 }
-
