@@ -299,6 +299,16 @@ def test_the_sheet_has_the_largest_cause_first_and_its_share_of_g():
     assert [line for line in said if line.startswith("  centre") and line.endswith("set-up")]
 
 
+def test_few_readings_tell_little_and_say_so():
+    """Eight in each sense, of which those at reversals are left out: fewer than causes."""
+    found = fitted(both("XY", np.arange(0.0, 360.0, 45.0)))
+    said = [line for line in warnings(Identified((found,))) if "do not tell" in line]
+    assert said[0].endswith("they are too few, or too near")
+    assert [line for line in lines(Identified((found,))) if "centre            not told" in line]
+    with pytest.raises(InputError, match=r"GX476(.|\n)*more readings"):
+        Identified((fitted(both("XY", 45.0 * np.arange(8) + 5.0), pitch=10.0),)).model()
+
+
 def test_a_run_of_few_readings_is_no_circle():
     with pytest.raises(InputError, match=r"GX477.*8 are the least"):
         fitted([run("XY", 1, np.arange(0.0, 350.0, 50.0))])

@@ -134,6 +134,11 @@ class Fitted:
         """The place of the first reading."""
         return self.runs[0].where(0)
 
+    @property
+    def one_sense(self) -> bool:
+        """Whether all readings that were travelled to have one sense."""
+        return len(set(self.sense[self.sense != 0].tolist())) == 1
+
     def place(self, row: int) -> Location | None:
         """Return the place of a reading, counted through all runs."""
         for run in self.runs:

@@ -20,7 +20,7 @@ from typing import Final
 
 import numpy as np
 
-from gcxform.calibrate.circles.causes import PLANES
+from gcxform.calibrate.circles.causes import HALF, PLANES
 from gcxform.calibrate.circles.circles import Fitted
 from gcxform.calibrate.rotary.axis import REJECTED
 from gcxform.calibrate.solution import Solution, solve
@@ -188,14 +188,13 @@ class Identified:
 def _check_told(test: Fitted) -> None:
     """Raise InputError for a test that does not tell its squareness, or is off its fit."""
     if test.index("squareness") is None:
-        hint = (
-            "measure the circle in the other sense as well, and give both"
-            if test.arc >= 180.0
-            else "measure along a longer arc: 180 degrees at least, in both senses"
-        )
+        hint = "measure along a longer arc: 180 degrees at least, in both senses"
+        if test.arc >= HALF:
+            hint = "measure the circle in the other sense as well, and give both"
+            hint = hint if test.one_sense else "take more readings, all around the circle"
         message = (
             f"the test in {test.setup.plane} does not tell squareness from servo mismatch"
-            if test.arc >= 180.0
+            if test.arc >= HALF
             else f"an arc of {test.arc:.4g} degrees does not tell squareness"
         )
         raise InputError.one("GX476", message, test.where, hint)

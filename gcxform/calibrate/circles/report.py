@@ -66,6 +66,8 @@ def _sizes(test: Fitted, group: str) -> str:
     own = [
         size for size, cause in zip(test.sizes, test.causes, strict=True) if cause.group == group
     ]
+    if any(math.isnan(size.value) for size in own):
+        return "not told"
     if group.startswith("cyclic"):
         amplitude = math.hypot(*(size.value for size in own))
         return f"{amplitude:.2f} +- {two_digits(max(size.deviation for size in own))} um"
@@ -199,7 +201,8 @@ def _warnings(test: Fitted) -> Iterator[str]:
         yield words
     untold = [size.name for size in test.sizes if math.isnan(size.value)]
     if untold:
-        yield f"the readings do not tell {', '.join(untold)}: they have one sense alone"
+        why = "they have one sense alone" if test.one_sense else "they are too few, or too near"
+        yield f"the readings do not tell {', '.join(untold)}: {why}"
     if test.condition > POOR and not untold:
         yield f"badly conditioned: {test.condition:.0f} (above {POOR:.0f} is poor)"
     if test.scatter.ratio > REJECTED:
