@@ -63,8 +63,8 @@ MUTATIONS = (
     _macro(
         "a block that reads its number has another one",
         RENUMBER,
-        'map("#{}".format, EXECUTED_NUMBER)',
-        'map("#{}".format, ())',
+        "for number in EXECUTED_NUMBER",
+        "for number in ()",
         "text/renumber-number-read",
     ),
     Mutation(

@@ -41,8 +41,10 @@ class Renumber(gx.TextPass):
 
     def refuse(self, block: gx.Block) -> str:
         """Return why the program's numbers cannot be changed where only a part of it is seen."""
+        if _reads_number(block):
+            return "this reads the number of a block"
         for item in block.items:
-            if not isinstance(item, gx.Word | gx.Comment) and hasattr(item, "tree"):
+            if hasattr(item, "tree") and getattr(item, "kind", "") != "assignment":
                 return "blocks may be jumped to by their numbers"
             if isinstance(item, gx.Word) and _may_jump(item, block):
                 return f"{block.text[item.start : item.end]} may refer to sequence numbers"
@@ -189,7 +191,7 @@ def _not_followed(block: gx.Block, dialect: type[gx.Dialect], there: _Lines) -> 
             str,
         ):
             return "this jumps to a number that is computed"
-    if any(number in block.text.replace(" ", "") for number in map("#{}".format, EXECUTED_NUMBER)):
+    if _reads_number(block):
         return "this reads the number of a block"
     if any(w.address in "GM" and not isinstance(w.value, gx.Number) for w in _words(block)):
         return "which code this is, is computed: it may refer to sequence numbers"
@@ -203,6 +205,12 @@ def _not_followed(block: gx.Block, dialect: type[gx.Dialect], there: _Lines) -> 
     if codes & CONTOURS and letters & {"P", "Q"} and not drills and not codes & WITH_VALUES:
         return "this may refer to sequence numbers"
     return ""
+
+
+def _reads_number(block: gx.Block) -> bool:
+    """Whether a block reads the number of the block that is executed."""
+    bare = "".join(block.text.split())
+    return any(f"#{number}" in bare for number in EXECUTED_NUMBER)
 
 
 def _is_here(block: gx.Block, there: _Lines) -> bool:
@@ -224,5 +232,5 @@ def _may_jump(word: gx.Word, block: gx.Block) -> bool:
         return False
     code, letters = (word.address, word.value.value), {w.address for w in block.words}
     drills = code == ("G", 73) and not {"P", "Q"} <= letters
-    jumps = CALLS | LEAVES | WITH_VALUES | {OWN_LINES}
+    jumps = CALLS | LEAVES | {OWN_LINES}
     return code in jumps or (code in CONTOURS and bool(letters & {"P", "Q"}) and not drills)
