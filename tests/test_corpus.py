@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from oracles import rs274
-from ways_kit import go_out, one_round
+from ways_kit import do_no_harm, go_out, one_round
 
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
@@ -84,6 +84,7 @@ def parameter(case: Case) -> object:
 def test_case(case, tmp_path):
     found = run_case(case, tmp_path, PLACES)
     go_out(case, found, tmp_path, PLACES)
+    do_no_harm(found)
     one_round(case, found, tmp_path)
     for each in (d.where for d in found.diagnostics if d.where is not None):
         named = each.file in ("", "-") or Path(each.file).is_relative_to(tmp_path)

@@ -39,6 +39,20 @@ def key(found: Diagnostic) -> tuple[str, int, int, str]:
     return found.code, where.line if where else 0, where.column if where else 0, found.message
 
 
+def do_no_harm(found: Outcome) -> None:
+    """Look for advice that, followed to the letter, lets the tool go where it must not.
+
+    A block that is taken out, a mode that stays another one, axes that turn and lengths that end
+    with the tool in the part.
+    """
+    for hint in (each.hint for each in found.diagnostics):
+        assert not re.search(r"out of the program|block out, or|or the call$|--again", hint), hint
+        if re.search(r"\bturn (it|them|the axes)\b.*\b0|end G43\.5", hint):
+            assert "draw" in hint, hint
+        for begun, again in (("G40 before", "again"), ("G15 before", "G16"), ("G90,", "G91")):
+            assert begun not in hint or again in hint, hint
+
+
 def go_out(case: Case, found: Outcome, folder: Path, places: Mapping[str, Path]) -> int:
     """Go each way out of a refused case, and return how many; AssertionError where one does not."""
     one_of_each = {_shape(each): each for each in reversed(found.diagnostics)}.values()

@@ -22,6 +22,7 @@ from gcxform.toolpath.path import Kind, Plane
 
 GIVEN = 3  # the number of G41.1: from here on D is the diameter itself
 SIDES = np.array([0, 1, -1, 1, -1], np.int8)  # by the number of the code: G40 G41 G42 G41.1 G42.1
+AGAIN = "cancel it with G40 before, and begin it again behind"
 
 
 def compensation(lines: Lines, modes: Modes) -> tuple[Small, Floats]:
@@ -163,7 +164,7 @@ def _refuse(lines: Lines, modes: Modes) -> None:
         _stop(lines, line, f"{name} has no cutter compensation in this plane", "")
 
 
-def _stop(lines: Lines, line: int, message: str, hint: str = "cancel it with G40 before") -> None:
+def _stop(lines: Lines, line: int, message: str, hint: str = AGAIN) -> None:
     lines.findings.add(line, "GX230", message, hint=hint)
 
 

@@ -41,7 +41,7 @@ def _refuse_polar(track: Track, line: int, code: str) -> None:
     plane = {"XYZ"[k] for k in Plane(int(track.modes.plane[line])).axes[:2]}
     if plane & set(track.words_on(line)):
         message = f"{code} in polar words: controls differ in what its words are"
-        track.findings.add(line, "GX213", message, hint="write G15 before")
+        track.findings.add(line, "GX213", message, hint="write G15 before, and G16 again behind")
 
 
 def _reference(track: Track, line: int, act: Act) -> str:

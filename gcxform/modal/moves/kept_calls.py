@@ -72,7 +72,12 @@ def _refuse_calls(lines: Lines, modes: Modes) -> None:
         if modes.comp[call.line] or modes.cycle[call.line] != CYCLE_OFF:
             what = "cutter compensation" if modes.comp[call.line] else "a canned cycle"
             message = f"{what} is in force at the call of {call.name}, whose moves are not known"
-            lines.findings.add(call.line, "GX210", message, hint="cancel it before the call")
+            lines.findings.add(
+                call.line,
+                "GX210",
+                message,
+                hint="cancel it before the call, and begin it again behind",
+            )
         said = f"{call.name} is kept: {_taken(call.ends)}"
         lines.state.assumed.setdefault(said, None)
 

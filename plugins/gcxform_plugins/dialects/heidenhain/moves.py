@@ -92,7 +92,9 @@ class Moves(Saying):
                 before, after = self.place.get(axis), ends.get(axis)
                 if after and before is None and not said.rapid:
                     message = f"M126: the shorter way of {axis} from where it is not known to stand"
-                    self.refuse(message, None, f"turn {axis} in a rapid before")
+                    self.refuse(
+                        message, None, f"turn {axis} in a rapid before, with the tool clear"
+                    )
                 if after and before and abs(Decimal(after) - Decimal(before)) >= 180:
                     message = f"M126: {axis} goes the shorter way where it shows less than 360"
                     self.refuse(message, None, "let the CAM write turns below 180 degrees")

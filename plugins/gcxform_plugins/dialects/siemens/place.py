@@ -142,7 +142,9 @@ class Place:
         before = self.known(axis)
         if before is None and not rapid:
             message = f"{axis}={way}(...) in a cut, and where {axis} stands is not known"
-            raise PlaceError("GX207", message, f"turn {axis} in a rapid before")
+            raise PlaceError(
+                "GX207", message, f"turn {axis} in a rapid before, with the tool clear"
+            )
         end = wanted if before is None else before + _way(axis, way, before, wanted)
         self._stand(axis, end)
         (self.unwound.add if end != wanted else self.unwound.discard)(axis)

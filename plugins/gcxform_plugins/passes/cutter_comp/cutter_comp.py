@@ -125,6 +125,7 @@ WRITTEN = (
     "the program writes the tool table with G10: set the radius at the control, give the machine "
     "file the same, and leave the block out"
 )
+AGAIN = "cancel it with G40 before, and begin it again behind"
 CHOICES = {"corners": 'arc" or "linear', "entry": 'own" or "next'}
 
 
@@ -155,7 +156,7 @@ def _refuse(path: gx.Toolpath, context: gx.PassContext) -> None:
             changes,
             "GX232",
             "side, tool, plane or work offset change under cutter compensation",
-            "cancel it with G40 before",
+            AGAIN,
         ),
         (
             (on | leaves)
@@ -168,7 +169,7 @@ def _refuse(path: gx.Toolpath, context: gx.PassContext) -> None:
             (on | leaves) & (path.form != gx.Form.PLAIN),
             "GX232",
             "a move of its own kind under cutter compensation",
-            "cancel it with G40 before",
+            AGAIN,
         ),
     ):
         if wrong.any():
