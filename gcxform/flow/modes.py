@@ -20,7 +20,7 @@ UNITS, FEED, SPEED, SPINDLE, MIST, FLOOD = "units", "F", "S", "spindle", "M7", "
 DECIMALS = {FEED: 1, SPEED: 0}
 """With how many decimals the control writes what it restores."""
 OPEN = "?"
-"""What stands for F or S with a value that only the machine knows, with a number of its own."""
+"""What stands for F, S or a spindle that only the machine knows, with a number of its own."""
 PRESET = "G92"
 COUNTS, COUNTS_NOT = "G92.3", "G92.2"
 PRESETS = {
@@ -127,6 +127,9 @@ class StoredModes:
         if name in ("M7", "M8", "M9"):
             self.now |= {MIST: "", FLOOD: ""} if name == "M9" else {name: name}
             return
+        if name == "M6" and self.now[SPINDLE] != "M5":
+            self.open += 1  # stopped, but for machines with TOOL_CHANGE_WITH_SPINDLE_ON
+            self.now[SPINDLE] = f"{OPEN}{self.open}"
         if name in PRESETS:
             self.now[PRESET] = PRESETS[name]
         code = dialect.codes.get(name) or dialect.m_codes.get(int(float(name[1:])))
@@ -158,8 +161,8 @@ class StoredModes:
         for group in sorted(differ):
             before = stored.get(group, "")
             if group not in known or group not in stored or before.startswith(OPEN):
-                back = before if before and not before.startswith(OPEN) else "what was before"
-                message = f"{now[group]} would have to go back to {back}"
+                told = before if before and not before.startswith(OPEN) else "what was before"
+                message = f"{group} would have to go back to {told}"
                 raise self.program.refusal("GX210", f"the modes are restored here: {message}")
 
     def _machine_codes(self, differ: set[str], stored: Codes) -> list[list[str]]:

@@ -640,6 +640,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[flow/message-alone]",
     ),
     _flow(
+        "a tool change leaves the spindle on",
+        "gcxform/flow/modes.py",
+        'if name == "M6" and self.now[SPINDLE] != "M5":',
+        "if False:",
+        "tests/test_corpus.py::test_case[flow/stored-spindle-changed]",
+    ),
+    _flow(
         "a stored speed is the last one that was a number",
         "gcxform/flow/modes.py",
         'number.get(word.address, f"{OPEN}{self.open}")',
