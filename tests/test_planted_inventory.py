@@ -154,12 +154,12 @@ def long_while(self: MacroB, statement: object) -> None:
 
 
 def silent(self: lasting.Lasting, key: object, value: float, kept: str = "") -> str:
-    self.assigned.append((self.program.line, key, value))  # type: ignore[arg-type]
+    self.outputs.assign(key, value)  # type: ignore[arg-type]
     return ""
 
 
 def off(self: lasting.Lasting, key: object, value: float, kept: str = "") -> str:
-    self.assigned.append((self.program.line, key, value))  # type: ignore[arg-type]
+    self.outputs.assign(key, value)  # type: ignore[arg-type]
     return f"#{key}={value + 1.0}" if self.program.arithmetic.outlives(key) else ""  # type: ignore[arg-type]
 
 
