@@ -6,6 +6,13 @@ from faults.mutation import CORPUS, FIGURES, FOUND, LAWS, VERIFY, Mutation
 
 MUTATIONS = (
     Mutation(
+        "writing: another axis may move where only the machine knows whether it does",
+        "gcxform/emit/copying.py",
+        "        lines[self.path.block[extra]] = True\n",
+        "",
+        "tests/test_corpus.py::test_case[volumetric/perhaps-another-axis]",
+    ),
+    Mutation(
         "comments: what acts at once is taken over",
         "gcxform/emit/expressible.py",
         "in target.text_rule.acts_anywhere}",
