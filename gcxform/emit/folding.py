@@ -24,6 +24,7 @@ from itertools import islice
 import numpy as np
 
 from gcxform.emit.spelled import Spelled, Text
+from gcxform.emit.units import Unit
 from gcxform.emit.values_left import Values
 from gcxform.flow.walk import Walk, parts_of
 from gcxform.stamps.comment import is_stamp
@@ -38,24 +39,6 @@ SHOWN = 2  # texts of a line that a reason shows
 
 class WholeError(Exception):
     """The program has to be written out as a whole: why."""
-
-
-@dataclass(frozen=True, slots=True)
-class Unit:
-    """What can be written out by itself: first and last line, and the name of a subprogram."""
-
-    first: int
-    last: int
-    name: str = ""
-
-    @property
-    def lines(self) -> range:
-        """Its lines."""
-        return range(self.first, self.last + 1)
-
-    def has(self, line: int) -> bool:
-        """Whether a line stands in it."""
-        return self.first <= line <= self.last
 
 
 @dataclass(frozen=True, slots=True)
@@ -333,21 +316,30 @@ class _Folding:
         found: list[bytes] = []
         lines: list[int] = []
         line = 0
-        kept = False
         while line < self.walk.listing.own:
             unit = next((unit for unit in gone if unit.first == line), None)
             text = self._text_of(line, takes_stamps) if unit is None else self.ranges.get(unit)
-            kept |= line in self.walk.deciding and line not in self.texts and not self._is_out(line)
             found.append(text.text if text else b"")
             lines += text.lines if text else ()
             line = line + 1 if unit is None else unit.last + 1
-        if self.variants and not kept:
+        if self.variants and not self._is_left():
             why = "; ".join(dict.fromkeys(self.out.values()))
             raise WholeError(why or "no call and no loop is left")
         whole = b"".join(found)
         self._check_labels(whole, [*gone, *(unit for unit in self.out if unit.name)])
         ranges = tuple((unit.first, unit.last) for unit in gone)
         return Folded(whole, tuple(lines), ranges, self._reasons())
+
+    def _is_left(self) -> bool:
+        """Whether a call or loop is left that is executed, in the program itself or by its calls.
+
+        What stands in a subprogram counts by what calls it.
+        """
+        first, depth = self.walk.table[:, 0], self.walk.table[:, 3]
+        own = self.walk.deciding.intersection(first[depth == 0].tolist())
+        written = (*self.texts.values(), *self.ranges.values())
+        calls = any(line in self._calls for text in written for line in text.lines)
+        return calls or any(line not in self.texts and not self._is_out(line) for line in own)
 
     def _gone(self) -> list[Unit]:
         """Return the units that do not stand where they did, but for those inside others."""

@@ -16,6 +16,13 @@ def _fold(name: str, old: str, new: str, file: str = FOLDING, tests: str = PLANT
 
 
 MUTATIONS = (
+    _fold(
+        "a loop that nothing calls any more is left",
+        "self.walk.deciding.intersection(first[depth == 0].tolist())",
+        "self.walk.deciding",
+        tests="tests/test_corpus.py::test_case[structure/called-by-what-is-written-out]",
+    ),
+    _fold("a call in what is written out is none", "return calls or any(line", "return any(line"),
     _fold("texts that differ are the same", "if len(texts) > 1:", "if False:"),
     _fold("runs that differ are the same", "if len(same) == 1 else None", "", VALUES),
     _fold(
