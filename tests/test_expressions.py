@@ -215,7 +215,7 @@ def test_fanuc_values(expression: str, value: float) -> None:
         ("#1=POW[2]", "GX221"),
         ("#1=6 OR 1", "GX206"),
         ("#1=2**2", "GX206"),
-        ("#1=BCD[2]", "GX206"),
+        ("#1=ADP[2]", "GX206"),
         ("#1=1. X5.", "GX206"),
         ("#1000=1", "GX206"),
         ("#34=1", "GX206"),

@@ -84,7 +84,7 @@ class ModalCalls:
         meaning = self.run.listing.meaning(line)
         moves = any(word.address in self.run.dialect.axes for word in written)
         self._follow(meaning)
-        moves = moves and (bool(meaning.axes) or not meaning.acts)
+        moves = moves and bool(meaning.axes)  # not the X of a dwell
         active = self._inside() - 1 if self._inside() else len(self.open)
         if not active or not (moves or _may_move(meaning)):
             return None

@@ -12,6 +12,13 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 RENUMBER = "plugins/gcxform_plugins/passes/renumber.py"
 MUTATIONS = (
     _macro(
+        "the X of a dwell is a move for G66",
+        "gcxform/flow/modal_calls.py",
+        "moves = moves and bool(meaning.axes)",
+        "moves = moves or bool(meaning.axes)",
+        "flow/g66",
+    ),
+    _macro(
         "AND without brackets is known",
         "gcxform/modal/expressions/value.py",
         "alone = _stands_alone(left, name) and _stands_alone(right, name)",
