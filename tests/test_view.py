@@ -332,6 +332,26 @@ def test_errors_lie_where_the_pipeline_says(tmp_path: Path) -> None:
     assert np.abs(errors).max() > 0.001
 
 
+COMPENSATED = """G21 G90 G17 G94
+G0 X0 Y0 Z5
+G1 Z0 F100
+G41.1 D10 G1 X20 Y0
+X60
+Y40
+X20
+G40 G1 X0
+M30
+"""
+
+
+def test_a_path_that_a_pass_makes_on_purpose_is_the_one_compared(tmp_path: Path) -> None:
+    (tmp_path / "in.nc").write_text(COMPENSATED)
+    words = ["-f", "linuxcnc", "-x", "cutter-comp", str(tmp_path / "in.nc")]
+    page = page_of(tmp_path, *words).read_text()
+    assert '"notes":[]' in page
+    assert '"name":"deviation"' in page
+
+
 def test_it_is_packed(tmp_path: Path) -> None:
     """What a move takes in the file, text included, where no move is like the one before."""
     here = tmp_path / "many.nc"

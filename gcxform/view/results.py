@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from gcxform.contract.passes import resolved
 from gcxform.pipeline.plan import Plan
 from gcxform.system.arrays import Floats, Ints
 from gcxform.system.limits import in_force, limits
@@ -37,15 +38,29 @@ def outcome(plan: Plan, source: Toolpath, output: Toolpath, owner: Ints | None) 
 
     `owner` (len(output),) is the row of the source that each of the output came from, if known.
     """
-    actual, row = undone(output, plan.path_passes, plan.context)
-    found = linked(source, actual, None if owner is None else owner[row])
-    distance, owner = np.full(len(output), np.nan), np.full(len(output), -1)
-    np.fmax.at(distance, row, found.distance[1])
-    owner[row[::-1]] = found.row[::-1]
-    belongs = Linked((found.distance[0], distance), owner, found.parted)
     with in_force(replace(plan.limits or limits(), rows=MANY)):  # a program is one window here
+        belongs = _belongs(plan, source, output, owner)
         step = changed_by(source, plan.path_passes, plan.context)
         return Outcome(belongs, step, _error(plan, source))
+
+
+def _belongs(plan: Plan, source: Toolpath, output: Toolpath, owner: Ints | None) -> Linked:
+    """Return which moves belong together; a pass that resolves makes the path that is compared."""
+    count = resolved(plan.path_passes)
+    meant = source
+    for step in plan.path_passes[:count]:
+        meant = step.apply(meant.replace(held=meant.entry), plan.context)
+    actual, row = undone(output, plan.path_passes[count:], plan.context)
+    found = linked(meant, actual, owner[row] if owner is not None and not count else None)
+    ours = np.searchsorted(source.source, meant.source) if count else np.arange(len(source))
+    ours = np.minimum(ours, max(len(source) - 1, 0))
+    before, after = np.full(len(source), np.nan), np.full(len(output), np.nan)
+    np.fmax.at(before, ours, found.distance[0])
+    np.fmax.at(after, row, found.distance[1])
+    which = np.full(len(output), -1)
+    known = found.row >= 0
+    which[row[known][::-1]] = ours[found.row[known]][::-1]
+    return Linked((before, after), which, found.parted)
 
 
 def _error(plan: Plan, source: Toolpath) -> Floats | None:
