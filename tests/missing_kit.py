@@ -23,6 +23,7 @@ ANSWERS: dict[str, Any] = {
     "tip-at-start": "off",
     "radius": 0.001,
     "null-compare": "zero",
+    "ends": "unknown",
 }
 
 
