@@ -118,6 +118,18 @@ class Increments:
         return self.inch if inch else self.mm
 
 
+COARSEST: Final = {False: 100.0, True: 1000.0}
+"""Increments of 1 mm or degree, and of 1 inch, in IS-A, of which those of all others are parts."""
+
+
+def coarse(value: float, address: str, inch: bool) -> float:
+    """Return a distance that is the same in every system of a control; nan for another."""
+    steps = COARSEST[inch and address not in ROTARY_AXES]
+    count = value * steps
+    near = math.isfinite(count) and abs(count - round(count)) < NEAR_WHOLE * max(abs(count), 1.0)
+    return round(count) / steps if near else math.nan
+
+
 def _whole(count: float) -> float:
     nearest = float(round(count))
     return nearest if abs(count - nearest) <= NEAR_WHOLE * count else count

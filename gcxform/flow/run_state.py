@@ -17,16 +17,19 @@ import numpy as np
 from gcxform.catalogue.questions import questions
 from gcxform.diagnostics import InputError
 from gcxform.dialect.arithmetic import Arithmetic, Key, NoValueError, whole
+from gcxform.dialect.increments import coarse
 from gcxform.dialect.null import NULL, Null
 from gcxform.flow.listing import CODES_OF_CALLS, STORED_MODES, Listing
 from gcxform.flow.residual import edited, residual
 from gcxform.flow.text import DECIMALS, decimal
 from gcxform.flow.walk import Steps
 from gcxform.modal.expressions.compiled import NO_VALUE, Compiled, Compiler
+from gcxform.modal.expressions.unknown import may_be_unknown
 from gcxform.modal.expressions.value import (
     DOUBTFUL,
     Evaluator,
     LocatedError,
+    has_computed,
     parameter_key,
     parameters_in,
     settable,
@@ -242,6 +245,12 @@ class RunState:
         inch, said = self.in_inch(), self.reading.increments
         steps = None if said is None else said.per_unit(word.address, inch)
         if said is None or steps is None:
+            same = coarse(value, word.address, inch)
+            if same == same:
+                return decimal(same)
+            keeps = may_be_unknown(word.address, self.listing.meaning(self.line))
+            if keeps and not self.reading.crosses:
+                return self._as_it_stands(word)
             message = f"{word.address} is computed: to what it is rounded depends on the control"
             hint = hint_of_rounding(word.address, inch)
             raise self.refusal("GX205", message, hint, (word.start, word.end))
@@ -253,6 +262,13 @@ class RunState:
             decimal(math.copysign(round(count / steps, DECIMALS), value))
             for count, value in zip(counts, values, strict=True)
         ]
+
+    def _as_it_stands(self, word: Word) -> str:
+        """Return the text of a value that the control rounds as nobody has said; see `needs`."""
+        assert isinstance(word.value, Expression)
+        keys = set(parameters_in(word.value.tree))
+        self.needs(keys | (self.dropped if has_computed(word.value.tree) else set()))
+        return self.listing.block(self.line).text[word.value.start : word.value.end]
 
     def in_inch(self) -> bool:
         """Whether the line is in inches, behind the blocks that have been written."""

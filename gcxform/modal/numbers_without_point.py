@@ -12,7 +12,7 @@ import numpy as np
 
 from gcxform.diagnostics import Diagnostic
 from gcxform.dialect.dialect import ROTARY, Dialect
-from gcxform.dialect.increments import INVERSE_TIME, Increments, readings, unit_of
+from gcxform.dialect.increments import INVERSE_TIME, Increments, coarse, readings, unit_of
 from gcxform.modal.findings import Findings
 from gcxform.modal.meaning.tables import NUMBER
 from gcxform.modal.state import Reading
@@ -87,6 +87,11 @@ class Pointless:
         written = pointless & ~computed
         steps = self._steps(address, inch)
         counts = np.ones(len(value)) if self._floats(address) else self._counts(steps)
+        value = value.copy()
+        for n in np.flatnonzero(computed & np.isnan(steps)).tolist():
+            same = coarse(float(value[n]), address, bool(inch[n]))
+            computed[n] = same != same
+            value[n] = value[n] if same != same else same
         unknown = (written & np.isnan(counts)) | (computed & np.isnan(steps))
         if unknown.any():
             self._refuse(address, value, unknown, computed, inch)

@@ -164,6 +164,34 @@ FAULTS = (
         "if False:",
         f"{CASE}[flow/control-tables-perhaps]",
     ),
+    (
+        "a distance is the same in every system",
+        "gcxform/dialect/increments.py",
+        "return round(count) / steps if near else math.nan",
+        "return round(count) / steps",
+        f"{CASE}[dialects/fanuc/increment-calculator-computed]",
+    ),
+    (
+        "an arc is rounded openly",
+        "gcxform/modal/expressions/assignments.py",
+        "if may and rounded_openly(",
+        "if rounded_openly(",
+        f"{CASE}[expressions/fanuc-increment]",
+    ),
+    (
+        "what is rounded openly is kept for another dialect",
+        "gcxform/modal/expressions/assignments.py",
+        "if not here or lines.reading.crosses:",
+        "if not here:",
+        f"{CASE}[dialects/across/computed-by-increments]",
+    ),
+    (
+        "what a value reads that is rounded openly is left out",
+        "gcxform/flow/run_state.py",
+        "keys = set(parameters_in(word.value.tree))",
+        "keys: set[Key] = set()",
+        f"{CASE}[flow/fanuc-rounded-openly]",
+    ),
 )
 
 MUTATIONS = tuple(Mutation(f"shops: {name}", *rest) for name, *rest in FAULTS)

@@ -21,6 +21,7 @@ import numpy as np
 
 from gcxform.diagnostics import Diagnostic
 from gcxform.dialect.arithmetic import NoValueError, whole
+from gcxform.dialect.increments import coarse
 from gcxform.dialect.null import Null
 from gcxform.modal.expressions.compiled import NO_VALUE, NoColumnError
 from gcxform.modal.expressions.functions import computed_in, functions_of, whole_columns
@@ -35,7 +36,7 @@ from gcxform.modal.expressions.value import (
     written,
 )
 from gcxform.modal.findings import Findings
-from gcxform.modal.lines import Lines
+from gcxform.modal.lines import DISTANCES, Lines
 from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.noted import Assigned, Unknown
 from gcxform.syntax.tree import Expression, Item, Mark, Statement, Word
@@ -69,7 +70,7 @@ class _Run:
         assert lines.dialect.flow_rule.arithmetic is not None
         self.arithmetic = lines.dialect.flow_rule.arithmetic
         self.functions = [
-            functions_of(lines.table, shape) if used else None
+            functions_of(lines.table, shape) if used and not self._rounds_openly(shape) else None
             for shape, used in enumerate(np.bincount(lines.shape[having]))
         ]
 
@@ -78,6 +79,11 @@ class _Run:
         """The numbers of the window, as they were before anything was computed."""
         numbers: list[float] = self.value.tolist()
         return numbers
+
+    def _rounds_openly(self, shape: int) -> bool:
+        """Whether blocks of a shape have words that are rounded to what nobody has said."""
+        words = (word.address for _, word in self.lines.table.meanings[shape].expressions)
+        return any(rounds_openly(self.lines, address) for address in words)
 
     def run(self) -> None:
         """Compute them all, and give the window its values."""
@@ -167,6 +173,23 @@ class _Run:
             lines.assigned += [Assigned(at, key, result) for key, result in made]
 
 
+def rounds_openly(lines: Lines, address: str) -> bool:
+    """Whether the control rounds a computed distance to an increment that is not known."""
+    here = lines.dialect.point_rule.required and address in DISTANCES
+    if not here or lines.reading.crosses:
+        return False
+    said = lines.reading.increments
+    return said is None or said.per_unit(address, False) is None
+
+
+def rounded_openly(lines: Lines, line: int, address: str, value: float) -> bool:
+    """Whether a word of a line becomes another value by such a rounding, perhaps."""
+    if not rounds_openly(lines, address) or value == 0.0:
+        return False
+    same = coarse(value, address, bool(lines.inch[line]))
+    return same != same
+
+
 def _writes(meaning: Meaning) -> bool:
     """Whether blocks of a shape change parameters."""
     return bool(meaning.assignments) or meaning.runs_macro
@@ -237,6 +260,9 @@ class _Block:
                 raise NoValueError(f"{word.address} is null here", "leave the word out")
             if word.address in self.arithmetic.whole and not self.meaning.is_length(word.address):
                 value = float(whole(value, self.arithmetic.whole_slip))
+            may = may_be_unknown(word.address, self.meaning)
+            if may and rounded_openly(self.lines, self.line, word.address, value):
+                raise NoValueError("to what this is rounded is not known", lost=True)
         except NoValueError as why:
             if why.lost and may_be_unknown(word.address, self.meaning):
                 self._keep(word, word.value.tree, evaluator)

@@ -203,6 +203,15 @@ def parameters_in(node: Any) -> Iterator[Key]:
             yield from parameters_in(child)
 
 
+def has_computed(node: Any) -> bool:
+    """Whether an expression computes which parameter it reads."""
+    if not isinstance(node, Tree):
+        return False
+    if rule_of(node) == "parameter" and parameter_of(node) is None:
+        return True
+    return any(has_computed(child) for child in node.children)
+
+
 def forgotten(parameters: Parameters, arithmetic: Arithmetic, called: bool) -> dict[Key, float]:
     """Return parameters behind what may have set them.
 
