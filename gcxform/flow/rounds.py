@@ -167,6 +167,8 @@ class Columns:
         """Return the text of a word in every round."""
         self.run.line = line
         values = self._column(function, line).tolist()
+        if self.run.rounds_openly(word):
+            raise NoColumnError
         return self.run.spelled(word, values)
 
     # --- what is left of them ---

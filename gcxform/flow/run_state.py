@@ -240,17 +240,23 @@ class RunState:
             message = f"M{value:g} decides what is executed, and is computed: it must be written"
             raise self.refusal("GX206", message, place=(word.start, word.end))
 
+    def rounds_openly(self, word: Word) -> bool:
+        """Whether it is not known to what a word that is computed is rounded."""
+        said = self.reading.increments
+        known = said is not None and said.per_unit(word.address, self.in_inch()) is not None
+        return self.dialect.point_rule.required and word.address in DISTANCES and not known
+
     def _on_increment(self, word: Word, values: list[float]) -> list[str]:
         """Return distances as the control rounds them."""
         inch, said = self.in_inch(), self.reading.increments
         steps = None if said is None else said.per_unit(word.address, inch)
         if said is None or steps is None:
-            same = coarse(value, word.address, inch)
-            if same == same:
-                return decimal(same)
+            same = [coarse(value, word.address, inch) for value in values]
+            if not any(map(math.isnan, same)):
+                return [decimal(value) for value in same]
             keeps = may_be_unknown(word.address, self.listing.meaning(self.line))
             if keeps and not self.reading.crosses:
-                return self._as_it_stands(word)
+                return [self._as_it_stands(word)] * len(values)
             message = f"{word.address} is computed: to what it is rounded depends on the control"
             hint = hint_of_rounding(word.address, inch)
             raise self.refusal("GX205", message, hint, (word.start, word.end))
