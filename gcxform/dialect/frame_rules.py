@@ -82,6 +82,8 @@ class TipRule:
     spelled          what these are called where programs are not written in words: `M128` may be
                      `TRAORI`
     follows_at_start whether it follows the tip when a program starts; None where that is not known
+    unfollowed       codes of tilted planes and tips that are not followed, with what they do:
+                     "plane", "no-plane" or "tip"; see `gcxform/contract/kept_planes.py`
     """
 
     codes: Mapping[str, str] = field(default_factory=dict)
@@ -90,3 +92,4 @@ class TipRule:
     switches: Mapping[str, str] = field(default_factory=dict)
     spelled: Mapping[str, str] = field(default_factory=dict)
     follows_at_start: bool | None = None
+    unfollowed: Mapping[str, str] = field(default_factory=dict)

@@ -50,6 +50,8 @@ class FrameState:
     polar, diameter   G16 and G7 are in force
     homes         machine positions of G28 and G30
     following     whether the control follows the tip of the tool; None where that is not known
+    tilt, tip     the tilted plane and the tip that are in force, by code and number: where they are
+                  is not known; `tilted` counts them
     """
 
     axes: str
@@ -76,6 +78,9 @@ class FrameState:
     diameter: bool = False
     homes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     following: bool | None = None
+    tilt: str = ""
+    tip: str = ""
+    tilted: int = 0
 
     @classmethod
     def at_start(
@@ -155,6 +160,7 @@ class FrameState:
                 shift[k] += length
             else:
                 origin[k] += f" + {self.tool_name}"
+        origin = [each + self.tilt + self.tip for each in origin]
         matrix, offset = self._matrix()
         for k, value in enumerate(offset):
             shift[k] += value

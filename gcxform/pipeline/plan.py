@@ -27,6 +27,7 @@ import numpy as np
 
 from gcxform.config import arguments
 from gcxform.config.to_fill_in import Open
+from gcxform.contract.kept_planes import says_the_same, with_kept_planes
 from gcxform.contract.options import taken
 from gcxform.contract.own_codes import with_own_codes
 from gcxform.contract.passes import Pass, PassContext, TextPass, resolved
@@ -117,9 +118,15 @@ class Plan:
         if machine is not None:
             arguments.instance("machine", machine, Machine, "a machine, as load_machine gives it")
         control = machine.control if machine is not None else {}
+        both = (
+            with_own_codes(with_kept_planes(dialect_of(each), False), control)
+            for each in (self.source, self.target)
+        )
+        source, target = both
+        keeps = source is target and says_the_same(s for s in steps if isinstance(s, Pass))
         return {
-            "source": with_own_codes(dialect_of(self.source), control),
-            "target": with_own_codes(dialect_of(self.target), control),
+            "source": with_kept_planes(source, keeps),
+            "target": with_kept_planes(target, keeps),
             "passes": tuple(taken(step) for step in steps),
             "budget": None if self.budget is None else limit("budget", self.budget),
             "growth": None if self.growth is None else limit("growth", self.growth),

@@ -192,6 +192,27 @@ FAULTS = (
         "keys: set[Key] = set()",
         f"{CASE}[flow/fanuc-rounded-openly]",
     ),
+    (
+        "a tilted plane is in no other place",
+        "gcxform/modal/frames/transforms.py",
+        'return replace(state, tilt=f" in {asked.code} ({count})", tilted=count)',
+        "return replace(state, tilted=count)",
+        f"{CASE}[dialects/fanuc/tilted-plane-kept]",
+    ),
+    (
+        "G69 leaves a tilted plane where it is",
+        "gcxform/modal/frames/transforms.py",
+        'return replace(state, tilt="")',
+        "return state",
+        f"{CASE}[dialects/fanuc/tilted-plane-kept]",
+    ),
+    (
+        "the tip is in no other place",
+        "gcxform/modal/frames/tool_lengths.py",
+        'return replace(state, tip=f" at the tip ({count})", tilted=count)',
+        "return replace(state, tilted=count)",
+        f"{CASE}[dialects/fanuc/tilted-plane-kept]",
+    ),
 )
 
 MUTATIONS = tuple(Mutation(f"shops: {name}", *rest) for name, *rest in FAULTS)

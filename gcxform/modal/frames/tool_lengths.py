@@ -62,7 +62,14 @@ def _with_length(state: FrameState, asked: Asked, sign: float) -> FrameState:
     """Return the state with a length in force, and the H that says which."""
     if "H" in asked.words:
         state = _with_number(state, asked.words["H"])
-    return state.with_tool(*_tool_vector(state, asked, sign))
+    return replace(state, tip="").with_tool(*_tool_vector(state, asked, sign))
+
+
+def tip(state: FrameState, asked: Asked) -> FrameState:
+    """G43.4 H: the length of a tool, whose tip the control follows, nobody knows where."""
+    count = state.tilted + 1
+    state = _with_length(state, asked, 1.0)
+    return replace(state, tip=f" at the tip ({count})", tilted=count)
 
 
 def _with_number(state: FrameState, number: float) -> FrameState:
@@ -193,7 +200,7 @@ def length_vector(state: FrameState, asked: Asked) -> FrameState:
 
 def no_length(state: FrameState, asked: Asked) -> FrameState:
     """G49: no tool length."""
-    return state.with_tool(NO_TOOL, "")
+    return replace(state, tip="").with_tool(NO_TOOL, "")
 
 
 def vectors(state: FrameState, asked: Asked) -> FrameState:

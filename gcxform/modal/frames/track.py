@@ -44,6 +44,7 @@ LENGTHENED = frozenset(
 
 LENGTH_STEP = "tool-length-alone"
 """The setting that says what another tool length does to Z before Z is programmed."""
+UNFOLLOWED = frozenset({"plane", "tip"})
 SWITCHED = frozenset({"tip-on", "tip-off"})
 SPATIAL = 0b111  # X, Y and Z as bits
 WHOLE_TURN = 360.0  # degrees
@@ -206,7 +207,7 @@ class Track:
         written = {a: float(window.value[first + slot]) for a, slot in act.slots}
         scale = INCH if self.modes.inch[line] else 1.0
         words = {a: v * scale if a in LINEAR else v for a, v in written.items()}
-        for address, slot in act.slots:
+        for address, slot in act.slots if act.name not in UNFOLLOWED else ():
             self.lines.refuse_pointless(line, address, first + slot)
         return Asked(
             act.code,

@@ -75,9 +75,21 @@ def no_turn(name: str) -> Act:
     def ended(state: FrameState, asked: Asked) -> FrameState:
         if name == "mirror" and asked.axes and not _mirrored(state) <= set(asked.axes):
             raise ActError("GX213", f"{asked.code} for some of the mirrored axes is not followed")
-        return replace(state, turns=tuple(turn for turn in state.turns if turn[0] != name))
+        state = replace(state, turns=tuple(turn for turn in state.turns if turn[0] != name))
+        return no_plane(state, asked) if name == "rotate" else state
 
     return ended
+
+
+def plane(state: FrameState, asked: Asked) -> FrameState:
+    """G68.2 and G53.1: another plane, or other angles, nobody knows where."""
+    count = state.tilted + 1
+    return replace(state, tilt=f" in {asked.code} ({count})", tilted=count)
+
+
+def no_plane(state: FrameState, asked: Asked) -> FrameState:
+    """G69: the coordinates of the work offset again."""
+    return replace(state, tilt="")
 
 
 def _mirrored(state: FrameState) -> set[str]:

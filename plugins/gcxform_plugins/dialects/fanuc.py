@@ -34,6 +34,7 @@
 | G30 | as G28, to the point that `[home."G30 P2"]` names, or to one that is not known |
 | G43.5 with I J K | the tool axis at the end of a line, on the table (19696#5 is 0, or PS5459) |
 | some of its I J K left out | they are 0; all left out: the tool keeps its direction |
+| G68.2 to G68.4, G53.1, G43.4 | stay, positions lost, where no pass asks where that is |
 | G31 | ends at its target at the latest; the axes named then stand nowhere known |
 | G36, G37 | measure a tool and write its offset: refused |
 | G33, G34, G63 | threads and taps with a feed whose meaning changes: refused |
@@ -201,5 +202,9 @@ class Fanuc(gx.Dialect):
     cutter_comp = gx.CutterComp(stored=True)
     offset_rule = gx.OffsetRule(g10_l20="G54.1", g10_tools=TOOL_TABLE, g10_p0="all")
     tool_rule = gx.ToolRule(length_may_move=True, h_stays=True)
-    tip_rule = gx.TipRule(codes={"G43.4": "G43"}, vector_codes={"G43.5": "G43"})
+    tip_rule = gx.TipRule(
+        codes={"G43.4": "G43"},
+        vector_codes={"G43.5": "G43"},
+        unfollowed={**dict.fromkeys(("G68.2", "G68.3", "G68.4", "G53.1"), "plane"), "G43.4": "tip"},
+    )
     cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE

@@ -155,7 +155,12 @@ class Haas(Fanuc):
         g52_known=False,
         mirrors_at_zero=True,
     )
-    tip_rule = replace(Fanuc.tip_rule, codes={"G234": "G43"}, vector_codes={})
+    tip_rule = replace(
+        Fanuc.tip_rule,
+        codes={"G234": "G43"},
+        vector_codes={},
+        unfollowed={"G268": "plane", "G253": "plane", "G269": "no-plane", "G234": "tip"},
+    )
     cycle_rule = replace(
         Fanuc.cycle_rule,
         cycles=CYCLES,
