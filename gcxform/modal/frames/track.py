@@ -44,8 +44,7 @@ LENGTHENED = frozenset(
 
 LENGTH_STEP = "tool-length-alone"
 """The setting that says what another tool length does to Z before Z is programmed."""
-UNFOLLOWED = frozenset({"plane", "tip"})
-SWITCHED = frozenset({"tip-on", "tip-off"})
+UNFOLLOWED, SWITCHED = frozenset({"plane", "tip"}), frozenset({"tip-on", "tip-off"})
 SPATIAL = 0b111  # X, Y and Z as bits
 WHOLE_TURN = 360.0  # degrees
 NOISE = 1e-9  # degrees; what steps of G91 may leave of their sum
