@@ -102,7 +102,8 @@ class _Run:
             for shape, each in functions
             if each is not None and not self.undecided
         ]
-        if len(groups) < len(used):
+        keys = {key for _, each in functions if each is not None for key, _ in each.assigned}
+        if len(groups) < len(used) or not all(map(self.arithmetic.owns, keys)):
             return False
         straight = Straight(groups, lines.parameters, self.arithmetic, self.value)
         try:
