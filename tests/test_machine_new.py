@@ -20,7 +20,7 @@ G91 G28 Z0
 M30
 %
 """
-START = "%\nO0003\nG21 G94 G91 G0 X1. Y2.\nM21\nM30\n%\n"
+START = "%\nO0003\nG21 G94 G91 G0 X1. Y2.\nG90 G2 X9. Y9. R99. F9.\nM21\nM30\n%\n"
 NEW = ("machine", "new", "-f", "fanuc", "shop", "-o", "m.toml", "-p", "p.toml")
 
 
@@ -53,7 +53,7 @@ def test_a_machine_file_says_what_is_needed_and_by_how_many(shop: Path) -> None:
     text = (shop.parent / "m.toml").read_text()
     for line in (
         '# fanuc: parameter 5114\n# needed by 1 of 3 programs, e.g. pecks.nc:5\npeck-return = "?"',
-        '# used: M21 by 1 of 3 programs, e.g. start.nc:4\ninert-m = "?"',
+        '# used: M21 by 1 of 3 programs, e.g. start.nc:5\ninert-m = "?"',
         "[tool.3]\n# from the gauge point of the spindle to the tip, mm: what H calls\n"
         '# used by 2 of 3 programs, e.g. offsets.nc:4\nlength = "?"',
         'radius = "?"',
@@ -93,12 +93,12 @@ def test_again_it_adds_what_is_new_and_keeps_the_rest(shop: Path) -> None:
     assert call(*NEW).exit_code == 0
     assert [file.read_text() for file in files] == before
     (shop / "more.nc").write_text(
-        "%\nO0004\nG91 G21 G94 G54 G0 X1. Z2.\n/M8\nG90 G43 H3 Z5.\nG43 H12 Z5.\nM30\n%\n"
+        "%\nO0004\nG91 G21 G94 G54 G0 X1. Z2.\n/M8\nG81 Z-3. R-1. F9.\nG80\nG90 G43 H3 Z5.\nG43 H12 Z5.\nM30\n%\n"
     )
     call(*NEW)
     machine, pipeline = (file.read_text() for file in files)
     assert machine.startswith(before[0].rstrip("\n"))
-    assert machine.endswith('# used by 1 of 4 programs, e.g. more.nc:6\nlength = "?"\n')
+    assert machine.endswith('# used by 1 of 4 programs, e.g. more.nc:8\nlength = "?"\n')
     assert 'start = { X = 1.0, Y = 1.0, Z = "?" }' in pipeline
     assert 'block-delete = "?"\n\n[machine]' in pipeline
     (shop / "evenmore.nc").write_text("%\nO0004\n/M8\nM30\n%\n")
