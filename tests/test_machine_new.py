@@ -93,7 +93,8 @@ def test_again_it_adds_what_is_new_and_keeps_the_rest(shop: Path) -> None:
     assert call(*NEW).exit_code == 0
     assert [file.read_text() for file in files] == before
     (shop / "more.nc").write_text(
-        "%\nO0004\nG91 G21 G94 G54 G0 X1. Z2.\n/M8\nG81 Z-3. R-1. F9.\nG80\nG90 G43 H3 Z5.\nG43 H12 Z5.\nM30\n%\n"
+        "%\nO0004\nG91 G21 G94 G54 G0 X1. Z2.\n/M8\nG81 Z-3. R-1. F9.\nG80\n"
+        "G90 G43 H3 Z5.\nG43 H12 Z5.\nM30\n%\n"
     )
     call(*NEW)
     machine, pipeline = (file.read_text() for file in files)
