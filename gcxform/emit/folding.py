@@ -338,7 +338,11 @@ class _Folding:
         first, depth = self.walk.table[:, 0], self.walk.table[:, 3]
         own = self.walk.deciding.intersection(first[depth == 0].tolist())
         written = (*self.texts.values(), *self.ranges.values())
-        calls = any(line in self._calls for text in written for line in text.lines)
+        calls = any(
+            line in self._calls and self.spelled.raw(line) in text.text
+            for text in written
+            for line in text.lines
+        )
         return calls or any(line not in self.texts and not self._is_out(line) for line in own)
 
     def _gone(self) -> list[Unit]:

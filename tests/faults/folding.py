@@ -23,6 +23,12 @@ MUTATIONS = (
         tests="tests/test_corpus.py::test_case[structure/called-by-what-is-written-out]",
     ),
     _fold("a call in what is written out is none", "return calls or any(line", "return any(line"),
+    _fold(
+        "values that are set behind a call are one",
+        " and self.spelled.raw(line) in text.text",
+        "",
+        tests="tests/test_corpus.py::test_case[structure/values-behind-what-is-written-out]",
+    ),
     _fold("texts that differ are the same", "if len(texts) > 1:", "if False:"),
     _fold("runs that differ are the same", "if len(same) == 1 else None", "", VALUES),
     _fold(
