@@ -66,7 +66,7 @@ export function drawingOn(canvas) {
   controls.zoomToCursor = true;
   const drawing = {
     canvas, renderer, camera, controls, scene: new THREE.Scene(), paths: [], ground: new THREE.Color(),
-    coarse: SHARP, moved: 0, asked: false, last: 0, size: 100, middle: [0, 0, 0], frames: 0, beforeDrawn: [],
+    coarse: SHARP, moved: 0, stirred: false, asked: false, last: 0, size: 100, middle: [0, 0, 0], frames: 0, beforeDrawn: [],
   };
   controls.addEventListener("change", () => stir(drawing));
   new ResizeObserver(() => resized(drawing)).observe(canvas.parentElement);
@@ -112,6 +112,7 @@ export function redraw(drawing) {
 // The camera or the time moves: be fast rather than sharp.
 export function stir(drawing) {
   drawing.moved = performance.now();
+  drawing.stirred = true; // also where a picture takes longer than STILL
   redraw(drawing);
 }
 
@@ -119,9 +120,10 @@ function drawn(drawing, now) {
   drawing.asked = false;
   const between = now - drawing.last;
   drawing.last = now;
-  const moving = performance.now() - drawing.moved < STILL;
+  const moving = drawing.stirred || performance.now() - drawing.moved < STILL;
+  drawing.stirred = false;
   if (!moving) drawing.coarse = SHARP;
-  else if (between > SLOW && between < 2000) drawing.coarse = Math.min(COARSEST, 1.5 * drawing.coarse);
+  else if (between > SLOW && between < 2000) drawing.coarse = Math.min(COARSEST, 2 * drawing.coarse);
   else if (between < FAST) drawing.coarse = Math.max(SHARP, drawing.coarse / 1.1);
   render(drawing);
   if (moving) redraw(drawing);
