@@ -34,6 +34,7 @@ def with_kept_planes(dialect: type[Dialect], keeps: bool) -> type[Dialect]:
     """Return the dialect that keeps such codes; without `keeps` the one that refuses them."""
     names = dialect.tip_rule.unfollowed
     kept = any(dialect.codes[name].effect is Effect.FRAME for name in names)
+    kept = kept and "codes" in vars(dialect)  # else it is made of one that keeps them, for a run
     plain = dialect.__mro__[1] if kept else dialect
     return _keeping(cast(Any, plain)) if keeps and names else plain
 
