@@ -269,6 +269,16 @@ def test_linuxcnc_goes_the_same_way(case, tmp_path):
 
 
 @NEEDS_RS274
+def test_linuxcnc_counts_from_the_zero_that_is_set_behind_compensated_moves(tmp_path):
+    case = next(c for c in CASES if name(c.path) == "volumetric/zero-set-behind")
+    source = rs274.run(case.sections["input.nc"])
+    written = rs274.run(result(case, tmp_path).text)
+    ends = [[move.machine[1]["X"] for move in program.moves][-3:] for program in (source, written)]
+    assert ends[0] == pytest.approx([10.0, 25.0, 5.0], abs=1e-6)
+    assert ends[1] == pytest.approx([end / 1.001 for end in ends[0]], abs=5.1e-4)
+
+
+@NEEDS_RS274
 @pytest.mark.parametrize(
     "case",
     [c for c in FOR_LINUXCNC if c.diagnostics and "(rs274 2.9" in c.prose],

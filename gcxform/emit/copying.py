@@ -161,7 +161,7 @@ class Copying:
         """Refuse blocks that set coordinates from where the axes stand if they stand elsewhere."""
         if self.path.folded:
             return
-        for line in np.flatnonzero(self.task.table.flag("presets", self.task.shape)).tolist():
+        for line in self.task.counted_from_axes():
             if self._stands_elsewhere(line):
                 message = "this block counts from where the axes stand, and they stand elsewhere"
                 hint = put_before("offsets")

@@ -11,6 +11,7 @@ import numpy as np
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import INCH, LINEAR, Dialect, NumberFormat
 from gcxform.modal.interpreter import Interpreted
+from gcxform.modal.meaning.meaning import PRESETS
 from gcxform.modal.meaning.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.system.arrays import Flags, Floats, Ints
@@ -118,6 +119,24 @@ class Task:
     def shape(self) -> Ints:
         """Shapes of the lines that the control executes."""
         return self.read.shape
+
+    def counted_from_axes(self) -> list[int]:
+        """Return the lines that set coordinates from where the axes stand.
+
+        G10 L2 does not, nor L20 where it only names more work offsets: both say where a zero is.
+        """
+        lines = np.flatnonzero(self.table.flag("presets", self.shape)).tolist()
+        return [line for line in lines if self._counts_from_axes(line)]
+
+    def _counts_from_axes(self, line: int) -> bool:
+        named = self.manner.source.offset_rule.g10_l20 not in ("", "here")
+        for act in self.table.meanings[int(self.shape[line])].acts:
+            slot = dict(act.slots).get("L") if act.name == "set-work" else None
+            first = int(self.window.first_number[line])
+            kind = np.nan if slot is None else float(self.read.value[first + slot])
+            if act.name in PRESETS and not (kind == 2 or (kind == 20 and named)):
+                return True
+        return False
 
     def location(self, line: int, column: int = 0, width: int = 0) -> Location:
         """Return a place in a line of the window; column from 0."""

@@ -128,4 +128,25 @@ MUTATIONS = (
 """,
         CORPUS + "[dialects/fanuc/block-end-anew]",
     ),
+    Mutation(
+        "writing: G10 L20 does not count from where the axes stand",
+        "gcxform/emit/manner.py",
+        "not (kind == 2 or (kind == 20 and named))",
+        "kind not in (2, 20)",
+        CORPUS + "[hazards/zero-set-here-elsewhere]",
+    ),
+    Mutation(
+        "writing: G10 L2 counts from where the axes stand",
+        "gcxform/emit/manner.py",
+        "not (kind == 2 or (kind == 20 and named))",
+        "not (kind == 20 and named)",
+        CORPUS + "[volumetric/zero-set-behind]",
+    ),
+    Mutation(
+        "writing: L20 of more work offsets counts from where the axes stand",
+        "gcxform/emit/manner.py",
+        "not (kind == 2 or (kind == 20 and named))",
+        "kind != 2",
+        CORPUS + "[dialects/fanuc/more-offset-set-behind]",
+    ),
 )
