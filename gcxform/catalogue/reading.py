@@ -129,8 +129,9 @@ CODES: dict[str, tuple[str, str]] = {
     ),
     "GX216": (
         "A thread, a tap or a probe that the control refuses",
-        "G33 and G33.1 need a turning spindle, an axis word and K, and take no F; a probing move "
-        "needs a target and a feed per minute. The message says what is missing.",
+        "G33 and G33.1 need a turning spindle, an axis word and K, and take no F; G76 needs one, "
+        "Z, P, I, J and K, and a place to begin at; a probing move needs a target and a feed per "
+        "minute. The message says what is missing.",
     ),
     "GX219": (
         "A line or a number beyond what the control takes",

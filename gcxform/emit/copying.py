@@ -33,7 +33,10 @@ WHAT = {
     Form.THREAD: "a thread",
     Form.BLIND: "a move by distances from where it is not known",
     Form.NURBS: "a spline of NURBS",
+    Form.PASSES: "a thread in passes",
 }
+IN_PLACE = (Form.NURBS, Form.PASSES)
+"""Forms that begin where the tool stands, and have no word for it."""
 HINTS = {
     Form.CYCLE: put_before("cycles"),
     Form.SPLINE: put_before("segment"),
@@ -102,8 +105,9 @@ class Copying:
         if len(threads):
             other = (pieces.count[threads] != 1) | ~self.same.units()[threads]
             wrong = np.union1d(wrong, threads[other])
-        points = distinct(self.path.block[self.path.form == Form.NURBS])
-        wrong = np.union1d(wrong, points[np.isin(points, pieces.line[stated.repaired])])
+        points = distinct(self.path.block[np.isin(self.path.form, IN_PLACE)])
+        other = np.isin(points, pieces.line[stated.repaired]) | ~self.same.units()[points]
+        wrong = np.union1d(wrong, points[other])
         if not len(wrong):
             return
         form = Form(int(self.path.form[np.searchsorted(self.path.block, wrong[0])]))
@@ -324,10 +328,10 @@ class Copying:
         own = np.flatnonzero(~plain)
         if len(own):
             good[own] &= self.same.words(rows[own], others[own])
-        turned = plain | np.isin(self.path.form[rows], (Form.SPLINE, Form.NURBS))
+        turned = plain | np.isin(self.path.form[rows], (Form.SPLINE, *IN_PLACE))
         good &= ~turned | self.same.frames(rows, others)
         starts_exact, exact = self._exactness(rows, others, good & ~converted[lines])
-        points = np.flatnonzero(self.path.form[rows] == Form.NURBS)
+        points = np.flatnonzero(np.isin(self.path.form[rows], IN_PLACE))
         if len(points):
             placed = self.same.starts(rows[points], others[points])
             good[points] &= starts_exact[points] | placed

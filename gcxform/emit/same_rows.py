@@ -12,6 +12,7 @@ from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Form, Toolpath
 
+OWN_PLACES = (Form.CYCLE, Form.SPLINE, Form.NURBS, Form.PASSES)
 EXACT = 1e-9  # mm; closer values are the same number
 
 
@@ -72,7 +73,7 @@ class SameRows:
         same = (np.abs(end - old) <= EXACT) | unknown
         incremental = self.path.blocks.incremental[self.path.block[rows]][:, None]
         still = np.abs(old_way) <= EXACT
-        cycle = np.isin(self.path.form[rows], (Form.CYCLE, Form.SPLINE, Form.NURBS))[:, None]
+        cycle = np.isin(self.path.form[rows], OWN_PLACES)[:, None]
         as_far = (np.abs(way - old_way) <= EXACT) & (incremental | (still & ~cycle))
         good = (same | as_far | self._other_axes(rows, others)).all(axis=1)
         if self.path.frames == self.original.frames:
@@ -100,10 +101,13 @@ class SameRows:
         return np.asarray(now[self.path.frame[rows]] == before[self.original.frame[others]])
 
     def starts(self, rows: Ints, others: Ints) -> Flags:
-        """Return which rows begin where their source begins, in the axes that the block names."""
+        """Return which rows begin where their source begins, in the axes that count for them."""
         start = self._in_frames(self.original.start, rows, others)
         same = np.abs(self.positions.before[rows] - start) <= EXACT
-        return np.asarray((same | ~self.positions.programmed[rows]).all(axis=1))
+        unnamed = ~self.positions.programmed[rows]
+        thread = (self.path.form[rows] == Form.PASSES)[:, None]  # its start has no words
+        same |= thread & np.isnan(start) & np.isnan(self.positions.before[rows])
+        return np.asarray((same | (unnamed & ~thread)).all(axis=1))
 
     def arcs(self, rows: Ints, others: Ints, starts_exact: Flags) -> Flags:
         """Return which arcs have centre and sweep of their source, seen from where they start."""

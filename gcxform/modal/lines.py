@@ -19,6 +19,7 @@ from gcxform.modal.meaning.tables import (
     MEMORY,
     NUMBER,
     NURBS_END,
+    THREAD_CYCLE,
     MeaningTable,
     of_splines,
 )
@@ -321,7 +322,8 @@ class Lines:
         if any(
             code.group == "motion" for name, code in self.dialect.codes.items() if name == "G81"
         ):
-            return np.where(np.isin(motion, CYCLES), motion, CYCLE_OFF).astype(np.int8)
+            cycle = np.isin(motion, CYCLES) & (motion != THREAD_CYCLE)
+            return np.where(cycle, motion, CYCLE_OFF).astype(np.int8)
         if not (self._stated[COLUMNS.index("cycle")] or self.state.memory["cycle"] != CYCLE_OFF):
             return np.broadcast_to(np.int8(CYCLE_OFF), (self.live,))
         values = self.table.groups[self.shape, COLUMNS.index("cycle")]

@@ -123,7 +123,7 @@ def _words_of_codes(dialect: type[Dialect]) -> Complaints:
             yield name, f"{name} has lengths among words that it does not take"
         if code.group == "cutter-comp" and name != "G40" and code.takes != "D":
             yield name, f"{name} takes {code.takes!r}, and not D, by which it knows the tool"
-        elif code.effect is Effect.MODAL and code.takes and code.group != "cutter-comp":
+        elif code.effect is Effect.MODAL and code.group != "cutter-comp" and code.takes.strip("EH"):
             yield name, f"{name} takes words away from the motion of its block"
         lengths = {"G41": "", "G42": "", "G41.1": "D", "G42.1": "D"}.get(name, code.lengths)
         if name in ("G61", "G61.1", "G64"):

@@ -94,4 +94,25 @@ MUTATIONS = (
         "return np.asarray(lost & known[self.shape])",
         "tests/test_corpus.py::test_case[tied/user-code-inert]",
     ),
+    Mutation(
+        "threads in passes: they end where they began",
+        "gcxform/modal/moves/thread_cycles.py",
+        "(Kind.RAPID, end)]",
+        "(Kind.RAPID, start)]",
+        "tests/test_thread_cycles.py",
+    ),
+    Mutation(
+        "threads in passes: they begin anywhere",
+        "gcxform/emit/same_rows.py",
+        "(self.path.form[rows] == Form.PASSES)[:, None]",
+        "np.zeros((len(rows), 1), np.bool_)",
+        "tests/test_corpus.py::test_case[hazards/thread-linuxcnc-moved]",
+    ),
+    Mutation(
+        "threads in passes: only Z has a unit",
+        "gcxform/emit/copying.py",
+        " | ~self.same.units()[points]",
+        "",
+        "tests/test_corpus.py::test_case[hazards/thread-linuxcnc]",
+    ),
 )

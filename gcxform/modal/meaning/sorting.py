@@ -210,9 +210,10 @@ def _g_effects(
     """Turn dwell and inert codes into events."""
     for group, name in list(meaning.groups.items()):
         code = dialect.codes[name]
-        if code.effect is Effect.MODAL:
+        modal = code.effect is Effect.MODAL
+        taken = () if modal and group != "motion" else _take(name, code, dialect, meaning)
+        if modal:
             continue
-        taken = _take(name, code, dialect, meaning)
         lengths = LINEAR if code.effect is Effect.FRAME else code.lengths
         meaning.lengths += [(name, a, slot) for a, slot in taken if a in lengths]
         if code.effect is Effect.DWELL:

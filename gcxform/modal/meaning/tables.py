@@ -29,6 +29,8 @@ MEMORY = ("cycle", "retract", "spindle", "tool-length")
 COLUMNS = (*GROUPS, *MEMORY)
 THREAD, TAP = 33, 34
 """The numbers of G33 and G33.1, whose moves are tied to the spindle."""
+THREAD_CYCLE = 76
+"""The number of LinuxCNC's G76; in the group of cycles of other controls that is fine boring."""
 PROBES = (38, 39, 40, 41)
 """The numbers of G38.2 to G38.5."""
 CYCLES = tuple(n for n in range(73, 90) if n not in (75, 77, 78, 79, 80))

@@ -114,7 +114,7 @@ class Moves:
             moves |= self.pointing.named & ~own & ~drilling
             centre &= ~self.pointing.named
         stray = self.lines.flag("drill_words") & ~drilling
-        stray &= ~(self.splines | self.nurbs.lines)
+        stray &= ~(self.splines | self.nurbs.lines | self.tied.cycle)
         for line in np.flatnonzero(stray)[: Findings.enough].tolist():
             words = self.lines.table.meanings[int(self.lines.shape[line])].drill_words
             message = f"{words[0]} belongs to no code of this block"
@@ -136,7 +136,7 @@ class Moves:
             self.findings.add(
                 line, "GX209", message, hint="write G1 in this block, or G0 if the way is clear"
             )
-        for line in np.flatnonzero(centre & ~((arc | self.tied.paced) & ~own)).tolist():
+        for line in np.flatnonzero(centre & ~((arc | self.tied.driven) & ~own)).tolist():
             self.findings.add(line, "GX203", "I, J, K and R belong to arcs, and this is none")
         moves &= self.modes.motion != NUMBER["G80"]
         moves |= centre & arc & ~own
@@ -144,7 +144,7 @@ class Moves:
         self.drilling.refuse_unknown()
         self.tied.check(moves, own)
         in_machine = self.lines.flag("in_machine") & (self.modes.motion == Kind.LINE)
-        feeding = (moves & ~self.tied.paced) | in_machine | self._lone_codes(moves, drilling)
+        feeding = (moves & ~self.tied.driven) | in_machine | self._lone_codes(moves, drilling)
         calls = self.drilling.calls | self.lines.flag("probes")
         self._check_feed(feeding, calls)
         return moves

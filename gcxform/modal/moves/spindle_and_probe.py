@@ -1,4 +1,4 @@
-"""Moves that something else than the program ends or paces: the spindle (G33, G33.1), or a probe.
+"""Moves that something else than the program ends or paces: the spindle (G33, G33.1, G76), a probe.
 
 A thread (G33) is one straight move, in step with the spindle. A tap (G33.1) goes to its end and
 back to where it began. A probe goes towards its target and stops where it touches something, so
@@ -15,9 +15,10 @@ from gcxform.catalogue.offers import leave_out_block
 from gcxform.dialect.dialect import INCH
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames.track import SPATIAL, Break, Track
-from gcxform.modal.meaning.tables import NUMBER, PROBES, TAP, THREAD
+from gcxform.modal.meaning.tables import NUMBER, PROBES, TAP, THREAD, THREAD_CYCLE
 from gcxform.modal.moves.rows import Rows
-from gcxform.modal.state import UNKNOWN_SPINDLE
+from gcxform.modal.moves.thread_cycles import thread_cycle
+from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE
 from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.toolpath.path import FeedMode, Form, Kind
 
@@ -31,16 +32,18 @@ class Tied:
         self.track = track
         self.lines, self.modes = track.lines, track.modes
         motion = self.modes.motion
-        self.any = bool(((motion >= THREAD) & (motion <= PROBES[-1])).any())
+        self.cycle = np.asarray((motion == THREAD_CYCLE) & (self.modes.cycle == CYCLE_OFF))
+        self.any = bool(((motion >= THREAD) & (motion <= PROBES[-1]) | self.cycle).any())
         self.thread = np.asarray(motion == THREAD)
         self.tap = np.asarray(motion == TAP)
         self.probe = np.isin(motion, PROBES)
         self.paced = self.thread | self.tap
+        self.driven = self.paced | self.cycle
 
     @property
     def single(self) -> Flags:
-        """(lines,) whether the line is more than a plain row: a tap or a probe."""
-        return self.tap | self.probe
+        """(lines,) whether the line is more than a plain row: a tap, a probe, or G76."""
+        return np.asarray(self.tap | self.probe | self.cycle)
 
     def check(self, moves: Flags, own: Flags) -> None:
         """Refuse the lines that the control refuses; `moves` are those that move."""
@@ -55,17 +58,17 @@ class Tied:
 
     def _code(self, line: int) -> str:
         number = int(self.modes.motion[line])
-        return next(code for code, n in NUMBER.items() if n == number and code[:2] == "G3")
+        return next(code for code, n in NUMBER.items() if n == number and code[:2] in ("G3", "G7"))
 
     def _objections(self, moves: Flags, own: Flags) -> Iterator[Objection]:
         stated = self.lines.stated("motion") | self.lines.flag("has_centre")
-        bare = (self.paced | self.probe) & stated & ~moves
+        bare = (self.driven | self.probe) & stated & ~moves
         yield bare, "{code} without an axis word", "write the motion code in the block that moves"
         yield from self._about_words(moves)
         spindle = self.modes.spindle
-        still = self.paced & moves & ((spindle == 0) | (spindle == UNKNOWN_SPINDLE))
+        still = self.driven & moves & ((spindle == 0) | (spindle == UNKNOWN_SPINDLE))
         yield still, "{code}, but the spindle does not turn", "write M3 or M4 before it"
-        beside = (self.paced | self.probe) & moves & (self.modes.comp > 0)
+        beside = (self.driven | self.probe) & moves & (self.modes.comp > 0)
         yield beside, "{code} beside cutter compensation", "write G40 before it"
         other = self.probe & moves & (self.modes.feed_mode != FeedMode.PER_MINUTE)
         yield other, "{code} cannot be fed in inverse time or per turn", "write G94"
@@ -99,22 +102,22 @@ class Tied:
         return Rows(found.line, kind, found.end, found.nth, form, found.frame)
 
     def row(self, line: int) -> Rows:
-        """Return the rows of a line that is a tap or a probe."""
+        """Return the rows of a line that is a tap, a probe or a thread in passes."""
+        if self.cycle[line]:
+            return thread_cycle(self.track, line)
         return tap(self.track, line) if self.tap[line] else probe(self.track, line)
 
     def paced_rows(self, rows: Rows, feed: Floats, mode: Small) -> tuple[Floats, Small]:
         """Return feeds and feed modes of rows, those of threads and taps from their K words."""
-        paced = self.paced[rows.line] & (rows.form != Form.MACHINE) & (rows.form != Form.HOME)
-        if not paced.any():
-            return feed, mode
-        word = self.lines.word("K", self.paced)
-        if word is None:
-            return feed, mode
+        free = (rows.form != Form.MACHINE) & (rows.form != Form.HOME)
         unit = np.where(self.modes.inch[rows.line], INCH, 1.0)
-        return (
-            np.where(paced, word[0][rows.line] * unit, feed),
-            np.where(paced, np.int8(FeedMode.PER_TURN), mode),
-        )
+        for letter, lines in (("K", self.paced), ("P", self.cycle)):
+            paced = lines[rows.line] & free
+            word = self.lines.word(letter, lines) if paced.any() else None
+            if word is not None:
+                feed = np.where(paced, word[0][rows.line] * unit, feed)
+                mode = np.where(paced, np.int8(FeedMode.PER_TURN), mode)
+        return feed, mode
 
 
 def tap(track: Track, line: int) -> Rows:

@@ -26,7 +26,7 @@
 | G98, G99 at start | G99 |
 | canned cycles | R, Z, P, Q stay within one cycle; from below R first up; 0.254 mm between pecks |
 | G74, G84 in G18, G19 | the axes of the feed moves are mixed up: refused |
-| G76 | a thread: refused |
+| G76 | a thread in passes, with Z, P, I, J and K: copied; it ends at its Z |
 | G5 | a cubic Bezier curve in G17: I J from its start, P Q from its end, also in G91 and G90.1 |
 | G5 without I J | minus the P Q of the G5 before; with no G5 directly before: refused |
 | G5.1 | a quadratic one: I J from its start |
@@ -83,7 +83,7 @@ TAP, TAP_LEFT = v.tap(v.FORWARD, v.REVERSE), v.tap(v.REVERSE, v.FORWARD)
 CYCLES = {
     73: v.Cycle(v.DRILL, pecks="break", needs="Q", takes="QL"),
     74: v.Cycle(TAP_LEFT, takes="P", spindle=(-1,), xy_only=MIXED_UP),
-    76: v.Cycle(refused="its motion is tied to the spindle"),
+    76: v.Cycle(refused="it is a thread"),
     81: v.Cycle(v.DRILL, takes="L"),
     82: v.Cycle(v.DRILL_DWELL, needs="P", takes="PL"),
     83: v.Cycle(v.DRILL, pecks="clear", needs="Q", takes="QL"),
@@ -146,7 +146,7 @@ class LinuxCNC(gx.Dialect):
         "G43.2": v.frame("tool-length", "length-add", "H"),
         **{code: gx.Code("motion") for code in ("G5", "G5.1", "G5.2", "G5.3")},
         **{f"G{number}": gx.Code("motion") for number in CYCLES if number != 76},
-        "G76": v.barrier("motion", v.SYNCHRONISED, "EHIJKLPQR"),
+        "G76": gx.Code("motion", takes="EH"),
         **{code: gx.Code("motion") for code in ("G33", "G33.1")},
         **{code: gx.Code("motion") for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
         **{
