@@ -29,12 +29,14 @@ from oracles.toolpaths import difference, read  # noqa: E402
 import gcxform as gx  # noqa: E402
 from gcxform.dialect.dialect import INCH  # noqa: E402
 from gcxform.machine.machine import Tool  # noqa: E402
+from gcxform.toolpath.path import Form  # noqa: E402
 
 TABLE = {number: Tool(radius=0.05 * INCH) for number in range(1, 60)}
 """The tools of `rs274/tool.tbl`."""
 BESIDE = HERE.parents[1] / "shared" / "corpus"
 AGREE, REFUSED, BOTH = "agree", "refused by gcxform", "refused by both"
 ALONE, DISAGREE, HANG = "refused by rs274 alone", "DISAGREE", "rs274 did not end"
+THREADS = "threads in passes, of which only the last is in our path (tests/test_thread_cycles.py)"
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,8 @@ def outcome(corpus: Path, row: dict[str, str]) -> Outcome:
         return Outcome(name, kind, first.code, f"line {line}: {first.message}")
     if row["exit"] != "0":
         return Outcome(name, ALONE, "", said)
+    if (path.form == Form.PASSES).any():
+        return Outcome(name, THREADS)
     canon = gzip.decompress((corpus / row["canon_file"]).read_bytes()).decode("latin-1")
     problem = difference(path, parsed(canon))
     return Outcome(name, DISAGREE if problem else AGREE, "", problem)
@@ -92,7 +96,7 @@ def print_tables(found: list[Outcome], every: bool) -> None:
             print(f"{one.kind}: {one.name} {one.code} {one.why}")
     print("\n| outcome | programs |\n|---|--:|")
     totals = Counter(one.kind for one in found)
-    for kind in (AGREE, REFUSED, BOTH, ALONE, HANG, DISAGREE):
+    for kind in (AGREE, REFUSED, BOTH, ALONE, HANG, THREADS, DISAGREE):
         print(f"| {kind} | {totals[kind]} |")
     print("\n| read by rs274, refused by gcxform because | programs |\n|---|--:|")
     reasons = Counter((o.code, o.why.partition(": ")[2]) for o in found if o.kind == REFUSED)

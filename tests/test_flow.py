@@ -96,9 +96,8 @@ def test_a_computed_distance_is_on_the_increment(increment: float, x: float) -> 
     assert np.isclose(path.end[-1, 0], x, atol=1e-12)
 
 
-def test_a_computed_distance_needs_the_increment() -> None:
-    with pytest.raises(gx.InputError, match="GX205"):
-        _ = gx.read(FANUC, "fanuc").path
+def test_a_computed_distance_is_lost_without_the_increment() -> None:
+    assert np.isnan(gx.read(FANUC, "fanuc").path.end[-1, 0])
 
 
 def test_long_loops_are_executed() -> None:

@@ -265,7 +265,7 @@ def test_a_line_that_does_not_follow_is_found() -> None:
 
 def test_an_assignment_too_few_or_too_many_is_found() -> None:
     context = gx.Pipeline.parse("absolute", "linuxcnc").context
-    trace = SimpleNamespace(line_of=lambda line: line)
+    trace = SimpleNamespace(line_of=lambda line: line, lines_of=lambda lines: lines)
     one, two = Assigned(0, 100, 1.0), Assigned(1, 101, 2.0)
     assert assignments_differ((one, two), (one, two), trace, context) is None
     for old, new in (((one, two), (one,)), ((one,), (one, two))):

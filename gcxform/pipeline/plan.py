@@ -123,11 +123,12 @@ class Plan:
             for each in (self.source, self.target)
         )
         source, target = both
+        steps = tuple(taken(step) for step in steps)
         keeps = source is target and says_the_same(s for s in steps if isinstance(s, Pass))
         return {
             "source": with_kept_planes(source, keeps),
             "target": with_kept_planes(target, keeps),
-            "passes": tuple(taken(step) for step in steps),
+            "passes": steps,
             "budget": None if self.budget is None else limit("budget", self.budget),
             "growth": None if self.growth is None else limit("growth", self.growth),
             "words": arguments.chosen("words", self.words, WORDS),

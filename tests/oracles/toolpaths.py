@@ -25,7 +25,7 @@ from gcxform.plugin.registry import default_registry
 from gcxform.toolpath.path import FeedMode, Form, Kind, Plane, Toolpath
 
 KINDS = {Kind.RAPID: "RAPID", Kind.LINE: "LINE", Kind.ARC_CW: "ARC_CW", Kind.ARC_CCW: "ARC_CCW"}
-FORMS = {Form.PROBE: "PROBE", Form.SPLINE: "SPLINE"}
+FORMS = {Form.PROBE: "PROBE", Form.SPLINE: "SPLINE", Form.NURBS: "NURBS"}
 COMPARED = {f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 19, 30, 60)} | {"S", "T"}
 ORIENTS = {"R", "P"}
 """An M19 without any of these words says nothing to the spindle of `rs274`."""
@@ -104,6 +104,9 @@ def events_of(path: Toolpath) -> list[tuple[int, str, int]]:
             found.append((event.row, f"DWELL {value:.4f}", event.line + 1))
         elif event.what == "M19" and not event.within and not ORIENTS & dict(event.values).keys():
             continue
+        elif event.what == "G96" and name == "S":  # LinuxCNC says S before the spindle turns
+            turns = found[-1:] and found[-1][1] in ("M3", "M4") and found[-1][2] == event.line + 1
+            found.insert(len(found) - bool(turns), (event.row, f"S{value:.10g}", event.line + 1))
         elif event.what in COMPARED:
             words = f"{event.what}{value:.10g}" if event.what in "ST" else event.what
             found.append((event.row, words, event.line + 1))
@@ -137,6 +140,10 @@ def _paired(ours: list[Move], theirs: list[CanonMove]) -> tuple[list[tuple[int, 
     row = other = 0
     while row < len(ours) and other < len(theirs):
         curves = ours[row].kind == theirs[other].kind == "SPLINE"  # printed without numbers
+        if ours[row].kind == "NURBS" and theirs[other].kind == "SPLINE":
+            pairs.append((row, other))  # one curve, printed without numbers; ours are its legs
+            row, other = _behind_legs(ours, row), other + 1
+            continue
         problem = "" if curves else move_difference(ours[row], theirs[other])
         if not problem:
             pairs += [] if _stands_still(theirs[other]) else [(row, other)]
@@ -154,8 +161,15 @@ def _paired(ours: list[Move], theirs: list[CanonMove]) -> tuple[list[tuple[int, 
     return pairs, f"line {late[0].line}: LinuxCNC has no such move: {late[0]}" if late else ""
 
 
+def _behind_legs(ours: list[Move], row: int) -> int:
+    """Return the row behind the legs of a curve."""
+    while row < len(ours) and ours[row].kind == "NURBS":
+        row += 1
+    return row
+
+
 def _stands_still(move: Move | CanonMove, unit: float = 0.0) -> bool:
-    if move.centre is not None or move.kind in ("PROBE", "TAP", "SPLINE"):
+    if move.centre is not None or move.kind in ("PROBE", "TAP", "SPLINE", "NURBS"):
         return False
     near = STILL * (getattr(move, "unit", unit) or 1.0)
     return all(abs(v - move.start.get(a, math.inf)) <= near for a, v in move.end.items())

@@ -251,7 +251,7 @@ class _Machine:
             value = self._length(values[axis])
             if self.modal["distance"] == 910:
                 if axis not in self.position:
-                    raise self._refused(f"incremental move of {axis} from an unknown position")
+                    continue  # by a distance from nowhere known: as unknown as before
                 value += self.position[axis]
             end[axis] = value
         return end
@@ -276,10 +276,13 @@ class _Machine:
     ) -> Move:
         """Return the arc; its centre has the normal coordinate of the start (nan if unknown)."""
         _, axes, letters = PLANES[self.modal["plane"] or 170]
-        if not {axes[0], axes[1]} <= set(start) or axes[2] in set(end) - set(start):
+        steps = self.modal["distance"] == 910  # an arc by distances may begin nowhere known
+        known = steps or {axes[0], axes[1]} <= set(start)
+        if not known or axes[2] in set(end) - set(start):
             raise self._refused("arc from an unknown position")
-        first: Point = (start[axes[0]], start[axes[1]])
-        last: Point = (end[axes[0]], end[axes[1]])
+        first: Point = (start.get(axes[0], 0.0), start.get(axes[1], 0.0))
+        ways = [self._length(values[a]) if a in values else 0.0 for a in axes[:2]]
+        last: Point = (end.get(axes[0], ways[0]), end.get(axes[1], ways[1]))
         if self.dialect.name == "grbl" and not {axes[0], axes[1]} & set(values):
             raise self._refused("no axis word of the plane")
         if "R" in values:
