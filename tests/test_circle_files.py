@@ -299,3 +299,11 @@ def test_the_sheet_shows_both_senses_the_causes_and_what_is_left(here):
     assert {"+X", "-Y", "CCW", "CW", "G(b)", "squareness", "100 %"} <= set(text.splitlines())
     assert "C0Y: -50.00 +- " in text
     assert "2 um/div" in text  # 2.5 um about the circle, where the pivot is off by 50 um
+
+
+def test_arc_without_readings_and_two_points_are_refused_in_words(here):
+    (here / "c.csv").write_text(table())
+    done = call("calibrate", "circles", "--arc", "400,410", "c.csv")
+    assert "no reading of this run is between 400" in done.stderr
+    (here / "p.csv").write_text("plane,sense,X [mm],Y [mm]\nXY,probed,1,1\n")
+    assert "3 points at least, and not 1" in call("calibrate", "circles", "p.csv").stderr

@@ -29,6 +29,8 @@ def least_squares_circle(points: Floats) -> tuple[Floats, float]:
     The sum of squares of the radial distances is least. Raises ValueError if the points are not
     around a centre.
     """
+    if len(points) < 3:
+        raise ValueError(f"a circle has 3 points at least, and not {len(points)}")
     mean = points.mean(axis=0)
     with np.errstate(all="ignore"):
         centre, radius, converged = circles_in_plane(points - mean)

@@ -234,6 +234,9 @@ def _run(table: CsvTable, sense: int, rows: Ints, readings: Floats, given: Given
     if given.arc is not None:
         low, high = given.arc
         keep = (degrees >= low) & (degrees <= high)
+        if not keep.any():
+            message = f"no reading of this run is between {low:g} and {high:g} degrees"
+            raise InputError.one("GX477", message, table.where(int(rows[0]), "angle"))
         degrees, rows, readings = degrees[keep], rows[keep], readings[keep]
     if len(degrees) and np.ptp(degrees) > TURN:
         raise InputError.one(

@@ -69,7 +69,7 @@ def check_places(written: Mapping[str, str | None], read: Iterable[str | None]) 
                 raise UsageError.one(
                     "GX727",
                     f"{option} {name} would overwrite {other}, which is read",
-                    hint="write elsewhere; --in-place replaces the program itself",
+                    hint="write elsewhere",
                 )
     for k, (option, name) in enumerate(places):
         for before, other in places[:k]:
