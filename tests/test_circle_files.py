@@ -307,3 +307,11 @@ def test_arc_without_readings_and_two_points_are_refused_in_words(here):
     assert "no reading of this run is between 400" in done.stderr
     (here / "p.csv").write_text("plane,sense,X [mm],Y [mm]\nXY,probed,1,1\n")
     assert "3 points at least, and not 1" in call("calibrate", "circles", "p.csv").stderr
+
+
+def test_few_readings_that_do_not_tell_the_radius_have_a_sheet(here):
+    few = [k + 0.25 for k in range(0, 360, 45)]
+    lines = [f"XY,ccw,100,1000,{a},1\n" for a in few]
+    lines += [f"XY,cw,100,1000,{a},1\n" for a in few[::-1]]
+    (here / "c.csv").write_text(HEAD + "".join(lines))
+    assert call("calibrate", "circles", "--pitch", "10mm", "c.csv").exit_code == 0

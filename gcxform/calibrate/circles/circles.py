@@ -239,7 +239,7 @@ class Fitted:
                 found[group] = float(np.ptp(self.matrix[:, own] @ self.solution.value[own]))
         heights = [abs(spike.height) for spike in self.spikes if spike.seen]
         found["reversal spikes"] = max(heights, default=0.0)
-        del found["radius"]
+        found.pop("radius", None)  # few readings and a fine pitch may not tell it
         found.pop("centre", None)
         return dict(sorted(found.items(), key=lambda item: -item[1]))
 
