@@ -70,8 +70,8 @@ class Renumber(gx.TextPass):
             return block.text[: label.start] + new + block.text[label.end :]
         words = [item for item in block.items if isinstance(item, gx.Word)]
         gap = " " if len(words) > 1 and words[1].start > words[0].end else ""
-        # Before a comment too: LinuxCNC takes a sequence number only at the head of a block.
-        head = next(i for i in block.items if isinstance(i, gx.Word | gx.Comment)).start
+        # Before comments and assignments: LinuxCNC takes it only at the head of a block.
+        head = next(item for item in block.items if _begins(item)).start
         return block.text[:head] + new + gap + block.text[head:]
 
     def _new(self, number: int) -> int:
@@ -152,6 +152,11 @@ def _names_lines(dialect: type[gx.Dialect]) -> bool:
 
 def _words(block: gx.Block) -> list[gx.Word]:
     return [item for item in block.items if isinstance(item, gx.Word)]
+
+
+def _begins(item: Any) -> bool:
+    """Whether an item is the head of what a block says."""
+    return isinstance(item, gx.Word | gx.Comment) or getattr(item, "kind", "") == "assignment"
 
 
 def _label(block: gx.Block) -> Any:
