@@ -9,7 +9,11 @@ import pytest
 from cli_kit import call, workplace
 from missing_kit import as_toml, filled, pasted
 
+import gcxform as gx
+from gcxform.cli.program.missing import Missing, Visit
+from gcxform.diagnostics import Diagnostic, Location
 from gcxform.machine.file import load_machine
+from gcxform.syntax.source import Source
 
 BODIES = {
     "a start in G91": (
@@ -150,3 +154,28 @@ Z = 0.0
         ("work-offset", "G55", "Z"): 9,
         ("home", "G28", "X"): 11,
     }
+
+
+def visit(*rounds: list[Diagnostic]) -> Missing:
+    """Return what a visit makes of findings, those of the last round again and again."""
+    left = iter([*rounds[1:], *[rounds[-1]] * 30])
+    pipeline = gx.Pipeline.parse("absolute", "linuxcnc")
+    source = Source.of_bytes(b"G91 G0 X1\nX2\nX3\nM2\n")
+    return Visit(pipeline, source, lambda *_: next(left)).run(rounds[0])
+
+
+def finding(code: str, line: int, hint: str = "") -> Diagnostic:
+    return Diagnostic(code, f"as {code} says", Location("-", line), hint=hint)
+
+
+def test_a_value_that_ends_nothing_is_not_asked_for() -> None:
+    asks = finding("GX207", 1, "say start = { X = ... } in [input]")
+    found = visit([asks], [asks])
+    assert not found.asked()
+    assert [cause.told().code for cause in found.causes.values()] == ["GX207"]
+
+
+def test_behind_a_block_that_is_left_out_only_blocks_by_themselves_are_judged() -> None:
+    wrong, lost, unknown = finding("GX201", 1), finding("GX208", 2), finding("GX202", 3)
+    found = visit([wrong], [lost, unknown])
+    assert [each.code for each in found.told()] == ["GX201", "GX202"]

@@ -47,6 +47,13 @@ MUTATIONS = (
         "text/renumber-goto",
     ),
     _macro(
+        "a number stands behind an assignment",
+        RENUMBER,
+        'or getattr(item, "kind", "") == "assignment"',
+        "",
+        "text/renumber-before-assignment",
+    ),
+    _macro(
         "numbers that begin again are named",
         RENUMBER,
         "if named and counted >",

@@ -90,9 +90,9 @@ MUTATIONS = (
     ),
     Mutation(
         "circles: G(b) of one sense",
-        "gcxform/simulate/circles.py",
-        "return np.vstack([self.cw, self.ccw])",
-        "return np.vstack([self.cw, self.cw])",
+        "gcxform/calibrate/circles/deviations.py",
+        "circular_deviation(both)",
+        "circular_deviation(next(iter(paths.values())))",
         FIGURES,
     ),
     Mutation(
