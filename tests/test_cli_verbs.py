@@ -345,3 +345,15 @@ def test_compare_names_a_place_that_one_program_keeps_to_itself(tmp_path, monkey
     assert "only B says where Z is (line 1 of A, 1 of B): not compared there\n" in done.stdout
     assert "largest deviation 0.000000 mm" in done.stdout
     assert call(*words, "--start", "Z=50").stdout.endswith("SAME\n")
+
+
+# --- explain ---
+
+
+def test_only_the_line_that_calls_tells_what_another_file_does(here: Path) -> None:
+    (here / "sub.ngc").write_bytes(b"o<sub> sub\nG1 X[#1] F100\no<sub> endsub\nM2\n")
+    loop = b"o100 repeat [3]\nG91 G1 X1\no100 endrepeat\nM2\n"
+    (here / "main.ngc").write_bytes(b"G90 G21 G94\nG0 X0 Y0 Z0\no<sub> call [5]\n" + loop)
+    told = [call("explain", "-f", "linuxcnc", f"main.ngc:{n}").stdout for n in range(1, 8)]
+    assert ["runs sub.ngc:2" in each for each in told] == [n == 3 for n in range(1, 8)]
+    assert "at    X5 " in told[3]

@@ -79,11 +79,10 @@ def _as_executed(
     if not 0 < line <= len(own):
         message = f"{source.name} has {len(own)} lines and no line {line}"
         raise UsageError.one("GX731", message)
-    first, last = _run_of(line - 1, ran.origin)
-    called = last == first and first < len(ran.origin) and ran.origin[first] >= len(own)
+    first, last = _run_of(line - 1, np.where(ran.origin < len(own), ran.origin, -1))
+    called = last == first
     if called:  # of other files, whose lines are counted on behind these
-        back = np.flatnonzero(ran.origin[first:] < len(own))
-        last = first + int(back[0]) if len(back) else len(ran.origin)
+        first, last = _called(own[:line], ran.origin, len(own), kind) or (first, first)
     text = b"".join(ran.windows()).splitlines(keepends=True)
     tolerant = Tolerant(kind, ran, reading)
     tolerant.window(b"".join(text[:first]))
@@ -121,6 +120,34 @@ def _foreign(source: Source, line: int, kind: type[Dialect], reading: Reading) -
     earlier = sorted(number for number in refused if number < line)
     axes = tolerant.interpreter.axes
     return [*lines, *_told(before, axes, earlier, refused.get(line), path, kind.tip_rule.spelled)]
+
+
+def _may_call(block: Block) -> bool:
+    """Whether a block may call a program: it has a code, or an O-word's call."""
+    if block.text.lstrip()[:1] in ("o", "O"):
+        return "call" in block.text.lower()
+    return any(isinstance(item, Word) and item.address in "GMT" for item in block.items)
+
+
+def _called(
+    own: Sequence[bytes], origin: Ints, size: int, kind: type[Dialect]
+) -> tuple[int, int] | None:
+    """Return the blocks of other files, from and to, that the last of lines runs, if that is sure.
+
+    They follow the line that is executed before it, behind which no other line may call. A program
+    has `size` lines.
+    """
+    line = len(own) - 1
+    earlier = origin[origin < line]
+    before = int(earlier.max()) if len(earlier) else -1
+    parse = kind.load_grammar().parse
+    calls = [_may_call(parse(text.decode("latin-1"))) for text in own[before + 1 :]]
+    if calls != [False] * (line - before - 1) + [True]:
+        return None
+    first = _run_of(before, origin)[1] if before >= 0 else 0
+    back = np.flatnonzero(origin[first:] < size)
+    last = first + int(back[0]) if len(back) else len(origin)
+    return (first, last) if last > first else None
 
 
 def _run_of(line: int, origin: Ints) -> tuple[int, int]:
