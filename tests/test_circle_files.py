@@ -245,6 +245,8 @@ def test_the_way_in_and_out_is_cut_off_where_that_is_said():
         (("XY,ccw", "UV,ccw"), "GX471", "'UV' is not one of"),
         (("ccw,100", "left,100"), "GX471", "'left' is not one of ccw"),
         (("ccw,100", "ccw,0"), "GX471", "a radius is above 0"),
+        (("ccw,100", "ccw,1e-300"), "GX471", "a radius of 1e-300 mm is none"),
+        (("ccw,100", "ccw,1e300"), "GX471", "a radius of 1e+300 mm is none"),
         (("[mm/min]", "[rpm]"), "GX470", "'rpm' is not a unit of a feed"),
         (("reading [um]", "reading"), "GX470", "has no unit"),
         (("feed [", "fed ["), "GX470", "the column 'fed' means nothing"),

@@ -48,6 +48,7 @@ CLOSED: Final = (".b5r", ".b5t", ".b20", ".b20t")
 FEEDS: Final = {"mm/min": 1.0 / 60.0, "mm/s": 1.0, "m/min": 1000.0 / 60.0, "in/min": 25.4 / 60.0}
 CENTRE: Final = ("centre x", "centre y", "centre z")
 TURN: Final = 361.0  # degrees: a run beyond has its way in, or out, with it
+RADII: Final = (0.1, 100_000.0)  # mm: beyond, a number is one of another unit, or a slip
 SAID: Final = ("test", "plane", "radius", "feed", *CENTRE)
 
 
@@ -117,6 +118,10 @@ def _setups(table: CsvTable, given: Given) -> list[SetUp]:
             hint = "ZX has its angles from Z to X" if plane == "XZ" else ""
             raise InputError.one("GX471", message, table.where(row, "plane"), hint)
     radii = _column(table, "radius", _radius(table, given))
+    for row, radius in enumerate(radii):
+        if radius and not RADII[0] <= radius <= RADII[1]:
+            message = f"a radius of {radius:g} mm is none of a circular test"
+            raise InputError.one("GX471", message, table.where(row, "radius"))
     feeds: list[float | None] = [given.feed] * count
     if "feed" in table.headings:
         feeds = [*_above_nothing(table, "feed", table.scaled("feed", "a feed", FEEDS))]
