@@ -116,6 +116,13 @@ def run_many(programs: Iterable[bytes]) -> list[CanonProgram | Rejected]:
     return [result for result in results if result is not None]
 
 
+def taken(programs: Iterable[bytes]) -> list[bytes]:
+    """Return the programs that the interpreter does not refuse."""
+    listed = list(programs)
+    found = zip(listed, run_many(listed), strict=True)
+    return [program for program, canon in found if isinstance(canon, CanonProgram)]
+
+
 def _caught(program: bytes) -> CanonProgram | Rejected:
     try:
         return run(program)
