@@ -154,6 +154,9 @@ def test_a_tolerance_without_unit_is_asked_about(tmp_path: Path) -> None:
     assert "deviation = 20 is 20 mm" in call("check", "-p", str(pipeline)).stderr
 
 
+SEGMENT = "segment chord-error=5"
+
+
 def found_of(file: Path, text: bytes, *words: str) -> list[dict[str, Any]]:
     file.write_bytes(text)
     done = call("check", "--json", *words, str(file))
@@ -173,6 +176,34 @@ def test_findings_are_values_with_their_ways_out(tmp_path: Path) -> None:
     keys = {"kind": "setting", "file": "pipeline", "section": "input", "key": "block-delete"}
     assert found["ways"] == [[{**keys, "value": '"execute"'}], [{**keys, "value": '"skip"'}]]
     assert found_of(file, DRILL, "-f", "fanuc", "-x", "absolute") == []
+
+
+ENDING = {
+    "no file": (("-f", "linuxcnc", "none.nc"), 5, ["GX901"]),
+    "no pass": (("-f", "linuxcnc", "-x", "nosuch", "p.nc"), 2, ["GX704"]),
+    "no pipeline": (("-p", "none.toml", "p.nc"), 2, ["GX709"]),
+    "a key that is none": (("--limit", "x=1", "p.nc"), 2, ["GX701"]),
+    "a line too long": (("--limit", "line=4", "-f", "linuxcnc", "-x", "", "p.nc"), 3, ["GX761"]),
+    "an option that is none": (("--bogus",), 2, [""]),
+    "warned before": (("-f", "linuxcnc", "-x", SEGMENT, "none.nc"), 5, ["GX748", "GX901"]),
+}
+
+
+@pytest.mark.parametrize("name", ENDING)
+def test_what_ends_a_check_is_a_finding_as_well(name: str, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "p.nc").write_bytes(b"G0 X1 Y1\nM2\n")
+    words, code, codes = ENDING[name]
+    done = call("check", *words, "--json")
+    assert (done.exit_code, done.stderr) == (code, "")
+    assert [found["code"] for found in json.loads(done.stdout)["findings"]] == codes
+    assert call("check", *words).exit_code == code
+
+
+def test_what_ends_info_is_a_finding_too(tmp_path: Path) -> None:
+    done = call("info", "--json", str(tmp_path / "none.nc"))
+    assert (done.exit_code, done.stderr) == (5, "")
+    assert [found["code"] for found in json.loads(done.stdout)["findings"]] == ["GX901"]
 
 
 def test_what_a_hint_offers_goes_with_it() -> None:

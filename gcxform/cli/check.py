@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import click
@@ -12,7 +12,7 @@ import numpy as np
 from gcxform.catalogue.questions import PIPELINE
 from gcxform.cli import VERBS
 from gcxform.cli.common import options
-from gcxform.cli.common.failures import warn
+from gcxform.cli.common.failures import FOUND, warn
 from gcxform.cli.common.findings import described
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked
@@ -50,10 +50,9 @@ def command(file: str | None, as_json: bool, **asked: Any) -> int:
     if not what.says_chain and file is not None and what.dialect:
         what = Asked(**{**asked, "chain": ""})
     pipeline = what.build()
-    before = (*default_registry().diagnostics, *pipeline.warnings)
+    warn((*default_registry().diagnostics, *pipeline.warnings))
     if as_json:
-        return _as_json(pipeline, file, before)
-    warn(before)
+        return _as_json(pipeline, file)
     text = "\n".join(chain(pipeline))
     if file is None:
         click.echo(text)
@@ -63,13 +62,16 @@ def command(file: str | None, as_json: bool, **asked: Any) -> int:
         return _check(pipeline, source, what)
 
 
-def _as_json(pipeline: Pipeline, file: str | None, before: Iterable[Diagnostic]) -> int:
+def _as_json(pipeline: Pipeline, file: str | None) -> int:
     """Print findings as JSON; return the exit code."""
     found, taken = Found([], [], Missing()), list[str]()
     if file is not None:
         with opened(file) as source:
+            stamps = stamps_in(source)
+            warn(edited(stamps.edited, source.name, stamps.line))
             found = _found(pipeline, source, taken)
-    said = [described(each) for each in (*before, *found.wrong, *found.others)]
+    warned = click.get_current_context().meta.get(FOUND, ())
+    said = [described(each) for each in (*warned, *found.wrong, *found.others)]
     click.echo(json.dumps({"findings": said, "assumed": taken}, indent=2))
     return 1 if found.wrong else 0
 

@@ -6,6 +6,13 @@ from faults.mutation import Mutation
 
 MUTATIONS = (
     Mutation(
+        "check --json: what was found before it ended is left out",
+        "gcxform/cli/common/failures.py",
+        "_say_json([*meta.get(FOUND, ()), *error.diagnostics])",
+        "_say_json(error.diagnostics)",
+        "tests/test_hints.py",
+    ),
+    Mutation(
         "info: the feed per turn forgets the spindle",
         "gcxform/cli/program/times.py",
         "speed[event.row :] = self.spindle",

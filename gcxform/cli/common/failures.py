@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import re
 import sys
 import tempfile
 import traceback
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Final, TextIO
@@ -18,6 +19,7 @@ import click
 from gcxform.catalogue.offers import said_to_chain
 from gcxform.catalogue.questions import questions
 from gcxform.cli.common import DEBUG
+from gcxform.cli.common.findings import described
 from gcxform.cli.common.options import ENVIRONMENT
 from gcxform.cli.common.signals import Ended, ending
 from gcxform.diagnostics import Diagnostic, FileError, GcxformError, render_all
@@ -29,6 +31,9 @@ FAILED: Final = 5
 BUG: Final = 70
 INTERRUPTED: Final = 130
 WORDS: Final = "gcxform.words"
+FOUND: Final = "gcxform.found"
+JSON_VERBS: Final = ("check", "info")
+"""Verbs of which `--json` makes all that they say JSON, what ends them included."""
 ALL_AT_ONCE: Final = "gcxform check, with the same words, says all that is missing at once, as TOML"
 
 _HEAD = re.compile(r"\b(error|warning|note)\[(GX\d+)\]:")
@@ -59,20 +64,46 @@ def _run(group: click.Command, name: str, words: list[str], extra: Mapping[str, 
     except click.exceptions.Exit as stop:
         return stop.exit_code
     except click.ClickException as error:
-        error.show()
+        if _says_json(words):
+            _say_json([*meta.get(FOUND, ()), Diagnostic("", error.format_message())])
+        else:
+            error.show()
         return USAGE
     except GcxformError as error:
-        say(paint(render_all(_typed(error.diagnostics, words)), sys.stderr))
-        if words[:1] == ["run"] and _asks(error):
-            say(ALL_AT_ONCE)
-        return error.exit_code
+        return _refused(error, words, meta)
     except click.Abort:
         say("interrupted")
         return INTERRUPTED
     except (OSError, MemoryError) as error:
-        return _system_failure(error)
+        return _system_failure(error, words)
     except Exception:
         return _bug(words, bool(meta.get(DEBUG)))
+
+
+def _refused(error: GcxformError, words: list[str], meta: Mapping[str, Any]) -> int:
+    """Report what a user can mend; return the exit code."""
+    if _says_json(words):
+        _say_json([*meta.get(FOUND, ()), *error.diagnostics])
+        return error.exit_code
+    say(paint(render_all(_typed(error.diagnostics, words)), sys.stderr))
+    if words[:1] == ["run"] and _asks(error):
+        say(ALL_AT_ONCE)
+    return error.exit_code
+
+
+def _says_json(words: Sequence[str]) -> bool:
+    """Whether a command line asks that all that is found be JSON."""
+    verb = next((word for word in words if not word.startswith("-")), "")
+    return verb in JSON_VERBS and "--json" in words
+
+
+def _say_json(found: Sequence[Diagnostic]) -> None:
+    """Print what ended a verb as the findings that they are; as text if stdout is no more."""
+    try:
+        click.echo(json.dumps({"findings": [described(each) for each in found]}, indent=2))
+    except OSError:
+        _abandon_stdout()
+        say(paint(render_all(found), sys.stderr))
 
 
 def _asks(error: GcxformError) -> bool:
@@ -88,9 +119,12 @@ def say(text: str) -> None:
 
 
 def warn(diagnostics: Iterable[Diagnostic]) -> None:
-    """Write findings that stop nothing to stderr."""
+    """Write findings that stop nothing to stderr; where all is JSON, keep them for it."""
     context = click.get_current_context(silent=True)
     words = [] if context is None else context.meta.get(WORDS, [])
+    if context is not None and _says_json(words):
+        context.meta.setdefault(FOUND, []).extend(diagnostics)
+        return
     if text := render_all(_typed(diagnostics, words)):
         say(paint(text, sys.stderr))
 
@@ -122,16 +156,20 @@ def _tolerate_names() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
-def _system_failure(error: OSError | MemoryError) -> int:
+def _system_failure(error: OSError | MemoryError, words: list[str]) -> int:
     """Report what the operating system refused; a reader that went away is no news."""
-    _abandon_stdout()
     if isinstance(error, MemoryError):
         error = OSError(errno.ENOMEM, "there is not enough memory")
     if error.errno == errno.EPIPE:
+        _abandon_stdout()
         return FAILED
     what = f"{error.filename}: " if error.filename else ""
     failure = FileError.one("GX903", f"{what}{error.strerror or error}")
-    say(paint(failure.render(), sys.stderr))
+    if _says_json(words):
+        _say_json(failure.diagnostics)
+    else:
+        _abandon_stdout()
+        say(paint(failure.render(), sys.stderr))
     return failure.exit_code
 
 
