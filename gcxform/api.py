@@ -11,11 +11,14 @@ from typing import Any
 import numpy as np
 
 from gcxform.config import arguments
+from gcxform.contract.own_codes import with_own_codes
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.dialect import Dialect
 from gcxform.errormodel.model import ErrorModel
 from gcxform.errormodel.model_file import load_model
 from gcxform.flow.straightened import located, written_out
+from gcxform.machine.file import load_machine
+from gcxform.machine.machine import Machine
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
@@ -45,12 +48,17 @@ class Program:
     """A program in memory, and what its dialect says it does.
 
     `path` is its whole toolpath; asking for it raises InputError where the program is refused.
+    Codes that the machine file declares are of the dialect; UsageError for those that it has.
     """
 
     text: bytes
     dialect: type[Dialect]
     reading: Reading = field(default_factory=Reading)
     name: str = "-"
+
+    def __post_init__(self) -> None:
+        kind = with_own_codes(self.dialect, self.reading.control)
+        object.__setattr__(self, "dialect", kind)
 
     @cached_property
     def path(self) -> Toolpath:
@@ -116,16 +124,33 @@ class Program:
         return joined([interpreter.interpret(w, reader.table).path for w in windows])
 
 
-def read(program: bytes | str | Path, dialect: str | type[Dialect], **reading: Any) -> Program:
+def read(
+    program: bytes | str | Path,
+    dialect: str | type[Dialect],
+    machine: str | Path | Machine | None = None,
+    **reading: Any,
+) -> Program:
     """Return a program: its bytes, or the file of that name.
 
     `reading` is what the program does not say of itself: `start`, `increment`, `feed`,
-    `block_delete`, `units`, as in `Reading`. Raises FileError, and UsageError for the dialect.
+    `block_delete`, `units`, as in `Reading`; `machine` a machine file, whose offsets, homes, tools
+    and settings count. Raises FileError, and UsageError for the dialect and the machine file.
     """
     kind, said = dialect_of(dialect), Reading(**reading)
+    if machine is not None:
+        said = said.on(_machine_of(machine))
     source = program_of(program)
     with source.stream as stream:
         return Program(stream.read(), kind, said, source.name)
+
+
+def _machine_of(given: object) -> Machine:
+    """Return a machine that is given as itself, or by its file. Raises UsageError."""
+    if isinstance(given, str | Path):
+        return load_machine(Path(given), default_registry().machines)
+    arguments.instance("machine", given, Machine, "a machine file, or what it was loaded to")
+    assert isinstance(given, Machine)
+    return given
 
 
 def read_model(path: str | Path) -> ErrorModel:

@@ -64,8 +64,8 @@ def command(
     told |= {"outside": outside, "time": time, "backlash": backlash}
     through = _model({**told, "max-extrapolation": max_extrapolation})
     what = Asked(**asked)
-    first = _program(a, needed_dialect(dialect), what)
-    second = _program(b, to or needed_dialect(dialect), what)
+    dialect = needed_dialect(dialect)
+    first, second = _program(a, dialect, dialect, what), _program(b, to or dialect, dialect, what)
     found = compare(first, second, tolerance, through, what.loaded_machine)
     click.echo(report(found, first, second))
     return 0 if found.same else 1
@@ -86,8 +86,9 @@ def _model(given: dict[str, str | None]) -> Pass | None:
     return step
 
 
-def _program(file: str, dialect: str, asked: Asked) -> Program:
-    kind, reading = default_registry().dialect(dialect), asked.reading()
+def _program(file: str, dialect: str, machine_of: str, asked: Asked) -> Program:
+    """Return a program; `machine_of` is the dialect of the machine file."""
+    kind, reading = asked.reads(dialect, machine_of)
     with opened(file) as source:
         text = b"".join(source.windows())
         return Program(text, kind, reading, source.name)

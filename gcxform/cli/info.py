@@ -26,7 +26,6 @@ from gcxform.guess import guess_dialect
 from gcxform.machine.machine import Machine
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
-from gcxform.plugin.registry import default_registry
 from gcxform.stamps.chain import told
 from gcxform.stamps.comment import stamps_in
 from gcxform.syntax.scan import Window
@@ -53,8 +52,8 @@ _KINDS = {
 def command(file: str, dialect: str | None, as_json: bool, **asked: Any) -> None:
     """Print what is in a program; without a dialect its words, and which dialect it may be in."""
     what = Asked(**asked)
-    reading, speeds = what.reading(), _speeds(what.loaded_machine)
-    kind = default_registry().dialect(dialect) if dialect else None
+    speeds = _speeds(what.loaded_machine)
+    kind, reading = what.reads(dialect) if dialect else (None, what.reading())
     with opened(file) as source:
         found: dict[str, Any] = {"file": source.name, "bytes": source.size}
         found |= {"stamps": said} if (said := told(stamps_in(source))) else {}

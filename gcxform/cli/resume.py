@@ -16,7 +16,6 @@ from gcxform.cli.common.request import Asked, needed_dialect
 from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
 from gcxform.dialect.dialect import Dialect
 from gcxform.pipeline.plan import check_written
-from gcxform.plugin.registry import default_registry
 from gcxform.resume.preamble import Preamble
 from gcxform.resume.restart import Restart
 from gcxform.stamps.comment import Stamps, stamps_in, without_lines
@@ -44,14 +43,14 @@ def command(
     **asked: Any,
 ) -> None:
     """Print the blocks for a restart at a line, proved to lead to what the program does."""
-    kind = default_registry().dialect(needed_dialect(dialect))
+    kind, reading = Asked(**asked).reads(needed_dialect(dialect))
     check_written(kind)
     if plunge is not None and not plunge > 0:
         raise UsageError.one("GX706", f"{plunge:g} is not above 0", Location("--plunge"))
     if rest and clearance is None:
         raise UsageError.one("GX705", "--rest needs --clearance", hint="--clearance 50mm")
     with opened(file) as source:
-        restart = Restart(kind, source, Asked(**asked).reading(), line)
+        restart = Restart(kind, source, reading, line)
         preamble = restart.preamble(clearance, plunge, not tool_loaded)
         end = b"\r\n" if b"\r\n" in restart.rest[0] else b"\n"
         frame = ["%"] if rest and restart.state.percents == 1 else []

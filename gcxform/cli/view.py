@@ -60,7 +60,7 @@ def _one(file: str, what: Asked) -> bytes:
 
 def _two(file: str, other: str, what: Asked) -> bytes:
     source = _shown(file, needed_dialect(what.dialect), what)
-    output = _shown(other, what.to or needed_dialect(what.dialect), what)
+    output = _shown(other, what.to or needed_dialect(what.dialect), what, what.dialect)
     beside = Beside.of(other, source.sha256, output.sha256)
     title = f"{Path(file).name} and {Path(other).name}"
     page = _page(title, what.loaded_machine, source)
@@ -93,10 +93,9 @@ def _written(pipeline: Pipeline, text: bytes, file: str) -> Shown:
     return read(Source.of_bytes(text, name), pipeline.target, reading)
 
 
-def _shown(file: str, dialect: str, what: Asked) -> Shown:
-    kind = default_registry().dialect(dialect)
+def _shown(file: str, dialect: str, what: Asked, of: str | None = None) -> Shown:
     with opened(file) as source:
-        return read(source, kind, what.reading())
+        return read(source, *what.reads(dialect, of or ""))
 
 
 def _page(title: str, machine: Machine | None, shown: Shown, steps: Sequence[Pass] = ()) -> Page:

@@ -3,6 +3,7 @@
 `[control.macro.G100] ends = "at XYZ"` is said of a code that the dialect does not have, or that it
 refuses as one that moves by itself in its own block. All words of such a block belong to the code,
 as those of G65 do. A code that stays in force, or that the dialect resolves, cannot be declared.
+They are those of the control that a program is in; nothing is said of another one.
 """
 
 from __future__ import annotations
@@ -26,9 +27,19 @@ def with_own_codes(dialect: type[Dialect], control: Mapping[str, str | float]) -
 
     Raises UsageError for codes that the dialect has.
     """
-    said = ((name.partition(MACRO)[2], value) for name, value in control.items())
-    names = {name for name, ends in said if name[:1] in ("G", "M") and isinstance(ends, str)}
+    names = {name.partition(MACRO)[2] for name, ends in control.items() if _declares(name, ends)}
     return _with(cast(Any, dialect), tuple(sorted(names))) if names else dialect
+
+
+def without_own_codes(control: Mapping[str, str | float]) -> dict[str, str | float]:
+    """Return what a machine file says, for a program in the language of another control."""
+    return {name: said for name, said in control.items() if not _declares(name, said)}
+
+
+def _declares(name: str, said: str | float) -> bool:
+    """Whether a setting declares a code."""
+    code = name.removeprefix(MACRO)
+    return code != name and code[0] in "GM" and isinstance(said, str)
 
 
 @cache

@@ -118,11 +118,11 @@ class Plan:
         if machine is not None:
             arguments.instance("machine", machine, Machine, "a machine, as load_machine gives it")
         control = machine.control if machine is not None else {}
-        both = (
-            with_own_codes(with_kept_planes(dialect_of(each), False), control)
-            for each in (self.source, self.target)
+        source, target = (
+            with_kept_planes(dialect_of(each), False) for each in (self.source, self.target)
         )
-        source, target = both
+        same, source = source is target, with_own_codes(source, control)
+        target = source if same else target
         steps = tuple(taken(step) for step in steps)
         keeps = source is target and says_the_same(s for s in steps if isinstance(s, Pass))
         return {

@@ -95,6 +95,20 @@ MUTATIONS = (
         "if not dialect.flow_rule.macro_levels:",
         "flow/own-code-of-the-control",
     ),
+    Mutation(
+        "the codes of a machine are those of another control too",
+        "gcxform/pipeline/plan.py",
+        "target = source if same else target",
+        "target = source if same else with_own_codes(target, control)",
+        "tests/test_own_codes.py",
+    ),
+    Mutation(
+        "a program in memory has no codes of its machine",
+        "gcxform/api.py",
+        "kind = with_own_codes(self.dialect, self.reading.control)",
+        "kind = self.dialect",
+        "tests/test_own_codes.py",
+    ),
     _macro(
         "where a declared code ends is not asked",
         "gcxform/modal/lines.py",

@@ -11,7 +11,9 @@ from typing import Any, Final
 
 from gcxform.cli.common.options import ENVIRONMENT
 from gcxform.contract.options import Argument, build
+from gcxform.contract.own_codes import with_own_codes, without_own_codes
 from gcxform.diagnostics import Location, UsageError
+from gcxform.dialect.dialect import Dialect
 from gcxform.machine.file import load_machine
 from gcxform.machine.machine import Machine
 from gcxform.modal.state import Reading
@@ -136,6 +138,16 @@ class Asked:
     def _built(section: type[Any], raw: Mapping[str, object]) -> Any:
         """Return a section of what was said. Raises UsageError."""
         return build(section, raw, Path.cwd(), (), lambda key: Location(f"--{key}"), "input")
+
+    def reads(self, name: str, of: str = "") -> tuple[type[Dialect], Reading]:
+        """Return a dialect, with the codes of the machine file, and what is said for reading.
+
+        `of` is the dialect of the machine, if that is another: its codes are those of no other.
+        """
+        kind, reading = default_registry().dialect(name), self.reading()
+        if of and kind is not default_registry().dialect(of):
+            reading = replace(reading, control=without_own_codes(reading.control))
+        return with_own_codes(kind, reading.control), reading
 
     def reading(self) -> Reading:
         """Return what the command line says for reading a program without a pipeline."""

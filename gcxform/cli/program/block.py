@@ -21,7 +21,6 @@ from gcxform.flow.straightened import written_out
 from gcxform.flow.translation import translated_so_far
 from gcxform.modal.meaning.tables import GROUPS, code_of
 from gcxform.modal.state import Reading, State
-from gcxform.plugin.registry import default_registry
 from gcxform.syntax.source import Source
 from gcxform.syntax.tree import Block, Comment, Mark, Number, Word
 from gcxform.system.arrays import Ints
@@ -43,8 +42,7 @@ _UNITS = {
 
 def explained(file: str, line: int, dialect: str | None, asked: Mapping[str, Any]) -> list[str]:
     """Return a line, from 1, of a file in words. Raises UsageError if the file is shorter."""
-    kind = default_registry().dialect(needed_dialect(dialect))
-    reading = Asked(**asked).reading()
+    kind, reading = Asked(**asked).reads(needed_dialect(dialect))
     if kind.translator is not None:
         with opened(file) as source:
             return _foreign(source, line, kind, reading)
