@@ -17,6 +17,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import gcxform as gx
 
@@ -169,7 +170,8 @@ def _as_read(text: str, dialect: type[gx.Dialect], inert: Codes) -> Line:
     zero = {dialect.initial["frame"]: dict.fromkeys("XYZ", 0.0)}
     paths = []
     for start in (0.0, 1.0):
-        given = {"start": dict.fromkeys("XYZ", start), "units": "mm", "work_offsets": zero}
+        placed = dict.fromkeys("XYZ", start)
+        given: dict[str, Any] = {"start": placed, "units": "mm", "work_offsets": zero}
         try:
             read = gx.read(text.encode() + b"\n", dialect, inert_m=inert, **given)
             paths.append(read.path)
