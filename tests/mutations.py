@@ -5,14 +5,15 @@
 The packages are copied to temporary directories, as many as run at a time. A fault is written into
 a copy, and the tests of the fault run on it until one fails. A fault that no test notices survives;
 then the exit code is 1. Which test noticed is printed; in the end all these run on a copy without
-any fault, where they must pass. The faults are listed in `tests/faults/`.
+any fault, where they must pass. The faults are listed in `tests/faults/`. The seconds are those of
+a processor, and the twenty faults that took most are named in the end.
 
 `--remember` writes into `tests/faults/noticed.txt` which test noticed, where that took long. Next
 time it is run first; if it passes, or is no more, all tests of the fault are run. So this file
 changes how long a verdict takes, and nothing else.
 
 Tests run in copies of this process, which has imported what others wrote and nothing of gcxform: a
-new one starts in milliseconds.
+new one starts in milliseconds. Nothing but the test that is named is drawn up.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ import shutil
 import signal
 import sys
 import tempfile
-import time
+import traceback
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
@@ -39,13 +40,17 @@ from faults.mutation import Mutation
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("gcxform", "plugins/gcxform_plugins", "grammars/gcxform_grammars")
 IMPORTED = (
-    *("numpy", "lark", "pluggy", "click", "msgspec", "scipy.spatial.transform", "pytest"),
+    *("numpy", "lark", "pluggy", "click", "msgspec", "tomlkit", "tomllib", "scipy.optimize"),
+    *("scipy.spatial.transform", "scipy.interpolate", "scipy.stats", "multiprocessing.connection"),
     *("matplotlib.figure", "matplotlib.backends.backend_agg", "hypothesis.strategies"),
+    *("pytest", "_hypothesis_pytestplugin", "xdist.plugin", "xdist.looponfail", "xdist.newhooks"),
+    *("pdb", "faulthandler", "readline", "unittest.mock", "_pytest.pytester_assertions"),
 )
 FAILED, BROKEN = 1, 99  # FAILED is pytest's exit code for tests that failed
 TIMEOUT = 180  # seconds for one set of tests; a mutant that hangs is noticed too
 REMEMBERED = ROOT / "tests" / "faults" / "noticed.txt"
-LONG = 3.0  # seconds
+LONG = 1.0  # seconds of a processor
+SLOWEST = 20  # so many are named in the end
 SAID, NOTICED = "said.txt", "noticed.txt"  # what pytest prints, and which test failed
 
 
@@ -96,7 +101,10 @@ def started(folder: Path, tests: Iterable[str]) -> int:
         code = BROKEN
         try:
             code = tested(folder, list(tests))
+        except BaseException:
+            traceback.print_exc()
         finally:
+            sys.stderr.flush()
             os._exit(code)
     return number
 
@@ -118,29 +126,38 @@ def tested(folder: Path, tests: list[str]) -> int:
     package = importlib.import_module("gcxform")
     assert str(package.__file__).startswith(str(folder)), package.__file__
     pytest = importlib.import_module("pytest")
-    options = ["-x", "-q", "-p", "no:cacheprovider"]
+    options = ["-x", "-q", "-p", "no:cacheprovider", f"--basetemp={folder / 'tmp'}"]
     options += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]  # of what is imported already
-    return int(pytest.main([*options, *tests], plugins=[Noticed(folder / NOTICED)]))
+    named = frozenset(test.partition("::")[2].partition("[")[0] for test in tests)
+    return int(pytest.main([*options, *tests], plugins=[Noticed(folder / NOTICED, named)]))
 
 
 @dataclass
 class Noticed:
-    """Writes down which test failed."""
+    """Draws up the functions of a file that are named, and writes down which test failed."""
 
     file: Path
+    named: frozenset[str]  # an empty name is the whole file
+
+    def pytest_pycollect_makeitem(self, name):  # type: ignore[no-untyped-def]
+        return None if "" in self.named or name in self.named else []
+
+    def pytest_sessionfinish(self) -> None:
+        gc.freeze()  # pytest looks for garbage five times before it ends, which took half a second
 
     def pytest_runtest_logreport(self, report) -> None:  # type: ignore[no-untyped-def]
         if report.failed:
             self.file.write_text(report.nodeid, encoding="utf-8")
 
 
-def ended() -> tuple[int, int]:
-    """Wait for a process, end what it has started, and return its number and its exit code."""
-    number, status = os.wait()
+def ended() -> tuple[int, int, float]:
+    """Wait for a process, end what it has started; return its number, exit code and seconds."""
+    number, status, used = os.wait3(0)
     with suppress(ProcessLookupError):
         os.killpg(number, signal.SIGKILL)
     code = os.waitstatus_to_exitcode(status)
-    return number, FAILED if code == -signal.SIGALRM else code
+    seconds = used.ru_utime + used.ru_stime
+    return number, FAILED if code == -signal.SIGALRM else code, seconds
 
 
 # --- verdicts ---
@@ -167,20 +184,20 @@ class Verdict:
 def finished(jobs: list[Job], folders: list[Path]) -> Iterator[Verdict]:
     """Do jobs, as many at a time as there are copies; yield the verdicts as they come."""
     waiting, free = jobs[::-1], list(folders)
-    running: dict[int, tuple[Job, Path, float]] = {}
+    running: dict[int, tuple[Job, Path]] = {}
     while waiting or running:
         while waiting and free:
             job, folder = waiting.pop(), free.pop()
             if job[0]:
                 broken(job[0], folder)
-            running[started(folder, job[1])] = job, folder, time.monotonic()
-        number, code = ended()
-        job, folder, began = running.pop(number)
+            running[started(folder, job[1])] = job, folder
+        number, code, seconds = ended()
+        job, folder = running.pop(number)
         if job[0]:
             mended(job[0], folder)
         free.append(folder)
         test, said = ((folder / name).read_text("utf-8", "replace") for name in (NOTICED, SAID))
-        yield Verdict(job, code, test, said[-3000:], time.monotonic() - began)
+        yield Verdict(job, code, test, said[-3000:], seconds)
 
 
 def verdicts(chosen: list[Mutation], folders: list[Path]) -> Iterator[tuple[Mutation, Verdict]]:
@@ -218,7 +235,7 @@ def failing(tests: set[str], folders: list[Path]) -> list[str]:
     by_file: dict[str, list[str]] = defaultdict(list)
     for test in sorted(tests):
         by_file[test.partition("::")[0]].append(test)
-    jobs: list[Job] = [(None, some) for some in by_file.values()]
+    jobs: list[Job] = [(None, some) for some in sorted(by_file.values(), key=len, reverse=True)]
     return [one.said for one in finished(jobs, folders) if one.code]
 
 
@@ -257,6 +274,9 @@ def judged(chosen: list[Mutation], folders: list[Path], writes: bool) -> int:
         if one.code not in (0, FAILED):
             print(one.said)
         found.append((mutation, one))
+    print(f"{sum(one.seconds for _, one in found):.0f} s of a processor; most of it:")
+    for mutation, one in sorted(found, key=lambda f: f[1].seconds, reverse=True)[:SLOWEST]:
+        print(f"{one.seconds:6.1f} s  {mutation.name}  {one.test}")
     caught = sum(one.code == FAILED for _, one in found)
     print(f"{caught} of {len(found)} mutations are caught")
     if wrong := failing({one.test for _, one in found} - {""}, folders):

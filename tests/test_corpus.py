@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -59,12 +61,15 @@ ELSEWHERE = {
 }
 """Codes that no case can trigger, with the file of the test that does; those of the command line
 are looked for in any test."""
+NAMED = re.compile(r"::\w+\[(.+)\]$")
+WHICH: dict[str, Callable[[Case], object]] = {}
+"""What must hold of a case on which a test is run, by the name of the test."""
 COMMAND_LINE = re.compile(r"GX72[6-9]|GX73\d")
 
 
 def paths() -> list[Path]:
     """Return the cases: text files, and the directories in `bytes`."""
-    files = [p for p in CORPUS.rglob("*.txt") if CORPUS / "bytes" not in p.parents]
+    files = [p for p in CORPUS.rglob("*.txt") if p.relative_to(CORPUS).parts[0] != "bytes"]
     return sorted([*files, *(p for p in (CORPUS / "bytes").iterdir() if p.is_dir())])
 
 
@@ -72,7 +77,37 @@ def name(path: Path) -> str:
     return path.relative_to(CORPUS).with_suffix("").as_posix()
 
 
-CASES = [read_case(path) for path in paths()]
+@cache
+def all_cases() -> tuple[Case, ...]:
+    """Return all cases."""
+    return tuple(map(read_case, paths()))
+
+
+@cache
+def asked(*words: str) -> tuple[Case, ...]:
+    """Return the cases that pytest is asked for; where they are named, no others are read."""
+    named = [NAMED.search(word) for word in words]
+    if not all(named):
+        return all_cases()
+    ids = sorted({each[1] for each in named if each})
+    files = [path for each in ids for path in (CORPUS / f"{each}.txt", CORPUS / each)]
+    return tuple(read_case(path) for path in files if path.exists())
+
+
+def each_case(which=lambda case: True):
+    """Run a test on each case of which something holds."""
+
+    def marked(test):
+        WHICH[test.__name__] = which
+        return test
+
+    return marked
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    if which := WHICH.get(metafunc.function.__name__):
+        some = filter(which, asked(*metafunc.config.args))
+        metafunc.parametrize("case", [parameter(case) for case in some])
 
 
 def parameter(case: Case) -> object:
@@ -80,7 +115,7 @@ def parameter(case: Case) -> object:
     return pytest.param(case, id=name(case.path), marks=marks)
 
 
-@pytest.mark.parametrize("case", [parameter(case) for case in CASES])
+@each_case()
 def test_case(case, tmp_path):
     found = run_case(case, tmp_path, PLACES)
     go_out(case, found, tmp_path, PLACES)
@@ -96,7 +131,7 @@ def joins(case):
     return 'use = "arcs"' in case.text("pipeline.toml")
 
 
-@pytest.mark.parametrize("case", [parameter(case) for case in CASES if not case.xfail])
+@each_case(lambda case: not case.xfail)
 def test_windows_make_no_difference(case, tmp_path, monkeypatch):
     """Run every case line by line: what one window knows, the next one must know as well."""
     monkeypatch.setattr("gcxform.syntax.source.WINDOW", 1)
@@ -117,7 +152,7 @@ def test_every_file_is_a_case():
     assert {p for p in CORPUS.rglob("*") if p.is_file()} - known == set()
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: name(case.path))
+@each_case()
 def test_a_case_is_a_page(case):
     if case.path.is_file():
         text = case.path.read_text("utf-8")
@@ -127,11 +162,11 @@ def test_a_case_is_a_page(case):
 
 
 def test_names_of_cases_are_unique():
-    assert len({name(case.path) for case in CASES}) == len(CASES)
+    assert len({name(case.path) for case in all_cases()}) == len(all_cases())
 
 
 def test_every_code_has_a_case():
-    triggered = {line.split()[-1] for case in CASES for line in case.diagnostics}
+    triggered = {line.split()[-1] for case in all_cases() for line in case.diagnostics}
     assert triggered <= set(CATALOGUE), "cases expect codes that the catalogue does not have"
     tests = {path.name: path.read_text("utf-8") for path in Path(__file__).parent.glob("*.py")}
     others = [text for file, text in tests.items() if file != Path(__file__).name]
@@ -143,7 +178,7 @@ def test_every_code_has_a_case():
 
 
 def test_no_code_is_listed_without_need():
-    triggered = {line.split()[-1] for case in CASES for line in case.diagnostics}
+    triggered = {line.split()[-1] for case in all_cases() for line in case.diagnostics}
     assert not triggered & set(ELSEWHERE)
 
 
@@ -216,17 +251,32 @@ def test_a_disk_that_is_full(words, code, tmp_path):
 
 # --- what LinuxCNC's own interpreter says to the cases ---
 
-FOR_LINUXCNC = [
-    case
-    for case in CASES
-    if 'dialect = "linuxcnc"' in case.text("pipeline.toml")
-    and not case.xfail
-    and "dialect = " not in case.text("pipeline.toml").replace('dialect = "linuxcnc"', "", 1)
-    and not re.search(
-        'parameters = |block-delete = "skip"|tip-codes = "read"', case.text("pipeline.toml")
+
+def for_linuxcnc(case: Case) -> bool:
+    """Tell whether LinuxCNC is told all: no parameter has a value at its start, no codes are own.
+
+    Nor may blocks be skipped, for its switch is off.
+    """
+    text = case.text("pipeline.toml")
+    return (
+        'dialect = "linuxcnc"' in text
+        and not case.xfail
+        and "dialect = " not in text.replace('dialect = "linuxcnc"', "", 1)
+        and not re.search('parameters = |block-delete = "skip"|tip-codes = "read"', text)
     )
-]  # those it is told all of: no parameter has a value at its start, the switch is off, and it has
-# no codes of a machine's own
+
+
+def goes(case: Case) -> bool:
+    """Tell whether LinuxCNC should go the same way: its work offsets are 0."""
+    return (
+        for_linuxcnc(case)
+        and not case.diagnostics
+        and bool(case.sections["input.nc"].strip())
+        and not ("[work-offset" in case.text("machine.toml") and case.path.parent.name == "offsets")
+        and "user-codes" not in case.text("machine.toml")
+    )
+
+
 NEEDS_RS274 = pytest.mark.skipif(not rs274.available(), reason="rs274 is not installed")
 
 
@@ -241,18 +291,7 @@ def grid(case: Case) -> float:
 
 
 @NEEDS_RS274
-@pytest.mark.parametrize(
-    "case",
-    [
-        c
-        for c in FOR_LINUXCNC
-        if not c.diagnostics
-        and c.sections["input.nc"].strip()
-        and not ("[work-offset" in c.text("machine.toml") and c.path.parent.name == "offsets")
-        and "user-codes" not in c.text("machine.toml")
-    ],  # its work offsets are 0, and it has no codes of a user's
-    ids=lambda c: name(c.path),
-)
+@each_case(goes)
 def test_linuxcnc_goes_the_same_way(case, tmp_path):
     called = {key: text for key, text in case.sections.items() if key.endswith(".ngc")}
     source = rs274.run(case.sections["input.nc"], called)
@@ -270,7 +309,7 @@ def test_linuxcnc_goes_the_same_way(case, tmp_path):
 
 @NEEDS_RS274
 def test_linuxcnc_counts_from_the_zero_that_is_set_behind_compensated_moves(tmp_path):
-    case = next(c for c in CASES if name(c.path) == "volumetric/zero-set-behind")
+    case = next(c for c in all_cases() if name(c.path) == "volumetric/zero-set-behind")
     source = rs274.run(case.sections["input.nc"])
     written = rs274.run(result(case, tmp_path).text)
     ends = [[move.machine[1]["X"] for move in program.moves][-3:] for program in (source, written)]
@@ -279,11 +318,7 @@ def test_linuxcnc_counts_from_the_zero_that_is_set_behind_compensated_moves(tmp_
 
 
 @NEEDS_RS274
-@pytest.mark.parametrize(
-    "case",
-    [c for c in FOR_LINUXCNC if c.diagnostics and "(rs274 2.9" in c.prose],
-    ids=lambda c: name(c.path),
-)
+@each_case(lambda case: for_linuxcnc(case) and case.diagnostics and "(rs274 2.9" in case.prose)
 def test_linuxcnc_refuses_it_too(case):
     with pytest.raises(rs274.Rejected) as refusal:
         rs274.run(case.sections["input.nc"])

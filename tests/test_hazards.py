@@ -6,12 +6,12 @@ import re
 from pathlib import Path
 
 import pytest
-from test_corpus import CASES, name
+from test_corpus import all_cases, name
 
 TABLE = Path(__file__).with_name("hazards.md")
 ROW = re.compile(r"\| (H-\d+a?) \| ([^|]+) \| (H|R|C|open|-) \| ([^|]+) \|")
 RANGES = [(1, 11), (20, 42), (50, 78), (80, 110), (120, 150)]
-BY_NAME = {name(case.path): case for case in CASES}
+BY_NAME = {name(case.path): case for case in all_cases()}
 
 
 def rows():
