@@ -373,10 +373,9 @@ class Execution(RunState):
     def _write_changed(self, block: Block, edits: list[Edit]) -> None:
         """Write a block whose expressions have become numbers; one of which nothing is left not."""
         gone = {start for start, _, new in edits if not new}
-        words = [i for i in bare(block) if isinstance(i, Word) and i.start not in gone]
+        words = [i for i in bare(block) if isinstance(i, Word | Statement) and i.start not in gone]
         active = [i for i in block.items if isinstance(i, Comment) and self._executes(block, i)]
-        kept = [new for start, _, new in edits if any(start == i.start for i in _statements(block))]
-        if not words and not active and not any(kept):
+        if not words and not active:
             return
         text = block.text
         for start, end, new in sorted(edits, reverse=True):

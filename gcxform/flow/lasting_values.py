@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from gcxform.dialect.arithmetic import Key, NoValueError
 from gcxform.dialect.null import MAYBE
-from gcxform.flow.messages import told
+from gcxform.flow.messages import LONGEST, told
 from gcxform.flow.outputs import Outputs
 from gcxform.flow.run_state import Edit, RunState
 from gcxform.flow.text import assignment
@@ -97,10 +97,12 @@ class Lasting:
     def _printed(self, key: Key) -> float | None:
         """Return what a message prints for a parameter; None where the control knows it as well."""
         known, arithmetic = self.program.parameters.get(key), self.program.arithmetic
-        if known is None or math.isfinite(known):
+        if known is None or abs(known) < LONGEST:
             return known
         doubtful = key in self.program.dropped - self.program.settled.needed
         if known == DOUBTFUL or (arithmetic.owns(key) and doubtful):
-            message = f"{written(key)}, which this message prints, is not known here"
+            long = math.isfinite(known)
+            why = "has more digits than a message takes" if long else "is not known here"
+            message = f"{written(key)}, which this message prints, {why}"
             raise NoValueError(message, code="GX220")
         return None

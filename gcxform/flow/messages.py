@@ -3,7 +3,8 @@
 What is here was executed with the stand-alone interpreter. `(DEBUG,`, `(PRINT,` and `(LOG,` print
 values, other comments that act do not. `%d`, `%f` and `%.3f` say how the values behind them are
 printed, and are not printed themselves. A number is a parameter without blanks; what is nearer to
-zero than 0.0001 is zero; a name that does not exist is `######`.
+zero than 0.0001 is zero; a name that does not exist is `######`, and so is what takes 30 characters
+or more: such a value is left to the control.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from gcxform.modal.meaning.printed import prints_values
 
 PART = re.compile(r"#<[^<>]*>|#[0-9]+|%d|%f|%\.[0-9]f|%\.")
 DECIMALS, OF_F = 6, 4
+LONGEST = 1e18  # a value from here on may take 30 characters, with nine decimals
 ZERO = 1e-4  # what is nearer to zero is printed as zero
 
 

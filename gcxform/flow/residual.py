@@ -56,12 +56,19 @@ def _assignment(node: Tree[Any], evaluator: Evaluator, found: Residual) -> None:
 
 
 def _one(node: Tree[Any], evaluator: Evaluator, found: Residual) -> None:
+    """Put what a parameter is worth in its place, or note that it stays.
+
+    Raises NoValueError for one that has no value on the machine either.
+    """
     try:
         text = number(evaluator.value(node), evaluator.arithmetic)
         found.edits.append((*span_of(node), f"[{text}]" if text.startswith("-") else text))
         return
-    except NoValueError:
-        pass
+    except NoValueError as why:
+        if not why.lost:
+            raise
+    if rule_of(node) != "parameter":
+        return
     try:
         key = evaluator.key(node)
     except NoValueError:
@@ -75,14 +82,19 @@ def _one(node: Tree[Any], evaluator: Evaluator, found: Residual) -> None:
 
 
 def _outermost(node: Any) -> Iterator[Tree[Any]]:
-    """Yield the parameters of an expression that are in no other one."""
+    """Yield the parameters of an expression that are in no other one, and what asks for them."""
     if not isinstance(node, Tree):
         return
-    if rule_of(node) == "parameter":
+    if rule_of(node) == "parameter" or _asks(node):
         yield node
         return
     for child in node.children:
         yield from _outermost(child)
+
+
+def _asks(node: Tree[Any]) -> bool:
+    """Whether a node is EXISTS of a parameter: that has no number in its place."""
+    return rule_of(node) == "call" and str(node.children[0]).upper() == "EXISTS"
 
 
 def edited(text: str, start: int, end: int, edits: list[Edit]) -> str:

@@ -310,7 +310,10 @@ class RunState:
 
         Raises Again if what it reads was left out before.
         """
-        left = residual(item.tree, evaluator)
+        try:
+            left = residual(item.tree, evaluator)
+        except LocatedError as why:
+            raise self.refusal(why.code, why.message, why.hint, (why.start, why.end)) from None
         self.needs(self.dropped if left.anywhere else left.reads)
         return edited(self.listing.block(self.line).text, item.start, item.end, left.edits)
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Annotated
 
 import gcxform as gx
 from gcxform_plugins.dialects.linuxcnc import LinuxCNC
+
+BETWEEN = re.compile(r"([A-Za-z]?)[ \t]+(?=([A-Za-z]?))")
+"""Blanks, and the letters beside them."""
 
 
 @dataclass(frozen=True)
@@ -30,13 +34,18 @@ class Strip(gx.TextPass):
             if self.blanks:
                 gap = "" if not gap.strip(" \t") else gap
                 told = comment or getattr(item, "kind", "") == "output"
-                text = text if told else text.translate({32: None, 9: None})
+                text = text if told else _packed(text)
             parts += [gap, text]
         rest = block.text[at:]
         text = "".join(parts) + (rest if not self.blanks or rest.strip(" \t") else "")
         if self.comments and not self.blanks and len(text) < len(block.text):
             text = text.rstrip(" \t")
         return None if self.empty and not text.strip(" \t") else text
+
+
+def _packed(text: str) -> str:
+    """Return a word or a statement without blanks, but one between letters: `5 MOD ROUND[2]`."""
+    return BETWEEN.sub(lambda found: found[1] + " " * bool(found[1] and found[2]), text)
 
 
 def _is_active(comment: str, block: gx.Block) -> bool:

@@ -1,0 +1,49 @@
+"""Faults of what LinuxCNC alone has: values that its machine knows, messages, O-words."""
+
+from __future__ import annotations
+
+from faults.mutation import Mutation
+
+
+def _of(name: str, file: str, old: str, new: str, case: str) -> Mutation:
+    return Mutation(f"linuxcnc: {name}", file, old, new, f"tests/test_corpus.py::test_case[{case}]")
+
+
+RESIDUAL = "gcxform/flow/residual.py"
+MUTATIONS = (
+    _of(
+        "what has no value stays beside what is lost",
+        RESIDUAL,
+        "        if not why.lost:\n            raise\n",
+        "        del why\n",
+        "flow/lost-beside-unset",
+    ),
+    _of(
+        "a number in EXISTS",
+        RESIDUAL,
+        'if rule_of(node) == "parameter" or _asks(node):',
+        'if rule_of(node) == "parameter":',
+        "flow/lost-exists",
+    ),
+    _of(
+        "a kept assignment beside a dropped one goes",
+        "gcxform/flow/execution.py",
+        "if isinstance(i, Word | Statement) and i.start not in gone]",
+        "if isinstance(i, Word) and i.start not in gone]",
+        "flow/lost-beside-dropped",
+    ),
+    _of(
+        "a message of any length",
+        "gcxform/flow/lasting_values.py",
+        "if known is None or abs(known) < LONGEST:",
+        "if known is None or math.isfinite(known):",
+        "flow/message-too-long",
+    ),
+    _of(
+        "strip makes one name of two",
+        "plugins/gcxform_plugins/passes/strip.py",
+        '" " * bool(found[1] and found[2])',
+        '""',
+        "text/strip-operators",
+    ),
+)
