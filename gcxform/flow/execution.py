@@ -15,7 +15,8 @@ from gcxform.dialect.arithmetic import Key
 from gcxform.flow.lasting_values import Lasting
 from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.lookup import Found, LookupFailedError, only
-from gcxform.flow.run_state import UNKNOWN, Call, Edit, RunState, computed, has_slash
+from gcxform.flow.residual import Edit
+from gcxform.flow.run_state import UNKNOWN, Call, RunState, computed, has_slash
 from gcxform.flow.walk import Step, Walk, split
 from gcxform.modal.expressions.value import Evaluator, forgotten
 from gcxform.modal.state import Reading

@@ -10,7 +10,8 @@ from gcxform.dialect.arithmetic import Key, NoValueError
 from gcxform.dialect.null import MAYBE
 from gcxform.flow.messages import LONGEST, told
 from gcxform.flow.outputs import Outputs
-from gcxform.flow.run_state import Edit, RunState
+from gcxform.flow.residual import Edit
+from gcxform.flow.run_state import RunState
 from gcxform.flow.text import assignment
 from gcxform.flow.walk import Made
 from gcxform.modal.expressions.value import DOUBTFUL, written

@@ -20,7 +20,8 @@ from gcxform.flow.named_files import Subprograms
 from gcxform.flow.oword_loops import OWordLoops
 from gcxform.flow.oword_names import LOCALS, STANDS, is_local, is_named_local, name_of
 from gcxform.flow.places import FIRST, Places
-from gcxform.flow.run_state import Call, Edit, whole_number
+from gcxform.flow.residual import Edit
+from gcxform.flow.run_state import Call, whole_number
 from gcxform.modal.state import Reading
 from gcxform.syntax.grammar import span_of
 from gcxform.syntax.tree import Block, Statement, Word

@@ -12,7 +12,8 @@ import numpy as np
 
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import INCH, LINEAR
-from gcxform.flow.run_state import Edit, RunState
+from gcxform.flow.residual import Edit
+from gcxform.flow.run_state import RunState
 from gcxform.flow.text import decimal
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.meaning.tables import NUMBER

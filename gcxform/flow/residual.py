@@ -18,6 +18,7 @@ from gcxform.modal.expressions.value import Evaluator, written
 from gcxform.syntax.grammar import rule_of, span_of
 
 Edit = tuple[int, int, str]
+"""Columns of a block, from 0, and what stands there instead."""
 
 
 @dataclass(slots=True)

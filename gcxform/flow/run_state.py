@@ -44,10 +44,6 @@ NAMED = 5  # of the calls that a refusal stands in
 UNKNOWN = math.nan
 
 
-Edit = tuple[int, int, str]
-"""Columns of a block, from 0, and what stands there instead."""
-
-
 @dataclass(slots=True)
 class Call:
     """A call that has not returned: the line it goes on at, and what is put back then.
