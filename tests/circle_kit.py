@@ -19,10 +19,14 @@ ROUGH = np.arange(0.5, 360.0, 2.0)
 
 
 def errors(slopes, places):
-    """Return the errors (n, 3) of a machine with slopes, `EXY=1e-5` being in X by Y."""
+    """Return the errors (n, 3) of a machine with slopes, `EXY=1e-5` being in X by Y.
+
+    `EXY2` is by the square of Y, 1/mm.
+    """
     found = np.zeros_like(places)
     for name, slope in slopes.items():
-        found[:, "XYZ".index(name[1])] += slope * places[:, "XYZ".index(name[2])]
+        power = int(name[3:] or 1)
+        found[:, "XYZ".index(name[1])] += slope * places[:, "XYZ".index(name[2])] ** power
     return found
 
 

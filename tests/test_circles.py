@@ -4,10 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from circle_kit import AROUND, AXES, CENTRE, FEED, ROUGH, both, fitted, run
+from circle_kit import (
+    AROUND,
+    AXES,
+    CENTRE,
+    FEED,
+    ROUGH,
+    both,
+    errors,
+    fitted,
+    read_tests,
+    run,
+)
 
 from gcxform.calibrate.circles.causes import SetUp, causes
-from gcxform.calibrate.circles.circles import Run
+from gcxform.calibrate.circles.circles import Asked, Run, fit
 from gcxform.calibrate.circles.deviations import circular_deviation, hysteresis
 from gcxform.calibrate.circles.machine import Identified
 from gcxform.calibrate.circles.report import advice, lines, warnings
@@ -50,7 +61,9 @@ SAMPLES = {
 def vector(sense):
     """Return the run of the test vector in a sense."""
     setup, senses = SetUp("XY", 100.0, FEED), np.full(len(AROUND), sense)
-    columns = {c.name: c.column for c in causes(setup, AROUND, senses, 360.0, 10.0)}
+    columns = {
+        c.name: c.column for c in causes(setup, AROUND, senses, 360.0, {"X": 10.0, "Y": 10.0})
+    }
     whole = sum(size * columns[name] for name, size in SIZES.items())
     return Run(sense, AROUND, np.asarray(whole))
 
@@ -165,6 +178,113 @@ def test_a_ring_that_was_probed_tells_its_scales_at_rest():
     names = [cause.name for cause in tests[0].causes]
     assert not [name for name in names if name.startswith(("servo", "backlash", "lateral"))]
     assert "turn the ring" in next(advice(found))
+
+
+RINGS = SCALES | {"EXY": 3e-5}
+
+
+def rings(*radii, plane="XY", real=0.0):
+    """Return tests of probed rings of these radii, the first of which has another, `real`."""
+    found = []
+    for radius in radii:
+        read = run(plane, 0, ROUGH, slopes=RINGS, radius=radius)
+        read = Run(0, read.degrees, read.readings + (real if radius == radii[0] else 0.0))
+        found.append(fitted([read], plane, radius, None, str(radius)))
+    return found
+
+
+def test_a_ring_that_has_not_its_radius_is_found_by_another():
+    found = Identified(tuple(rings(25.0, 50.0)), "bar")
+    assert found.network.doubt is None
+    assert found.scales["X"].value == pytest.approx(4e-5, abs=1e-8)
+    doubted = Identified(tuple(rings(25.0, 50.0, real=0.01)), "bar")
+    assert [w for w in warnings(doubted) if "one of them is not that of its bar or ring" in w]
+    with pytest.raises(InputError, match=r"GX475.*differs by .* um of a radius"):
+        doubted.model()
+    other = rings(25.0, real=0.01) + rings(25.0, plane="YZ") + rings(25.0, plane="ZX")
+    with pytest.raises(InputError, match=r"GX475.*differs by"):
+        Identified(tuple(other), "bar").model()
+    Identified(tuple(other), "bar", radius_noise=0.01).model()
+
+
+def test_one_ring_is_believed_as_far_as_a_scale_can_be():
+    """1 % of it would be a scale that no machine has; less is a scale, and the sheet says so."""
+    with pytest.raises(InputError, match=r"GX475.*off by -1 %"):
+        Identified(tuple(rings(25.0, real=-0.25)), "bar").model()
+    found = Identified(tuple(rings(25.0)), "bar")
+    said = "the scales rest on the stated radius of 25 mm: 1 um of it is 40 ppm of all scales"
+    assert said in lines(found)
+    assert found.scales["X"].deviation == pytest.approx(4e-5, rel=0.02)  # 1 um of 25 mm
+
+
+def test_points_without_a_radius_tell_no_scale():
+    head = "plane,sense,X [mm],Y [mm]\n"
+    points = CENTRE[:2] + 25.0 * np.column_stack([np.cos(ROUGH), np.sin(ROUGH)])
+    text = head + "".join(f"XY,probed,{x},{y}\n" for x, y in points.tolist())
+    ((setup, runs),) = read_tests(text, centre=CENTRE)
+    found = Identified((fit(setup, runs, Asked()),), "bar")
+    assert found.scales == {}
+    with pytest.raises(InputError, match=r"GX476.*from bar(.|\n)*--radius"):
+        found.model()
+
+
+BENT = {"EYX2": 8e-7, "EXY2": -5e-7, "EZY2": 3e-7, "EXZ2": -6e-7, "EYZ2": 4e-7, "EZX2": 2e-7}
+
+
+def test_bows_go_into_the_model_if_that_is_asked():
+    slopes = SCALES | {"EXY": 3e-5} | BENT
+    found = Identified(tuple(three(slopes)), "X", bent=True)
+    model = found.model()
+    places = np.array(CENTRE) + np.array([[0, 0, 0], [100, 0, 0], [0, -77, 0], [50, -50, 90.0]])
+    straight = Identified(tuple(three(slopes)), "X").model()
+    assert model.error(places) - straight.error(places) == pytest.approx(
+        errors(BENT, places - CENTRE), abs=1e-5
+    )
+    assert "EYX: a bow of +8.00" in "\n".join(lines(found))
+
+
+def test_a_bow_is_not_told_from_a_pitch_that_grows():
+    """So a model has it only on demand: 8 um in EXX look like bows of Y in X, of the other sign."""
+    found = fitted(both("XY", slopes={"EXX2": 8e-7}))
+    assert found.size("straightness Y").value == pytest.approx(-8.0, abs=0.05)
+    assert found.scatter.observed < 1e-4
+
+
+def test_bows_of_arcs_and_of_circles_at_two_places_are_refused():
+    arc = fitted(both("XY", np.arange(10.25, 230.0, 0.5)))
+    with pytest.raises(InputError, match=r"GX476.*does not tell the straightness of X"):
+        Identified((arc,), bent=True).model()
+    tests = fitted(both("XY")), fitted(both("ZX", radius=150.0), "ZX", 150.0)
+    with pytest.raises(InputError, match=r"GX476.*X goes stand at different places"):
+        Identified(tests, bent=True).model()
+
+
+def test_a_pitch_that_is_not_given_is_looked_for():
+    """0.5 um of a pitch of 8 mm in noise of 0.5 um; Y has none."""
+    drives = Drives(cyclic=(5e-4, 0.0, 0.0), pitch=8.0, backlash=(0.004, 0.0, 0.0))
+    found = fitted(both("XY", drives=drives, noise=5e-4), noise=5e-4, search=True)
+    (period,) = found.looked.found
+    assert (period.letter, period.pitch) == ("X", pytest.approx(8.0, abs=0.02))
+    assert 0.0 < period.chance < 1e-6
+    size = np.hypot(*(found.size(f"cyclic error X {part}").value for part in ("cosine", "sine")))
+    assert size == pytest.approx(0.5, abs=0.06)
+    said = "\n".join(lines(Identified((found,))))
+    assert "cyclic error X: a period of 8" in said
+    assert "no cyclic error of Y is seen with a period of 2.18 to 33.3 mm" in said
+
+
+def test_both_axes_have_a_pitch():
+    drives = Drives(cyclic=(8e-4, 1e-3, 0.0), pitch=12.0)
+    found = fitted(both("XY", ROUGH, drives=drives, noise=5e-4), noise=5e-4, search=True)
+    assert found.looked.pitches == pytest.approx({"Y": 12.0, "X": 12.0}, abs=0.05)
+
+
+def test_noise_has_no_pitch():
+    """Some thousand periods are looked at in each of 20 tests, and none of them is one."""
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        found = fitted(both("XY", ROUGH, noise=1e-3, rng=rng), search=True)
+        assert found.looked.found == ()
 
 
 def test_one_sense_does_not_tell_squareness_from_servo_mismatch():
@@ -305,6 +425,7 @@ def test_few_readings_tell_little_and_say_so():
     said = [line for line in warnings(Identified((found,))) if "do not tell" in line]
     assert said[0].endswith("they are too few, or too near")
     assert [line for line in lines(Identified((found,))) if "centre            not told" in line]
+    assert "not all causes told; residuals" in lines(Identified((found,)))[0]
     with pytest.raises(InputError, match=r"GX476(.|\n)*more readings"):
         Identified((fitted(both("XY", 45.0 * np.arange(8) + 5.0), pitch=10.0),)).model()
 

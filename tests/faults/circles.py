@@ -17,7 +17,27 @@ def _circles(file: str, name: str, old: str, new: str, tests: str = FITS) -> Mut
     return Mutation(f"circle tests: {name}", file, old, new, tests)
 
 
+SCALES = "gcxform/calibrate/circles/scales.py"
+BOWS = "gcxform/calibrate/circles/bows.py"
+PERIODS = "gcxform/calibrate/circles/periods.py"
+
 MUTATIONS = (
+    _circles(
+        SCALES, "any radius is believed", "if away > REJECTED * self.radius_noise:", "if False:"
+    ),
+    _circles(SCALES, "any scale is believed", "if abs(largest.value) > LARGEST:", "if False:"),
+    _circles(
+        SCALES,
+        "a radius is sure",
+        "deviations.append(self.radius_noise)",
+        "deviations.append(1e-9)",
+    ),
+    _circles(SCALES, "points tell their own radius", "calibrated and setup.stated", "calibrated"),
+    _circles(
+        BOWS, "bows of the other axis", "into, along = axes[1 - place]", "into, along = axes[place]"
+    ),
+    _circles(PERIODS, "one look is enough", "1.0 + width * math.sqrt(z)", "1.0"),
+    _circles(PERIODS, "pitches of both axes at once", "letters.remove(letter)", "letters.clear()"),
     _circles(CAUSES, "squareness of the other sign", "-0.5 * np.sin(twice)", "0.5 * np.sin(twice)"),
     _circles(
         CAUSES, "servo mismatch of no sense", "0.5 * np.sin(twice) * sense", "0.5 * np.sin(twice)"
@@ -49,7 +69,7 @@ MUTATIONS = (
     _circles(MACHINE, "B0Z of the other sign", '("B0Z", -1.0)', '("B0Z", 1.0)'),
     _circles(MACHINE, "a slope of the other sign", "(1, 2, -1.0)", "(1, 2, 1.0)", FILES),
     _circles(
-        MACHINE, "a bar at one feed tells scales", "-((feed / test.setup.radius) ** 2) / 2.0", "0.0"
+        SCALES, "a bar at one feed tells scales", "-((feed / setup.radius) ** 2) / 2.0", "0.0"
     ),
     _circles(
         MACHINE, "a model of one sense", 'if test.index("squareness") is None:', "if not test.runs:"

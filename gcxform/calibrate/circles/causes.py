@@ -27,6 +27,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -48,6 +49,7 @@ class SetUp:
     """A circular test: its plane, the radius in mm, and what is known besides.
 
     `feed` is in mm/s, `centre` in mm in the machine, and `name` tells tests of one set-up apart.
+    The radius is `stated`, or else that of the readings themselves.
     """
 
     plane: str
@@ -55,6 +57,7 @@ class SetUp:
     feed: float | None = None
     centre: Triple | None = None
     name: str = ""
+    stated: bool = True
 
     @property
     def letters(self) -> tuple[str, str]:
@@ -118,11 +121,15 @@ def turned_within(degrees: Floats, sense: Ints, end: End) -> bool:
 
 
 def causes(
-    setup: SetUp, degrees: Floats, sense: Ints, arc: float, pitch: float | None = None
+    setup: SetUp,
+    degrees: Floats,
+    sense: Ints,
+    arc: float,
+    pitches: Mapping[str, float] = MappingProxyType({}),
 ) -> list[Cause]:
     """Return the causes that readings (n,) over an arc (degrees) may tell, with their columns.
 
-    `pitch` in mm is that of cyclic errors; none is looked for without it.
+    `pitches` in mm are those of cyclic errors, by axis; none is looked for without.
     """
     found = list(_circle(degrees))
     if arc >= HALF:
@@ -132,7 +139,7 @@ def causes(
         found += _play(setup, degrees, sense)
     if arc >= WHOLE:
         found += _straightness(setup, degrees)
-        found += _cyclic(setup, degrees, pitch) if pitch else ()
+        found += _cyclic(setup, degrees, pitches)
     return [cause for cause in found if cause.column.any()]
 
 
@@ -184,11 +191,18 @@ def _straightness(setup: SetUp, degrees: Floats) -> Iterator[Cause]:
         yield Cause(name, name, "um", 1e3, column)
 
 
-def _cyclic(setup: SetUp, degrees: Floats, pitch: float) -> Iterator[Cause]:
-    t = np.radians(degrees)
-    for axis, letter in enumerate(setup.letters):
-        along = np.cos(t) if axis == 0 else np.sin(t)
-        u = 2.0 * np.pi * (setup.radius * along + setup.offset(axis)) / pitch
+def _cyclic(setup: SetUp, degrees: Floats, pitches: Mapping[str, float]) -> Iterator[Cause]:
+    for letter in (letter for letter in setup.letters if letter in pitches):
         group = f"cyclic error {letter}"
-        yield Cause(f"{group} cosine", group, "um", 1e3, np.cos(u) * along)
-        yield Cause(f"{group} sine", group, "um", 1e3, np.sin(u) * along)
+        columns = turning(setup, degrees, letter, pitches[letter])
+        for name, column in zip(("cosine", "sine"), columns, strict=True):
+            yield Cause(f"{group} {name}", group, "um", 1e3, column)
+
+
+def turning(setup: SetUp, degrees: Floats, letter: str, pitch: float) -> tuple[Floats, Floats]:
+    """Return the two columns (n,) of a cyclic error of an axis with a pitch in mm."""
+    t = np.radians(degrees)
+    axis = setup.letters.index(letter)
+    along = np.cos(t) if axis == 0 else np.sin(t)
+    u = 2.0 * np.pi * (setup.radius * along + setup.offset(axis)) / pitch
+    return np.asarray(np.cos(u) * along), np.asarray(np.sin(u) * along)

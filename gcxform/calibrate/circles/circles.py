@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final, NamedTuple
 
@@ -29,6 +29,7 @@ from gcxform.calibrate.circles.causes import (
     near_spikes,
 )
 from gcxform.calibrate.circles.deviations import figures
+from gcxform.calibrate.circles.periods import Looked, periods
 from gcxform.calibrate.rotary.axis import arc
 from gcxform.calibrate.solution import Scatter, Solution, solve
 from gcxform.diagnostics import InputError, Location
@@ -89,12 +90,13 @@ class Spike(NamedTuple):
 class Asked:
     """How tests are to be read: the noise of a reading in mm, and which causes there are.
 
-    `pitch` in mm is that of cyclic errors. All causes are asked for, whatever the arc, if
-    `every`; spikes are looked for so many degrees `behind` a reversal.
+    `pitch` in mm is that of cyclic errors, `search` looks for one. All causes are asked for,
+    whatever the arc, if `every`; spikes are looked for so many degrees `behind` a reversal.
     """
 
     noise: float = 1e-3
     pitch: float | None = None
+    search: bool = False
     every: bool = False
     behind: float = BEHIND
 
@@ -103,7 +105,8 @@ class Asked:
 class Fitted:
     """A circular test, its causes, and their sizes in mm.
 
-    `second` (n,) is what a pivot that is off does to the second order, mm.
+    `second` (n,) is what a pivot that is off does to the second order, mm; `looked` is what a
+    search for pitches has found.
     """
 
     setup: SetUp
@@ -113,6 +116,7 @@ class Fitted:
     used: Flags
     solution: Solution
     second: Floats
+    looked: Looked | None = None
 
     @cached_property
     def degrees(self) -> Floats:
@@ -159,7 +163,12 @@ class Fitted:
 
     @cached_property
     def condition(self) -> float:
-        """The condition number of the columns that were fitted, each of unit length."""
+        """The condition number of the columns that were fitted, each of unit length.
+
+        It is infinite where some of the causes are not told.
+        """
+        if not self.told.all():
+            return math.inf
         columns = self.matrix[self.used]
         return float(np.linalg.cond(columns / np.linalg.norm(columns, axis=0)))
 
@@ -298,16 +307,37 @@ def fit(setup: SetUp, runs: Sequence[Run], asked: Asked) -> Fitted:
         message = "the readings stand at one place of a circle, or nearly so"
         raise InputError.one("GX477", message, runs[0].where(0))
     over = 360.0 if asked.every else covered(degrees)
-    found = causes(setup, degrees, sense, over, asked.pitch)
+    pitches = dict.fromkeys(setup.letters, asked.pitch) if asked.pitch else {}
+    found = _fitted(setup, runs, asked, causes(setup, degrees, sense, over, pitches))
+    if asked.search and over >= WHOLE:
+        looked = _looked(found)
+        found = _fitted(setup, runs, asked, causes(setup, degrees, sense, over, looked.pitches))
+        found = replace(found, looked=looked)
+    return _round(found)
+
+
+def _fitted(setup: SetUp, runs: Sequence[Run], asked: Asked, among: Sequence[Cause]) -> Fitted:
+    """Return a test fitted by some causes."""
+    degrees, sense = np.concatenate([run.degrees for run in runs]), senses(runs)
     used = ~near_spikes(degrees, sense, setup, asked.behind)
-    found = [cause for cause in found if cause.column[used].any()]
+    found = [cause for cause in among if cause.column[used].any()]
     matrix = np.column_stack([cause.column for cause in found])[used]
     readings = np.concatenate([run.readings for run in runs])[used]
     second = np.zeros(len(degrees))
     for _ in range(ROUNDS):
         solution = solve(matrix, readings - second[used], np.full(len(readings), asked.noise))
         second = _of_pivot(setup, degrees, found, solution)
-    return _round(Fitted(setup, tuple(runs), asked, tuple(found), used, solution, second))
+    return Fitted(setup, tuple(runs), asked, tuple(found), used, solution, second)
+
+
+def _looked(found: Fitted) -> Looked:
+    """Return what a search for the pitches of cyclic errors finds in a test."""
+    first = np.zeros(len(found.degrees), dtype=bool)
+    first[np.cumsum([0, *(len(run.readings) for run in found.runs[:-1])])] = True
+    first |= ~np.append(True, found.used[:-1])
+    used = found.used
+    readings = (found.readings - found.second)[used]
+    return periods(found.setup, found.degrees[used], readings, found.matrix[used], first[used])
 
 
 def _of_pivot(setup: SetUp, degrees: Floats, found: Sequence[Cause], solution: Solution) -> Floats:

@@ -308,7 +308,8 @@ def _placed(table: CsvTable, setup: SetUp, rows: Ints, circle: tuple[Floats, flo
             found[other] = table.lengths(AXES[other].lower())[rows].mean()
         x, y, z = found.tolist()
         place = (x, y, z)
-    return SetUp(setup.plane, setup.radius or radius, setup.feed, place, setup.name)
+    stated = bool(setup.radius)
+    return SetUp(setup.plane, setup.radius or radius, setup.feed, place, setup.name, stated)
 
 
 def _where(table: CsvTable, rows: Ints, row: int) -> Location:

@@ -1,29 +1,27 @@
 """From circular tests in several planes to the machine: squareness and scales, and their model.
 
 Each test tells the angle between its axes and the difference of their scales; both hold for all
-tests of a plane, and the differences of three planes must close. The scale itself is in the radius,
-if the bar is calibrated, together with what the axes lag behind: r (s1 + s2) / 2 - (v T)^2 / (2 r).
-So it is told by circles at two feeds, or by a ring that was probed at rest; else one axis must be
-taken to be right.
+tests of a plane, and the differences of three planes must close. The scales themselves are in
+`scales.py`.
 
-A model by position holds squareness and scales and no more: backlash, servo mismatch and spikes
-depend on direction and feed, and stay in the report.
+A model by position holds squareness, scales, and bows of the axes if they are asked for
+(`bows.py`), and no more: backlash, servo mismatch and spikes depend on direction and feed, and stay
+in the report.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
 import numpy as np
 
+from gcxform.calibrate.circles.bows import NODES, Bow, bows
 from gcxform.calibrate.circles.causes import HALF, PLANES
 from gcxform.calibrate.circles.circles import Fitted
+from gcxform.calibrate.circles.scales import NONE, RADIUS_NOISE, Scales, Told, mean, part
 from gcxform.calibrate.rotary.axis import REJECTED
-from gcxform.calibrate.solution import Solution, solve
 from gcxform.diagnostics import InputError
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 from gcxform.errormodel.linear import Linear
@@ -34,25 +32,20 @@ ANGLES: Final = {"XY": ("C0Y", 1.0), "YZ": ("A0Z", 1.0), "ZX": ("B0Z", -1.0)}
 """The squareness of a plane by ISO 230-1, and its sign where the angle is more than 90 degrees."""
 SLOPES: Final = {"C0Y": (0, 1, -1.0), "A0Z": (1, 2, -1.0), "B0Z": (0, 2, 1.0)}
 """Of each squareness: the error of which axis it is, along which, and its sign."""
-BAR: Final = "bar"
-NONE: Final = "none"
-
-
-@dataclass(frozen=True)
-class Told:
-    """A value and its standard deviation; `agree` is how tests of it agree, times their own."""
-
-    value: float
-    deviation: float
-    agree: float = math.nan
 
 
 @dataclass(frozen=True, eq=False)
 class Identified:
-    """What circular tests tell of a machine; `scale_from` is an axis, `bar` or `none`."""
+    """What circular tests tell of a machine; `scale_from` is an axis, `bar` or `none`.
+
+    `radius_noise` in mm is the standard deviation of the radius of a bar, or a ring; the model has
+    bows of the axes if they are `bent`, and their pitches taken to be even.
+    """
 
     tests: tuple[Fitted, ...]
     scale_from: str = NONE
+    radius_noise: float = RADIUS_NOISE
+    bent: bool = False
 
     @cached_property
     def squareness(self) -> dict[str, Told]:
@@ -60,10 +53,10 @@ class Identified:
         found = {}
         for plane, (name, sign) in ANGLES.items():
             own = [test for test in self.tests if test.setup.plane == plane]
-            values = [value for test in own if (value := _part(test, "squareness"))]
+            values = [value for test in own if (value := part(test, "squareness"))]
             if values:
                 value, deviation = np.array(values).T
-                found[name] = _mean(sign * value, deviation)
+                found[name] = mean(sign * value, deviation)
         return found
 
     @cached_property
@@ -72,43 +65,20 @@ class Identified:
         found = {}
         for plane in PLANES:
             own = [test for test in self.tests if test.setup.plane == plane]
-            values = [value for test in own if (value := _part(test, "scale mismatch"))]
+            values = [value for test in own if (value := part(test, "scale mismatch"))]
             if values:
-                found[plane] = _mean(*np.array(values).T)
+                found[plane] = mean(*np.array(values).T)
         return found
 
     @cached_property
-    def network(self) -> Solution:
-        """The scales (3,) of the axes, and T^2 in s^2 of what they lag behind.
+    def network(self) -> Scales:
+        """The scales of the axes, and what they rest on."""
+        return Scales(self.tests, self.scale_from, self.radius_noise)
 
-        What no circle tells is free, and what is asked of it is refused by `scales`.
-        """
-        rows, values, deviations = _scale_rows(self.tests, self.scale_from == BAR)
-        if self.scale_from in AXES:
-            rows.append(np.append(np.eye(3)[AXES.index(self.scale_from)], 0.0))
-            values.append(0.0)
-            deviations.append(1e-9)
-        if not rows:
-            rows, values, deviations = [np.zeros(4)], [0.0], [1.0]
-        return solve(np.array(rows), np.array(values), np.array(deviations))
-
-    @cached_property
+    @property
     def scales(self) -> dict[str, Told]:
         """The scale errors of the axes that are told, mm per mm; none are asked for with `none`."""
-        if self.scale_from == NONE:
-            return {}
-        told = np.asarray(~(np.abs(self.network.free) > 1e-6).any(axis=1))
-        ratio = self.network.ratio
-        scale = max(1.0, ratio) if math.isfinite(ratio) else 1.0
-        return {
-            letter: Told(
-                float(self.network.value[k]),
-                scale * math.sqrt(max(0.0, float(self.network.covariance[k, k]))),
-                ratio,
-            )
-            for k, letter in enumerate(AXES)
-            if told[k] and letter != self.scale_from
-        }
+        return self.network.told
 
     @property
     def axes(self) -> tuple[int, ...]:
@@ -127,6 +97,11 @@ class Identified:
                 found[axis] = min(low, before[0]), max(high, before[1])
         return found
 
+    @cached_property
+    def bows(self) -> list[Bow]:
+        """The bows that the model has. Raises InputError (GX476) where one is not told."""
+        return bows(self.tests) if self.bent else []
+
     def slopes(self) -> Floats:
         """Return the matrix (3, 3) of the errors: E = matrix @ position, mm per mm."""
         matrix = np.zeros((3, 3))
@@ -139,16 +114,17 @@ class Identified:
         return matrix
 
     def model(self, limited: bool = True) -> ErrorModel:
-        """Return the model with squareness and scales: what was not measured is 0 in it.
+        """Return the model with squareness, scales and bows: what was not measured is 0 in it.
 
-        It ends where the circles did, unless it is not `limited`. Raises InputError: no squareness
-        is told, or a scale that is asked for is not (GX476), centres are not known (GX478).
+        It ends where the circles did, unless it is not `limited`; bows have no other end. Raises
+        InputError: no squareness is told, or a scale or bow that is asked for is not (GX476),
+        centres are not known (GX478), radii cannot be right (GX475).
         """
         self._check()
         matrix, middle = self.slopes(), np.zeros(3)
         for axis, span in self.volume.items():
             middle[axis] = sum(span) / 2.0
-        if not limited:
+        if not limited and not self.bows:
             model: ErrorModel = Linear(matrix, middle)
         else:
             x, y, z = (self._function(k, matrix, middle) for k in range(3))
@@ -159,8 +135,12 @@ class Identified:
     def _function(self, axis: int, matrix: Floats, middle: Floats) -> AxisFunction | None:
         if axis not in self.volume:
             return None
-        position = np.array(self.volume[axis])
-        return AxisFunction(position, np.outer(position - middle[axis], matrix[:, axis]) + 0.0)
+        own = [bow for bow in self.bows if bow.along == axis]
+        position = np.linspace(*self.volume[axis], NODES if own else 2)
+        values = np.outer(position - middle[axis], matrix[:, axis]) + 0.0
+        for bow in own:
+            values[:, bow.into] += bow.across(position)
+        return AxisFunction(position, values)
 
     def _check(self) -> None:
         """Raise InputError unless what is asked for can be written."""
@@ -180,8 +160,17 @@ class Identified:
                 "GX476",
                 f"the circles do not tell the scale of {', '.join(lacking)} from {self.scale_from}",
                 self.tests[0].where,
-                "a calibrated bar tells it at two feeds, a ring that was probed at once; or leave "
-                "the scales out (--scale-from none)",
+                "a calibrated bar tells it at two feeds, a ring that was probed at once, if its "
+                "radius is said (--radius); or leave the scales out (--scale-from none)",
+            )
+        if self.network.doubt is not None:
+            number, message = self.network.doubt
+            raise InputError.one(
+                "GX475",
+                message,
+                self.tests[number].where,
+                "look at the radii (--radius); if they are right, say how well they are known "
+                "(--radius-noise), or leave the scales out (--scale-from none)",
             )
 
 
@@ -208,46 +197,3 @@ def _check_told(test: Fitted) -> None:
             "the worst is marked; look at units, angles and senses, or state the noise there is "
             "(--noise)",
         )
-
-
-def _part(test: Fitted, name: str) -> tuple[float, float] | None:
-    """Return a cause as a part of the radius, and its deviation; None if it is not told."""
-    k = test.index(name)
-    if k is None:
-        return None
-    r = test.setup.radius
-    return float(test.solution.value[k]) / r, math.sqrt(float(test.covariance[k, k])) / r
-
-
-def _mean(values: Floats, deviations: Floats) -> Told:
-    """Return the weighted mean, its deviation scaled by how the values agree."""
-    found = solve(np.ones((len(values), 1)), values, deviations)
-    ratio = found.ratio
-    scale = max(1.0, ratio) if math.isfinite(ratio) else 1.0
-    return Told(float(found.value[0]), scale * math.sqrt(float(found.covariance[0, 0])), ratio)
-
-
-def _scale_rows(
-    tests: Sequence[Fitted], calibrated: bool
-) -> tuple[list[Floats], list[float], list[float]]:
-    """Return the equations of the scales: differences and, of a calibrated bar, radii."""
-    rows, values, deviations = [], [], []
-    for row, value, deviation in _equations(tests, calibrated):
-        rows.append(row)
-        values.append(value)
-        deviations.append(deviation)
-    return rows, values, deviations
-
-
-def _equations(tests: Sequence[Fitted], calibrated: bool) -> Iterator[tuple[Floats, float, float]]:
-    for test in tests:
-        first, second = PLANES[test.setup.plane]
-        one, other = np.eye(4)[[first, second]]
-        if part := _part(test, "scale mismatch"):
-            yield one - other, *part
-        part = _part(test, "radius") if calibrated else None
-        probed = not test.sense.any()
-        if part and (probed or test.setup.feed is not None):
-            feed = 0.0 if probed else test.setup.feed or 0.0
-            lag = np.array([0.0, 0.0, 0.0, -((feed / test.setup.radius) ** 2) / 2.0])
-            yield (one + other) / 2.0 + lag, *part

@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from gcxform.calibrate.circles.circles import Fitted, Size, left_out
-from gcxform.calibrate.circles.machine import BAR, NONE, Identified, Told
+from gcxform.calibrate.circles.machine import Identified
+from gcxform.calibrate.circles.scales import BAR, NONE, Told
 from gcxform.calibrate.rotary.axis import REJECTED
 from gcxform.calibrate.rotary.check import two_digits
 from gcxform.calibrate.solution import Scatter
@@ -107,6 +108,7 @@ def lines(found: Identified) -> list[str]:
             f"  {group:18}{sizes:42}{UM * effect:8.2f} um{share_words(share):>8}"
             for group, sizes, effect, share in sheet(test)
         ]
+        said += [f"  {line}" for line in _looked(test)]
     return [
         *said,
         *machine(found),
@@ -125,8 +127,24 @@ def headline(test: Fitted, number: int) -> str:
         words = zip("XYZ", setup.centre, strict=True)
         parts.append("about " + " ".join(f"{a}{v:.6g}" for a, v in words))
     runs = ", ".join(f"{len(run.readings)} {run.name}" for run in test.runs)
-    parts += [f"{runs}", f"arc {test.arc:.4g} degrees", f"condition {test.condition:.1f}"]
+    known = math.isfinite(test.condition)
+    condition = f"condition {test.condition:.1f}" if known else "not all causes told"
+    parts += [f"{runs}", f"arc {test.arc:.4g} degrees", condition]
     return "; ".join([", ".join(parts), f"residuals {UM * test.scatter.observed:.3g} um"])
+
+
+def _looked(test: Fitted) -> Iterator[str]:
+    """Yield what a search for pitches has found, in words."""
+    if test.looked is None:
+        return
+    found, shortest, longest = test.looked
+    for letter, pitch, chance in found:
+        often = f"once in {1.0 / max(chance, 1e-99):.1g} times" if chance > 1e-99 else "never"
+        yield f"cyclic error {letter}: a period of {pitch:.4g} mm, as noise has one {often}"
+    rest = ", ".join(letter for letter in test.setup.letters if letter not in test.looked.pitches)
+    if rest:
+        span = f"{shortest:.3g} to {longest:.3g} mm"
+        yield f"no cyclic error of {rest} is seen with a period of {span}"
 
 
 def _figures(test: Fitted) -> str:
@@ -134,7 +152,7 @@ def _figures(test: Fitted) -> str:
 
 
 def machine(found: Identified) -> Iterator[str]:
-    """Yield the squareness and the scales of the machine, in words."""
+    """Yield the squareness, the scales and the bows of the machine, in words."""
     for name, told in found.squareness.items():
         yield f"{name}: {_told(told)} urad"
     for plane, told in found.mismatches.items():
@@ -142,6 +160,24 @@ def machine(found: Identified) -> Iterator[str]:
     for letter, told in found.scales.items():
         beside = "" if found.scale_from == BAR else f", that of {found.scale_from} taken to be 0"
         yield f"scale {letter}: {_told(told)} ppm{beside}"
+    for bow in found.bows:
+        value, deviation = UM * bow.told.value, UM * bow.told.deviation
+        yield (
+            f"{bow.name}: a bow of {value:+.2f} +- {two_digits(deviation)} um over "
+            f"{2.0 * bow.span.half:.6g} mm, if pitches are even"
+        )
+    if found.scales and found.network.radii:
+        yield _rests(found.network.radii)
+
+
+def _rests(radii: list[float]) -> str:
+    """Return in words what scales by a bar rest on."""
+    said = ", ".join(f"{radius:.6g}" for radius in radii)
+    many = len(radii) > 1
+    return (
+        f"the scales rest on the stated radi{'i' if many else 'us'} of {said} mm: "
+        f"1 um of {f'{radii[0]:.6g} mm' if many else 'it'} is {UM / radii[0]:.3g} ppm of all scales"
+    )
 
 
 def _told(told: Told) -> str:
@@ -181,6 +217,8 @@ def warnings(found: Identified) -> Iterator[str]:
             f"the differences of scale in the three planes do not close, by {_closing(found):.1f} "
             "times their deviations: a scale is not the same everywhere"
         )
+    if found.network.doubt is not None:
+        yield found.network.doubt[1]
     if found.scale_from == NONE and found.mismatches:
         yield (
             "scales are not in the model: circles tell how they differ, and not which is wrong "
@@ -262,7 +300,9 @@ def report(found: Identified, file: str, conditions: Mapping[str, Any]) -> dict[
         "squareness": {name: _plain(told) for name, told in found.squareness.items()},
         "scale-differences": {plane: _plain(told) for plane, told in found.mismatches.items()},
         "scale-from": found.scale_from,
+        "radii": found.network.radii,
         "scales": {letter: _plain(told) for letter, told in found.scales.items()},
+        "bows": {bow.name: {**_plain(bow.told), **bow.span._asdict()} for bow in found.bows},
         "warnings": [*warnings(found)],
         "advice": [*advice(found)],
         "conditions": dict(conditions),
@@ -287,7 +327,8 @@ def _reported(test: Fitted) -> dict[str, Any]:
         "centre": None if setup.centre is None else list(setup.centre),
         "readings": {run.name: len(run.readings) for run in test.runs},
         "arc": test.arc,
-        "condition": test.condition,
+        "cyclic": [period._asdict() for period in test.looked.found] if test.looked else [],
+        "condition": _number(test.condition),
         "noise": test.asked.noise,
         "scatter": test.scatter.report(),
         "correlation": test.correlation,

@@ -9,9 +9,12 @@ import click
 
 from gcxform import plot
 from gcxform.cli.calibration.shared import Files, Found, about, found_options, hand_out, path_of
-from gcxform.cli.common.options import ABOVE_NOTHING, THREE_LENGTHS, one_of
+from gcxform.cli.common.options import ABOVE_NOTHING, THREE_LENGTHS, Typed, above_nothing, one_of
+from gcxform.cli.common.request import excluding
 from gcxform.diagnostics import Location, UsageError
+from gcxform.system.option_mark import Option
 
+SEARCH = "search"
 _TABLE = """
 DATA is a table with a row for each reading, actual less nominal radius, longer is positive:
 
@@ -36,11 +39,22 @@ Exports of other programs, Renishaw's among them, are read by saying which colum
 --columns 'angle [deg], ccw [um], cw [um]' --skip 12 --decimal comma. Result files (.b5r) are not
 published, and not read.
 
-The model has the squareness of the planes that were measured, and the scales with --scale-from: the
-axis that is right, or bar, for a calibrated one at two feeds or a probed ring. It ends where the
-circles did, unless --limits none. Backlash, servo mismatch, spikes and the rest are reported: no
-model by position holds them.
+The model has the squareness of the planes that were measured, the scales with --scale-from (the
+axis that is right, or bar, for a calibrated one at two feeds or a probed ring), and straightness
+with --straightness model. It ends where the circles did, unless --limits none. Backlash, servo
+mismatch, spikes and the rest are reported: no model by position holds them.
 """
+
+
+class Pitch(Typed):
+    """A length above nothing, or the word that looks for one."""
+
+    def __init__(self) -> None:
+        super().__init__(f"LENGTH|{SEARCH}", "Length", Option(above=0))
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return mm, or the word. Raises UsageError."""
+        return value if value == SEARCH else super().convert(value, param, ctx)
 
 
 @click.command(
@@ -66,10 +80,18 @@ model by position holds them.
     help="What the angles of clockwise runs are that rise.",
 )
 @click.option("--arc", metavar="A,B", help="The angles between which readings count, degrees.")
-@click.option("--pitch", type=ABOVE_NOTHING, help="Of the screws: look for cyclic errors.")
+@click.option(
+    "--pitch", type=Pitch(), help="Of the screws, for cyclic errors; search looks for pitches."
+)
 @one_of("--causes", words=["auto", "all"], help="Causes: those the arc tells, or all.")
 @one_of(
     "--scale-from", words=["none", "X", "Y", "Z", "bar"], help="Which scale is taken to be right."
+)
+@above_nothing("--radius-noise", "1 um", "Standard deviation of the radius of a bar or ring.")
+@one_of(
+    "--straightness",
+    words=["report", "model"],
+    help="Where bows go; a model of them takes pitches to be even.",
 )
 @one_of("--limits", words=["circles", "none"], help="Where the model ends.")
 @found_options(
@@ -96,6 +118,9 @@ def circles(data: str, noise: float, output: str | None, **given: Any) -> None:
 
     places = Files(output, given["report"], given["plot"])
     places.check(data)
+    bent = given["straightness"] == "model"
+    if bent and given["limits"] == "none":
+        raise excluding("--straightness model and --limits none")
     feed = given["feed"] / 60.0 if given["feed"] else None
     said = Given(
         given["plane"],
@@ -106,11 +131,12 @@ def circles(data: str, noise: float, output: str | None, **given: Any) -> None:
         _arc(given["arc"]),
     )
     layout = Layout(given["columns"], given["skip"], given["decimal"] == "comma")
-    asked = Asked(noise, given["pitch"], given["causes"] == "all")
+    search = given["pitch"] == SEARCH
+    asked = Asked(noise, None if search else given["pitch"], search, given["causes"] == "all")
     with about(data):
         measured = read_circles(path_of(data), said, layout)
         tests = tuple(fit(setup, runs, asked) for setup, runs in measured.tests)
-        found = Identified(tests, given["scale_from"])
+        found = Identified(tests, given["scale_from"], given["radius_noise"], bent)
         text = ""
         if output is not None:
             model = found.model(given["limits"] == "circles")
