@@ -17,7 +17,7 @@ from ways_kit import do_no_harm, go_out, one_round
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
 from gcxform.emit.numbers import MOST_DECIMALS
-from gcxform.testing.cases import Case, Outcome, outcome, read_case, run_case
+from gcxform.testing.cases import Case, Outcome, check_outcome, outcome, read_case, run_case
 
 ROOT = Path(__file__).parents[1]
 CORPUS = ROOT / "corpus"
@@ -136,14 +136,13 @@ def test_windows_make_no_difference(case, tmp_path, monkeypatch):
     """Run every case line by line: what one window knows, the next one must know as well."""
     monkeypatch.setattr("gcxform.syntax.source.WINDOW", 1)
     monkeypatch.setattr("gcxform.system.worker.LINUX", False)  # test_worker.py has processes
-    (tmp_path / "lines").mkdir()
-    found = outcome(case, tmp_path / "lines", PLACES)
+    found = outcome(case, tmp_path, PLACES)
     if case.diagnostics:
         assert found.places[0] == case.diagnostics[0]
     elif joins(case):  # a window ends what is joined
         assert not found.diagnostics
     else:
-        run_case(case, tmp_path, PLACES)
+        check_outcome(case, found)
 
 
 def test_every_file_is_a_case():

@@ -23,7 +23,7 @@ from gcxform.emit.emitter import Emitter
 from gcxform.modal.interpreter import Interpreter
 from gcxform.proof.verify import Verifier
 from gcxform.system.worker import DIED, Here, Process, _may_copy, ahead, worker
-from gcxform.testing.cases import outcome, run_case
+from gcxform.testing.cases import check_outcome, outcome
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="no processes here")
 
@@ -245,14 +245,13 @@ SOME = [case for case in all_cases()[::15] if not case.xfail]
 def test_processes_make_no_difference(case, tmp_path, monkeypatch):
     monkeypatch.setattr("gcxform.syntax.source.WINDOW", 1)
     assert _may_copy()
-    (tmp_path / "lines").mkdir()
-    found = outcome(case, tmp_path / "lines", PLACES)
+    found = outcome(case, tmp_path, PLACES)
     if case.diagnostics:
         assert found.places[0] == case.diagnostics[0]
     elif joins(case):
         assert not found.diagnostics
     else:
-        run_case(case, tmp_path, PLACES)
+        check_outcome(case, found)
 
 
 @pytest.mark.parametrize("verify", ["on", "full", "off"])

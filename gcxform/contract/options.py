@@ -21,6 +21,7 @@ import types
 import typing
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeVar
 
@@ -240,6 +241,11 @@ def to_toml(instance: object) -> dict[str, object]:
 
 def _specs(target: Any) -> tuple[_Spec, ...]:
     """Return the options of a dataclass; TypeError for a field whose type is not one of ours."""
+    return _specs_of(target)
+
+
+@lru_cache(256)  # of classes: what their hints mean is worked out by typing, which is slow
+def _specs_of(target: Any) -> tuple[_Spec, ...]:
     hints = typing.get_type_hints(target, include_extras=True)
     fields = [f for f in dataclasses.fields(target) if f.init]
     return tuple(_spec_of(f.name, hints[f.name], _default(f)) for f in fields)

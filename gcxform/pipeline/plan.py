@@ -21,6 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from string import ascii_uppercase
 
 import numpy as np
@@ -182,17 +183,17 @@ class Plan:
         """The places of values that its files leave to be filled in, by their keys."""
         return {**self.open, **(self.machine.open if self.machine else {})}
 
-    @property
+    @cached_property
     def path_passes(self) -> tuple[Pass, ...]:
         """The passes that change the path."""
         return tuple(step for step in self.passes if isinstance(step, Pass))
 
-    @property
+    @cached_property
     def text_passes(self) -> tuple[TextPass, ...]:
         """The passes that change text only; they run on what is written."""
         return tuple(step for step in self.passes if isinstance(step, TextPass))
 
-    @property
+    @cached_property
     def manner(self) -> Manner:
         """How the program is written."""
         numbers = self.numbers or self.target.numbers

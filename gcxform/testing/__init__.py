@@ -3,7 +3,14 @@
 Strategies are in `gcxform.testing.strategies`, which needs hypothesis.
 """
 
-from gcxform.testing.cases import Case, Outcome, outcome, read_case, run_case
+from gcxform.testing.cases import (
+    Case,
+    Outcome,
+    check_outcome,
+    outcome,
+    read_case,
+    run_case,
+)
 from gcxform.testing.dialects import check_dialect
 from gcxform.testing.kit import check_pass
 
@@ -11,6 +18,7 @@ __all__ = [
     "Case",
     "Outcome",
     "check_dialect",
+    "check_outcome",
     "check_pass",
     "outcome",
     "read_case",

@@ -142,13 +142,19 @@ def outcome(case: Case, folder: Path, places: Mapping[str, Path] | None = None) 
 def run_case(case: Case, folder: Path, places: Mapping[str, Path] | None = None) -> Outcome:
     """Run a case and return what came out; AssertionError if that is not what it says."""
     found = outcome(case, folder, places)
+    check_outcome(case, found)
+    return found
+
+
+def check_outcome(case: Case, found: Outcome) -> None:
+    """Raise AssertionError if what came out of a case is not what it says."""
     for diagnostic in found.diagnostics:
         try_hint(diagnostic.hint, default_registry())
     said = "\n".join(diagnostic.render() for diagnostic in found.diagnostics)
     if "diagnostics" in case.sections:
         message = f"expected {case.diagnostics}, got {found.places}\n{said}"
         assert found.places == case.diagnostics, message
-        return found
+        return
     assert not found.diagnostics, f"refused: {found.places}\n{said}"
     assert found.certificate is not None
     for claim in case.text("certificate").splitlines():
@@ -162,7 +168,6 @@ def run_case(case: Case, folder: Path, places: Mapping[str, Path] | None = None)
             _check_words(found.text, expected, float(case.text("words")))
         else:
             assert found.text == expected, _difference(found.text, expected)
-    return found
 
 
 def _place(diagnostic: Diagnostic) -> str:

@@ -11,7 +11,7 @@ import stamp_kit as kit
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from oracles import rs274
-from test_corpus import CASES, PLACES, name
+from test_corpus import PLACES, all_cases, name
 
 import gcxform as gx
 from gcxform.stamps.comment import stamps_in
@@ -23,7 +23,7 @@ CHAINS = (WIDE, f"absolute | {WIDE}", f"metric | absolute | segment chord-error=
 AFTER = ("absolute", "strip", "renumber", "strip | renumber")
 CHANGES = [
     case
-    for case in CASES
+    for case in all_cases()
     if re.search('use = "(volumetric|rtcp|to-tip|repost|retarget)"', case.text("pipeline.toml"))
 ]
 FEW = settings(max_examples=10, suppress_health_check=[HealthCheck.function_scoped_fixture])
