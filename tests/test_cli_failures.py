@@ -58,6 +58,8 @@ BAD: dict[str, tuple[int, str, tuple[str, ...]]] = {
     "in place and elsewhere": (2, "GX728", (*RUN, "--in-place", "part.nc")),
     "stdin in place": (2, "GX728", (*RUN[:5], "--in-place", "-")),
     "post of stdin": (2, "GX728", ("post", "-p", "job.toml", "-")),
+    "a host without a pipeline": (2, "GX726", ("hosts", "linuxcnc")),
+    "a host of another dialect": (2, "GX739", ("hosts", "linuxcnc", "-p", "grbl.toml")),
     "no such program": (5, "GX901", (*RUN, "no.nc")),
     "a directory": (5, "GX901", (*RUN, ".")),
     "a directory to check": (5, "GX901", ("check", "-p", "job.toml", ".")),
@@ -92,6 +94,7 @@ PROGRAMS = {
     "arc.nc": b"G1 F100 X0 Y0\nG2 X10 Y0 I4 J0\n",
     "radius.nc": b"G1 F100 X0 Y0\nG2 X10 Y0 R2\n",
     "two.nc": b"G0 G1 X0\n",
+    "grbl.toml": b'format = 1\n[input]\ndialect = "grbl"\n[[pass]]\nuse = "absolute"\n',
 }
 
 

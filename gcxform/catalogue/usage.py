@@ -185,6 +185,12 @@ CODES: dict[str, tuple[str, str]] = {
         "that its figures would be made up. Choose another place or size; --outside extrapolate "
         "or clamp goes beyond the tables all the same.",
     ),
+    "GX739": (
+        "A host would not do what the pipeline says",
+        "A host is a program that calls gcxform: a control, a CAM system, a slicer. It executes "
+        "another dialect than the pipeline writes, or it cuts off what is longer than a line of "
+        "its settings. Name the dialect in [output], or give the file a shorter path.",
+    ),
     # --- 8xx: plugins ---
     "GX740": (
         "How the control compensates the cutter",

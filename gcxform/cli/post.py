@@ -2,6 +2,9 @@
 
 They pass the file last, show stderr in a plain box when the exit code is not 0, and read the file
 again. The dialect is never guessed from the file's name, which they make up.
+
+With --filter the file stays, and stdout is the program: as LinuxCNC's interfaces call it. What was
+done already is handed on as it is. They read stderr as UTF-8, and fail where it is not.
 """
 
 from __future__ import annotations
@@ -13,11 +16,13 @@ import click
 
 from gcxform.cli import VERBS
 from gcxform.cli.common import options
-from gcxform.cli.common.outputs import STDOUT, check_places
+from gcxform.cli.common.outputs import STDOUT, check_places, destination
+from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked, excluding
-from gcxform.cli.common.transform import Job, edited_since, transform
+from gcxform.cli.common.transform import Job, edited_since, transformed
 from gcxform.diagnostics import GcxformError
 from gcxform.stamps.chain import DONE
+from gcxform.syntax.source import Source
 
 SHOWN: Final = 4  # findings that fit into a dialog box
 
@@ -27,34 +32,63 @@ SHOWN: Final = 4  # findings that fit into a dialog box
 @options.CERTIFICATE
 @options.MAP
 @options.VERIFY
+@click.option(
+    "--filter",
+    "filters",
+    is_flag=True,
+    help="Write to stdout, and how far it is to stderr: for [FILTER] of LinuxCNC.",
+)
 @options.FILE
 def command(
     file: str,
     certificate: str | None,
     source_map: str | None,
     verify: str,
+    filters: bool,
     **asked: Any,
 ) -> int:
     """Transform a file in place; exit 0 only if it was written."""
+    if filters and hasattr(sys.stderr, "reconfigure"):
+        sys.stderr.reconfigure(encoding="utf-8", errors="backslashreplace")
+    out = STDOUT if filters else file
     try:
-        _post(Asked(**asked), Job(file, file, certificate, source_map, verify, quiet=True))
+        _post(Asked(**asked), Job(file, out, certificate, source_map, verify, True, filters))
     except GcxformError as error:
-        if error.diagnostics[0].code == DONE:  # the file is what was asked for
-            print(f"{file}: {error.diagnostics[0].message}", file=sys.stderr, flush=True)
-            return 0
-        print(_plain(error), file=sys.stderr, flush=True)
+        _say(_plain(error))
         return error.exit_code
     return 0
 
 
 def _post(asked: Asked, job: Job) -> None:
+    """Run, and say what is worth a warning; what was done already is what was asked for."""
     if job.file == STDOUT:
         raise excluding("post, which edits a file, and stdin")
     written = {"--certificate": job.certificate, "--map": job.source_map}
     check_places(written, (job.file, asked.file, asked.machine))
-    done = transform(asked.build(), job)
+    pipeline = asked.build()
+    with opened(job.file) as source:
+        try:
+            done = transformed(pipeline, source, job)
+        except GcxformError as error:
+            if error.diagnostics[0].code != DONE:
+                raise
+            if job.filters:
+                _hand_on(source)
+            _say(f"{job.file}: {error.diagnostics[0].message}")
+            return
     for warning in edited_since(done.certificate):
-        print(warning.render(), file=sys.stderr, flush=True)
+        _say(warning.render())
+
+
+def _hand_on(source: Source) -> None:
+    """Print a program as it was read."""
+    source.stream.seek(0)
+    with destination(STDOUT) as put:
+        put(source.stream.read())
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
 
 
 def _plain(error: GcxformError) -> str:

@@ -1,4 +1,9 @@
-"""How far a run is, on a terminal, once it takes long enough to wonder."""
+"""How far a run is: on a terminal, once it takes long enough to wonder, or told to a host.
+
+The graphical interfaces of LinuxCNC read lines `FILTER_PROGRESS=n` from what a filter writes to
+stderr. QtVCP and Gmoccapy take one line every 100 ms, and what they have not read fills a pipe: so
+no more is written than they read.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +24,11 @@ class Progress:
         self.done = 0
         self.shown = False
         self._next = time.monotonic() + PATIENCE
-        self._silent = quiet or sys.stderr is None or not sys.stderr.isatty() or not size
+        self._silent = quiet or sys.stderr is None or not self.heard() or not size
+
+    def heard(self) -> bool:
+        """Return whether anybody reads it."""
+        return sys.stderr.isatty()
 
     def __call__(self, count: int) -> None:
         """Take note of bytes that are done."""
@@ -29,10 +38,28 @@ class Progress:
             return
         self._next = now + PACE
         self.shown = True
-        percent = min(100, 100 * self.done // self.size)
+        self.show(min(100, 100 * self.done // self.size))
+
+    def show(self, percent: int) -> None:
+        """Write a number."""
         print(f"{_CLEAR}{percent:3d} %", end="", file=sys.stderr, flush=True)
 
     def close(self) -> None:
         """Take the number away."""
         if self.shown:
             print(_CLEAR, end="", file=sys.stderr, flush=True)
+
+
+class FilterProgress(Progress):
+    """The same as a line for each number: AXIS, QtVCP and Gmoccapy show a bar."""
+
+    def heard(self) -> bool:
+        """Return that a host reads it."""
+        return True
+
+    def show(self, percent: int) -> None:
+        """Write a number as a line."""
+        print(f"FILTER_PROGRESS={percent}", file=sys.stderr, flush=True)
+
+    def close(self) -> None:
+        """Leave the bar as it is: the host takes it away."""

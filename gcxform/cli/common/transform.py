@@ -9,12 +9,13 @@ from dataclasses import dataclass
 
 from gcxform.cli.common.outputs import destination
 from gcxform.cli.common.programs import opened
-from gcxform.cli.common.progress import Progress
+from gcxform.cli.common.progress import FilterProgress, Progress
 from gcxform.cli.common.source_map import SourceMap
 from gcxform.diagnostics import Diagnostic
 from gcxform.pipeline.certificate import Certificate
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.stamps.chain import edited
+from gcxform.syntax.source import Source
 from gcxform.system.heap import keep
 
 
@@ -28,6 +29,7 @@ class Job:
     source_map: str | None = None
     verify: str = "on"
     quiet: bool = False
+    filters: bool = False  # a host reads how far it is
 
 
 @dataclass(frozen=True)
@@ -43,11 +45,18 @@ def transform(pipeline: Pipeline, job: Job) -> Done:
 
     Raises GcxformError, and then the output's place is as it was.
     """
+    with opened(job.file) as source:
+        return transformed(pipeline, source, job)
+
+
+def transformed(pipeline: Pipeline, source: Source, job: Job) -> Done:
+    """Do the same with a source that is open already."""
     began = time.perf_counter()
     keep()
     lines = SourceMap() if job.source_map else None
-    with opened(job.file) as source, destination(job.out) as put:
-        progress = Progress(source.size, job.quiet)
+    with destination(job.out) as put:
+        kind = FilterProgress if job.filters else Progress
+        progress = kind(source.size, job.quiet and not job.filters)
         try:
             with redirect_stdout(sys.stderr):  # stdout is for the program: plugins may print
                 certificate = pipeline.run_stream(source, put, job.verify, lines, progress)

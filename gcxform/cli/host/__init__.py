@@ -1,0 +1,1 @@
+"""What the programs that call gcxform need to be told: CAM systems, slicers, controls, senders."""
