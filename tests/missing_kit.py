@@ -24,6 +24,7 @@ ANSWERS: dict[str, Any] = {
     "radius": 0.001,
     "null-compare": "zero",
     "ends": "unknown",
+    "inert-m": [50],
 }
 
 

@@ -16,7 +16,9 @@ def compared(a: str, b: str) -> gx.Comparison:
     return gx.compare(first, second)
 
 
-@pytest.mark.parametrize("step", ["X1.", "X1. Y2.", "G2 X10. R5.", "G3 X10. Y10. J10."])
+@pytest.mark.parametrize(
+    "step", ["X1.", "X1. Y2.", "G2 X10. R5.", "G3 X10. Y10. J10.", "G28 X1. Y0.", "G30 P2 Y-1."]
+)
 def test_the_same_steps_are_the_same(step: str) -> None:
     assert compared(f"{step}\n", f"{step}\n").same
 
@@ -33,6 +35,9 @@ def test_the_same_steps_are_the_same(step: str) -> None:
         ("G2 I5.", "G2 I-5."),
         ("X1.", "G20 G1 X1. F100."),
         ("G1 Y1.", "G51.1 Y0.\nG1 Y1."),
+        ("G28 Y1.", "G28 Y2."),
+        ("G28 Y0.", "G28 Z0."),
+        ("G30 P2 Y1.", "G30 P2 Y-1."),
     ],
 )
 def test_other_steps_are_others(a: str, b: str) -> None:

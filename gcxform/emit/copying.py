@@ -8,16 +8,15 @@ from gcxform.catalogue.offers import leave_out_block, put_before
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import LINEAR
 from gcxform.emit.converting import convertible
+from gcxform.emit.depending import Depending
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions, as_written
-from gcxform.emit.same_rows import EXACT, SameRows
+from gcxform.emit.same_rows import SameRows
 from gcxform.emit.stated import Stated
 from gcxform.emit.tapping import Taps
 from gcxform.modal.columns import fill
-from gcxform.modal.meaning.meaning import FRAMING
 from gcxform.modal.meaning.tables import GROUPS
-from gcxform.modal.noted import Unknown
 from gcxform.system.arrays import Flags, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.angles import TURN
@@ -68,15 +67,12 @@ class Copying:
         old_count = np.bincount(self.original.block, minlength=live)
         self.believed_exact = believed.exact
         self.believed_said = believed.said
-        self.believed_position = believed.position
         self.same = SameRows(self.path, self.original, positions)
         self.lines = (old_count == 0) & (pieces.count == 0) & ~pieces.expanded_line
         stands, converted, self.exact = self._standing(old_count, pieces, stated)
         self._refuse_changed(stands, pieces, stated)
-        self._refuse_presets()
-        self._refuse_other_values()
-        self._refuse_calls()
-        self._refuse_lengths()
+        depending = Depending(task, positions, believed, self.same, self.exact)
+        depending.check()
         if task.manner.crossing:
             self.lines &= self._nothing_to_say()
         else:
@@ -91,6 +87,7 @@ class Copying:
         self.lines[pieces.line[stated.repaired]] = False
         self.lines &= ~taps.lines
         self._skipped()
+        depending.refuse_shared(self.lines)
         self._refuse_unknown()
         self._refuse_polar()
         self._refuse_perhaps(stated, pieces)
@@ -160,108 +157,6 @@ class Copying:
             message = "the block would be written anew, in radius and angle (G16)"
             where = self.task.location(int(self.path.block[rows[0]]))
             raise InputError.one("GX506", message, where, put_before("offsets"))
-
-    def _refuse_presets(self) -> None:
-        """Refuse blocks that set coordinates from where the axes stand if they stand elsewhere."""
-        if self.path.folded:
-            return
-        for line in self.task.counted_from_axes():
-            if self._stands_elsewhere(line):
-                message = "this block counts from where the axes stand, and they stand elsewhere"
-                hint = put_before("offsets")
-                raise InputError.one("GX506", message, self.task.location(line), hint)
-
-    def _stands_elsewhere(self, line: int, by: float = EXACT) -> bool:
-        """Whether the axes stand elsewhere before a line than in the source, by a distance (mm)."""
-        now = np.searchsorted(self.path.block, line) - 1
-        was = np.searchsorted(self.original.block, line) - 1
-        if self.exact[now] if now >= 0 else self.believed_exact:
-            return False
-        stands = self.positions.after[now] if now >= 0 else self.believed_position
-        gap = np.abs(stands - (self.original.end[was] if was >= 0 else self.original.entry))
-        return bool((gap > by).any())
-
-    def _refuse_other_values(self) -> None:
-        """Refuse what only the machine can compute if it would compute something else.
-
-        That is so where it reads positions and they are others, or is a length in another unit.
-        """
-        for each in self.task.read.unknown:
-            if self._has_other_value(each):
-                message = f"{each.text} is computed by the machine, and would have another value"
-                hint = "leave out the pass that changes the unit, the modes or the positions here"
-                raise InputError.one("GX506", message, self.task.location(each.line), hint)
-
-    def _has_other_value(self, each: Unknown) -> bool:
-        now, old, line = self.path.blocks, self.original.blocks, each.line
-        if self.task.manner.crossing:
-            return True
-        if each.hangs_on and now.inch[line] != old.inch[line]:
-            return True
-        if each.hangs_on and now.feed_mode[line] != old.feed_mode[line]:
-            return True
-        if each.hangs_on != "place":
-            return False
-        return not bool(self.same.modes()[line]) or self._stands_elsewhere(line)
-
-    def _refuse_calls(self) -> None:
-        """Refuse calls of what is not there, if they would find another control than in the source.
-
-        Where a pass has compensated the machine the tool stands where it ought to; how far that
-        may be is an option of the pass. By any other the axes stay within what is promised.
-        """
-        now, old = self.path.blocks, self.original.blocks
-        for line in np.flatnonzero(self.task.table.flag("calls", self.task.shape)).tolist():
-            why = "another dialect" if self.task.manner.crossing else ""
-            if not self.same.modes()[line] or now.feed_mode[line] != old.feed_mode[line]:
-                why = "other modes (G20 or G21, G90 or G91, G93 or G94)"
-            if self.path.folded and any(
-                any(frame.shift) or frame.matrix for frame in self.original.frames
-            ):
-                why = "coordinates that are not shifted"
-            manner = self.task.manner
-            stays = EXACT + manner.promised + manner.rounding(bool(now.inch[line]))
-            if not manner.compensates and self._stands_elsewhere(line, stays):
-                why = "other places of the axes"
-            if why:
-                message = f"this call, whose program is not known, would find {why}"
-                hint = "leave out the pass that changes this"
-                raise InputError.one("GX506", message, self.task.location(line), hint)
-
-    def _refuse_lengths(self) -> None:
-        """Refuse lengths that codes take for themselves where another unit would be in force."""
-        takes = self.task.table.flag("takes_lengths", self.task.shape)
-        inch = self.path.blocks.inch != self.original.blocks.inch
-        halved = self.path.folded and any(frame.diameter for frame in self.original.frames)
-        for line in np.flatnonzero(takes & (inch | halved)).tolist():
-            for name, address in self._lengths_kept(line):
-                if inch[line] or address == "X":
-                    message = f"{address} of {name} would have to be written in another unit"
-                    hint = "leave out the pass that changes the unit"
-                    if (name, address) not in self._lengths_left(line):
-                        hint = put_before("offsets")
-                    elif address == "D":
-                        hint = put_before("cutter-comp")
-                    raise InputError.one("GX506", message, self.task.location(line), hint)
-
-    def _lengths_left(self, line: int) -> list[tuple[str, str]]:
-        """Return what of those lengths folding would leave."""
-        meaning = self.task.table.meanings[int(self.task.shape[line])]
-        framing = {act.code for act in meaning.acts if act.name in FRAMING}
-        return [(name, address) for name, address, _ in meaning.lengths if name not in framing]
-
-    def _lengths_kept(self, line: int) -> list[tuple[str, str]]:
-        """Return code and address of lengths, not 0, that codes of a line take and that stay."""
-        window, first = self.task.window, int(self.task.window.first_number[line])
-        meaning = self.task.table.meanings[int(self.task.shape[line])]
-        folded = {act.code for act in meaning.acts if act.name in FRAMING and self.path.folded}
-        if self.path.blocks.uncompensated:
-            folded.add(meaning.groups.get("cutter-comp", ""))
-        return [
-            (name, address)
-            for name, address, slot in meaning.lengths
-            if name not in folded and window.value[first + slot]
-        ]
 
     def _skipped(self) -> None:
         """Copy the blocks that the control skips; another control might not skip them."""

@@ -9,7 +9,7 @@ needs a fact that is not known is refused, with the line.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -42,7 +42,8 @@ class Interpreted:
     `shape` (live,) are their shapes: that of an empty line for blocks that are skipped. `value`
     are the window's numbers, those that were computed among them; `assigned` are the parameters
     that the lines set, in order, and `unknown` what of them only the machine can compute. `perhaps`
-    (live,) are lines that move something and may not be executed; None: there are none.
+    (live,) are lines that move something and may not be executed; None: there are none. `loses`
+    (live,) are lines behind which no position is known.
     """
 
     path: Toolpath
@@ -54,6 +55,7 @@ class Interpreted:
     assigned: tuple[Assigned, ...] = ()
     unknown: tuple[Unknown, ...] = ()
     perhaps: Flags | None = None
+    loses: Flags = field(default_factory=lambda: np.zeros(0, np.bool_))
 
 
 PECKS = ("peck-return", "peck-clearance")
@@ -143,7 +145,7 @@ class Interpreter:
         self._carry(lines, modes)
         value, assigned = lines.window.value, tuple(lines.assigned)
         unknown = tuple(lines.unknown)
-        found = value, assigned, unknown, lines.perhaps
+        found = value, assigned, unknown, lines.perhaps, lines.loses_position()
         return Interpreted(path, modes, lines.live, lines.shape, before, *found)
 
     def _carry(self, lines: Lines, modes: Modes) -> None:

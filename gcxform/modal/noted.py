@@ -23,7 +23,8 @@ class Unknown(NamedTuple):
     """A piece of a line of the window, from 0, that only the machine can compute.
 
     `text` has no blanks. `hangs_on` is what of the program its value depends on besides parameters:
-    "" for nothing, "units", or "place" for the places of the axes and all modes.
+    "" for nothing, "units", or "place" for the places of the axes and all modes. `BY_WAY`: nothing
+    is computed; it is by how much a block goes.
     """
 
     line: int
@@ -42,5 +43,6 @@ class KeptCall(NamedTuple):
     ends: str
 
 
+BY_WAY = "way"
 AT = "at "
 """What the axes begin with that a call leaves where it names them."""

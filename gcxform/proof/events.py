@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from gcxform.contract.passes import PassContext
 from gcxform.modal.meaning.meaning import FRAMING
 from gcxform.modal.meaning.sorting import only_for_cycles
+from gcxform.modal.moves.blind_moves import BY
 from gcxform.proof.feeds import Wrong
 from gcxform.proof.known_positions import in_mm
 from gcxform.proof.trace import Trace
@@ -27,11 +28,13 @@ class EventProof:
 
     folded    codes that set frames are not written
     switches  the M codes that a pass takes over from the control
+    homes     the points of the machine are other ones, so that more or less is known behind them
     """
 
     context: PassContext
     folded: bool
     switches: frozenset[str]
+    homes: bool = False
 
     def of_source(self, path: Toolpath) -> tuple[Event, ...]:
         """Return the events of the source without those that a pass has taken over."""
@@ -44,6 +47,7 @@ class EventProof:
             in_mm(event, path)
             for event in path.events
             if not only_for_cycles(event.what, source, target)
+            and not (self.homes and event.what.startswith(BY))
         )
         if not self.folded:
             return events

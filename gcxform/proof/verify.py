@@ -18,8 +18,7 @@ travel (a bound of the Frechet distance, `gcxform/deviations/`):
 of rapids at their ends only, for no control is bound to go straight in them. Feed moves begin
 within b of where they began. Rows of p that nothing stands for are lines, and those that follow one
 another have ways of <= b together. Left to bounds of their own are moves between taps (IN_AIR) and
-rapids that passes spare (`gcxform/proof/spared_rapids.py`). That a pass keeps its promise is not
-assumed: whatever b is made of, this is measured.
+rapids that passes spare (`gcxform/proof/spared_rapids.py`). No pass is believed: this is measured.
 """
 
 from __future__ import annotations
@@ -125,7 +124,8 @@ class Verifier:
         self.limit = limit
         self.centres = CentreProof(context, file)
         self.path_modes = PathModes(context)
-        self.events = EventProof(context, folded, switches)
+        homes = any(step.demands.written_for is not None for step in passes)
+        self.events = EventProof(context, folded, switches, homes)
         self.feed_modes = [mode for step in passes if (mode := step.demands.feed_mode) is not None]
         self.speeds = speeds_of(context) if any(step.demands.slows for step in passes) else {}
         self.angle_budgets = angle_budgets

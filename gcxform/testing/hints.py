@@ -10,7 +10,7 @@ import msgspec
 from gcxform.catalogue.settings import Setting, settings
 from gcxform.contract.options import build, describe
 from gcxform.diagnostics import Location, UsageError
-from gcxform.machine.control import answers, settings_of
+from gcxform.machine.control import INERT, answers, settings_of
 from gcxform.machine.file import FILLED_IN
 from gcxform.machine.machine import Offset, Tool
 from gcxform.machine.macro_tables import expected
@@ -52,7 +52,7 @@ def _try_machine(table: str, name: list[str], key: str, value: Any) -> None:
             raise ValueError(f"[{table}.{name[0]}]: expected {wrong}")
         return
     if table == "control":
-        if not answers(key):
+        if key != INERT and not answers(key):
             raise ValueError(f"[control] has no key {key!r}")
         settings_of({key: value})
         return

@@ -109,14 +109,14 @@ MUTATIONS = (
     ),
     Mutation(
         "what the machine computes may be in another unit",
-        "gcxform/emit/copying.py",
+        "gcxform/emit/depending.py",
         "if each.hangs_on and now.inch[line] != old.inch[line]:",
         "if False:",
         CORPUS,
     ),
     Mutation(
         "what the machine computes may be read elsewhere",
-        "gcxform/emit/copying.py",
+        "gcxform/emit/depending.py",
         "return not bool(self.same.modes()[line]) or self._stands_elsewhere(line)",
         "return False",
         CORPUS,

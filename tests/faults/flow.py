@@ -480,7 +480,7 @@ MUTATIONS = (
     ),
     _flow(
         "a call that is kept may be made in another unit",
-        "gcxform/emit/copying.py",
+        "gcxform/emit/depending.py",
         "if not self.same.modes()[line] or now",
         "if now",
         "tests/test_corpus.py::test_case[flow/kept-call-in-g91]",

@@ -46,6 +46,13 @@ FAULTS = (
         f"{CASE}[dialects/across/steps-from-nowhere]",
     ),
     (
+        "a way home from nowhere known is not noted",
+        "gcxform/modal/moves/home.py",
+        "        note_way(track, line)\n",
+        "",
+        STEPS,
+    ),
+    (
         "steps from nowhere may be written otherwise",
         BLIND,
         "np.where(blind, np.int8(Form.BLIND), rows.form)",

@@ -63,7 +63,7 @@ MUTATIONS = (
     ),
     Mutation(
         "writing: lengths in another unit are kept",
-        "gcxform/emit/copying.py",
+        "gcxform/emit/depending.py",
         'if inch[line] or address == "X":',
         "if False:",
         FOUND,

@@ -129,6 +129,8 @@ FLAGS = (
     "calls",
     "prints",
     "sets_tables",
+    "runs_macro",
+    "shares_words",
 )
 
 
@@ -138,6 +140,8 @@ def of_splines(motion: Small) -> Flags:
 
 
 DRILL_WORDS = frozenset("XYZABCUVWRPQLIJK")
+CHANGING = frozenset("XYZABCUVWIJKRQF")
+"""Words that passes change."""
 
 
 def _calls(meaning: Meaning) -> bool:
@@ -152,6 +156,7 @@ class MeaningTable:
         self.shapes = shapes
         self.dialect = dialect
         self.meanings: list[Meaning] = []
+        self._calls_with_values = dialect.flow_rule.macro_levels > 0
         self.functions: dict[int, Any] = {}  # of shapes that compute something, once made
         self.groups: Small = np.empty((0, len(COLUMNS)), np.int8)
         self.flags: Flags = np.empty((0, len(FLAGS)), np.bool_)
@@ -212,6 +217,8 @@ class MeaningTable:
             bool(meaning.call),
             bool(meaning.prints),
             any(act.name == "table" for act in meaning.acts),
+            meaning.runs_macro and not meaning.call,
+            bool(self._calls_with_values and meaning.lost_by and set(meaning.slots) & CHANGING),
         )
 
     def flag(self, name: str, shape: Ints) -> Flags:

@@ -8,19 +8,23 @@ more: under cutter compensation, along vectors of the tool, and in another diale
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from gcxform.dialect.dialect import INCH
 from gcxform.modal.frames.track import Track
 from gcxform.modal.lines import Lines
 from gcxform.modal.moves.rows import Rows
-from gcxform.modal.noted import Unknown
+from gcxform.modal.noted import BY_WAY, Unknown
 from gcxform.modal.state import Modes
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Form, Kind, Plane
 
 KEPT = "moves by distances from where it is not known that an axis stands are kept in G91"
+BY = "BY "
+"""How the event begins that says by what a block goes."""
 
 
 def may_be_blind(lines: Lines, modes: Modes, moving: Flags, alone: bool) -> Flags:
@@ -65,17 +69,35 @@ def blind_rows(track: Track, rows: Rows) -> Rows:
     return Rows(rows.line, rows.kind, rows.end, rows.nth, form, rows.frame)
 
 
-def _said(track: Track, line: int, frame: Frame) -> str:
-    """Return what a move goes by, mm and degrees in positions, and the words of an arc."""
+def note_way(track: Track, line: int) -> None:
+    """Note by what a block in G91 goes on its way to a place of the machine, from nowhere known.
+
+    Its block stays as it stands, as the moves here do, and no end of it is known. Another control
+    may know more of where it begins.
+    """
+    words = track.words_on(line) if not track.lines.reading.crosses else {}
+    named = [track.axes.index(axis) for axis in words]
+    if track.modes.incremental[line] and np.isnan(track.state.position[named]).any():
+        way = _way(track, line, track.frame)
+        said = (f"{axis}{value + 0.0:.6f}" for axis, value in way if value or axis in words)
+        track.lines.unknown.append(Unknown(line, f"{BY}{' '.join(said)}", BY_WAY))
+
+
+def _way(track: Track, line: int, frame: Frame) -> Iterator[tuple[str, float]]:
+    """Yield what the axes of a line in G91 go by, mm and degrees in positions."""
     words = track.words_on(line)
     step = np.array([[words.get(axis, 0.0) for axis in track.axes]])
     if frame.diameter:
         step[0, 0] *= 0.5
-    way = zip(track.axes, frame.turned(step)[0].tolist(), strict=True)
-    parts = [f"{axis}{value:.6f}" for axis, value in way if value]
+    return zip(track.axes, frame.turned(step)[0].tolist(), strict=True)
+
+
+def _said(track: Track, line: int, frame: Frame) -> str:
+    """Return what a move goes by, mm and degrees in positions, and the words of an arc."""
+    parts = [f"{axis}{value:.6f}" for axis, value in _way(track, line, frame) if value]
     scale = INCH if track.modes.inch[line] else 1.0
     for address in "IJKR" + track.dialect.arc_rule.turns if track.modes.motion[line] > 1 else "":
         word = track.lines.word(address)
         if word is not None and word[1][line]:
             parts.append(f"{address}{word[0][line] * scale:.6f}")
-    return "BY " + " ".join(parts)
+    return BY + " ".join(parts)

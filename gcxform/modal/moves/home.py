@@ -12,6 +12,7 @@ from gcxform.dialect.dialect import INCH, LINEAR
 from gcxform.modal.frames.track import LEFT, Track
 from gcxform.modal.meaning.calls import CALL
 from gcxform.modal.meaning.meaning import OWN_MOVES, Act
+from gcxform.modal.moves.blind_moves import note_way
 from gcxform.modal.moves.rows import Rows
 from gcxform.modal.moves.spindle_and_probe import probe
 from gcxform.modal.noted import AT
@@ -67,6 +68,7 @@ def _home(track: Track, line: int, code: str) -> Rows:
     words = track.words_on(line)
     moves: list[tuple[int, Floats]] = []
     if words:
+        note_way(track, line)
         moves.append((Kind.RAPID, _reached(track, line, words)))
         _warn_of_plunge(track, line, code, float(moves[0][1][2]))
     elif not track.dialect.motion_rule.g28_without_axes:

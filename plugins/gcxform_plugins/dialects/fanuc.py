@@ -17,6 +17,7 @@
 | M0 M1 M2 M30 M98 M99 | act after the motion of their block |
 | M5, M9 with a motion | the machine's PLC decides, commonly after it: taken as after |
 | an M code not listed | may run a macro: positions and variables are unknown after it |
+| words beside it, and beside M6 | may be those of a macro (6080 to 6089): never changed |
 | M codes listed in `[control] inert-m` | move no axis and set no variable |
 | G41, G42 | D stays in force; its radius is the machine file's, D0 is none |
 | G41, G42, G40 with an arc | refused: alarm 34 |

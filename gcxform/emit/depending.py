@@ -1,0 +1,176 @@
+"""Blocks that stay as they stand and hang on what is in force: refused where that would be another.
+
+They set coordinates from where the axes stand, read what only the machine knows, take lengths in
+the unit of the program, or call what is not there to be read.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gcxform.catalogue.offers import put_before
+from gcxform.diagnostics import InputError
+from gcxform.emit.manner import Believed, Task
+from gcxform.emit.positions import Positions
+from gcxform.emit.same_rows import EXACT, SameRows
+from gcxform.modal.meaning.meaning import FRAMING
+from gcxform.modal.noted import BY_WAY, Unknown
+from gcxform.system.arrays import Flags
+
+
+class Depending:
+    """Looks at the blocks of a window whose effect depends on modes or places.
+
+    `exact` (rows,): after the row the control stands exactly where the source program put it.
+    """
+
+    def __init__(
+        self, task: Task, positions: Positions, believed: Believed, same: SameRows, exact: Flags
+    ) -> None:
+        self.task = task
+        self.path, self.original = task.path, task.read.path
+        self.positions = positions
+        self.believed = believed
+        self.same = same
+        self.exact = exact
+
+    def check(self) -> None:
+        """Raise InputError for the first block that would do something else."""
+        self._refuse_presets()
+        self._refuse_other_values()
+        self._refuse_calls()
+        self._refuse_lengths()
+
+    def _refuse_presets(self) -> None:
+        """Refuse blocks that set coordinates from where the axes stand if they stand elsewhere."""
+        if self.path.folded:
+            return
+        for line in self.task.counted_from_axes():
+            if self._stands_elsewhere(line):
+                message = "this block counts from where the axes stand, and they stand elsewhere"
+                hint = put_before("offsets")
+                raise InputError.one("GX506", message, self.task.location(line), hint)
+
+    def _stands_elsewhere(self, line: int, by: float = EXACT) -> bool:
+        """Whether the axes stand elsewhere before a line than in the source, by a distance (mm)."""
+        now = np.searchsorted(self.path.block, line) - 1
+        was = np.searchsorted(self.original.block, line) - 1
+        if self.exact[now] if now >= 0 else self.believed.exact:
+            return False
+        stands = self.positions.after[now] if now >= 0 else self.believed.position
+        gap = np.abs(stands - (self.original.end[was] if was >= 0 else self.original.entry))
+        return bool((gap > by).any())
+
+    def _refuse_other_values(self) -> None:
+        """Refuse what only the machine can compute if it would compute something else.
+
+        That is so where it reads positions and they are others, or is a length in another unit.
+        """
+        for each in self.task.read.unknown:
+            if self._has_other_value(each):
+                message = f"{each.text} is computed by the machine, and would have another value"
+                hint = "leave out the pass that changes the unit, the modes or the positions here"
+                raise InputError.one("GX506", message, self.task.location(each.line), hint)
+
+    def _has_other_value(self, each: Unknown) -> bool:
+        now, old, line = self.path.blocks, self.original.blocks, each.line
+        if each.hangs_on == BY_WAY:
+            return False  # its block stays, or is refused as a move
+        if self.task.manner.crossing:
+            return True
+        if each.hangs_on and now.inch[line] != old.inch[line]:
+            return True
+        if each.hangs_on and now.feed_mode[line] != old.feed_mode[line]:
+            return True
+        if each.hangs_on != "place":
+            return False
+        return not bool(self.same.modes()[line]) or self._stands_elsewhere(line)
+
+    def _refuse_calls(self) -> None:
+        """Refuse calls of what is not there, if they would find another control than in the source.
+
+        Where a pass has compensated the machine the tool stands where it ought to; how far that
+        may be is an option of the pass. By any other the axes stay within what is promised.
+        """
+        flag, shape = self.task.table.flag, self.task.shape
+        macros = flag("runs_macro", shape) & self.task.read.loses
+        macros &= not self.task.manner.crossing
+        for line in np.flatnonzero(flag("calls", shape) | macros).tolist():
+            if why := self._finds_other(line):
+                message = f"this call, whose program is not known, would find {why}"
+                hint = "leave out the pass that changes this"
+                if macros[line]:
+                    message = f"{self._macro_codes(line)}, which may run a macro, would find {why}"
+                    hint = self._inert(line)
+                raise InputError.one("GX506", message, self.task.location(line), hint)
+
+    def _finds_other(self, line: int) -> str:
+        """Return what a program that a line calls would find otherwise than in the source."""
+        now, old, manner = self.path.blocks, self.original.blocks, self.task.manner
+        stays = EXACT + manner.promised + manner.rounding(bool(now.inch[line]))
+        if not manner.compensates and self._stands_elsewhere(line, stays):
+            return "other places of the axes"
+        frames = self.original.frames
+        if self.path.folded and any(any(each.shift) or each.matrix for each in frames):
+            return "coordinates that are not shifted"
+        if not self.same.modes()[line] or now.feed_mode[line] != old.feed_mode[line]:
+            return "other modes (G20 or G21, G90 or G91, G93 or G94)"
+        return "another dialect" if manner.crossing else ""
+
+    def _macro_codes(self, line: int) -> str:
+        """Return the M codes of a line that may run macros."""
+        lost_by = self.task.table.meanings[int(self.task.shape[line])].lost_by
+        return " ".join(f"M{number}" for number in sorted(lost_by - {-1}))
+
+    def _inert(self, line: int) -> str:
+        numbers = self._macro_codes(line).replace("M", "").replace(" ", ", ")
+        return f"if it runs none: inert-m = [{numbers}] in [control] of the machine file"
+
+    def refuse_shared(self, copied: Flags) -> None:
+        """Refuse to change words beside a code that may take them as arguments of a macro.
+
+        An M code that a parameter makes a call of a macro (6080 to 6089 of a Fanuc) hands it the
+        words of its block, as G65 does. `copied` (live,) are the lines that stay as they are.
+        """
+        shares = self.task.table.flag("shares_words", self.task.shape) & self.task.read.loses
+        for line in np.flatnonzero(shares & ~copied)[:1].tolist():
+            codes = self._macro_codes(line)
+            message = f"{codes or 'a tool change'} may be a call of a macro that takes these words"
+            hint = "write it in a block of its own"
+            hint = f"{hint}, or {self._inert(line)}" if codes else hint
+            raise InputError.one("GX506", message, self.task.location(line), hint)
+
+    def _refuse_lengths(self) -> None:
+        """Refuse lengths that codes take for themselves where another unit would be in force."""
+        takes = self.task.table.flag("takes_lengths", self.task.shape)
+        inch = self.path.blocks.inch != self.original.blocks.inch
+        halved = self.path.folded and any(frame.diameter for frame in self.original.frames)
+        for line in np.flatnonzero(takes & (inch | halved)).tolist():
+            for name, address in self._lengths_kept(line):
+                if inch[line] or address == "X":
+                    message = f"{address} of {name} would have to be written in another unit"
+                    hint = "leave out the pass that changes the unit"
+                    if (name, address) not in self._lengths_left(line):
+                        hint = put_before("offsets")
+                    elif address == "D":
+                        hint = put_before("cutter-comp")
+                    raise InputError.one("GX506", message, self.task.location(line), hint)
+
+    def _lengths_left(self, line: int) -> list[tuple[str, str]]:
+        """Return what of those lengths folding would leave."""
+        meaning = self.task.table.meanings[int(self.task.shape[line])]
+        framing = {act.code for act in meaning.acts if act.name in FRAMING}
+        return [(name, address) for name, address, _ in meaning.lengths if name not in framing]
+
+    def _lengths_kept(self, line: int) -> list[tuple[str, str]]:
+        """Return code and address of lengths, not 0, that codes of a line take and that stay."""
+        window, first = self.task.window, int(self.task.window.first_number[line])
+        meaning = self.task.table.meanings[int(self.task.shape[line])]
+        folded = {act.code for act in meaning.acts if act.name in FRAMING and self.path.folded}
+        if self.path.blocks.uncompensated:
+            folded.add(meaning.groups.get("cutter-comp", ""))
+        return [
+            (name, address)
+            for name, address, slot in meaning.lengths
+            if name not in folded and window.value[first + slot]
+        ]
