@@ -11,6 +11,7 @@ import pytest
 
 import gcxform as gx
 from gcxform.emit.emitter import Emitted
+from gcxform.emit.same_rows import SameRows
 from gcxform.pipeline.output import Output
 from gcxform.pipeline.run import Run
 from gcxform.syntax.source import Source
@@ -244,6 +245,16 @@ def test_comments_that_act_are_events(change: Change) -> None:
     run(program=program)
     with pytest.raises(gx.VerificationError, match=r"became|moved|missing"):
         run(change, program=program)
+
+
+def test_a_word_of_the_machine_counts_from_where_it_did(monkeypatch: pytest.MonkeyPatch) -> None:
+    program = b"G21 G90 G94\nG0 X0 Y0 Z5\nG92 X1\nG0 X#5063\nG0 X5\nM2\n"
+    with pytest.raises(gx.InputError, match="would be written anew"):
+        run(chain="offsets", program=program)
+    everywhere = np.ones((1, 9), np.bool_)
+    monkeypatch.setattr(SameRows, "_unshifted", lambda *_: everywhere)
+    with pytest.raises(gx.VerificationError, match="counts from elsewhere"):
+        run(chain="offsets", program=program)
 
 
 @pytest.mark.parametrize("other", ["G38.3", "G38.4", "G38.5"])

@@ -47,12 +47,13 @@ class SameRows:
         good = np.ones(len(rows), np.bool_)
         words, original = self.positions.end, self._old_words(rows, others)
         polar = self.polar[_take(self.path.frame, rows)]
+        unshifted = self._unshifted(rows, others)
         for k in range(len(self.path.axes)):
             end, old = _take(words[:, k], rows), original[:, k]
             held = _take(self.positions.held[:, k], rows)
             programmed = _take(self.positions.programmed[:, k], rows)
             same = (np.abs(held - old) <= EXACT) | (end == old)
-            same |= np.isnan(end) & np.isnan(old)  # the machine knows what the word is worth
+            same |= np.isnan(end) & np.isnan(old) & unshifted[:, k]  # the machine knows the word
             left = ~_take(self.positions.write[:, k], rows)
             left |= polar & (end == old)  # one word moves two axes: it says both
             good &= np.where(programmed, same, left)
@@ -124,6 +125,16 @@ class SameRows:
         same_centre = ((centre == old) | np.isnan(old)).all(axis=1)
         same_sweep = self.path.sweep[rows] == self.original.sweep[others]
         return np.asarray(alike & same_centre & same_sweep)
+
+    def _unshifted(self, rows: Ints, others: Ints) -> Flags:
+        """Return in which axes (n, axes) words count from where they did, or are distances."""
+        frames = self.path.frames, self.original.frames
+        if frames[0] == frames[1]:
+            return np.broadcast_to(True, (len(rows), len(self.path.axes)))
+        now, was = (np.array([frame.shift for frame in some]) for some in frames)
+        gap = now[_take(self.path.frame, rows)] - was[_take(self.original.frame, others)]
+        distance = self.path.blocks.incremental[_take(self.path.block, rows)]
+        return np.asarray((np.abs(gap) <= EXACT) | distance[:, None])
 
     def _diameters(self, rows: Ints, others: Ints) -> Flags:
         """Return which rows name no X, or are in frames that agree on what X is."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gcxform.system.arrays import Flags
+from gcxform.system.arrays import Flags, Floats
 
 
 def fill(values: NDArray[Any], present: Flags, initial: float) -> NDArray[Any]:
@@ -17,3 +17,16 @@ def fill(values: NDArray[Any], present: Flags, initial: float) -> NDArray[Any]:
         return values
     given = np.append(np.array(initial, values.dtype), values[rows])
     return np.repeat(given, np.diff(rows, prepend=0, append=len(values)))
+
+
+def with_increments(value: Floats, placed: Flags, incremental: Flags, before: float) -> Floats:
+    """Return positions where some lines place the axis and others add to where it stands.
+
+    From a line that adds what is not known (nan) to one that places it, the axis is nowhere known.
+    """
+    unknown = incremental & np.isnan(value)
+    steps = np.cumsum(np.where(incremental & ~unknown, value, 0.0))
+    base = fill(np.where(placed, value - steps, 0.0), placed, before)
+    if unknown.any():
+        base = np.where(fill(unknown, placed | unknown, False), np.nan, base)
+    return np.asarray(base + steps)

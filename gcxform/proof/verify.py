@@ -46,6 +46,7 @@ from gcxform.proof.events import EventProof
 from gcxform.proof.feeds import FeedProof, speeds_of
 from gcxform.proof.inventory import Whole, Written, assignments_differ, not_taken
 from gcxform.proof.known_positions import as_known, lost_in_target
+from gcxform.proof.lost_words import elsewhere
 from gcxform.proof.path_modes import PathModes
 from gcxform.proof.spared_rapids import led_elsewhere, spared_rows, told
 from gcxform.proof.trace import Trace
@@ -167,20 +168,18 @@ class Verifier:
         self._compare(trace, spared_rows(self.passes, read.path), known)
         self._centres(trace)
         self._forms(trace, read, back)
-        if self.feed_modes:
-            for wrong in self._proof(trace).left_behind(read, back):
-                self._raise(*wrong)
+        for wrong in self._proof(trace).left_behind(read, back) if self.feed_modes else ():
+            self._raise(*wrong)
         old, new = self.events.of_source(read.path), self.events.told(back.path)
         new, moded = self.path_modes.check(old, new, trace, read, self.budget)
         if moded is not None:
             self._raise(*moded)
         self.findings.path_modes = self.path_modes.added
         self.findings.events += len(old)
-        for wrong in self.events.wrong(old, new, trace, self.budget):
-            self._raise(*wrong)
         lost = assignments_differ(read.assigned, back.assigned, trace, self.context)
-        if lost is not None:
-            self._raise(*lost)
+        wrongs = *self.events.wrong(old, new, trace, self.budget), lost
+        for found in filter(None, (*wrongs, *elsewhere(read, trace, self.budget))):
+            self._raise(*found)
         self._given(read.path, again, source)
         return self.findings
 

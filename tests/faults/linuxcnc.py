@@ -40,6 +40,27 @@ MUTATIONS = (
         "flow/message-too-long",
     ),
     _of(
+        "a word of the machine counts from where it is written",
+        "gcxform/emit/same_rows.py",
+        "np.isnan(end) & np.isnan(old) & unshifted[:, k]",
+        "np.isnan(end) & np.isnan(old)",
+        "offsets/lost-word-shifted",
+    ),
+    _of(
+        "a step that only the machine knows is lost for ever",
+        "gcxform/modal/columns.py",
+        "unknown = incremental & np.isnan(value)",
+        "unknown = incremental & False",
+        "offsets/lost-word",
+    ),
+    Mutation(
+        "linuxcnc: the proof lets words of the machine count from elsewhere",
+        "gcxform/proof/lost_words.py",
+        "new.shift[k]) <= near:",
+        "new.shift[k]) <= 1e9:",
+        "tests/test_verify.py::test_a_word_of_the_machine_counts_from_where_it_did",
+    ),
+    _of(
         "strip makes one name of two",
         "plugins/gcxform_plugins/passes/strip.py",
         '" " * bool(found[1] and found[2])',

@@ -32,8 +32,8 @@ MUTATIONS = (
     _feeds("times are ignored", "if len(wrong):"),
     _verifier(
         "events are ignored",
-        "for wrong in self.events.wrong(old, new, trace, self.budget):",
-        "for wrong in ():",
+        "wrongs = *self.events.wrong(old, new, trace, self.budget), lost",
+        "wrongs = (lost,)",
     ),
     _verifier(
         "missing events are ignored", "if len(old) != len(new):", file="gcxform/proof/events.py"

@@ -71,7 +71,7 @@ MUTATIONS = (
     ),
     Mutation(
         "reading: distances are added to the last absolute position only",
-        "gcxform/modal/frames/track.py",
+        "gcxform/modal/columns.py",
         "np.where(placed, value - steps, 0.0)",
         "np.where(placed, value, 0.0)",
         READING,

@@ -18,7 +18,7 @@ from math import isfinite, remainder
 import numpy as np
 
 from gcxform.dialect.dialect import INCH, LINEAR, ROTARY
-from gcxform.modal.columns import fill
+from gcxform.modal.columns import fill, with_increments
 from gcxform.modal.findings import Findings
 from gcxform.modal.frame_state import FrameState
 from gcxform.modal.frames.act import ActError, Asked
@@ -329,7 +329,7 @@ class Track:
             placed = placed | (lost & ~incremental)
         if not incremental.any():
             return fill(value, placed, before)
-        position = _with_increments(value, placed, incremental, before)
+        position = with_increments(value, placed, incremental, before)
         nowhere = incremental & ~np.isfinite(position) & np.isfinite(value)
         nowhere &= ~(self.may_step[here] & np.isnan(position))
         self._refuse_steps(nowhere, axis, here.start, lost)
@@ -391,10 +391,3 @@ class Track:
             self.findings.add(line + here.start, "GX213", message)
         place = radius * np.cos(angle), radius * np.sin(angle)
         return {name: (value, any_word) for name, value in zip(names, place, strict=True)}
-
-
-def _with_increments(value: Floats, placed: Flags, incremental: Flags, before: float) -> Floats:
-    """Return positions where some lines place the axis and others add to where it stands."""
-    steps = np.cumsum(np.where(incremental, value, 0.0))
-    base = fill(np.where(placed, value - steps, 0.0), placed, before)
-    return np.asarray(base + steps)
