@@ -184,7 +184,7 @@ ENDING = {
     "no pipeline": (("-p", "none.toml", "p.nc"), 2, ["GX709"]),
     "a key that is none": (("--limit", "x=1", "p.nc"), 2, ["GX701"]),
     "a line too long": (("--limit", "line=4", "-f", "linuxcnc", "-x", "", "p.nc"), 3, ["GX761"]),
-    "an option that is none": (("--bogus",), 2, [""]),
+    "an option that is none": (("--bogus",), 2, ["GX700"]),
     "warned before": (("-f", "linuxcnc", "-x", SEGMENT, "none.nc"), 5, ["GX748", "GX901"]),
 }
 

@@ -69,7 +69,7 @@ def test_one_run_prints_dashes(here):
 
 
 def test_data_are_those_of_the_table(here):
-    found = call(*LINES, "--noise", "0.5 um", "--json", "out.json")
+    found = call(*LINES, "--noise", "0.5 um", "--report", "out.json")
     data = json.loads((here / "out.json").read_text())
     for name, (before, after) in figures(found.stdout).items():
         axis, symbol = name.split(" ", 1)
@@ -80,20 +80,20 @@ def test_data_are_those_of_the_table(here):
     assert np.shape(reading["up"]) == np.shape(reading["down"]) == (4, 2)
     assert 1.0 <= reading["target"][0] <= 3.0  # positions of the axis, and there its errors
     places = np.array([[x, 165.0, 225.0] for x in reading["target"]])
-    quiet = json.loads(call(*LINES, "--json", "-").stdout)["readings"]["before"]["X"]
+    quiet = json.loads(call(*LINES, "--report", "-").stdout)["readings"]["before"]["X"]
     assert quiet["target"] == reading["target"]
     truth = load_model(EXAMPLE).error(places)[:, 0]
     assert np.array(quiet["up"])[:, 0] == pytest.approx(truth, abs=1e-12)
-    alone = call(*LINES, "--noise", "0.5 um", "--json", "-")
+    alone = call(*LINES, "--noise", "0.5 um", "--report", "-")
     assert json.loads(alone.stdout) == data
-    assert json.loads(call(*LINES, "--runs", "1", "--json", "-").stdout)["figures"]["X"]["A"] == {
+    assert json.loads(call(*LINES, "--runs", "1", "--report", "-").stdout)["figures"]["X"]["A"] == {
         "before": None,
         "after": None,
     }
 
 
 def test_radii_are_among_the_data(here):
-    data = json.loads(call(*BALLBAR, "--json", "-").stdout)
+    data = json.loads(call(*BALLBAR, "--report", "-").stdout)
     reading, found = data["readings"]["before"]["XY"], data["figures"]["XY"]
     assert len(reading["angle"]) == len(reading["cw"]) == 360
     assert max(reading["ccw"]) == pytest.approx(found["Fmax(CCW)"]["before"], abs=5e-5)
@@ -155,8 +155,8 @@ def test_pictures_of_tests(here, words, named, written):
         ((*BALLBAR, "--noise", "1 inch?"), "GX708"),
         ((*BALLBAR, "--outside", "perhaps"), "GX707"),
         ((*BALLBAR, "-f", "nothing"), "GX703"),
-        ((*BALLBAR, "--json", "a", "--plot", "a"), "GX728"),
-        ((*BALLBAR, "--json", str(EXAMPLE)), "GX727"),
+        ((*BALLBAR, "--report", "a", "--plot", "a"), "GX728"),
+        ((*BALLBAR, "--report", str(EXAMPLE)), "GX727"),
         ((*DIAGONAL, "PPX"), "GX707"),
         ((*LINES, "--targets", "1"), "GX706"),
         ((*LINES, "--targets", "900"), "GX738"),

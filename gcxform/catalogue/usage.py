@@ -28,6 +28,11 @@ CODES: dict[str, tuple[str, str]] = {
         "another one than was meant to be written, or none, or the seal does not fit; so the same "
         "could be done to the program twice. Nothing was written. This is a bug of gcxform.",
     ),
+    "GX700": (
+        "The command line is not understood",
+        "A verb, an option or an argument is misspelt, is missing, or stands where it has no "
+        "meaning. `gcxform --help` lists the verbs, and `gcxform VERB --help` their options.",
+    ),
     "GX701": (
         "Unknown key in a pipeline",
         "A pipeline file, or an option of a pass, has a key which means nothing there; a misspelt "
@@ -243,6 +248,18 @@ CODES: dict[str, tuple[str, str]] = {
         "A length without a unit is in mm, so `chord-error = 5` allows 5 mm. Above 0.1 mm that is "
         'rarely meant. Write the unit: `chord-error = "5 um"`, or "5 mm" if it is so; this is '
         "a warning, and the pipeline runs as it stands.",
+    ),
+    "GX749": (
+        "Several programs need a place for each result",
+        "Several programs, or a folder, were named, and their results cannot all go to stdout or "
+        "to one file. Name a folder with -o, replace the programs with --in-place, or look at what "
+        "would be done with --check or --diff. Two programs of one name need two folders.",
+    ),
+    "GX750": (
+        "A pipeline file that was found belongs to somebody else",
+        "Where no pipeline is named, gcxform.toml is looked for in the folder of the program and "
+        "above it. One that another user has put there is not taken by itself: it would decide "
+        "what is cut. Look at it, and name it with -p if it is meant.",
     ),
     "GX760": (
         "A file names another that lies elsewhere",

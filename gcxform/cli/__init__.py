@@ -106,7 +106,9 @@ class Verbs(click.Group):
 def equip(command: click.Command) -> None:
     """Give a verb, and what stands under it, the options that every verb takes."""
     if not command.params or command.params[-1].name != DEBUG:
-        command.params += [_limit_option(), _outside_option(), _debug_option()]
+        from gcxform.cli.common.answer import option
+
+        command.params += [option(), _limit_option(), _outside_option(), _debug_option()]
     for under in getattr(command, "commands", {}).values():
         equip(under)
 

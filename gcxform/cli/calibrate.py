@@ -14,6 +14,7 @@ from gcxform.cli.calibration.circles import circles
 from gcxform.cli.calibration.plan import centres, plan
 from gcxform.cli.calibration.rotary_axes import ballbar, bundle, rotary
 from gcxform.cli.calibration.shared import about, path_of, write
+from gcxform.cli.common.answer import answer
 from gcxform.cli.common.options import ABOVE_NOTHING, above_nothing, one_of
 from gcxform.cli.common.outputs import STDOUT, check_places
 from gcxform.diagnostics import UsageError
@@ -106,8 +107,7 @@ def diagonal(
         else:
             free = misalignment == "free"
             model, found = _steps(data, linear, (noise, linear_noise, free), output is not None)
-    for line in found["warnings"]:
-        click.echo(f"warning: {line}", err=True)
+    answer({"report": found}, (f"warning: {line}" for line in found["warnings"]), err=True)
     if output is not None:
         write(output, model)
     if report is not None:

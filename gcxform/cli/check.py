@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -12,8 +11,9 @@ import numpy as np
 from gcxform.catalogue.questions import PIPELINE
 from gcxform.cli import VERBS
 from gcxform.cli.common import options
-from gcxform.cli.common.failures import FOUND, warn
-from gcxform.cli.common.findings import described
+from gcxform.cli.common.answer import answer
+from gcxform.cli.common.failures import warn
+from gcxform.cli.common.pipelines import announce
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked
 from gcxform.cli.program.asking import block, sections
@@ -42,38 +42,22 @@ ENOUGH = 100 * PRINTED_AT_MOST
 
 @click.command("check", help=VERBS["check"], short_help=VERBS["check"])
 @options.pipeline_options
-@click.option("--json", "as_json", is_flag=True, help="Print findings, with ways out, as JSON.")
 @click.argument("file", metavar="[FILE]", required=False)
-def command(file: str | None, as_json: bool, **asked: Any) -> int:
+def command(file: str | None, **asked: Any) -> int:
     """Check a pipeline, and a program with it; exit 1 if there are findings."""
-    what = Asked(**asked)
+    what = Asked(**asked) if file is None else Asked(**asked).beside(file)
+    announce(what)
     if not what.says_chain and file is not None and what.dialect:
         what = Asked(**{**asked, "chain": ""})
     pipeline = what.build()
     warn((*default_registry().diagnostics, *pipeline.warnings))
-    if as_json:
-        return _as_json(pipeline, file)
-    text = "\n".join(chain(pipeline))
+    steps = chain(pipeline)
     if file is None:
-        click.echo(text)
+        answer({"chain": steps}, steps)
         return 0
     with opened(file) as source:
-        click.echo(text)
+        answer({"chain": steps}, steps)
         return _check(pipeline, source, what)
-
-
-def _as_json(pipeline: Pipeline, file: str | None) -> int:
-    """Print findings as JSON; return the exit code."""
-    found, taken = Found([], [], Missing()), list[str]()
-    if file is not None:
-        with opened(file) as source:
-            stamps = stamps_in(source)
-            warn(edited(stamps.edited, source.name, stamps.line))
-            found = _found(pipeline, source, taken)
-    warned = click.get_current_context().meta.get(FOUND, ())
-    said = [described(each) for each in (*warned, *found.wrong, *found.others)]
-    click.echo(json.dumps({"findings": said, "assumed": taken}, indent=2))
-    return 1 if found.wrong else 0
 
 
 # --- the chain ---
@@ -151,19 +135,19 @@ def _found(pipeline: Pipeline, source: Source, taken: list[str]) -> Found:
 def _check(pipeline: Pipeline, source: Source, what: Asked) -> int:
     """Say what speaks against a program; return the exit code."""
     stamps = stamps_in(source)
-    for line in told(stamps):
-        click.echo(f"stamp     {line}")
+    answer({"stamps": told(stamps)}, (f"stamp     {line}" for line in told(stamps)))
     warn(edited(stamps.edited, source.name, stamps.line))
     taken: list[str] = []
     found, others, open_ = _found(pipeline, source, taken)
     lines = sum(len(window) for window, _ in windows_of(source, pipeline.read_as))
     warn([*found, *others])
     said = pipeline.machine.taken if pipeline.machine else ()
-    for line in (each for each in dict.fromkeys(taken) if each not in said):
-        click.echo(f"assumed   {line}")
-    click.echo(f"{source.name}: {lines} lines, {_count(found)}")
-    for line in _asked(open_, what, pipeline):
-        click.echo(line)
+    assumed = [each for each in dict.fromkeys(taken) if each not in said]
+    values = {"file": source.name, "lines": lines, "assumed": assumed}
+    values["missing"] = [".".join(each) for each in open_.asked()]
+    head = [*(f"assumed   {each}" for each in assumed)]
+    head.append(f"{source.name}: {lines} lines, {_count(found)}")
+    answer(values, [*head, *_asked(open_, what, pipeline)])
     return 1 if found else 0
 
 

@@ -10,10 +10,11 @@ import click
 from gcxform.api import Program
 from gcxform.cli import VERBS
 from gcxform.cli.common import options
+from gcxform.cli.common.answer import answer
 from gcxform.cli.common.outputs import STDOUT
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked, excluding, needed_dialect
-from gcxform.comparison import TOLERANCE, Comparison, compare
+from gcxform.comparison import TOLERANCE, Comparison, Difference, compare
 from gcxform.contract.options import Argument, build
 from gcxform.contract.passes import Pass
 from gcxform.diagnostics import Location, UsageError
@@ -67,7 +68,7 @@ def command(
     dialect = needed_dialect(dialect)
     first, second = _program(a, dialect, dialect, what), _program(b, to or dialect, dialect, what)
     found = compare(first, second, tolerance, through, what.loaded_machine)
-    click.echo(report(found, first, second))
+    answer(values(found, first, second), report(found, first, second).splitlines())
     return 0 if found.same else 1
 
 
@@ -124,6 +125,27 @@ def report(found: Comparison, a: Program, b: Program) -> str:
         lines += [f"  {d.what} (line {d.line_a} of A, line {d.line_b} of B)" for d in all_[:SHOWN]]
         lines += [f"  ... and {len(all_) - SHOWN} more"] if len(all_) > SHOWN else []
     return "\n".join([*lines, "SAME" if found.same else "DIFFERENT"])
+
+
+def values(found: Comparison, a: Program, b: Program) -> dict[str, Any]:
+    """Return a comparison as plain values: mm, degrees, lines from 1 (0: none)."""
+    said: dict[str, Any] = {"same": found.same, "tolerance": found.tolerance}
+    if not found.parted:
+        said |= {"deviation": found.deviation, "angle": found.angle}
+    else:
+        said["parted"] = {"line_a": found.parted[0], "line_b": found.parted[1]}
+    lists = {"feeds": found.feeds, "events": found.events, "not_compared": found.places}
+    return {
+        **{k: {"file": p.name, "dialect": p.dialect.name} for k, p in (("a", a), ("b", b))},
+        **said,
+        **{"line_a": found.line_a, "line_b": found.line_b, "ends_only": found.ends_only},
+        **{"left_to_the_machine": found.spared, "left_by": found.spared_by},
+        **{name: [_difference(each) for each in all_] for name, all_ in lists.items()},
+    }
+
+
+def _difference(found: Difference) -> dict[str, Any]:
+    return {"what": found.what, "line_a": found.line_a, "line_b": found.line_b}
 
 
 def _moves(program: Program) -> str:

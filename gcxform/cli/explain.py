@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterator
 from typing import Any
 
 import click
@@ -12,6 +11,7 @@ import click
 from gcxform.catalogue import CATALOGUE
 from gcxform.cli import VERBS
 from gcxform.cli.common import options
+from gcxform.cli.common.answer import answer
 from gcxform.config.toml_text import did_you_mean
 from gcxform.diagnostics import UsageError
 
@@ -29,20 +29,20 @@ def command(what: str, dialect: str | None, **asked: Any) -> None:
     if line:
         from gcxform.cli.program.block import explained  # what a code means is said without numpy
 
-        click.echo("\n".join(explained(line[1], int(line[2]), dialect, asked)))
+        said = list(explained(line[1], int(line[2]), dialect, asked))
+        answer({"file": line[1], "line": int(line[2]), "lines": said}, said)
     else:
-        click.echo("\n".join(_code(what)))
+        name, title, text = _code(what)
+        wrapped = textwrap.wrap(text, 88, break_on_hyphens=False)
+        answer({"code": name, "title": title, "text": text}, [f"{name}: {title}", "", *wrapped])
 
 
-def _code(text: str) -> Iterator[str]:
-    """Yield the explanation of a code. Raises UsageError if there is none of that name."""
+def _code(text: str) -> tuple[str, str, str]:
+    """Return a code, its title and its explanation. Raises UsageError if there is none."""
     name = text.upper() if text[:1].isalpha() else f"GX{text}"
     if name not in CATALOGUE:
         near = did_you_mean(name, CATALOGUE) if _CODE.fullmatch(text) else ""
         near = near if near.endswith("?") else ""
         hint = near or "a code such as GX301, or FILE:LINE with -f DIALECT"
         raise UsageError.one("GX729", f"there is no code {text!r}", hint=hint)
-    title, explanation = CATALOGUE[name]
-    yield f"{name}: {title}"
-    yield ""
-    yield from textwrap.wrap(explanation, 88, break_on_hyphens=False)
+    return (name, *CATALOGUE[name])

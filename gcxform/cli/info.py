@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 
 from gcxform.cli import VERBS
 from gcxform.cli.common import options
+from gcxform.cli.common.answer import answer
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked
 from gcxform.cli.program.features import by_code, by_path
@@ -47,9 +47,8 @@ _KINDS = {
 @click.command("info", help=VERBS["info"], short_help=VERBS["info"])
 @options.FROM
 @options.reading_options
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @options.FILE
-def command(file: str, dialect: str | None, as_json: bool, **asked: Any) -> None:
+def command(file: str, dialect: str | None, **asked: Any) -> None:
     """Print what is in a program; without a dialect its words, and which dialect it may be in."""
     what = Asked(**asked)
     speeds = _speeds(what.loaded_machine)
@@ -65,7 +64,7 @@ def command(file: str, dialect: str | None, as_json: bool, **asked: Any) -> None
             found |= _words(source, kind)
             tolerant = Tolerant(kind, _executed(source, kind, reading), reading)
             found |= _meaning(tolerant, found["codes"], speeds)
-    click.echo(json.dumps(found, indent=2) if as_json else "\n".join(_text(found)))
+    answer(found, _text(found))
 
 
 def _executed(source: Source, dialect: type[Dialect], reading: Reading) -> Source:

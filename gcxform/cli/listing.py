@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import click
 
 from gcxform.cli import VERBS
+from gcxform.cli.common.answer import answer
 from gcxform.cli.common.failures import warn
 from gcxform.config.toml_text import did_you_mean
 from gcxform.contract.options import OptionDoc, describe
@@ -37,10 +38,13 @@ def command(kind: str, name: str | None) -> None:
     warn(registry.diagnostics)
     things: Mapping[str, type] = getattr(registry, kind)
     if name is None:
-        for line in _table(things, KINDS[kind], registry):
-            click.echo(line)
+        rows = [(n, _first_line(t), registry.origin(KINDS[kind], n)) for n, t in things.items()]
+        keys = ("name", "says", "origin")
+        values = [dict(zip(keys, row, strict=True)) for row in rows]
+        answer({"kind": kind, "things": values}, _table(rows))
     else:
-        click.echo("\n".join(_described(_chosen(things, kind, name), KINDS[kind], registry)))
+        lines = _described(_chosen(things, kind, name), KINDS[kind], registry)
+        answer({"kind": kind, "name": name, "lines": lines}, lines)
 
 
 def _chosen(things: Mapping[str, type], kind: str, name: str) -> type:
@@ -51,8 +55,7 @@ def _chosen(things: Mapping[str, type], kind: str, name: str) -> type:
     raise UsageError.one(code, f"there is no {what} {name!r}", hint=did_you_mean(name, things))
 
 
-def _table(things: Mapping[str, type], kind: str, registry: Registry) -> list[str]:
-    rows = [(n, _first_line(t), registry.origin(kind, n)) for n, t in things.items()]
+def _table(rows: Sequence[tuple[str, str, str]]) -> list[str]:
     width = max((len(name) for name, _, _ in rows), default=0)
     middle = max((len(text) for _, text, _ in rows), default=0)
     return [f"{name:{width}}  {text:{middle}}  {origin}" for name, text, origin in rows]

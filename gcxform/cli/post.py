@@ -15,14 +15,13 @@ from typing import Any, Final
 import click
 
 from gcxform.cli import VERBS
-from gcxform.cli.common import options
-from gcxform.cli.common.outputs import STDOUT, check_places, destination
-from gcxform.cli.common.programs import opened
+from gcxform.cli.common import answer, options
+from gcxform.cli.common.batch import attempt
+from gcxform.cli.common.outputs import STDOUT, check_places
+from gcxform.cli.common.pipelines import Pipelines
 from gcxform.cli.common.request import Asked, excluding
-from gcxform.cli.common.transform import Job, edited_since, transformed
+from gcxform.cli.common.transform import Job, edited_since
 from gcxform.diagnostics import GcxformError
-from gcxform.stamps.chain import DONE
-from gcxform.syntax.source import Source
 
 SHOWN: Final = 4  # findings that fit into a dialog box
 
@@ -54,6 +53,8 @@ def command(
     try:
         _post(Asked(**asked), Job(file, out, certificate, source_map, verify, True, filters))
     except GcxformError as error:
+        if answer.asked() is not None:
+            raise
         _say(_plain(error))
         return error.exit_code
     return 0
@@ -63,28 +64,17 @@ def _post(asked: Asked, job: Job) -> None:
     """Run, and say what is worth a warning; what was done already is what was asked for."""
     if job.file == STDOUT:
         raise excluding("post, which edits a file, and stdin")
+    pipelines = Pipelines(asked, warns=False)
     written = {"--certificate": job.certificate, "--map": job.source_map}
-    check_places(written, (job.file, asked.file, asked.machine))
-    pipeline = asked.build()
-    with opened(job.file) as source:
-        try:
-            done = transformed(pipeline, source, job)
-        except GcxformError as error:
-            if error.diagnostics[0].code != DONE:
-                raise
-            if job.filters:
-                _hand_on(source)
-            _say(f"{job.file}: {error.diagnostics[0].message}")
-            return
-    for warning in edited_since(done.certificate):
-        _say(warning.render())
-
-
-def _hand_on(source: Source) -> None:
-    """Print a program as it was read."""
-    source.stream.seek(0)
-    with destination(STDOUT) as put:
-        put(source.stream.read())
+    check_places(written, (job.file, *pipelines.read))
+    outcome = attempt(pipelines.of, job)
+    if (document := answer.asked()) is not None:
+        document.values["programs"] = [outcome.described()]
+    elif outcome.done is None:
+        _say(f"{job.file}: {outcome.why}")
+    else:
+        for warning in edited_since(outcome.done.certificate):
+            _say(warning.render())
 
 
 def _say(text: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -9,58 +10,81 @@ import click
 
 from gcxform.cli import VERBS
 from gcxform.cli.common import options
+from gcxform.cli.common.answer import asked
+from gcxform.cli.common.batch import Outcome, counted, each, exit_code
+from gcxform.cli.common.difference import described, on_terminal, unified
 from gcxform.cli.common.failures import say, warn
-from gcxform.cli.common.outputs import STDOUT, check_places, same
-from gcxform.cli.common.request import Asked, excluding
-from gcxform.cli.common.transform import Done, Job, edited_since, transform
+from gcxform.cli.common.jobs import Places
+from gcxform.cli.common.pipelines import Pipelines
+from gcxform.cli.common.request import Asked
+from gcxform.cli.common.transform import Done, Job, edited_since
 from gcxform.pipeline.certificate import Certificate
 from gcxform.pipeline.pipeline import Pipeline
-from gcxform.plugin.registry import default_registry
 
 
 @click.command("run", help=VERBS["run"], short_help=VERBS["run"])
 @options.pipeline_options
-@click.option("-o", "--output", metavar="FILE", help="Where to write.  [default: stdout]")
-@click.option("--in-place", is_flag=True, help="Replace FILE by the result.")
+@click.option(
+    "-o", "--output", metavar="FILE", help="Where to write, or a folder.  [default: stdout]"
+)
+@click.option("--in-place", is_flag=True, help="Replace each FILE by its result.")
+@click.option("--check", is_flag=True, help="Write nothing; exit 1 if anything would change.")
+@click.option("--diff", is_flag=True, help="Write nothing; print what would change, and why.")
 @options.CERTIFICATE
 @options.MAP
 @options.VERIFY
 @options.QUIET
-@options.FILE
+@options.FILES
 def command(
-    file: str,
+    files: tuple[str, ...],
     output: str | None,
     in_place: bool,
+    check: bool,
+    diff: bool,
     certificate: str | None,
     source_map: str | None,
     verify: str,
     quiet: bool,
-    **asked: Any,
-) -> None:
-    """Transform one program."""
-    what = Asked(**asked)
-    out = _place(file, output, in_place)
-    written = {"--certificate": certificate, "--map": source_map}
-    read = (file, what.file, what.machine)
-    check_places({"-o": None if in_place else out, **written}, read)
-    pipeline = what.build()
-    if not quiet:
-        warn((*default_registry().diagnostics, *pipeline.warnings))
-    done = transform(pipeline, Job(file, out, certificate, source_map, verify, quiet))
-    if not quiet:
-        warn((*edited_since(done.certificate), *done.certificate.warnings))
-        say(summary(pipeline, done))
+    **asked_: Any,
+) -> int:
+    """Transform programs, those of folders too; each by itself, all or nothing."""
+    pipelines = Pipelines(Asked(**asked_), not quiet, not quiet)
+    places = Places(output, in_place, check or diff, certificate, source_map)
+    like = Job("", None, verify=verify, quiet=quiet, compared=diff)
+    jobs = places.jobs(files, like, pipelines.read)
+    for job in jobs:  # what is wrong with pipelines ends the call before a program is read
+        pipelines.of(job.file)
+    outcomes = []
+    for outcome in each(pipelines.of, jobs):
+        outcomes.append(outcome)
+        _tell(outcome, pipelines, diff, quiet)
+    if len(outcomes) > 1 and not quiet and asked() is None:
+        say(counted(outcomes))
+    return exit_code(outcomes, check)
 
 
-def _place(file: str, output: str | None, in_place: bool) -> str:
-    """Return where the result goes. Raises UsageError."""
-    if not in_place:
-        return output or STDOUT
-    if output is not None and not same(file, output):
-        raise excluding("--in-place and -o")
-    if file == STDOUT:
-        raise excluding("--in-place and stdin")
-    return file
+def _tell(outcome: Outcome, pipelines: Pipelines, diff: bool, quiet: bool) -> None:
+    """Say what became of a program, and show what would change of it."""
+    if (document := asked()) is not None:
+        shown = {"diff": described(outcome.done)} if diff and outcome.done else {}
+        document.values.setdefault("programs", []).append({**outcome.described(), **shown})
+    if outcome.done is None:
+        if outcome.state == "done-before" and not quiet and document is None:
+            say(f"{outcome.job.file}: {outcome.why}")
+        return
+    if not quiet:
+        warn((*edited_since(outcome.done.certificate), *outcome.done.certificate.warnings))
+        if document is None:
+            say(summary(pipelines.of(outcome.job.file), outcome.done))
+    if diff and document is None:
+        _show(outcome.done)
+
+
+def _show(done: Done) -> None:
+    """Print a diff: in colour on a terminal, as bytes elsewhere."""
+    terminal = sys.stdout is not None and sys.stdout.isatty()
+    for line in unified(done):
+        click.echo(on_terminal(line) if terminal else line.encode("latin-1"), nl=False)
 
 
 def summary(pipeline: Pipeline, done: Done) -> str:

@@ -15,6 +15,7 @@ import numpy as np
 from gcxform import plot
 from gcxform.cli import VERBS
 from gcxform.cli.calibration.readings import ballbar_rtcp, balls
+from gcxform.cli.common.answer import answer
 from gcxform.cli.common.derived_options import built, options_of
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
 from gcxform.contract.options import Length, ModelFile, Option, Vector
@@ -223,7 +224,7 @@ def command() -> None:
 command.add_command(balls)
 command.add_command(ballbar_rtcp)
 
-_FILES = ("json", "plot", "program", "compensated", "readings")
+_FILES = ("report", "plot", "program", "compensated", "readings")
 
 
 def _files(command: Command) -> Command:
@@ -232,7 +233,7 @@ def _files(command: Command) -> Command:
         "compensated": "Write the compensated program.",
         "program": "Write the standard program.",
         "plot": "Draw what the instrument prints (SVG or PNG).",
-        "json": "Write figures and readings, in mm (JSON).",
+        "report": "Write figures and readings, in mm (JSON).",
     }
     for name, text in texts.items():
         command = click.option(f"--{name}", metavar="FILE", help=text)(command)
@@ -336,14 +337,9 @@ def _hand_out(
 ) -> None:
     """Print the table and write the files, all of them or none."""
     parts: dict[str, bytes] = {}
-    if files["json"]:
-        found = {"format": 1, "title": title, "figures": report.data(telling.pairs(outcome))}
-        sides = {"before": outcome.before, "after": outcome.after}
-        found["readings"] = {
-            side: {name: telling.readings(reading) for name, reading in read.items()}
-            for side, read in sides.items()
-        }
-        parts["json"] = (json.dumps(found, indent=1) + "\n").encode()
+    found = _found(title, outcome, telling)
+    if files["report"]:
+        parts["report"] = (json.dumps(found, indent=1) + "\n").encode()
     if files["plot"]:
         parts["plot"] = plot.rendered(telling.draw(outcome, title), files["plot"])
     parts["readings"] = table.encode()
@@ -353,4 +349,15 @@ def _hand_out(
             if file := files[name]:
                 stack.enter_context(destination(file))(content)
     if STDOUT not in files.values():
-        click.echo("\n".join([title, *report.table(telling.pairs(outcome))]))
+        answer({"report": found}, [title, *report.table(telling.pairs(outcome))])
+
+
+def _found(title: str, outcome: Outcome[Any], telling: Telling) -> dict[str, Any]:
+    """Return figures and readings, in mm, as plain values."""
+    sides = {"before": outcome.before, "after": outcome.after}
+    readings = {
+        side: {name: telling.readings(reading) for name, reading in read.items()}
+        for side, read in sides.items()
+    }
+    figures = report.data(telling.pairs(outcome))
+    return {"format": 1, "title": title, "figures": figures, "readings": readings}

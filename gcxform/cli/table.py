@@ -6,11 +6,13 @@ import shlex
 import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import click
 import numpy as np
 
 from gcxform.cli import VERBS
+from gcxform.cli.common.answer import answer
 from gcxform.cli.common.failures import say
 from gcxform.cli.common.options import one_of
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
@@ -99,18 +101,34 @@ def convert(
 def show(source: str, given: str | None, axis: str | None) -> None:
     """Print kind, ranges and largest errors of a table."""
     model = _read(Path(source), _reading(source, given, axis))
-    click.echo(f"kind      {model.kind}")
-    for k, letter in enumerate(AXES):
-        low, high = model.range_of(k)
-        if np.isfinite([low, high]).all():
-            back = ", with backlash" if model.backlash[k] else ""
-            click.echo(
-                f"{letter}         {len(model.nodes[k])} positions, {low:g} to {high:g} mm{back}"
-            )
-    click.echo(f"largest   {model.largest() * UM:.4g} um")
-    click.echo(f"steepest  {model.lipschitz() * UM:.4g} um/mm")
+    axes = {letter: _axis(model, k) for k, letter in enumerate(AXES)}
+    known = {letter: each for letter, each in axes.items() if each}
+    values: dict[str, Any] = {"kind": model.kind, "axes": known}
+    values |= {"largest_mm": model.largest(), "steepest_um_per_mm": model.lipschitz() * UM}
+    lines = [f"kind      {model.kind}"]
+    for letter, each in known.items():
+        low, high = each["range_mm"]
+        back = ", with backlash" if each["backlash"] else ""
+        lines.append(
+            f"{letter}         {each['positions']} positions, {low:g} to {high:g} mm{back}"
+        )
+    lines.append(f"largest   {model.largest() * UM:.4g} um")
+    lines.append(f"steepest  {model.lipschitz() * UM:.4g} um/mm")
     if model.needs_tool and model.tool is not None:
-        click.echo(f"tool      {', '.join(f'{part:g}' for part in model.tool)} mm")
+        values["tool_mm"] = [float(part) for part in model.tool]
+        lines.append(f"tool      {', '.join(f'{part:g}' for part in model.tool)} mm")
+    answer(values, lines)
+
+
+def _axis(model: ErrorModel, k: int) -> dict[str, Any]:
+    """Return where a table knows the errors of an axis; nothing if everywhere."""
+    low, high = model.range_of(k)
+    if not np.isfinite([low, high]).all():
+        return {}
+    back = bool(model.backlash[k])
+    return {"positions": len(model.nodes[k]), "range_mm": [float(low), float(high)]} | {
+        "backlash": back
+    }
 
 
 # --- formats ---

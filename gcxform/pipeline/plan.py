@@ -40,6 +40,7 @@ from gcxform.machine.machine import Machine
 from gcxform.modal.meaning.tables import GROUPS
 from gcxform.modal.state import Reading
 from gcxform.pipeline.chain import check_chain, compensates, facts_after
+from gcxform.pipeline.reasons import Told
 from gcxform.plugin.registry import dialect_of
 from gcxform.stamps.chain import Marks, against, refusal, stamp_of
 from gcxform.stamps.comment import stamps_in
@@ -76,6 +77,7 @@ class Plan:
     open     the places of values that the pipeline file leaves to be filled in
     structure  "keep": calls and loops stay where each line is written the same every time it is
              executed; "written-out": they are written as the blocks that are executed
+    told     takes what each step changes, for who asks why lines differ; None: nobody does
     """
 
     source: type[Dialect]
@@ -94,6 +96,7 @@ class Plan:
     limits: Limits | None = None
     open: Open = field(default_factory=dict, compare=False)
     structure: str = "keep"
+    told: Told | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         for name, value in self._taken().items():

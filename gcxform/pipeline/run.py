@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -25,6 +25,7 @@ from gcxform.pipeline.mixed_feeds import check_mixed
 from gcxform.pipeline.output import Output
 from gcxform.pipeline.placing import placing
 from gcxform.pipeline.plan import Plan
+from gcxform.pipeline.reasons import changed_lines
 from gcxform.pipeline.structure import Structure
 from gcxform.pipeline.text_passes import TextRun
 from gcxform.pipeline.whole_cuts import whole_cuts, whole_sections
@@ -76,7 +77,7 @@ class Run:
         self.source = source
         self.verify = verify
         self.steps = plan.path_passes
-        self.text = TextRun(plan.text_passes, plan.target, source.name)
+        self.text = TextRun(plan.text_passes, plan.target, source.name, self._tell)
         if not plan.copies:
             given = plan.read_as, plan.machine_reading, plan.target
             self.source = written_out(source, *given)
@@ -100,6 +101,11 @@ class Run:
         self.held: dict[int, Floats] = {}
         self.findings = Findings()
         self.stages = None if plan.copies else self._stages()
+
+    def _tell(self, step: str, lines: Iterable[int]) -> None:
+        """Tell who asks which lines of the program a step has changed."""
+        if self.plan.told is not None:
+            self.plan.told(step, [self.source.line_of(line + 1) - 1 for line in lines])
 
     @property
     def verifier(self) -> Verifier | None:
@@ -371,6 +377,8 @@ class Run:
             self.measured[what] = max(size, self.measured.get(what, size))
         for what, number in step.added(path, after, self.plan.context).items():
             self.added[what] = self.added.get(what, 0) + number
+        if self.plan.told is not None:
+            self._tell(step.name, changed_lines(path, after))
         if self.verify == "full":
             for fact in step.ensures:
                 if not fact.check(after):
@@ -384,10 +392,8 @@ class Run:
         limit = self.plan.growth
         if limit is None or out.blocks_out <= limit * out.blocks_in:
             return
-        message = (
-            f"{out.blocks_in} blocks became {out.blocks_out}, {out.growth:.4g} times as many; "
-            f"the budget allows {limit:g} times"
-        )
+        message = f"{out.blocks_in} blocks became {out.blocks_out}, {out.growth:.4g} times as many"
+        message += f"; the budget allows {limit:g} times"
         enough = math.ceil(out.growth or 0)
         hint = f"give a step that cuts moves a larger tolerance, or growth = {enough} in [budget]"
         raise InputError.one("GX507", message, Location(self.source.name, out.lines_in), hint)

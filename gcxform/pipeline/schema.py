@@ -28,9 +28,10 @@ _JSON_TYPES: Final[Mapping[str, str | list[str]]] = {
 }
 
 
-def schema(
-    kind: Literal["pipeline", "machine", "model"], registry: Registry | None = None
-) -> dict[str, Any]:
+Kind = Literal["pipeline", "machine", "model"]
+
+
+def schema(kind: Kind, registry: Registry | None = None) -> dict[str, Any]:
     """Return the JSON Schema of a kind of files; that of pipelines has the passes' options."""
     if kind == "machine":
         _ = registry or default_registry()  # dialects have settings of their own

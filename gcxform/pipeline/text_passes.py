@@ -9,6 +9,7 @@ from gcxform.diagnostics import InputError, Location, VerificationError
 from gcxform.dialect.dialect import Dialect
 from gcxform.modal.control_limits import without_blanks
 from gcxform.modal.meaning.printed import is_output
+from gcxform.pipeline.reasons import Told
 from gcxform.proof.references import first_other
 from gcxform.stamps.comment import is_stamp
 from gcxform.syntax.scan import scan
@@ -19,7 +20,14 @@ from gcxform.syntax.tree import BLANKS, Block, Number, Statement, Word
 class TextRun:
     """Edits the texts of one run in order."""
 
-    def __init__(self, passes: Sequence[TextPass], dialect: type[Dialect], file: str) -> None:
+    def __init__(
+        self,
+        passes: Sequence[TextPass],
+        dialect: type[Dialect],
+        file: str,
+        told: Told | None = None,
+    ) -> None:
+        self.told = told or (lambda name, lines: None)
         self.passes = passes
         self.dialect = dialect
         self.file = file
@@ -71,6 +79,7 @@ class TextRun:
         parts = []
         for line, (block, new) in enumerate(zip(blocks, given, strict=True)):
             if new != block.text:
+                self.told(step.name, [lines[line]])
                 self._check_limits(step, block.text, new, self._where(block, lines[line]))
             end = text[int(window.end[line]) : int(window.next[line])]
             parts.append(new.encode("latin-1") + end)
@@ -97,6 +106,8 @@ class TextRun:
             ]
             block = instantiate(shape, old, spans)
             new = self._edited(step, block, self.counts[index], lines[line])
+            if new != block.text:
+                self.told(step.name, [lines[line]])
             if new is None:
                 continue
             end = text[int(window.end[line]) : int(window.next[line])]

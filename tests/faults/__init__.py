@@ -5,6 +5,7 @@ from __future__ import annotations
 from faults import (
     arcs,
     ballbar,
+    batches,
     calibrating,
     circles,
     commands,
@@ -56,6 +57,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     *folding.MUTATIONS,
     *guarding.MUTATIONS,
     *fagor.MUTATIONS,
+    *batches.MUTATIONS,
     *commands.MUTATIONS,
     *hosts.MUTATIONS,
     *computing.MUTATIONS,

@@ -8,8 +8,8 @@ MUTATIONS = (
     Mutation(
         "check --json: what was found before it ended is left out",
         "gcxform/cli/common/failures.py",
-        "_say_json([*meta.get(FOUND, ()), *error.diagnostics])",
-        "_say_json(error.diagnostics)",
+        "            found += error.diagnostics\n",
+        "            found[:] = error.diagnostics\n",
         "tests/test_hints.py",
     ),
     Mutation(

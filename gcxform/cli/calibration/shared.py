@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, TypeVar
 import click
 
 from gcxform import plot
+from gcxform.cli.common.answer import answer
 from gcxform.cli.common.options import ABOVE_NOTHING
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
 from gcxform.diagnostics import GcxformError, Location, UsageError
@@ -96,7 +97,7 @@ def hand_out(found: Found, files: Files) -> None:
     if files.plot is not None:
         with destination(files.plot) as put:
             put(picture)
-    click.echo("\n".join(found.lines), err=STDOUT in (files.output, files.report))
+    answer({"report": found.report}, found.lines, err=STDOUT in (files.output, files.report))
 
 
 def check_axis(axis: str | None, letters: Sequence[str], machine: str) -> None:

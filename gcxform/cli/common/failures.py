@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import errno
-import json
 import os
 import re
 import sys
 import tempfile
 import traceback
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Final, TextIO
@@ -19,7 +18,7 @@ import click
 from gcxform.catalogue.offers import said_to_chain
 from gcxform.catalogue.questions import questions
 from gcxform.cli.common import DEBUG
-from gcxform.cli.common.findings import described
+from gcxform.cli.common.answer import ANSWER, Answer
 from gcxform.cli.common.options import ENVIRONMENT
 from gcxform.cli.common.signals import Ended, ending
 from gcxform.diagnostics import Diagnostic, FileError, GcxformError, render_all
@@ -32,8 +31,6 @@ BUG: Final = 70
 INTERRUPTED: Final = 130
 WORDS: Final = "gcxform.words"
 FOUND: Final = "gcxform.found"
-JSON_VERBS: Final = ("check", "info")
-"""Verbs of which `--json` makes all that they say JSON, what ends them included."""
 ALL_AT_ONCE: Final = "gcxform check, with the same words, says all that is missing at once, as TOML"
 
 _HEAD = re.compile(r"\b(error|warning|note)\[(GX\d+)\]:")
@@ -54,61 +51,70 @@ def guarded(group: click.Command, name: str, words: list[str], extra: Mapping[st
 def _run(group: click.Command, name: str, words: list[str], extra: Mapping[str, Any]) -> int:
     meta: dict[str, Any] = {}
     try:
-        with group.make_context(name, words, **extra) as context:
+        with group.make_context(name, [*words], **extra) as context:
             meta = context.meta
             meta[WORDS] = words
             code = group.invoke(context)
-        if sys.stdout is not None:
-            sys.stdout.flush()
-        return code if isinstance(code, int) else 0
+            code = code if isinstance(code, int) else 0
     except click.exceptions.Exit as stop:
         return stop.exit_code
-    except click.ClickException as error:
-        if _says_json(words):
-            _say_json([*meta.get(FOUND, ()), Diagnostic("", error.format_message())])
-        else:
-            error.show()
-        return USAGE
-    except GcxformError as error:
-        return _refused(error, words, meta)
     except click.Abort:
         say("interrupted")
         return INTERRUPTED
-    except (OSError, MemoryError) as error:
-        return _system_failure(error, words)
-    except Exception:
-        return _bug(words, bool(meta.get(DEBUG)))
+    except Exception as error:
+        if "--json" in words and ANSWER not in meta:  # it was not come to yet
+            meta[ANSWER] = Answer(next(word for word in words if not word.startswith("-")))
+        code = told(error, {**meta, WORDS: words})
+        if words[:1] == ["run"] and _asks(error) and ANSWER not in meta:
+            say(ALL_AT_ONCE)
+    return _finished(meta, code)
 
 
-def _refused(error: GcxformError, words: list[str], meta: Mapping[str, Any]) -> int:
-    """Report what a user can mend; return the exit code."""
-    if _says_json(words):
-        _say_json([*meta.get(FOUND, ()), *error.diagnostics])
-        return error.exit_code
-    say(paint(render_all(_typed(error.diagnostics, words)), sys.stderr))
-    if words[:1] == ["run"] and _asks(error):
-        say(ALL_AT_ONCE)
-    return error.exit_code
-
-
-def _says_json(words: Sequence[str]) -> bool:
-    """Whether a command line asks that all that is found be JSON."""
-    verb = next((word for word in words if not word.startswith("-")), "")
-    return verb in JSON_VERBS and "--json" in words
-
-
-def _say_json(found: Sequence[Diagnostic]) -> None:
-    """Print what ended a verb as the findings that they are; as text if stdout is no more."""
+def _finished(meta: Mapping[str, Any], code: int) -> int:
+    """Print the document, if one is asked for, and see stdout out; return the exit code."""
     try:
-        click.echo(json.dumps({"findings": [described(each) for each in found]}, indent=2))
-    except OSError:
-        _abandon_stdout()
-        say(paint(render_all(found), sys.stderr))
+        if ANSWER in meta:
+            click.echo(meta[ANSWER].text(code))
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except OSError as error:
+        return max(code, _system_failure(error, None))
+    return code
 
 
-def _asks(error: GcxformError) -> bool:
+def told(error: Exception, meta: Mapping[str, Any]) -> int:
+    """Say what went wrong, or add it to the document; return the exit code it stands for.
+
+    `meta` is that of the context of the command.
+    """
+    words = meta.get(WORDS, [])
+    found = meta[ANSWER].findings if ANSWER in meta else None
+    if isinstance(error, click.ClickException):
+        return _misspelt(error, found)
+    if isinstance(error, GcxformError):
+        if found is None:
+            say(paint(render_all(_typed(error.diagnostics, meta)), sys.stderr))
+        else:
+            found += error.diagnostics
+        return error.exit_code
+    if isinstance(error, OSError | MemoryError):
+        return _system_failure(error, found)
+    return _bug(words, bool(meta.get(DEBUG)))
+
+
+def _misspelt(error: click.ClickException, found: list[Diagnostic] | None) -> int:
+    """Report a command line that is not understood."""
+    if found is None:
+        error.show()
+    else:
+        found.append(Diagnostic("GX700", error.format_message().rstrip(".")))
+    return USAGE
+
+
+def _asks(error: Exception) -> bool:
     """Whether an error ends if more is said of the program or the machine."""
-    return any(True for each in error.diagnostics for _ in questions(each.hint))
+    found = error.diagnostics if isinstance(error, GcxformError) else ()
+    return any(True for each in found for _ in questions(each.hint))
 
 
 def say(text: str) -> None:
@@ -119,25 +125,25 @@ def say(text: str) -> None:
 
 
 def warn(diagnostics: Iterable[Diagnostic]) -> None:
-    """Write findings that stop nothing to stderr; where all is JSON, keep them for it."""
+    """Write findings that stop nothing to stderr, or add them to the document."""
     context = click.get_current_context(silent=True)
-    words = [] if context is None else context.meta.get(WORDS, [])
-    if context is not None and _says_json(words):
-        context.meta.setdefault(FOUND, []).extend(diagnostics)
-        return
-    if text := render_all(_typed(diagnostics, words)):
+    meta = {} if context is None else context.meta
+    if ANSWER in meta:
+        meta[ANSWER].findings += diagnostics
+    elif text := render_all(_typed(diagnostics, meta)):
         say(paint(text, sys.stderr))
 
 
-def _typed(diagnostics: Iterable[Diagnostic], words: Iterable[str]) -> list[Diagnostic]:
+def _typed(diagnostics: Iterable[Diagnostic], meta: Mapping[str, Any]) -> list[Diagnostic]:
     """Return diagnostics with hints for who has no pipeline file: as the command line takes them.
 
-    Who named one, or has one in the environment, can write into it what a hint gives.
+    Who named one, or has one in the environment or in the folder, can write into it what a hint
+    gives.
     """
-    options = [word.partition("=")[0] for word in words]
+    options = [word.partition("=")[0] for word in meta.get(WORDS, ())]
     chain = any(word == "--chain" or word.startswith("-x") for word in options)
     file = any(word == "--pipeline" or word.startswith("-p") for word in options)
-    if file or (os.environ.get(ENVIRONMENT) and not chain):
+    if file or FOUND in meta or (os.environ.get(ENVIRONMENT) and not chain):
         return list(diagnostics)
     return [replace(each, hint=said_to_chain(each.hint)) for each in diagnostics]
 
@@ -156,7 +162,7 @@ def _tolerate_names() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
-def _system_failure(error: OSError | MemoryError, words: list[str]) -> int:
+def _system_failure(error: OSError | MemoryError, found: list[Diagnostic] | None) -> int:
     """Report what the operating system refused; a reader that went away is no news."""
     if isinstance(error, MemoryError):
         error = OSError(errno.ENOMEM, "there is not enough memory")
@@ -165,11 +171,11 @@ def _system_failure(error: OSError | MemoryError, words: list[str]) -> int:
         return FAILED
     what = f"{error.filename}: " if error.filename else ""
     failure = FileError.one("GX903", f"{what}{error.strerror or error}")
-    if _says_json(words):
-        _say_json(failure.diagnostics)
-    else:
+    if found is None:
         _abandon_stdout()
         say(paint(failure.render(), sys.stderr))
+    else:
+        found += failure.diagnostics
     return failure.exit_code
 
 

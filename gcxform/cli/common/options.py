@@ -60,6 +60,7 @@ QUIET = click.option("-q", "--quiet", is_flag=True, help="Say nothing unless som
 CERTIFICATE = click.option("--certificate", metavar="FILE", help="Write the certificate (JSON).")
 MAP = click.option("--map", "source_map", metavar="FILE", help="Write the source map (JSON).")
 FILE = click.argument("file", metavar="FILE")
+FILES = click.argument("files", metavar="FILE...", nargs=-1, required=True)
 
 _PIPELINE = (
     click.option(

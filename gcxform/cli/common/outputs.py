@@ -11,16 +11,18 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
+from gcxform.cli.common.answer import note_written
 from gcxform.cli.common.request import excluding
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.syntax.source import IN_MEMORY
 from gcxform.system.files import write_atomically
 
 STDOUT = "-"
+Put = Callable[[bytes], object]
 
 
 @contextmanager
-def destination(name: str) -> Iterator[Callable[[bytes], object]]:
+def destination(name: str) -> Iterator[Put]:
     """Give a function that takes a result's bytes; they arrive when the block ends well.
 
     `-` is stdout. What is there and is no regular file, a pipe or a device, is written to and never
@@ -30,6 +32,7 @@ def destination(name: str) -> Iterator[Callable[[bytes], object]]:
     if name != STDOUT and not (path.exists() and not path.is_file()):
         with write_atomically(Path(os.path.realpath(path))) as put:
             yield put
+        note_written(name)
         return
     if path.is_dir():
         raise FileError.one("GX902", f"cannot write {name}: it is a directory")

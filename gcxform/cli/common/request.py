@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
 
+from gcxform.cli.common.discovery import NAME, pipeline_above
 from gcxform.cli.common.options import ENVIRONMENT
 from gcxform.contract.options import Argument, build
 from gcxform.contract.own_codes import with_own_codes, without_own_codes
@@ -46,13 +47,24 @@ class Asked:
     decimals: str | None = None
     no_stamp: bool = False
     again: bool = False
+    found: str | None = None
 
     @property
     def file(self) -> str | None:
-        """The pipeline file: that of the command line, else that of the environment."""
+        """The pipeline file: of the command line, else of the environment, else of the folder."""
         if self.pipeline is None and self.chain is None:
-            return os.environ.get(ENVIRONMENT) or None
+            return os.environ.get(ENVIRONMENT) or self.found
         return self.pipeline
+
+    def beside(self, program: str) -> Asked:
+        """Return the same with the pipeline of the folder of a program if none is named.
+
+        Raises UsageError for one that is somebody else's.
+        """
+        if self.says_chain or program == "-":
+            return self
+        found = pipeline_above(Path(program))
+        return self if found is None else replace(self, found=str(found))
 
     @property
     def says_chain(self) -> bool:
@@ -85,7 +97,8 @@ class Asked:
             raise UsageError.one(
                 "GX726",
                 "there is no pipeline",
-                hint=f"-p FILE, -x 'absolute | ...', or set {ENVIRONMENT}; "
+                hint=f"-p FILE, -x 'absolute | ...', {NAME} in the folder of the program, or set "
+                f"{ENVIRONMENT}; "
                 "-x '' -f DIALECT is the pipeline that changes nothing",
             )
         passes = tuple(parse_chain(self.chain, Path.cwd(), registry))

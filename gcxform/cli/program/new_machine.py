@@ -12,11 +12,11 @@ from gcxform.catalogue.questions import PIPELINE
 from gcxform.cli.check import speaks_against
 from gcxform.cli.common.failures import say
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
-from gcxform.cli.common.programs import opened
+from gcxform.cli.common.programs import files_of, opened
 from gcxform.cli.common.request import Asked
 from gcxform.cli.program.asking import block
 from gcxform.cli.program.filled_files import with_questions
-from gcxform.cli.program.survey import Programs, Survey, dialect_of, files_of
+from gcxform.cli.program.survey import Programs, Survey, dialect_of
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
 from gcxform.system.inputs import visit

@@ -7,7 +7,6 @@ which passes in the coordinates of the machine need.
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,19 +16,13 @@ from typing import Final, NamedTuple
 from gcxform.catalogue.questions import PIPELINE, Question
 from gcxform.cli.program.missing import Look, Visit
 from gcxform.cli.program.used import ANY, Used
-from gcxform.diagnostics import FileError, Location, UsageError
+from gcxform.diagnostics import Location, UsageError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.subprogram_file import is_subprogram
 from gcxform.guess import guess_dialect
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax.source import Source
 
-NO_PROGRAMS: Final = re.compile(
-    r".*\.(toml|json|csv|md|pdf|docx?|xlsx?|png|jpe?g|gif|bmp|svg|html?|zip|stl|ste?p|ig[es]+|dxf|dwg"
-    r"|py|bak|tbl)",
-    re.IGNORECASE,
-)
-"""Names of files in a folder that are none; what is named itself is read whatever its name is."""
 INERT: Final = ("control", "inert-m")
 LEFT_SHOWN: Final = 20
 
@@ -131,18 +124,6 @@ class Programs(NamedTuple):
     dialect: str
     files: list[Path]
     others: list[Path]
-
-
-def files_of(paths: Iterable[str]) -> list[Path]:
-    """Return the files that are named, and those of folders; raises FileError for none."""
-    found: list[Path] = []
-    for path in map(Path, paths):
-        inside = sorted(each for each in path.rglob("*") if each.is_file()) if path.is_dir() else []
-        named = [each for each in inside if not NO_PROGRAMS.fullmatch(each.name)]
-        found += [each for each in named if not each.name.startswith(".")] or [path]
-    if empty := next((path for path in found if path.is_dir()), None):
-        raise FileError.one("GX901", f"there are no programs in {empty}")
-    return found
 
 
 def dialect_of(files: Iterable[Path], known: Mapping[str, type[Dialect]]) -> Programs:
