@@ -17,6 +17,7 @@ from gcxform.emit.stated import Stated
 from gcxform.emit.tapping import Taps
 from gcxform.modal.columns import fill
 from gcxform.modal.meaning.tables import GROUPS
+from gcxform.modal.numbers_without_point import hint_of_rounding
 from gcxform.system.arrays import Flags, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.angles import TURN
@@ -126,8 +127,11 @@ class Copying:
             where = self.task.location(int(self.path.block[row]))
             message = f"the block would be written anew, and where {axis} goes is not known"
             hint = f"program {axis} before, or give a machine file with X = ... in [work-offset.*]"
-            if any(each.line == self.path.block[row] for each in self.task.read.unknown):
+            texts = [u for u in self.task.read.unknown if u.line == self.path.block[row]]
+            if texts:
                 hint = f"write {axis} as a number, or leave out the pass that changes this block"
+            if texts and all(each.rounded for each in texts):
+                hint = hint_of_rounding(axis, bool(self.path.blocks.inch[self.path.block[row]]))
             raise InputError.one("GX506", message, where, hint)
 
     def _refuse_perhaps(self, stated: Stated, pieces: Pieces) -> None:

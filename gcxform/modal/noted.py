@@ -24,12 +24,14 @@ class Unknown(NamedTuple):
 
     `text` has no blanks. `hangs_on` is what of the program its value depends on besides parameters:
     "" for nothing, "units", or "place" for the places of the axes and all modes. `BY_WAY`: nothing
-    is computed; it is by how much a block goes.
+    is computed; it is by how much a block goes. `rounded`: its value is known but for the increment
+    to which the control rounds it.
     """
 
     line: int
     text: str
     hangs_on: str
+    rounded: bool = False
 
 
 class KeptCall(NamedTuple):

@@ -145,8 +145,8 @@ MUTATIONS = (
     Mutation(
         "cycles may go where only the machine knows",
         "gcxform/modal/moves/cycle_patterns.py",
-        "if self.modes.cycle[each.line] != CYCLE_OFF and each.text[0] in self.track.axes:",
-        "if False:",
+        "if self.modes.cycle[line] == CYCLE_OFF or address not in self.track.axes:",
+        "if True:",
         CORPUS,
     ),
     Mutation(

@@ -12,6 +12,20 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 RENUMBER = "plugins/gcxform_plugins/passes/renumber.py"
 MUTATIONS = (
     _macro(
+        "a hole that only the machine knows is where the axis stood",
+        "gcxform/modal/moves/cycle_patterns.py",
+        "words[self._lost.get(first, [])] = np.nan",
+        "words[[]] = np.nan",
+        "flow/fanuc-cycle-place-unknown",
+    ),
+    _macro(
+        "a step to a hole that only the machine knows is lost",
+        "gcxform/modal/moves/cycle_patterns.py",
+        "axis in plane and not self.modes.incremental[each.line]",
+        "axis in plane",
+        "flow/fanuc-cycle-step-unknown",
+    ),
+    _macro(
         "the X of a dwell is a move for G66",
         "gcxform/flow/modal_calls.py",
         "moves = moves and bool(meaning.axes)",

@@ -263,7 +263,8 @@ class _Block:
                 value = float(whole(value, self.arithmetic.whole_slip))
             may = may_be_unknown(word.address, self.meaning)
             if may and rounded_openly(self.lines, self.line, word.address, value):
-                raise NoValueError("to what this is rounded is not known", lost=True)
+                self._keep(word, word.value.tree, evaluator, rounded=True)
+                return UNKNOWN
         except NoValueError as why:
             if why.lost and may_be_unknown(word.address, self.meaning):
                 self._keep(word, word.value.tree, evaluator)
@@ -273,12 +274,14 @@ class _Block:
             return value
         return UNKNOWN
 
-    def _keep(self, item: Word | Statement, tree: Any, evaluator: Evaluator) -> str:
+    def _keep(
+        self, item: Word | Statement, tree: Any, evaluator: Evaluator, rounded: bool = False
+    ) -> str:
         """Note that the text of an item has to stay, for its value is not known; return it."""
         kept, hangs = bare_text(self._text[item.start : item.end]), hangs_on(tree, evaluator)
         if isinstance(item, Word) and item.address in self.meaning.axes + "F":
             hangs = hangs or "units"
-        self.lines.unknown.append(Unknown(self.line, kept, hangs))
+        self.lines.unknown.append(Unknown(self.line, kept, hangs, rounded))
         return kept
 
     @cached_property

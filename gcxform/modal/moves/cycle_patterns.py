@@ -19,6 +19,7 @@ from gcxform.modal.cycles.stretch import Mode, Stretch
 from gcxform.modal.frames.track import Break, Track
 from gcxform.modal.moves.cycle_calls import CallColumns
 from gcxform.modal.moves.rows import Rows
+from gcxform.modal.numbers_without_point import hint_of_rounding
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.frames import Frame, by_frame
@@ -68,9 +69,10 @@ class Drilling:
             return np.empty(0, np.int64)
         way = np.where(calls, 1 + modes.plane + 256 * modes.inch, 0)
         borders = np.flatnonzero(np.diff(way, prepend=0))
-        if not self._placeless.any():
+        alone = np.union1d(np.flatnonzero(self._placeless), [*self._lost])
+        if not len(alone):
             return borders
-        alone = np.flatnonzero(self._placeless)
+        alone = alone.astype(np.int64)
         return np.concatenate([borders, alone, alone + 1])
 
     def moved(self) -> None:
@@ -79,11 +81,24 @@ class Drilling:
             self.cycles.zero = None
 
     def refuse_unknown(self) -> None:
-        """Refuse words of canned cycles that only the machine knows: they would stay in force."""
+        """Refuse levels and steps of canned cycles that only the machine knows.
+
+        They would stay in force. Where in the plane a call drills is lost like the end of a move.
+        """
         for each in self.lines.unknown:
-            if self.modes.cycle[each.line] != CYCLE_OFF and each.text[0] in self.track.axes:
+            line, address = each.line, each.text[0]
+            if self.modes.cycle[line] == CYCLE_OFF or address not in self.track.axes:
+                continue
+            if "XYZ".find(address) in self._lost.get(line, ()):
+                continue
+            if each.rounded:
+                inch = bool(self.modes.inch[line])
+                message = f"{address} of a cycle is computed: how it is rounded is not known"
+                hint = hint_of_rounding(address, inch)
+                self.lines.findings.add(line, "GX205", message, address, hint)
+            else:
                 message = "a canned cycle goes where only the machine knows"
-                self.lines.findings.add(each.line, "GX220", message, each.text[0])
+                self.lines.findings.add(line, "GX220", message, address)
 
     # --- stretches, as they come ---
 
@@ -108,6 +123,7 @@ class Drilling:
         track, plane = self.track, Plane(int(self.modes.plane[first]))
         unit = INCH if self.modes.inch[first] else 1.0
         words = track.frame.words(track.state.position[None, :])[0]
+        words[self._lost.get(first, [])] = np.nan  # a word without a value looks absent
         after = words.copy()
         stretch, dwell = None, self.cycles.mode.dwell
         self._refuse_other_zero(first, last, plane.axes[2])
@@ -247,6 +263,17 @@ class Drilling:
             found |= here & ~has[first] & ~has[second]
         return found
 
+    @cached_property
+    def _lost(self) -> dict[int, list[int]]:
+        """The axes of the plane of which only the machine knows where a call drills, by line."""
+        found: dict[int, list[int]] = {}
+        for each in self.lines.unknown:
+            axis = "XYZ".find(each.text[0])
+            plane = Plane(int(self.modes.plane[each.line])).axes[:2]
+            if self.calls[each.line] and axis in plane and not self.modes.incremental[each.line]:
+                found.setdefault(each.line, []).append(axis)
+        return found
+
     def _leave_open(self, line: int, words: Floats, after: Floats) -> None:
         """Let go of the level behind a call, if it depends on whether the call drills."""
         normal = Plane(int(self.modes.plane[line])).axes[2]
@@ -271,8 +298,11 @@ class Drilling:
         line = np.concatenate([np.arange(one.first, one.last) for one in followed])
         bounds = np.cumsum([0, *(one.last - one.first for one in followed)])
         steps = self.cycles.steps(self._stretches(followed, line, bounds))
+        asked = {at for at, _ in self.lines.findings.found}  # a word that has no value looks absent
         for refusal in steps.refusals:
             place = int(line[refusal.call])
+            if place in asked and "without" in refusal.message:
+                continue
             self.track.findings.add(place, "GX215", refusal.message, hint=refusal.hint)
         rows = steps.rows
         bounds = np.searchsorted(rows.call, bounds)
