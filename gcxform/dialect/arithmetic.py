@@ -123,6 +123,10 @@ class Arithmetic:
         """Return whether a parameter keeps its value when the program that has set it is over."""
         return key not in self.local if isinstance(key, int) else key.startswith("_")
 
+    def acts(self, key: Key) -> bool:
+        """Return whether a control does something when a program sets a parameter."""
+        return not self.owns(key) and not among(key, self.machine.counters)
+
     def can_say(self, key: Key) -> bool:
         """Return whether an assignment to a parameter can be written, and lasts as long here."""
         return self.owns(key) and self.outlives(key)

@@ -10,6 +10,7 @@ class MachineParameters:
     """What is known of the parameters of a control whose values only the machine knows.
 
     outputs    those that a program may set without any effect on positions
+    counters   those of them that only count, so that nothing is done when they are set
     lengths    entries of the table of tools, a hundred or two for each kind of number
     zeros      entries of the table of work offsets
     aliases    numbers that are other names of a program's own parameters, and how much higher
@@ -22,6 +23,7 @@ class MachineParameters:
     """
 
     outputs: tuple[range, ...] = ()
+    counters: tuple[range, ...] = ()
     lengths: tuple[range, ...] = ()
     zeros: tuple[range, ...] = ()
     aliases: tuple[tuple[range, int], ...] = ()
@@ -49,6 +51,7 @@ FANUC = MachineParameters(
         range(3000, 3005),
         *(range(n, n + 1) for n in (3006, 3901, 3902)),
     ),
+    counters=(range(3001, 3003), range(3901, 3903)),
     lengths=(
         *(range(first, first + 200) for first in (2001, 2201, 2401, 2601)),
         *(range(first, first + 999) for first in (10001, 11001, 12001, 13001)),

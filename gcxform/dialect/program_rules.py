@@ -123,6 +123,7 @@ class FlowRule:
                     none
     arithmetic      how the control computes expressions; None: they are refused
     calls_own_lines M97 calls lines of the same program, up to M99
+    m99_jumps       M99 P goes to a line of the program that it stands in, and returns nowhere
     lookup          in which files subprograms are looked up
     macro_levels    how many calls with values may be inside each other; 0: there are none
     repeats_keep    variables keep what a call did to them when L calls again; None: not known
@@ -134,6 +135,7 @@ class FlowRule:
     language: str = ""
     arithmetic: Arithmetic | None = None
     calls_own_lines: bool = False
+    m99_jumps: bool = False
     lookup: LookupRule = field(default_factory=LookupRule)
     macro_levels: int = 0
     repeats_keep: bool | None = None

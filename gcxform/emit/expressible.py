@@ -68,10 +68,12 @@ def gaps_between(text: str, words: list[Word]) -> Iterator[bool]:
             yield bool(between)
 
 
-def lasts_in(statement: Statement, target: type[Dialect]) -> bool:
+def lasts_in(statement: Statement, source: type[Dialect], target: type[Dialect]) -> bool:
     """Whether a control takes an assignment, of a number, to a parameter that outlives programs."""
-    key, known = key_set(statement), target.flow_rule.arithmetic
-    return known is not None and sets_number(statement) and key is not None and known.can_say(key)
+    key, known, own = key_set(statement), target.flow_rule.arithmetic, source.flow_rule.arithmetic
+    if key is None or known is None or not (own is None or own.owns(key)):
+        return False
+    return sets_number(statement) and known.can_say(key)
 
 
 def needs_assignment(statement: Statement, source: type[Dialect], target: type[Dialect]) -> str:
@@ -81,6 +83,8 @@ def needs_assignment(statement: Statement, source: type[Dialect], target: type[D
     there could read them. Which they are is known by now, but for dialects without flow words.
     """
     key, known = key_set(statement), source.flow_rule.arithmetic
+    if key is not None and known is not None and known.acts(key):
+        return f"the assignment to {written(key)}, which does something on the machine"
     flows = key is None and source.flow_rule.language
     if target.flow_rule.arithmetic is None or known is None or flows:
         return ""
@@ -97,7 +101,7 @@ def is_foreign(item: Item, source: type[Dialect], target: type[Dialect]) -> bool
     assignment of a number to a parameter that lasts, in a control that has it, is no such item.
     """
     if isinstance(item, Statement):
-        return item.kind == "assignment" and not lasts_in(item, target)
+        return item.kind == "assignment" and not lasts_in(item, source, target)
     if not isinstance(item, Mark):
         return False
     if item.kind == "block_end":  # the line end says it everywhere

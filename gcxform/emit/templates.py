@@ -151,10 +151,10 @@ class TemplateWriter:
         if crossing and item.kind != "assignment":
             self.draft.refuse(item, item.kind.replace("_", " "))
         slot = self._text_slot(item)
-        if (not crossing or lasts_in(item, self.target)) and slot >= 0:
+        if (not crossing or lasts_in(item, self.source, self.target)) and slot >= 0:
             self.draft.literal(lead, "")
             self.draft.fields.append(CopiedText(slot))
-        elif not crossing or lasts_in(item, self.target):
+        elif not crossing or lasts_in(item, self.source, self.target):
             self.draft.literal(lead, self.text[item.start : item.end])
         elif lost := needs_assignment(item, self.source, self.target):
             self.draft.refuse(item, lost)

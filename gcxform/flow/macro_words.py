@@ -20,6 +20,9 @@ from gcxform.syntax.grammar import span_of
 from gcxform.syntax.tree import BLANKS, Block, Statement
 from gcxform.syntax.undecided import Undecided
 
+CONDITION = -3
+"""Which of the parts of a flow word is its condition: before GOTO, THEN or DO and what follows."""
+
 
 @dataclass(frozen=True, slots=True)
 class Loop:
@@ -151,7 +154,8 @@ class MacroWords(Jumping):
     def _holds(self, statement: Statement) -> bool | None:
         """Return whether a condition holds; None if only the machine knows it."""
         try:
-            found = Evaluator(self.conditions, self.parameters).value(statement.tree.children[1])
+            condition = statement.tree.children[CONDITION]
+            found = Evaluator(self.conditions, self.parameters).value(condition)
         except LocatedError as why:
             if why.lost:
                 return None
@@ -197,7 +201,8 @@ class MacroWords(Jumping):
         opening = statement_of(self.listing.block(loop.first))
         if opening is not None and opening.kind == "while":
             flow = frozenset((loop.first, loop.last))
-            self.many.go(Repeated(loop.first, loop.last, flow, opening.tree.children[1]))
+            condition = opening.tree.children[CONDITION]
+            self.many.go(Repeated(loop.first, loop.last, flow, condition))
 
 
 def statement_of(block: Block) -> Statement | None:

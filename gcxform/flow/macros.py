@@ -1,111 +1,40 @@
 """Fanuc and its relatives: M98, M97 and M99, GOTO, IF and WHILE of macro B.
 
-Programs of a file begin at their O numbers, and the first one is run. What M98 calls has the local
-variables of its caller (Fanuc macro executor B-62093E-1 p. 32, 30i executor B-63943EN-2 p. 105);
-G65 makes new ones (`gcxform/flow/macro_calls.py`). Modes stay as what was called leaves them.
+What M98 calls has the local variables of its caller (Fanuc macro executor B-62093E-1 p. 32, 30i
+executor B-63943EN-2 p. 105); G65 makes new ones (`gcxform/flow/macro_calls.py`). Modes stay as what
+was called leaves them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 
-from gcxform.flow.execution import HINT
 from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.macro_calls import BY, T_VALUE, ValueCalls
-from gcxform.flow.macro_words import Loop, MacroWords, statement_of
+from gcxform.flow.macro_programs import PACKED, MacroPrograms
+from gcxform.flow.macro_words import statement_of
 from gcxform.flow.modal_calls import BEGINS, ENDS, Modal, ModalCalls
-from gcxform.flow.numbered_files import begins_program, file_of, first_block, program_number
+from gcxform.flow.numbered_files import begins_program, program_number
 from gcxform.flow.run_state import Call, whole_number
 from gcxform.flow.subprogram_file import returns
 from gcxform.modal.meaning.tables import COLUMNS
 from gcxform.modal.state import Reading
-from gcxform.syntax.tree import BLANKS, Block, Number, Statement, Word
+from gcxform.syntax.tree import Block, Number, Statement, Word
 
-LOOPS = ("1", "2", "3")
 CALLING = frozenset({"M98", "M198", "G65", "G66", "G66.1", "computed"})
 """What calls a program by its number, or may do so."""
-PACKED = 10_000  # P of old controls: a count, and four digits of a program number
 
 
-class MacroB(MacroWords):
+class MacroB(MacroPrograms):
     """Runs programs of Fanuc, Haas and their relatives."""
 
     def __init__(self, listing: Listing, reading: Reading, keeps: bool = False) -> None:
         super().__init__(listing, reading, keeps)
-        self.starts: dict[int, int] = {}
-        self.twice: set[int] = set()
-        self.unnumbered: dict[int, int] = {}
         self.values = ValueCalls(self)
         self.modals = ModalCalls(self, self._modal_call)
-        self.arrange()
-
-    # --- which lines belong together ---
-
-    def arrange(self) -> None:
-        """Find programs and loops. Raises InputError for what does not fit together."""
-        self.loops, self.starts, self.twice, self.bounds = {}, dict(self.unnumbered), set(), []
-        self.forget_sequences()
-        open_: list[tuple[int, str]] = []
-        for line in self.listing.special.tolist():
-            self.line = line
-            if line in self.listing.seams:
-                self._refuse_open(open_)
-                self.bounds = [*(self.bounds or [0]), line + 1]
-                continue
-            block = self.listing.block(line)
-            if not self.stands(block):
-                continue
-            if begins_program(block):
-                self._refuse_open(open_)
-                self.line = line
-                self._begin(line, program_number(block))
-            statement = statement_of(block)
-            if statement is not None:
-                self._place(line, statement, open_)
-        self._refuse_open(open_)
-
-    def _begin(self, line: int, number: int | None) -> None:
-        """Note a program that begins; what stands before the first one is a program too."""
-        if not self.bounds and self._holds_blocks(0, line):
-            self.bounds.append(0)
-        first, _ = self.listing.part(line)
-        if first and self.bounds[-1] == first and not self._holds_blocks(first, line):
-            self.bounds.pop()
-        self.bounds.append(line)
-        if number is None:
-            return
-        if number in self.starts:
-            self.twice.add(number)
-        self.starts[number] = line
-
-    def _holds_blocks(self, first: int, last: int) -> bool:
-        """Whether anything is done in lines up to one."""
-        return any(bare(self.listing.block(line)) for line in range(first, last))
-
-    def _place(self, line: int, statement: Statement, open_: list[tuple[int, str]]) -> None:
-        """Put the begin or the end of a loop to its other half."""
-        name = str(statement.tree.children[-1]).translate(BLANKS)
-        if statement.kind in ("while", "do"):
-            if name not in LOOPS:
-                raise self.refusal("GX223", f"DO {name}: loops have the numbers 1 to 3")
-            if name in (other for _, other in open_):
-                raise self.refusal("GX223", f"DO {name} stands inside a loop of the same number")
-            open_.append((line, name))
-        elif statement.kind == "end":
-            if not open_ or open_[-1][1] != name:
-                raise self.refusal("GX223", f"END {name} ends no loop that is open here")
-            first = open_.pop()[0]
-            self.loops[first] = self.loops[line] = Loop(first, line)
-
-    def _refuse_open(self, open_: list[tuple[int, str]]) -> None:
-        """Refuse a loop that is not closed in its program."""
-        if open_:
-            self.line = open_[-1][0]
-            raise self.refusal("GX223", f"the loop DO {open_[-1][1]} has no END")
 
     # --- what lines do ---
 
@@ -133,6 +62,9 @@ class MacroB(MacroWords):
         codes = {whole_number(i) for i in items if isinstance(i, Word) and i.address == "M"}
         if 98 in codes or (97 in codes and self.dialect.flow_rule.calls_own_lines):
             self._call(block, items, own=97 in codes)
+            return True
+        if 99 in codes and self.dialect.flow_rule.m99_jumps and _has(block, "P"):
+            self._go_on_at(block, items)
             return True
         if 99 in codes and self.calls:
             self._return(block, items)
@@ -197,7 +129,7 @@ class MacroB(MacroWords):
 
     def _call(self, block: Block, items: list[Word | Statement], own: bool) -> None:
         self.refuse_more(items, "MPL")
-        target, times = self._called(block)
+        target, times = self.called(block)
         name = f"M98 P{target}"
         if own:
             first, name = self.labelled(target), f"M97 P{target}"
@@ -205,8 +137,8 @@ class MacroB(MacroWords):
                 raise self.refusal("GX223", f"N{target} stands inside a loop that is not running")
             self.jumps.add(len(self.walked) - 1)
         else:
-            target, times = self._unpacked(target, times, block)
-            first = self._start(target)
+            target, times = self.unpacked(target, times, block)
+            first = self.start(target)
         self.enter(Call(name, self.at, first, times))
 
     def _call_sharing(
@@ -214,7 +146,7 @@ class MacroB(MacroWords):
     ) -> None:
         """Call the program of a code, with the variables of its caller."""
         self.refuse_more(items, name[0])
-        first = self._start(number)
+        first = self.start(number)
         if name == "T":
             value = self.number(block, "T")
             self.set({T_VALUE: value})
@@ -229,13 +161,13 @@ class MacroB(MacroWords):
 
         `name` is a code that calls the program of a `number`; without it P says which.
         """
-        times = self._times(block)
+        times = self.times_of(block)
         if not name:
-            number = self._called(block)[0]
-            if not self._has(number):
+            number = self.called(block)[0]
+            if not self.has(number):
                 return False
         call = self.values.made_by(name or f"G65 P{number}", words[1:], times, self.at)
-        call.first = self._start(number)
+        call.first = self.start(number)
         self.enter(call)
         self.values.give(call)
         return True
@@ -253,9 +185,9 @@ class MacroB(MacroWords):
             raise self.refusal("GX220", message)
         if name == ENDS:
             return self.modals.end(words)
-        number, times = self._called(block)
+        number, times = self.called(block)
         given = self.values.made_by(f"{name} P{number}", words[1:], times, self.at).given or {}
-        first = self._start(number)
+        first = self.start(number)
         self.tied = "moves call a program (G66)"
         self.modals.begin(Modal(f"{name} P{number}", first, times, given, len(self.calls)))
         return True
@@ -298,62 +230,6 @@ class MacroB(MacroWords):
         text = self.text[-1].splitlines()[-1].decode("latin-1")
         return list(self.dialect.load_grammar().parse(text).words)
 
-    def _called(self, block: Block) -> tuple[int, int]:
-        """Return number and count of a call. Raises InputError."""
-        number = self.number(block, "P")
-        if number % 1 != 0:
-            raise self.refusal("GX221", "a call takes a number in P, and a count from 1 in L")
-        return int(number), self._times(block)
-
-    def _times(self, block: Block) -> int:
-        """Return the count of a call. Raises InputError."""
-        times = self.number(block, "L", 1.0)
-        if times % 1 != 0 or times < 1:
-            raise self.refusal("GX221", "a call takes a number in P, and a count from 1 in L")
-        return int(times)
-
-    def _unpacked(self, number: int, times: int, block: Block) -> tuple[int, int]:
-        """Return program and count of a P that may hold both."""
-        if self.dialect.program_rule.number_digits > 4:
-            return number, times
-        packed = number >= PACKED and self._has(number % PACKED)
-        if packed and (number in self.starts or any(w.address == "L" for w in block.words)):
-            raise self.refusal("GX210", "P can be read as a program, or as a count and a program")
-        if not packed:
-            return number, times
-        target, times = number % PACKED, number // PACKED
-        self.assumed[f"M98 P{number} calls O{target}, {times} times"] = None
-        return target, times
-
-    def _start(self, number: int) -> int:
-        """Return the first line of a program that is executed by a call."""
-        if not self._has(number):
-            message = f"the subprogram O{number} is not in this file, and in no file beside it"
-            raise self.refusal("GX210", message, HINT)
-        if number in self.twice:
-            raise self.refusal("GX223", f"there are two programs O{number}")
-        if number in self.unnumbered:
-            return self.unnumbered[number]
-        block = self.listing.block(self.starts[number])
-        if len(bare(block)) > (1 if any(block.words) else 0):
-            message = f"words stand beside O{number}: whether a call executes them is not certain"
-            raise self.refusal("GX210", message, "write them into a block of their own")
-        return self.starts[number] + 1
-
-    def _has(self, number: int) -> bool:
-        """Whether there is a program of a number, in the lines or in a file that is now added."""
-        return number in self.starts or self._look_up(number)
-
-    def _look_up(self, number: int) -> bool:
-        """Add the file of a program, and return whether there is one. Raises InputError."""
-        if not self.add_file(file_of(self, number)):
-            return False
-        if number not in self.starts:
-            self.starts[number] = self.unnumbered[number] = first_block(self.listing)
-            name = Path(self.listing.files[-1].name).name
-            self.assumed[f"{name} has no O number, and is O{number}, as its name says"] = None
-        return True
-
     def _return(self, block: Block, items: list[Word | Statement]) -> None:
         self.refuse_more(items, "MP")
         call = self.calls[-1]
@@ -367,16 +243,29 @@ class MacroB(MacroWords):
         if call.given is not None:
             self.values.take_back(call)
         self.at = call.back
-        if any(word.address == "P" for word in block.words):
+        if _has(block, "P"):
             target = self.number(block, "P")
             self.line = call.back - 1
             self._jump(target)
+
+    def _go_on_at(self, block: Block, items: list[Word | Statement]) -> None:
+        """Jump to the line that M99 P names, of its own program (Haas 96-8000 p. 118)."""
+        self.refuse_more(items, "MP")
+        if self.branches.open:
+            message = "only the machine knows whether this M99 is executed"
+            raise self.refusal("GX220", message, "write GOTO")
+        self._jump(self.number(block, "P"))
 
     def _begin_again(self, call: Call) -> None:
         """Execute a subprogram once more."""
         self.values.again(call)
         self.changes += 1
         self.at = call.first
+
+
+def _has(block: Block, address: str) -> bool:
+    """Whether a block has a word."""
+    return any(word.address == address for word in block.words)
 
 
 def _code(word: Word) -> str:

@@ -81,8 +81,10 @@ def _same(old: tuple[Assigned, ...], new: tuple[Assigned, ...], trace: Trace, ne
 
 def _lasts(key: Key, context: PassContext) -> bool:
     """Whether an assignment of the source has to stand in the output."""
-    known = context.target.flow_rule.arithmetic
-    return context.source is context.target or (known is not None and known.can_say(key))
+    own, known = context.source.flow_rule.arithmetic, context.target.flow_rule.arithmetic
+    acts = own is not None and own.acts(key)
+    said = known is not None and known.can_say(key) and (own is None or own.owns(key))
+    return context.source is context.target or acts or said
 
 
 def _said(one: Assigned) -> str:

@@ -166,7 +166,7 @@ MUTATIONS = (
     ),
     _flow(
         "a jump leads into another file",
-        "gcxform/flow/macros.py",
+        "gcxform/flow/macro_programs.py",
         "self.bounds = [*(self.bounds or [0]), line + 1]",
         "pass",
         "tests/test_corpus.py::test_case[flow/file-no-label]",
@@ -391,7 +391,7 @@ MUTATIONS = (
     ),
     _flow(
         "P is never packed",
-        "gcxform/flow/macros.py",
+        "gcxform/flow/macro_programs.py",
         "packed = number >= PACKED",
         "packed = number < 0",
     ),

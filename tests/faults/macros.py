@@ -124,6 +124,27 @@ MUTATIONS = (
         "tests/test_own_codes.py",
     ),
     _macro(
+        "M99 P of a Haas goes to its caller",
+        "gcxform/flow/macros.py",
+        "if 99 in codes and self.dialect.flow_rule.m99_jumps and",
+        "if 99 in codes and not self.dialect.flow_rule.m99_jumps and",
+        "flow/haas-m99-jumps",
+    ),
+    _macro(
+        "M99 P is passed where only the machine knows whether it is come to",
+        "gcxform/flow/macros.py",
+        'message = "only the machine knows whether this M99 is executed"',
+        'return self._jump(self.number(block, "P"))',
+        "flow/haas-m99-in-loop",
+    ),
+    _macro(
+        "an alarm is a number of another control",
+        "gcxform/dialect/arithmetic.py",
+        "return not self.owns(key) and not among(key, self.machine.counters)",
+        "return False",
+        "dialects/alarm-of-a-macro",
+    ),
+    _macro(
         "where a declared code ends is not asked",
         "gcxform/modal/lines.py",
         'ends = self.reading.control.get(f"macro {name}", code.act if code else "")',

@@ -34,6 +34,7 @@ refused. What is not named here is as in `fanuc`.
 | G107 G112 G113 G234 G253 to G255 G268 G269 | another frame: refused | manual |
 | G103, G187 | look-ahead, smoothness: change no position | manual |
 | M97 M98 M99 | executed where what they call is found, as Fanuc; P of M98 holds no count | manual |
+| M99 P | a jump in its own program, also behind `[...]` or `IF [...]` (96-8000 p. 118) | manual |
 | G65 | as Fanuc's, nine deep; L keeps what the macro did to its variables; list II | manual |
 | AND OR XOR in brackets | bits of whole parts | manual |
 | null EQ 0 | true or not: refused, or `[control] null-compare` | known |
@@ -87,6 +88,7 @@ class Haas(Fanuc):
     """Haas mill, NGC."""
 
     name = "haas"
+    grammar = ("gcxform_grammars", "haas")
     axes = "XYZABC"
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{name: code for name, code in Fanuc.codes.items() if name not in NOT_HERE},
@@ -130,6 +132,7 @@ class Haas(Fanuc):
     flow_rule = replace(
         Fanuc.flow_rule,
         calls_own_lines=True,
+        m99_jumps=True,
         arithmetic=ARITHMETIC,
         macro_levels=9,
         repeats_keep=True,
