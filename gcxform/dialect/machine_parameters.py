@@ -10,6 +10,7 @@ class MachineParameters:
     """What is known of the parameters of a control whose values only the machine knows.
 
     outputs    those that a program may set without any effect on positions
+    alarm      the one that stops the control with an alarm: nothing behind it is executed
     counters   those of them that only count, so that nothing is done when they are set
     lengths    entries of the table of tools, a hundred or two for each kind of number
     zeros      entries of the table of work offsets
@@ -23,6 +24,7 @@ class MachineParameters:
     """
 
     outputs: tuple[range, ...] = ()
+    alarm: int | None = None
     counters: tuple[range, ...] = ()
     lengths: tuple[range, ...] = ()
     zeros: tuple[range, ...] = ()
@@ -51,6 +53,7 @@ FANUC = MachineParameters(
         range(3000, 3005),
         *(range(n, n + 1) for n in (3006, 3901, 3902)),
     ),
+    alarm=3000,
     counters=(range(3001, 3003), range(3901, 3903)),
     lengths=(
         *(range(first, first + 200) for first in (2001, 2201, 2401, 2601)),

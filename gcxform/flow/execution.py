@@ -326,7 +326,12 @@ class Execution(RunState):
         if meaning.runs_macro and not meaning.lost_by <= self.reading.inert_m:
             self._forget()
         self.percents += meaning.percent
-        self.ended |= self.percents > 1 or self._ends(block)
+        self.ended |= self.percents > 1
+        self.stop(block)
+
+    def stop(self, block: Block) -> None:
+        """Note that nothing is executed behind a block that ends the program."""
+        self.ended |= self._ends(block)
 
     def _assigned(self, statement: Statement) -> tuple[Key, float]:
         """Return a parameter and its new value."""

@@ -8,16 +8,16 @@ from typing import Any
 
 from lark import Token
 
-from gcxform.dialect.arithmetic import Arithmetic
+from gcxform.dialect.arithmetic import Arithmetic, Key
 from gcxform.flow.branches import Branches, Jumping, number_of
 from gcxform.flow.listing import Listing
 from gcxform.flow.relations import COMPARES, relations
 from gcxform.flow.round_body import Repeated
 from gcxform.flow.rounds import Rounds
-from gcxform.modal.expressions.value import Evaluator, LocatedError
+from gcxform.modal.expressions.value import Evaluator, LocatedError, key_set
 from gcxform.modal.state import Reading
 from gcxform.syntax.grammar import span_of
-from gcxform.syntax.tree import BLANKS, Block, Statement
+from gcxform.syntax.tree import BLANKS, Block, Comment, Statement
 from gcxform.syntax.undecided import Undecided
 
 CONDITION = -3
@@ -180,7 +180,34 @@ class MacroWords(Jumping):
             kept = self.kept_assignment(made, (key, value))
             self.set(self.arithmetic.behind(key, value))
             if text := self.lasting.account(key, value, kept):
-                self.write_line(text)
+                self.write_line(text + self._told_with(key))
+            if key == self.arithmetic.machine.alarm:
+                self.branches.over, self.ended = bool(self.branches.open), not self.branches.open
+
+    def _told_with(self, key: Key) -> str:
+        """Return the comments of the line if an assignment shows them: those of #3000, #3006."""
+        block, text = self.listing.block(self.line), ""
+        for item in block.items if self.arithmetic.acts(key) else ():
+            text += block.text[item.start : item.end] if isinstance(item, Comment) else ""
+        return text
+
+    # --- ends ---
+
+    def _ends(self, block: Block) -> bool:
+        return super()._ends(block) or self._alarms(block)
+
+    def _alarms(self, block: Block) -> bool:
+        """Whether a block stops the control with an alarm (#3000 of Fanuc and Haas)."""
+        alarm = self.arithmetic.machine.alarm
+        statements = (item for item in block.items if isinstance(item, Statement))
+        return any(alarm is not None and key_set(each) == alarm for each in statements)
+
+    def stop(self, block: Block) -> None:
+        """End the program, or go on where a jump ahead may lead to: an alarm ends nothing else."""
+        if self.branches.open and self._alarms(block):
+            self.branches.over = True
+        else:
+            super().stop(block)
 
     # --- loops ---
 

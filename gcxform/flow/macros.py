@@ -251,9 +251,6 @@ class MacroB(MacroPrograms):
     def _go_on_at(self, block: Block, items: list[Word | Statement]) -> None:
         """Jump to the line that M99 P names, of its own program (Haas 96-8000 p. 118)."""
         self.refuse_more(items, "MP")
-        if self.branches.open:
-            message = "only the machine knows whether this M99 is executed"
-            raise self.refusal("GX220", message, "write GOTO")
         self._jump(self.number(block, "P"))
 
     def _begin_again(self, call: Call) -> None:

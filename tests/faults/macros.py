@@ -131,17 +131,17 @@ MUTATIONS = (
         "flow/haas-m99-jumps",
     ),
     _macro(
-        "M99 P is passed where only the machine knows whether it is come to",
-        "gcxform/flow/macros.py",
-        'message = "only the machine knows whether this M99 is executed"',
-        'return self._jump(self.number(block, "P"))',
-        "flow/haas-m99-in-loop",
-    ),
-    _macro(
         "an alarm is a number of another control",
         "gcxform/dialect/arithmetic.py",
         "return not self.owns(key) and not among(key, self.machine.counters)",
         "return False",
+        "dialects/output-of-a-macro",
+    ),
+    _macro(
+        "what a control does is said to another by the same number",
+        "gcxform/emit/expressible.py",
+        "if key is None or known is None or not (own is None or own.owns(key)):",
+        "if key is None or known is None:",
         "dialects/alarm-of-a-macro",
     ),
     _macro(
