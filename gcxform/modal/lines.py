@@ -24,7 +24,7 @@ from gcxform.modal.meaning.tables import (
     of_splines,
 )
 from gcxform.modal.noted import Assigned, KeptCall, Unknown
-from gcxform.modal.numbers_without_point import Pointless
+from gcxform.modal.numbers_without_point import Pointless, why_open
 from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
 from gcxform.syntax.scan import Window
 from gcxform.syntax.undecided import DECIDED, Undecided
@@ -220,15 +220,12 @@ class Lines:
 
     def refuse_pointless(self, line: int, address: str, number: int) -> None:
         """Refuse a distance without a point in a word that a code takes for itself."""
-        pointless = self.dialect.point_rule.required and address in DISTANCES
-        if pointless and self.window.decimals[number] < 0 and self.window.value[number]:
-            self.findings.add(
-                line,
-                "GX205",
-                f"{address} has no decimal point: its unit depends on the control",
-                address,
-                "write it with a point",
-            )
+        if not self.dialect.point_rule.required or address not in DISTANCES:
+            return
+        value, decimals = float(self.window.value[number]), int(self.window.decimals[number])
+        if why := why_open(address, value, decimals, bool(self.inch[line])):
+            message = f"{address} {why} depends on the control"
+            self.findings.add(line, "GX205", message, address, "write it with a point")
 
     def _group(self, name: str) -> Small:
         """Return the number of the code in force of a group, on each line."""

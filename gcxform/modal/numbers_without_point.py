@@ -56,6 +56,17 @@ def assumed_rounding(address: str, inch: bool, said: Increments) -> str:
 PLAIN_FEED = "write the feed as a number, with a point"
 
 
+def why_open(address: str, value: float, decimals: int, inch: bool) -> str:
+    """Return what is not known of a distance that a code takes for itself; nothing if it is.
+
+    One that is computed is known where no increment rounds it, and lost where its value is.
+    """
+    if decimals == COMPUTED:
+        same = coarse(value, address, inch)
+        return "" if same == same or value != value else "is computed: to what it is rounded"
+    return "has no decimal point: its unit" if decimals < 0 and value else ""
+
+
 class Pointless:
     """Gives the numbers of a window that have no point their worth; `inch` (n,) are its blocks."""
 

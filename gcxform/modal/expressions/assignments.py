@@ -26,7 +26,7 @@ from gcxform.dialect.null import Null
 from gcxform.modal.expressions.compiled import NO_VALUE, NoColumnError
 from gcxform.modal.expressions.functions import computed_in, functions_of, whole_columns
 from gcxform.modal.expressions.straight import Group, Straight
-from gcxform.modal.expressions.unknown import bare_text, hangs_on, may_be_unknown
+from gcxform.modal.expressions.unknown import bare_text, hangs_on, is_set, may_be_unknown
 from gcxform.modal.expressions.value import (
     Evaluator,
     LocatedError,
@@ -279,10 +279,15 @@ class _Block:
     ) -> str:
         """Note that the text of an item has to stay, for its value is not known; return it."""
         kept, hangs = bare_text(self._text[item.start : item.end]), hangs_on(tree, evaluator)
-        if isinstance(item, Word) and item.address in self.meaning.axes + "F":
+        if isinstance(item, Word) and self._is_measured(item.address):
             hangs = hangs or "units"
         self.lines.unknown.append(Unknown(self.line, kept, hangs, rounded))
         return kept
+
+    def _is_measured(self, address: str) -> bool:
+        """Whether the value of a word is in the unit of the program."""
+        set_ = address != "P" and is_set(address, self.meaning)
+        return set_ or address in self.meaning.axes + "F"
 
     @cached_property
     def _text(self) -> str:

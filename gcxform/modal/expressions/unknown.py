@@ -24,6 +24,7 @@ from gcxform.syntax.tree import BLANKS
 FREE = "FST"
 """Words that no move needs to be known of, besides axes."""
 LENGTHS = frozenset({"length", "length-negative", "length-add"})
+SETS_ZERO = "set-work"
 STRENGTH = ("", "units", "place")
 
 
@@ -42,7 +43,15 @@ def may_be_unknown(address: str, meaning: Meaning) -> bool:
     waits = [event.slots for event in meaning.events if event.what == "DWELL"]
     if any(address == taken for slots in waits for taken, _ in slots):
         return True
-    return address == "H" and any(act.name in LENGTHS for act in meaning.acts)
+    if address == "H" and any(act.name in LENGTHS for act in meaning.acts):
+        return True
+    return address != "L" and is_set(address, meaning)
+
+
+def is_set(address: str, meaning: Meaning) -> bool:
+    """Whether a word says what a G10 of a block sets, or in what place."""
+    acts = (act for act in meaning.acts if act.name == SETS_ZERO)
+    return any(address == taken for act in acts for taken, _ in act.slots)
 
 
 def note_prints(lines: Lines) -> None:

@@ -90,12 +90,25 @@ def set_work(state: FrameState, asked: Asked) -> FrameState:
     for address in asked.written:
         if address not in asked.axes and address not in ("LPR" if turns else "LP"):
             raise ActError("GX213", f"{address} has no meaning in G10 L{kind:g}")
-    if kind == 2 and rule.g10_p0 == "all" and asked.words.get("P") == 0:
+    _refuse_unknown(asked)
+    some = np.isnan(asked.words.get("P", 0.0))  # only the machine knows which
+    if some or (kind == 2 and rule.g10_p0 == "all" and asked.words.get("P") == 0):
         return state.shifted()
     name = _named_work(asked, state)
     if kind == 20 and rule.g10_l20 == "here":
         return _set_zero_here(state, asked, name)
     return _set_zero(state, asked, name)
+
+
+def _refuse_unknown(asked: Asked) -> None:
+    """Refuse a value that only the machine knows where the block cannot stay as it stands.
+
+    Elsewhere the zero is not known behind it.
+    """
+    lost = [address for address, value in asked.words.items() if np.isnan(value)]
+    if lost and (asked.reading.crosses or not asked.reading.tables_stay or "R" in lost):
+        message = f"{lost[0]} of this G10 has a value that only the machine knows"
+        raise ActError("GX220", message, "set it to a number in the program before")
 
 
 def _named_work(asked: Asked, state: FrameState) -> str:
