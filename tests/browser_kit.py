@@ -57,7 +57,10 @@ class Sight:
         sight.page.on("console", lambda message: sight.complaints.append(message.text))
         sight.page.on("pageerror", lambda error: sight.complaints.append(str(error)))
         sight.page.goto(f"{file.resolve().as_uri()}{name}")
-        sight.page.wait_for_selector("html[data-ready=yes]", state="attached")
+        try:
+            sight.page.wait_for_selector("html[data-ready=yes]", state="attached")
+        except Exception as error:
+            raise AssertionError(f"the page says {sight.complaints}") from error
         return sight
 
     def close(self) -> None:

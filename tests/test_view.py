@@ -11,13 +11,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser_kit import Sight, started
+from browser_kit import PLACE, Sight, started
 from cli_kit import call
 
+import gcxform as gx
+from gcxform.cli.common.programs import opened
 from gcxform.errormodel.model_file import load_model
 from gcxform.machine.chain import chain_of
 from gcxform.machine.file import load_machine
 from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
+from gcxform.view.reading import read, read_for
+from gcxform.view.tips import tips
 
 pytestmark = pytest.mark.xdist_group("browser")  # it is started once
 
@@ -227,14 +232,21 @@ def test_a_run_is_shown_with_its_certificate(bracket) -> None:
 
 def test_lines_of_source_and_output_are_linked(bracket) -> None:
     bracket.page.select_option("#colour", "deviation")
-    bracket.page.click("#lists .list:nth-child(1) .line[data-line='13']")
+    bracket.page.click("#lists .list:nth-child(1) .line[data-line='17']")
     line, linked = chosen(bracket, 1)
     assert line == -1
-    assert texts(bracket, 1)[linked[0]].startswith(texts(bracket)[13].split()[0])
+    assert texts(bracket, 1)[linked[0]].startswith(texts(bracket)[17].split()[0])
     bracket.page.click(f"#lists .list:nth-child(2) .line[data-line='{linked[0]}']")
-    assert chosen(bracket, 0) == (-1, [13])
+    assert chosen(bracket, 0) == (-1, [17])
     bracket.page.wait_for_selector("#told pre:text('deviation')")
-    bracket.picture("view.png")
+    if PLACE:  # the picture of the manual, with the machine
+        for name in ("envelope", "errors"):
+            bracket.page.click(f".tools button:text-is('{name}')")
+        bracket.run("view.goTo(0.6 * view.player.total)")
+        bracket.picture("view.png")
+        bracket.run("view.goTo(view.player.total)")
+        for name in ("envelope", "errors"):
+            bracket.page.click(f".tools button:text-is('{name}')")
 
 
 def test_every_colour_is_another(bracket) -> None:
@@ -297,11 +309,83 @@ def test_the_tool_axis_is_that_of_the_chain(browser, tmp_path: Path) -> None:
         axis, a, c = sight.run(f"{script} path.ends[at.indexOf('C')][value]]", row)
         angles = np.array([{"A": a, "C": c}[letter] for letter in chain.letters])
         assert np.allclose(axis, chain.tool_axis(angles), atol=1e-6)
+    cone = "return view.programs.map(({ path }) => [...path.corners].slice(-4, -1).map("
+    ends = sight.run(f"{cone}(value, k) => value + path.middle[k]))")
+    assert np.allclose(*ends, atol=2e-3)  # axes as written end where the tip does
     assert sight.page.query_selector("button:text-is('tool axes')") is not None
     sight.run("view.goTo(0.5 * view.player.total)")
     sight.picture("view-five-axes.png")
     assert sight.complaints == []
     sight.close()
+
+
+TOOLS = """G21 G90 G17 G94 G54
+T1 M6
+G0 G43 H1 X0. Y0. Z50.
+G1 Z0. F100.
+X20.
+G0 Z50.
+T2 M6
+G0 G43 H2 X0. Y0. Z50.
+G68 X0. Y0. R30.
+G18
+G1 X5. Y0. Z0. F100.
+M30
+"""
+LENGTHS = """format = 1
+[work-offset.G54]
+[tool.1]
+length = 100.0
+[tool.2]
+length = 50.0
+"""
+
+
+def test_tools_of_any_length_stand_on_what_they_cut_and_planes_are_seen(browser, tmp_path) -> None:
+    (tmp_path / "t.nc").write_text(TOOLS)
+    (tmp_path / "m.toml").write_text(LENGTHS)
+    words = ["-f", "fanuc", "-m", str(tmp_path / "m.toml"), str(tmp_path / "t.nc")]
+    sight = Sight.of(browser, page_of(tmp_path, *words), "#1:5")
+    script = "const { path } = view.programs[0]; return [...path.corners].map("
+    corners = np.reshape(sight.run(f"{script}(v, k) => v + (path.middle[k % 4] ?? 0))"), (-1, 4))
+    assert corners[-1, :3] == pytest.approx([5 * 3**0.5 / 2, 2.5, 0.0], abs=1e-4)
+    assert corners[2:4, 2].tolist() == pytest.approx([0.0, 0.0], abs=1e-4)  # and not 100
+    pane = "const { both, label } = view.scene.plane;"
+    told = f"{pane} return [both.visible, label.element.textContent, both.matrix.elements]"
+    seen, code, basis = sight.run(told)
+    assert (seen, code, basis[8:11]) == (True, "G17", [0, 0, 1])
+    sight.page.click(".line[data-line='10']")
+    _, code, basis = sight.run(told)
+    assert code == "G18"
+    normal = [-0.5, 3**0.5 / 2, 0.0]  # of ZX, turned by G68
+    assert basis[8:11] == pytest.approx(normal, abs=1e-9)
+    before = sight.pixels()
+    sight.page.click(".tools button:text-is('plane')")
+    assert (before != sight.pixels()).any()
+    assert sight.complaints == []
+    sight.close()
+
+
+def test_axes_are_drawn_where_the_tip_goes(tmp_path: Path) -> None:
+    """The tips of a program for axes lie on the program of tips that it was made of."""
+    with opened(str(DOME / "dome.nc")) as source:
+        plan = gx.Pipeline.load(DOME / "axes.toml")
+        parts: list[bytes] = []
+        plan.run_stream(source, parts.append)
+        before = read_for(plan, source)
+    output = read(Source.of_bytes(b"".join(parts), "o"), plan.target, plan.machine_reading)
+    found = tips(output.path, plan.machine)
+    cut = (found.pieces > 0) & (output.path.kind != gx.Kind.RAPID)
+    drawn = found.points[cut.repeat(np.maximum(found.pieces, 1))]
+    wanted = before.path.end[:, :3] - (0.0, 0.0, 120.0)
+    wanted = wanted[np.isfinite(wanted).all(axis=1)]
+    segments = wanted[:-1], np.diff(wanted, axis=0)
+    way = drawn[:, None] - segments[0]
+    square = np.maximum((segments[1] ** 2).sum(axis=1), 1e-12)
+    part = np.clip((way * segments[1]).sum(axis=2) / square, 0.0, 1.0)
+    away = np.linalg.norm(way - part[..., None] * segments[1], axis=2).min(axis=1)
+    assert away.max() < 3e-3
+    assert len(drawn) >= cut.sum() > 1000
 
 
 def test_a_program_without_moves(browser, tmp_path: Path) -> None:

@@ -17,12 +17,11 @@ from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked, excluding, needed_dialect
 from gcxform.cli.program.beside import Beside
 from gcxform.contract.passes import Pass
-from gcxform.machine.machine import Machine
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
 from gcxform.syntax.source import Source
 from gcxform.view.pages import Page
-from gcxform.view.reading import Shown, read, read_for, with_tips
+from gcxform.view.reading import Shown, on_machines, read, read_for
 from gcxform.view.scene import around
 
 
@@ -55,7 +54,7 @@ def command(file: str, other: str | None, output: str, **asked: Any) -> None:
 
 def _one(file: str, what: Asked) -> bytes:
     shown = _shown(file, needed_dialect(what.dialect), what)
-    return _page(Path(file).name, what.loaded_machine, shown).of_one(shown)
+    return _page(Path(file).name, shown).of_one(shown)
 
 
 def _two(file: str, other: str, what: Asked) -> bytes:
@@ -63,7 +62,7 @@ def _two(file: str, other: str, what: Asked) -> bytes:
     output = _shown(other, what.to or needed_dialect(what.dialect), what, what.dialect)
     beside = Beside.of(other, source.sha256, output.sha256)
     title = f"{Path(file).name} and {Path(other).name}"
-    page = _page(title, what.loaded_machine, source)
+    page = _page(title, source)
     page.certificate = beside.certificate
     page.notes += beside.notes
     return page.of_two(source, output, beside.origin)
@@ -79,10 +78,10 @@ def _run(file: str, what: Asked) -> bytes:
         certificate = pipeline.run_stream(source, parts.append, "on", lines)
         shown = read_for(pipeline, source)
     warn(certificate.warnings)
-    page = _page(Path(file).name, pipeline.machine, shown, pipeline.path_passes)
-    page.certificate = certificate.described()
     output = _written(pipeline, b"".join(parts), file)
-    shown, output = with_tips(pipeline, shown, output)
+    shown, output = on_machines(pipeline, shown, output)
+    page = _page(Path(file).name, shown, pipeline.path_passes)
+    page.certificate = certificate.described()
     return page.of_run(pipeline, shown, output, np.array(lines, np.int64))
 
 
@@ -98,8 +97,9 @@ def _shown(file: str, dialect: str, what: Asked, of: str | None = None) -> Shown
         return read(source, *what.reads(dialect, of or ""))
 
 
-def _page(title: str, machine: Machine | None, shown: Shown, steps: Sequence[Pass] = ()) -> Page:
+def _page(title: str, shown: Shown, steps: Sequence[Pass] = ()) -> Page:
     """Return a page without programs, with what a machine file and the steps say."""
+    machine = shown.machine
     axes = machine.axes if machine is not None else {}
     speeds = {letter: axis.max_speed for letter, axis in axes.items() if axis.max_speed}
     return Page(title, speeds, scene=around(shown.path, machine, steps))

@@ -16,6 +16,7 @@ from gcxform.toolpath.tools import ToolInSpindle
 from gcxform.view import lines, paths
 from gcxform.view.packing import Section, Store
 from gcxform.view.reading import Shown
+from gcxform.view.tips import described_chain, rotary_chain, tips
 
 RAPID_SPEED: Final = 10_000.0  # mm/min or degrees/min of axes of which no file says theirs
 FINE: Final = 0.01  # um
@@ -45,6 +46,10 @@ def described(
     count, blocks = lines.packed(shown.text, store)
     plain = len(shown.line) == count and bool((shown.line == np.arange(count)).all())
     sorts = {"tool": _tools(shown), **told.sorts}
+    chain = rotary_chain(shown.machine)
+    tip = None if shown.tips or shown.machine is None else tips(shown.path, shown.machine)
+    on_part = shown.tips or tip is not None
+    path = paths.packed(shown.path, store)
     return {
         "name": Path(shown.name).name,  # a page may be mailed: where files lie is nobody's business
         "dialect": shown.dialect.name,
@@ -54,9 +59,10 @@ def described(
         "line": None if plain else store.ints(shown.line),
         "mode": store.ints(shown.mode),
         "modes": shown.modes,
-        "path": paths.packed(shown.path, store),
+        "path": path | ({} if tip is None else {"tips": tip.packed(store)}),
+        "chain": None if chain is None else described_chain(chain),
         "frames": [_frame(frame) for frame in shown.path.frames],
-        "follows": [shown.tips or bool(frame.following) for frame in shown.path.frames],
+        "follows": [on_part or bool(frame.following) for frame in shown.path.frames],
         "from": None if told.source is None else store.ints(told.source[:count]),
         "speeds": {"assumed": RAPID_SPEED, **speeds},
         "sizes": [_size(name, values, store) for name, values in told.sizes.items()],
@@ -71,6 +77,10 @@ def _frame(frame: Frame) -> dict[str, Any]:
         found["shift"] = np.nan_to_num(frame.shift).tolist()
     if frame.matrix is not None:
         found["inverse"] = np.linalg.inv(np.array(frame.matrix)).tolist()
+    if np.nan_to_num(frame.tool).any():
+        found["tool"] = np.nan_to_num(frame.tool).tolist()
+    if frame.following:
+        found["following"] = True
     if frame.diameter:
         found["diameter"] = True
     return found

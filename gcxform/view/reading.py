@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
 from gcxform.api import joined
+from gcxform.contract.options import KinematicsFile
+from gcxform.contract.passes import Pass
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.straightened import located, written_out
+from gcxform.machine.machine import Machine
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.meaning.tables import FAMILIES, NUMBER
 from gcxform.modal.reader import WindowReader
@@ -46,6 +50,7 @@ class Shown:
     path    its moves; `source` counts executed blocks, from 0
     line    (blocks,) line of the text, from 0, that each executed block stands for
     tips    whether X, Y and Z are the tip of the tool, whatever the control says
+    machine the one that goes along it, where that is known
     mode    (blocks,) index into `modes`, the codes in force after each executed block
     """
 
@@ -58,6 +63,7 @@ class Shown:
     mode: Ints
     modes: tuple[str, ...]
     tips: bool = False
+    machine: Machine | None = None
 
 
 def read(source: Source, dialect: type[Dialect], reading: Reading) -> Shown:
@@ -72,14 +78,29 @@ def read_for(plan: Plan, source: Source) -> Shown:
     return _shown(source, executed, dialect, plan.reading_at_start(dialect.axes))
 
 
-def with_tips(plan: Plan, source: Shown, output: Shown) -> tuple[Shown, Shown]:
-    """Return a program and what a pipeline made of it, each with whether it is one of tips."""
+def on_machines(plan: Plan, source: Shown, output: Shown) -> tuple[Shown, Shown]:
+    """Return a program and what a pipeline made of it, each with its machine.
+
+    Both are told whether they are programs of tips. What a pass makes for a machine of its own goes
+    on that.
+    """
     reads = any(TIP_POSITIONS in step.requires for step in plan.path_passes)
     writes = reads
     for step in plan.path_passes:
         said = [fact for fact in (TIP_POSITIONS, AXIS_POSITIONS) if fact in step.ensures]
         writes = said[0] is TIP_POSITIONS if said else writes
-    return replace(source, tips=reads), replace(output, tips=writes)
+    others = [each.machine for each in given(plan.path_passes, KinematicsFile)]
+    machines = [*([plan.machine] if plan.machine else []), *others] or [None]
+    return (
+        replace(source, tips=reads, machine=machines[0]),
+        replace(output, tips=writes, machine=machines[-1]),
+    )
+
+
+def given(steps: Sequence[Pass], kind: type[Any]) -> list[Any]:
+    """Return the options of a kind that steps have."""
+    values = [getattr(step, field.name, None) for step in steps for field in fields(step)]
+    return [value for value in values if isinstance(value, kind)]
 
 
 def _shown(source: Source, executed: Source, dialect: type[Dialect], reading: Reading) -> Shown:

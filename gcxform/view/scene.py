@@ -1,4 +1,4 @@
-"""What stands around the path: the machine's travel, its rotary axes, and the errors of a model.
+"""What stands around the path: the machine's travel, and the errors of a model.
 
 All is in the coordinates of the path. Where the machine is there says its file: the work offset of
 the first frame. Where that is not known, nothing that belongs to the machine is shown.
@@ -7,20 +7,18 @@ the first frame. Where that is not known, nothing that belongs to the machine is
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
 from typing import Any, Final
 
 import numpy as np
 
-from gcxform.contract.options import KinematicsFile, ModelFile
+from gcxform.contract.options import ModelFile
 from gcxform.contract.passes import Pass
-from gcxform.diagnostics import UsageError
 from gcxform.errormodel.model import ErrorModel, Outside
-from gcxform.machine.chain import Rotary, chain_of
 from gcxform.machine.machine import Machine
 from gcxform.simulate.virtual import ranges
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.path import Toolpath
+from gcxform.view.reading import given
 
 PLACES: Final = 7  # of the errors shown, along each axis
 ENDLESS: Final = 100.0  # mm to each side of 0 of a model that has no limits
@@ -28,26 +26,17 @@ ENDLESS: Final = 100.0  # mm to each side of 0 of a model that has no limits
 
 def around(path: Toolpath, machine: Machine | None, steps: Sequence[Pass] = ()) -> dict[str, Any]:
     """Return what the page is told of the machine of a program, and of its errors."""
-    machine = machine or next(iter(_given(steps, KinematicsFile)), None)
-    if isinstance(machine, KinematicsFile):
-        machine = machine.machine
     found: dict[str, Any] = {}
     origin = None
     if machine is not None:
         offset = machine.work_offsets.get(path.first, {})
         if all(axis in offset for axis in "XYZ"):
             origin = np.array([offset[axis] for axis in "XYZ"])
-        found |= _envelope(machine, origin) | _axes(machine)
+        found |= _envelope(machine, origin)
     for step in steps:
-        for given in _given([step], ModelFile):
-            found["lattice"] = _lattice(given.model, _place(step, origin))
+        for file in given([step], ModelFile):
+            found["lattice"] = _lattice(file.model, _place(step, origin))
     return found
-
-
-def _given(steps: Sequence[Pass], kind: type[Any]) -> list[Any]:
-    """Return the options of a kind that steps have."""
-    values = [getattr(step, field.name, None) for step in steps for field in fields(step)]
-    return [value for value in values if isinstance(value, kind)]
 
 
 def _place(step: Pass, origin: Floats | None) -> Floats:
@@ -66,20 +55,6 @@ def _envelope(machine: Machine, origin: Floats | None) -> dict[str, Any]:
         return {}
     low, high = (np.array(ends, np.float64) - origin for ends in zip(*limits, strict=True))
     return {"envelope": [low.tolist(), high.tolist()]}
-
-
-def _axes(machine: Machine) -> dict[str, Any]:
-    """Return how the rotary axes turn, from the base outwards; nothing where that is not known."""
-    try:
-        chain = chain_of(machine)
-    except UsageError:
-        return {}
-    sides = {"table": chain.table, "head": chain.head}
-    return {name: [_rotary(axis) for axis in axes] for name, axes in sides.items() if axes}
-
-
-def _rotary(axis: Rotary) -> dict[str, Any]:
-    return {"letter": axis.letter, "direction": list(axis.direction), "sign": axis.sign}
 
 
 def _lattice(model: ErrorModel, place: Floats) -> dict[str, Any]:

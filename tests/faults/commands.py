@@ -4,7 +4,23 @@ from __future__ import annotations
 
 from faults.mutation import Mutation
 
+TIPS = "gcxform/view/tips.py"
+
 MUTATIONS = (
+    Mutation(
+        "view: tips of axes are without their tool",
+        TIPS,
+        "x, y, z = (gauge - tool).tolist()",
+        "x, y, z = gauge.tolist()",
+        "tests/test_view.py::test_axes_are_drawn_where_the_tip_goes",
+    ),
+    Mutation(
+        "view: tips of axes count from the machine",
+        TIPS,
+        "angles[here])[0] - gauge - zero",
+        "angles[here])[0] - gauge - zero + 1.0",
+        "tests/test_view.py::test_axes_are_drawn_where_the_tip_goes",
+    ),
     Mutation(
         "check --json: what was found before it ended is left out",
         "gcxform/cli/common/failures.py",

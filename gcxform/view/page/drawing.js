@@ -2,10 +2,10 @@
 import { FULL, HIDDEN, DASHED } from "./colours.js";
 import { CHUNK, chosen, importance, withTints } from "./levels.js";
 import { FIELDS, RAPID, isDrawn } from "./path.js";
+import { ACROSS, FRAGMENT, TEXELS, VERTEX } from "./shaders.js";
 
-const TEXELS = 2048; // a row of the texture of colours
-const ACROSS = 256; // a row of the texture of corners
 const MANY = 60_000; // pieces of which a picture is made; more are drawn as thin lines
+const SHARE = 50_000; // pieces of a picture in software at once, where it stands still
 const SHARP = 0.4; // pixels that a line may be off when the picture stands still
 const COARSEST = 6; // pixels, while it moves and is slow
 const THIN = 1.5; // pixels; where the picture is coarser, lines are thin too
@@ -14,50 +14,10 @@ const STILL = 220; // ms without movement, after which the picture is drawn shar
 const SQUARE = [0, 2, 1, 1, 2, 3]; // the corners of its two triangles
 let shared = null; // the index of all rectangles
 
-// A piece of path is a rectangle that faces the screen (4 corners) or a thin line (2); where it lies
-// is in a texture, because software renderers are slow at instances.
-const VERTEX = `
-precision highp float; precision highp int; precision highp sampler2D;
-uniform mat4 modelViewMatrix, projectionMatrix;
-uniform vec2 viewport; uniform float width, behind; uniform int per;
-uniform sampler2D corners, colours; uniform vec4 single;
-out vec3 shade; out float along, travelled; flat out int dashed;
-vec4 cornerAt(int k) { return texelFetch(corners, ivec2(k % ${ACROSS}, k / ${ACROSS}), 0); }
-void main() {
-  int piece = gl_VertexID / per, nth = gl_VertexID % per;
-  vec4 first = cornerAt(piece), second = cornerAt(piece + 1);
-  int row = int(second.w);
-  vec4 colour = texelFetch(colours, ivec2(row % ${TEXELS}, row / ${TEXELS}), 0);
-  if (colour.a == 0.0) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
-  vec4 a = projectionMatrix * modelViewMatrix * vec4(first.xyz, 1.0);
-  vec4 b = projectionMatrix * modelViewMatrix * vec4(second.xyz, 1.0);
-  vec2 way = 0.5 * (b.xy - a.xy) * viewport;
-  float size = length(way);
-  float part = per == 2 ? float(nth) : float(nth / 2);
-  gl_Position = mix(a, b, part);
-  if (per > 2) {
-    vec2 unit = size > 0.0 ? way / size : vec2(1.0, 0.0);
-    float side = nth % 2 == 1 ? 1.0 : -1.0;
-    gl_Position.xy += (vec2(-unit.y, unit.x) * side + unit * (2.0 * part - 1.0)) * width / viewport;
-  }
-  gl_Position.z += behind;
-  along = part * size;
-  dashed = colour.a < 0.9 ? 1 : 0;
-  shade = mix(colour.rgb, single.rgb, single.a);
-  travelled = mix(first.w, second.w, part);
-}`;
-const FRAGMENT = `
-precision highp float;
-uniform vec3 ground; uniform float played;
-in vec3 shade; in float along, travelled; flat in int dashed; out vec4 fragment;
-void main() {
-  if (dashed == 1 && mod(along, 9.0) > 5.0) discard;
-  fragment = vec4(travelled > played ? mix(shade, ground, 0.86) : shade, 1.0);
-}`;
-
 export function drawingOn(canvas) {
-  const antialias = !drawsInSoftware();
-  const renderer = new THREE.WebGLRenderer({ canvas, antialias, preserveDrawingBuffer: true });
+  const software = drawsInSoftware();
+  const renderer = new THREE.WebGLRenderer({ canvas, antialias: !software, preserveDrawingBuffer: true });
+  renderer.autoClear = false;
   renderer.outputColorSpace = "srgb-linear"; // colours go to the screen as they are given
   renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
   const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -1, 1);
@@ -65,7 +25,7 @@ export function drawingOn(canvas) {
   const controls = new THREE.OrbitControls(camera, canvas);
   controls.zoomToCursor = true;
   const drawing = {
-    canvas, renderer, camera, controls, scene: new THREE.Scene(), paths: [], ground: new THREE.Color(),
+    canvas, renderer, camera, controls, software, scene: new THREE.Scene(), paths: [], rest: null, ground: new THREE.Color(),
     coarse: SHARP, moved: 0, stirred: false, asked: false, last: 0, size: 100, middle: [0, 0, 0], frames: 0, beforeDrawn: [],
   };
   controls.addEventListener("change", () => stir(drawing));
@@ -104,6 +64,11 @@ function resized(drawing) {
 // --- when ---
 
 export function redraw(drawing) {
+  drawing.rest = null; // what is half drawn is out of date
+  ask(drawing);
+}
+
+function ask(drawing) {
   if (drawing.asked) return;
   drawing.asked = true;
   requestAnimationFrame((now) => drawn(drawing, now));
@@ -125,8 +90,9 @@ function drawn(drawing, now) {
   if (!moving) drawing.coarse = SHARP;
   else if (between > SLOW && between < 2000) drawing.coarse = Math.min(COARSEST, 2 * drawing.coarse);
   else if (between < FAST) drawing.coarse = Math.max(SHARP, drawing.coarse / 1.1);
-  render(drawing);
-  if (moving) redraw(drawing);
+  if (moving || !drawing.software) render(drawing);
+  else renderShare(drawing);
+  if (moving || drawing.rest?.length) ask(drawing);
 }
 
 // Draw sharp, and at once.
@@ -136,15 +102,48 @@ export function drawNow(drawing) {
 }
 
 function render(drawing) {
+  drawing.rest = null;
+  const seen = prepared(drawing);
+  for (const chunk of seen.flatMap((shown) => shown.chunks)) show(chunk, true);
+  drawing.renderer.clear();
+  drawing.renderer.render(drawing.scene, drawing.camera);
+  drawing.frames += 1;
+}
+
+// A share of the pieces, and what stands around them with the last: in software a long program takes
+// longer than a person likes to wait for a page, and so it is drawn over several pictures.
+function renderShare(drawing) {
+  const seen = drawing.paths.filter((shown) => shown.group.visible);
+  if (!drawing.rest) {
+    drawing.rest = prepared(drawing).flatMap((shown) => shown.chunks);
+    drawing.renderer.clear();
+    for (const chunk of drawing.rest) show(chunk, false);
+  }
+  const share = [];
+  for (let pieces = 0; drawing.rest.length && pieces < SHARE; pieces += share.at(-1).pieces) share.push(drawing.rest.shift());
+  for (const chunk of share) show(chunk, true);
+  if (drawing.rest.length) for (const shown of seen) drawing.renderer.render(shown.group, drawing.camera);
+  else drawing.renderer.render(drawing.scene, drawing.camera);
+  for (const chunk of share) show(chunk, false);
+  drawing.frames += 1;
+}
+
+// Choose what is drawn of the paths that are seen, and how; return these.
+function prepared(drawing) {
   const least = pixel(drawing) * drawing.coarse;
   const seen = drawing.paths.filter((shown) => shown.group.visible);
   for (const shown of seen) levelled(shown, least);
-  const pieces = seen.flatMap((shown) => shown.chunks).reduce((sum, chunk) => sum + chunk.pieces, 0);
-  for (const shown of seen) widen(shown, pieces < MANY && drawing.coarse < THIN);
+  const chunks = seen.flatMap((shown) => shown.chunks);
+  const pieces = chunks.reduce((sum, chunk) => sum + chunk.pieces, 0);
+  for (const chunk of chunks) chunk.isWide = pieces < MANY && drawing.coarse < THIN;
   drawing.camera.updateMatrixWorld();
   for (const act of drawing.beforeDrawn) act();
-  drawing.renderer.render(drawing.scene, drawing.camera);
-  drawing.frames += 1;
+  return seen;
+}
+
+function show(chunk, seen) {
+  chunk.wide.visible = seen && chunk.isWide;
+  chunk.thin.visible = seen && !chunk.isWide;
 }
 
 // How many mm a pixel of the screen is.
@@ -183,7 +182,8 @@ export function addPath(drawing, path) {
 function mannersOf(path) {
   const found = new Uint8Array(path.count);
   for (let row = 0; row < path.count; row++) {
-    found[row] = !isDrawn(path, row) ? HIDDEN : path.kind[row] === RAPID ? DASHED : FULL;
+    const known = isDrawn(path, row) && path.tips?.pieces[row] !== 0;
+    found[row] = !known ? HIDDEN : path.kind[row] === RAPID ? DASHED : FULL;
   }
   return found;
 }
@@ -226,13 +226,6 @@ function give(object, texture, pieces, sphere) {
   object.userData.corners = texture;
   object.geometry.setDrawRange(0, object.userData.count * pieces);
   object.geometry.boundingSphere = sphere;
-}
-
-function widen(shown, wide) {
-  for (const chunk of shown.chunks) {
-    chunk.wide.visible = wide;
-    chunk.thin.visible = !wide;
-  }
 }
 
 // A colour, roughly.
@@ -330,69 +323,4 @@ export function paint(drawing, shown, colourOf) {
   shown.texture.needsUpdate = true;
   for (const chunk of shown.chunks) Object.assign(chunk, { level: NaN, weight: null });
   redraw(drawing);
-}
-
-// --- the camera ---
-
-export const VIEWS = {
-  iso: [1, -1.2, 0.9], top: [0, -1e-4, 1], front: [0, -1, 0], right: [1, 0, 0], back: [0, 1, 0],
-  left: [-1, 0, 0], bottom: [0, -1e-4, -1],
-};
-
-export function lookAt(drawing, box, way) {
-  const [centre, size] = [box.getCenter(new THREE.Vector3()), box.getSize(new THREE.Vector3()).length() || 1];
-  const { camera, controls, canvas } = drawing;
-  const direction = way ? new THREE.Vector3(...way) : camera.position.clone().sub(controls.target);
-  camera.position.copy(centre).addScaledVector(direction.normalize(), 4 * size);
-  controls.target.copy(centre);
-  camera.near = -8 * size;
-  camera.far = 16 * size;
-  camera.zoom = 1;
-  camera.lookAt(centre);
-  camera.updateMatrixWorld();
-  const aspect = canvas.clientWidth / Math.max(canvas.clientHeight, 1);
-  const seen = extentOn(camera, box);
-  const high = 1.12 * Math.max(seen.y, seen.x / aspect, 1e-3);
-  Object.assign(camera, { top: high / 2, bottom: -high / 2, left: (-high * aspect) / 2, right: (high * aspect) / 2 });
-  camera.updateProjectionMatrix();
-  controls.update();
-  stir(drawing);
-}
-
-// Turn the picture about the vertical, by an angle in rad.
-export function turnBy(drawing, angle) {
-  const { camera, controls } = drawing;
-  const arm = camera.position.clone().sub(controls.target).applyAxisAngle(camera.up, angle);
-  camera.position.copy(controls.target).add(arm);
-  controls.update();
-  stir(drawing);
-}
-
-// How wide and high a box is on the screen, in mm.
-function extentOn(camera, box) {
-  const seen = new THREE.Box3();
-  for (let k = 0; k < 8; k++) {
-    const corner = new THREE.Vector3(...["x", "y", "z"].map((axis, bit) => ((k >> bit) & 1 ? box.max : box.min)[axis]));
-    seen.expandByPoint(corner.applyMatrix4(camera.matrixWorldInverse));
-  }
-  return seen.getSize(new THREE.Vector3());
-}
-
-export function boxOf(drawing, all = false) {
-  const box = new THREE.Box3();
-  const point = new THREE.Vector3();
-  for (const shown of drawing.paths) {
-    const { corners } = shown.path;
-    for (let at = FIELDS; at < corners.length; at += FIELDS) {
-      const manner = shown.manner[corners[at + 3]];
-      if (manner === FULL || (all && manner === DASHED)) {
-        for (const from of [at - FIELDS, at]) {
-          point.set(corners[from], corners[from + 1], corners[from + 2]);
-          box.expandByPoint(point.add(shown.group.position));
-        }
-      }
-    }
-  }
-  if (box.isEmpty() && !all) return boxOf(drawing, true);
-  return box.isEmpty() ? box.set(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1)) : box;
 }

@@ -12,7 +12,8 @@ const MOST = 256; // pieces of one move
 const PIECES = 24; // of a spline
 export const FIELDS = 4; // of a corner: x, y, z and the row that ends there or leads on from there
 
-export async function pathOf(head, open) {
+// `tools` are the tools of the frames: from the tip to what positions are of.
+export async function pathOf(head, open, tools) {
   const get = (section) => column(open, section);
   const [kind, form, unknown, block, frame, feed, mode, ...ends] = await Promise.all(
     [head.kind, head.form, head.unknown, head.block, head.frame, head.feed, head.mode, ...head.ends].map(get),
@@ -23,6 +24,7 @@ export async function pathOf(head, open) {
     unknown: Uint32Array.from(unknown), block: Uint32Array.from(block), frame, feed,
     mode: Uint8Array.from(mode), ends, arcs: await arcsOf(head, get), splines: await splinesOf(head, get),
     vectors: head.vectors ? await Promise.all(head.vectors.map(get)) : null,
+    tools: tools.some(Boolean) ? tools : null, tips: await tipsOf(head, get),
   };
   path.arcAt = places(path.kind, (value) => value >= CW);
   path.splineAt = places(path.form, (value) => value === SPLINE_FORM);
@@ -39,6 +41,13 @@ async function arcsOf(head, get) {
 
 async function splinesOf(head, get) {
   return head.splines ? Promise.all(head.splines.map(get)) : null;
+}
+
+// Where the tip is on the workpiece, for positions of axes that turn.
+async function tipsOf(head, get) {
+  if (!head.tips) return null;
+  const [pieces, ...points] = await Promise.all([head.tips.pieces, ...head.tips.points].map(get));
+  return { entry: head.tips.entry, pieces: Uint16Array.from(pieces), points };
 }
 
 // For each row, how many before it are of a kind: where its values stand in a shorter column.
@@ -84,45 +93,60 @@ function sizeOf(path) {
 // --- corners ---
 
 function cornersOf(path) {
+  const { tips } = path;
   const pieces = new Uint16Array(path.count).fill(1);
   let total = path.count + 1;
   for (let row = 0; row < path.count; row++) {
-    if (path.kind[row] >= CW) pieces[row] = piecesOfArc(path, row);
+    if (tips) pieces[row] = Math.max(1, tips.pieces[row]);
+    else if (path.kind[row] >= CW) pieces[row] = piecesOfArc(path, row);
     else if (path.form[row] === SPLINE_FORM) pieces[row] = PIECES;
     total += pieces[row] - 1;
   }
   const corners = new Float32Array(FIELDS * total);
   const last = new Uint32Array(path.count + 1); // the corner in which each row ends, from 1
   const middle = middleOf(path);
-  const put = (corner, x, y, z, row) => {
+  const put = (corner, [x, y, z], row) => {
     const at = FIELDS * corner;
     corners[at] = x - middle[0];
     corners[at + 1] = y - middle[1];
     corners[at + 2] = z - middle[2];
     corners[at + 3] = row;
   };
-  put(0, endOf(path, -1, 0), endOf(path, -1, 1), endOf(path, -1, 2), 0);
+  put(0, tips ? tips.entry : lowered(path, 0, positionAt(path, -1)), 0);
   let corner = 0;
   for (let row = 0; row < path.count; row++) {
-    for (let piece = 1; piece < pieces[row]; piece++) {
-      put(++corner, ...pointOn(path, row, piece / pieces[row]), row);
+    for (let piece = 1; piece <= pieces[row]; piece++, corner++) {
+      if (tips) put(corner + 1, tips.points.map((column) => column[corner]), row);
+      else if (piece < pieces[row]) put(corner + 1, pointOn(path, row, piece / pieces[row]), row);
+      else put(corner + 1, lowered(path, row, positionAt(path, row)), row);
     }
-    put(++corner, path.ends[0][row], path.ends[1][row], path.ends[2][row], row);
     last[row + 1] = corner;
   }
   return { corners, last, middle };
 }
 
+function positionAt(path, row) {
+  return [endOf(path, row, 0), endOf(path, row, 1), endOf(path, row, 2)];
+}
+
+// From a position of a row to the tip of its tool.
+function lowered(path, row, position) {
+  const tool = path.tools?.[path.frame[row]];
+  return tool ? position.map((value, axis) => value - tool[axis]) : position;
+}
+
 // The middle of the path: what is drawn counts from there, so that single precision is enough.
 function middleOf(path) {
-  return [0, 1, 2].map((axis) => {
-    let [low, high] = [Infinity, -Infinity];
-    for (const value of path.ends[axis]) {
-      if (value < low) low = value;
-      if (value > high) high = value;
+  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  const count = path.tips ? path.tips.points[0].length : path.count;
+  for (let k = 0; k < count; k++) {
+    const point = path.tips ? path.tips.points.map((column) => column[k]) : lowered(path, k, positionAt(path, k));
+    for (let axis = 0; axis < 3; axis++) {
+      low[axis] = Math.min(low[axis], point[axis]);
+      high[axis] = Math.max(high[axis], point[axis]);
     }
-    return high >= low ? (low + high) / 2 : 0;
-  });
+  }
+  return low.map((value, axis) => (count ? (value + high[axis]) / 2 : 0));
 }
 
 function piecesOfArc(path, row) {
@@ -134,8 +158,19 @@ function piecesOfArc(path, row) {
   return Math.min(MOST, Math.max(1, Math.ceil(wanted)));
 }
 
-// The point of a move at a part of its way, from 0 to 1.
+// Where the tip is in a move at a part of its way, from 0 to 1.
 export function pointOn(path, row, part) {
+  return path.tips ? pointOnTips(path, row, part) : lowered(path, row, pointOnAxes(path, row, part));
+}
+
+function pointOnTips(path, row, part) {
+  const at = path.last[row] + part * (path.last[row + 1] - path.last[row]);
+  const from = Math.min(Math.floor(at), path.last[row + 1] - 1);
+  const [a, share] = [FIELDS * from, at - from];
+  return path.middle.map((value, axis) => value + (1 - share) * path.corners[a + axis] + share * path.corners[a + FIELDS + axis]);
+}
+
+function pointOnAxes(path, row, part) {
   const from = [0, 1, 2].map((axis) => endOf(path, row - 1, axis));
   const to = [0, 1, 2].map((axis) => path.ends[axis][row]);
   if (path.kind[row] >= CW) return pointOnArc(path, row, part, from, to);
@@ -173,7 +208,11 @@ function pointOnSpline(path, row, t, from, to) {
 
 // --- lengths and times ---
 
+// How long a move of the axes is, mm.
 export function lengthOf(path, row) {
+  if (path.kind[row] < CW && path.form[row] !== SPLINE_FORM) {
+    return Math.hypot(...[0, 1, 2].map((axis) => path.ends[axis][row] - endOf(path, row - 1, axis)));
+  }
   let length = 0;
   const [from, to] = [path.last[row], path.last[row + 1]];
   for (let corner = from; corner < to; corner++) {

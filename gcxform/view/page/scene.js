@@ -1,7 +1,8 @@
-// What stands around the path: axes, a grid, the machine's travel, errors as arrows, the tool.
+// What stands around the path: axes, a grid, the machine's travel, errors as arrows, the tool, and
+// the plane in force.
 import { css } from "./colours.js";
 import { pixel } from "./drawing.js";
-import { endOf } from "./path.js";
+import { endOf, pointOn } from "./path.js";
 
 const AXES = [["X", [213, 94, 0]], ["Y", [0, 158, 115]], ["Z", [0, 114, 178]]];
 const LINES = 10; // of the grid, about, in each direction
@@ -16,6 +17,7 @@ export function sceneOf(drawing, told, box) {
   scene.layers.axes = triadOf(scene);
   if (told.envelope) scene.layers.envelope = envelopeOf(scene);
   if (told.lattice) scene.layers.errors = latticeOf(scene);
+  scene.layers.plane = planeOf(scene);
   for (const layer of Object.values(scene.layers)) drawing.scene.add(layer);
   scene.tool = toolOf(scene);
   drawing.beforeDrawn.push(() => placeLabels(scene));
@@ -25,11 +27,14 @@ export function sceneOf(drawing, told, box) {
 // Pieces of lines from points one after the other, in the coordinates of the program.
 function lines(scene, points, colour, opacity = 1) {
   const middle = scene.drawing.middle;
-  const flat = new Float32Array(points.flatMap((point) => point.map((value, axis) => value - middle[axis])));
-  const geometry = new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(flat, 3));
+  const geometry = flat(points.map((point) => point.map((value, axis) => value - middle[axis])));
   const material = new THREE.LineBasicMaterial({ transparent: opacity < 1, opacity });
   material.color.setStyle(css(colour), "srgb-linear");
   return new THREE.LineSegments(geometry, material);
+}
+
+function flat(points) {
+  return new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(new Float32Array(points.flat()), 3));
 }
 
 function niceBelow(value) {
@@ -80,11 +85,11 @@ function labelOf(scene, text, point, colour) {
 function placeLabels(scene) {
   const { camera, canvas, middle } = scene.drawing;
   const seen = new THREE.Vector3();
-  for (const { element, point } of scene.labels) {
+  for (const { element, point, layer } of scene.labels) {
     seen.set(...point.map((value, axis) => value - middle[axis])).project(camera);
     element.style.left = `${((seen.x + 1) / 2) * canvas.clientWidth}px`;
     element.style.top = `${((1 - seen.y) / 2) * canvas.clientHeight}px`;
-    element.hidden = !scene.layers.axes.visible;
+    element.hidden = !(layer ?? scene.layers.axes).visible || (layer && !layer.children[0].visible);
   }
   scene.tool.scale.setScalar(34 * pixel(scene.drawing));
 }
@@ -147,7 +152,7 @@ export function toolAxis(scene, program, row) {
     const found = path.vectors.map((column) => column[row]);
     if (Math.hypot(...found) > 0.5) return found;
   }
-  const { table = [], head = [] } = scene.told;
+  const { table = [], head = [] } = program.chain;
   if (!table.length && !head.length) return null;
   let axis = new THREE.Vector3(0, 0, 1);
   for (const each of [...head].reverse()) axis = turned(axis, each, path, row, 1);
@@ -166,6 +171,61 @@ export function placeTool(scene, program, point, row) {
   scene.tool.position.set(...point);
   const axis = toolAxis(scene, program, row) ?? [0, 0, 1];
   scene.tool.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), new THREE.Vector3(...axis).normalize());
+  const [x, y, z] = program.frames[program.path.frame[row]].tool ?? [0, 0, 0];
+  for (const name of ["envelope", "errors"]) scene.layers[name]?.position.set(-x, -y, -z); // of the spindle
+}
+
+// --- the plane ---
+
+const SIDES = { G17: [0, 1], G18: [2, 0], G19: [1, 2] };
+const GREEN = [0, 158, 115];
+
+// The plane in force where the tool is: a pane with an edge, and the code beside it.
+function planeOf(scene) {
+  const group = new THREE.Group();
+  const size = 0.11 * scene.size;
+  const half = size / 2;
+  const around = [[-half, -half, 0], [half, -half, 0], [half, half, 0], [-half, half, 0]];
+  const pane = new THREE.Mesh(flat([0, 1, 2, 0, 2, 3].map((k) => around[k])), new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.16, side: THREE.DoubleSide, depthWrite: false }));
+  pane.material.color.setStyle(css(GREEN), "srgb-linear");
+  const edge = new THREE.LineSegments(flat([0, 1, 1, 2, 2, 3, 3, 0].map((k) => around[k])), new THREE.LineBasicMaterial());
+  edge.material.color.setStyle(css(GREEN), "srgb-linear");
+  const both = new THREE.Group().add(pane, edge);
+  both.visible = false;
+  group.add(both);
+  scene.plane = { both, half, label: { ...labelOf(scene, "", [0, 0, 0], GREEN), layer: group } };
+  scene.labels.push(scene.plane.label);
+  return group;
+}
+
+// Let the plane be that of a move; `point` is as it is drawn.
+export function placePlane(scene, program, point, row) {
+  const { both, half, label } = scene.plane;
+  const codes = program.modes[program.mode[program.path.block[row]]].split(" ");
+  const code = codes.find((each) => SIDES[each]);
+  both.visible = code !== undefined;
+  if (!code) return;
+  const [u, v] = SIDES[code].map((axis) => sideOf(program, row, axis));
+  const normal = u.clone().cross(v);
+  both.matrixAutoUpdate = false;
+  both.matrix.makeBasis(u, v, normal).setPosition(...point);
+  const corner = u.clone().add(v).multiplyScalar(1.15 * half);
+  label.point = point.map((value, axis) => value + corner.getComponent(axis) + scene.drawing.middle[axis]);
+  label.element.textContent = code;
+}
+
+export function hidePlane(scene) {
+  scene.plane.both.visible = false;
+}
+
+// An axis of the words of a move as the drawing has it: turned with the frame, and with the table.
+function sideOf(program, row, axis) {
+  const { path, chain } = program;
+  const { inverse, following } = program.frames[path.frame[row]];
+  const unit = [0, 1, 2].map((each) => Number(each === axis));
+  let side = new THREE.Vector3(...(inverse ? inverse[axis] : unit)).normalize();
+  if (path.tips && !following) for (const each of chain.table ?? []) side = turned(side, each, path, row, -1);
+  return side;
 }
 
 // Some of the tool axes along a path, as hairs.
@@ -177,7 +237,7 @@ export function hairsOf(scene, program) {
   for (let row = 0; row < path.count; row += step) {
     const axis = toolAxis(scene, program, row);
     if (!axis || !program.shown.manner[row]) continue;
-    const foot = [0, 1, 2].map((each) => endOf(path, row, each));
+    const foot = pointOn(path, row, 1);
     points.push(foot, foot.map((value, each) => value + 0.07 * scene.size * axis[each]));
   }
   return points.length ? lines(scene, points, [86, 180, 233], 0.8) : null;
