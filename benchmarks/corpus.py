@@ -115,14 +115,17 @@ def pipeline(dialect: str, chain: str) -> Pipeline:
 
 
 @cache
-def filled_in(dialect: str, path: str, chain: str) -> Pipeline:
+def filled_in(dialect: str, path: str, chain: str, corpus: Path) -> Pipeline:
     """Return a chain with what the user of the machine of a program filled in."""
     registry = default_registry()
     mine = [m for m in notes()["machine"] if m["dialect"] == dialect]
-    file = [m["file"] for m in mine if re.search(m.get("programs", ""), path)][-1]
-    spec = load(HERE / "corpus_machines" / file, registry)
+    user = [m for m in mine if re.search(m.get("programs", ""), path)][-1]
+    spec = load(HERE / "corpus_machines" / user["file"], registry)
     passes = tuple(parse_chain(CHAINS[chain], HERE, registry))
     made = Pipeline.of_spec(replace(spec, passes=passes), registry, dialect)
+    if "beside" in user:
+        folder = (corpus / path).parent / user["beside"]
+        made = replace(made, reading=replace(made.reading, subprograms=(folder,)))
     return replace(made, numbers=NUMBERS)
 
 
@@ -144,7 +147,7 @@ def counted(corpus: Path, ours: Iterable[str] = OURS) -> Iterator[Job]:
 def run(job: Job) -> Outcome:
     """Run a program through its chain."""
     try:
-        with_limit = filled_in(job.dialect, job.path, job.chain)
+        with_limit = filled_in(job.dialect, job.path, job.chain, job.corpus)
         signal.signal(signal.SIGALRM, _too_long)
         signal.alarm(SECONDS)
         result = with_limit.run(job.corpus / job.path)

@@ -14,7 +14,7 @@ import grbl_rules
 
 import corpus
 
-LEAST = {"fanuc": (34, 4), "grbl": (38, 37), "haas": (13, 8), "linuxcnc": (124, 55)}
+LEAST = {"fanuc": (34, 4), "grbl": (38, 37), "haas": (13, 8), "linuxcnc": (126, 56)}
 """What goes through already, in each chain: it may not become less."""
 
 

@@ -34,8 +34,9 @@ WHAT = {
     Form.BLIND: "a move by distances from where it is not known",
     Form.NURBS: "a spline of NURBS",
     Form.PASSES: "a thread in passes",
+    Form.TILTED: "an arc in a plane that is turned out of the axes",
 }
-IN_PLACE = (Form.NURBS, Form.PASSES)
+IN_PLACE = (Form.NURBS, Form.PASSES, Form.TILTED)
 """Forms that begin where the tool stands, and have no word for it."""
 HINTS = {
     Form.CYCLE: put_before("cycles"),

@@ -12,7 +12,7 @@ from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Form, Toolpath
 
-OWN_PLACES = (Form.CYCLE, Form.SPLINE, Form.NURBS, Form.PASSES)
+OWN_PLACES = (Form.CYCLE, Form.SPLINE, Form.NURBS, Form.PASSES, Form.TILTED)
 EXACT = 1e-9  # mm; closer values are the same number
 
 
@@ -108,7 +108,8 @@ class SameRows:
         unnamed = ~self.positions.programmed[rows]
         thread = (self.path.form[rows] == Form.PASSES)[:, None]  # its start has no words
         same |= thread & np.isnan(start) & np.isnan(self.positions.before[rows])
-        return np.asarray((same | (unnamed & ~thread)).all(axis=1))
+        inner = (self.path.form[rows] == Form.TILTED) & (self.path.nth[rows] > 0)  # of one block
+        return np.asarray((same | (unnamed & ~thread)).all(axis=1) | inner)
 
     def arcs(self, rows: Ints, others: Ints, starts_exact: Flags) -> Flags:
         """Return which arcs have centre and sweep of their source, seen from where they start."""

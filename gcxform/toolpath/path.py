@@ -56,7 +56,8 @@ class Form(IntEnum):
     spindle as well, one straight move (G33), which is written anew if its ends move. BLIND: a plain
     move by distances, of an axis of which it is not known where it stands. NURBS: a leg between
     control points of a spline (G5.2), which stays inside of their hull; its kind is LINE. PASSES:
-    a thread that is cut in passes (G76), of which the deepest is told.
+    a thread that is cut in passes (G76), of which the deepest is told. TILTED: a leg around an arc
+    in a plane that is turned out of the axes, which stays inside of their hull; its kind is LINE.
     """
 
     PLAIN = 0
@@ -70,13 +71,17 @@ class Form(IntEnum):
     BLIND = 8
     NURBS = 9
     PASSES = 10
+    TILTED = 11
 
 
 FREE = (Form.PLAIN, Form.THREAD)
 """Forms whose blocks may be written anew."""
 WHOLE = (Form.PROBE, Form.SYNCHRONISED, Form.THREAD, Form.PASSES)
 """Forms that stay one move, as they are."""
-OWN_DISTANCES = (Form.CYCLE, Form.HOME, Form.PROBE, Form.SYNCHRONISED, Form.BLIND, Form.PASSES)
+OWN_DISTANCES = (
+    *(Form.CYCLE, Form.HOME, Form.PROBE, Form.SYNCHRONISED),
+    *(Form.BLIND, Form.PASSES, Form.TILTED),
+)
 """Forms whose blocks may stay in G91 where all others are written in G90."""
 
 

@@ -25,7 +25,7 @@ from gcxform.plugin.registry import default_registry
 from gcxform.toolpath.path import FeedMode, Form, Kind, Plane, Toolpath
 
 KINDS = {Kind.RAPID: "RAPID", Kind.LINE: "LINE", Kind.ARC_CW: "ARC_CW", Kind.ARC_CCW: "ARC_CCW"}
-FORMS = {Form.PROBE: "PROBE", Form.SPLINE: "SPLINE", Form.NURBS: "NURBS"}
+FORMS = {Form.PROBE: "PROBE", Form.SPLINE: "SPLINE", Form.NURBS: "NURBS", Form.TILTED: "TILTED"}
 COMPARED = {f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 19, 30, 60)} | {"S", "T"}
 ORIENTS = {"R", "P"}
 """An M19 without any of these words says nothing to the spindle of `rs274`."""
@@ -144,6 +144,13 @@ def _paired(ours: list[Move], theirs: list[CanonMove]) -> tuple[list[tuple[int, 
             pairs.append((row, other))  # one curve, printed without numbers; ours are its legs
             row, other = _behind_legs(ours, row), other + 1
             continue
+        if ours[row].kind == "TILTED":  # one arc, of which ours are the legs
+            last = _last_leg(ours, row)
+            if not theirs[other].kind.startswith("ARC") or _ends_apart(ours[last], theirs[other]):
+                return pairs, f"line {ours[row].line}: {ours[last]}\n  {theirs[other]}"
+            pairs.append((row, other))
+            row, other = last + 1, other + 1
+            continue
         problem = "" if curves else move_difference(ours[row], theirs[other])
         if not problem:
             pairs += [] if _stands_still(theirs[other]) else [(row, other)]
@@ -166,6 +173,18 @@ def _behind_legs(ours: list[Move], row: int) -> int:
     while row < len(ours) and ours[row].kind == "NURBS":
         row += 1
     return row
+
+
+def _last_leg(ours: list[Move], row: int) -> int:
+    """Return the last row of the line of an arc that has legs."""
+    line = ours[row].line
+    return max(
+        k for k in range(row, len(ours)) if ours[k].line == line and ours[k].kind == "TILTED"
+    )
+
+
+def _ends_apart(move: Move, canon: CanonMove) -> bool:
+    return any(abs(v - canon.end.get(a, math.inf)) > HALF * canon.unit for a, v in move.end.items())
 
 
 def _stands_still(move: Move | CanonMove, unit: float = 0.0) -> bool:

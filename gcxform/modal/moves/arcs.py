@@ -13,6 +13,7 @@ import numpy as np
 from gcxform.dialect.dialect import Dialect
 from gcxform.dialect.move_rules import ArcRule
 from gcxform.modal.findings import Findings
+from gcxform.modal.moves.tilted_arcs import with_legs
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import SAME_POINT, TURN, swept
 from gcxform.toolpath.frames import Frame, by_frame
@@ -64,21 +65,17 @@ def resolve_arcs(
             middle, angle = part.resolve(path.sense[rows[here]])
             centre[rows[here]], sweep[rows[here]] = middle, angle
     centre[rows] = np.where(nowhere, np.nan, centre[rows])
-    return _as_positions(path.replace(centre=centre, sweep=sweep), findings)
+    return _as_positions(path.replace(centre=centre, sweep=sweep), dialect, findings)
 
 
-def _as_positions(path: Toolpath, findings: Findings) -> Toolpath:
+def _as_positions(path: Toolpath, dialect: type[Dialect], findings: Findings) -> Toolpath:
     """Return arcs of turned frames as they lie between positions; a mirror changes their sense."""
     if path.plainly_framed:
         return path
+    if _turned(path):
+        path = with_legs(path, dialect, findings)
     kind = np.where(path.is_arc & path.mirrored, 5 - path.kind, path.kind).astype(np.int8)
     arcs = np.flatnonzero(path.is_arc)
-    for row in arcs.tolist() if _turned(path) else ():
-        matrix = path.frames[int(path.frame[row])].matrix
-        normal = Plane(int(path.plane[row])).axes[2]
-        if matrix is not None and abs(abs(matrix[normal][normal]) - 1.0) > 1e-12:
-            line = int(path.source[row]) - path.blocks.first
-            findings.add(line, "GX213", "an arc in a plane that is turned out of the axes")
     centre = path.centre.copy()
     centre[arcs] = by_frame(Frame.placed, path.frames, path.frame[arcs], centre[arcs], 1.0)
     return path.replace(centre=centre, kind=kind)

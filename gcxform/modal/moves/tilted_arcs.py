@@ -1,0 +1,92 @@
+"""Arcs in a plane that is turned out of the axes, as by G18 where a work offset is turned about Z.
+
+A path has no such arcs, only their legs: the sides of a polygon around the arc, between tangents at
+equal angles, so that the arc stays inside of the hull of its legs. The block stays as it stands, or
+is refused. On two circles (start and end radius differ) the larger one counts. That a control cuts
+such arcs was executed with LinuxCNC 2.9, whose work offsets turn; on others they are refused.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gcxform.dialect.dialect import Dialect
+from gcxform.modal.findings import Findings
+from gcxform.system.arrays import Floats, Ints
+from gcxform.toolpath.path import FeedMode, Form, Kind, Plane, Toolpath
+
+STEP = np.deg2rad(30.0)  # of an arc, to a leg
+HINT = "write it in coordinates that are not turned, or as lines"
+
+
+def _tilted(path: Toolpath) -> Ints:
+    """Return the arcs whose plane their frame turns out of the axes."""
+    found = []
+    for row in np.flatnonzero(path.is_arc).tolist():
+        matrix = path.frames[int(path.frame[row])].matrix
+        normal = Plane(int(path.plane[row])).axes[2]
+        if matrix is not None and abs(abs(matrix[normal][normal]) - 1.0) > 1e-12:
+            found.append(row)
+    return np.array(found, np.int64)
+
+
+def with_legs(path: Toolpath, dialect: type[Dialect], findings: Findings) -> Toolpath:
+    """Return a path with the legs of tilted arcs; `centre` is that of coordinates still.
+
+    Where legs do not say enough of an arc, it is refused: GX213.
+    """
+    rows = _tilted(path)
+    if not len(rows):
+        return path
+    places = np.hstack([path.start[rows], path.end[rows], path.centre[rows]])
+    unsure = ~np.isfinite(places[:, [*range(3), *range(len(path.axes), len(path.axes) + 3)]]).all(1)
+    unsure |= (path.side[rows] != 0) | (path.feed_mode[rows] == FeedMode.INVERSE_TIME)
+    unsure |= (path.form[rows] != Form.PLAIN) | (not dialect.offset_rule.g10_rotates)
+    for row in rows[unsure].tolist():
+        line = int(path.source[row]) - path.blocks.first
+        message = "an arc in a plane that is turned out of the axes"
+        findings.add(line, "GX213", message, hint=HINT)
+    rows = rows[~unsure & np.isfinite(path.centre[rows]).all(axis=1)]
+    if not len(rows):
+        return path
+    legs = [_legs(path, row) for row in rows.tolist()]
+    counts = np.ones(len(path), np.int64)
+    counts[rows] = [len(each) for each in legs]
+    return _in_place(path, rows, counts, np.concatenate(legs))
+
+
+def _legs(path: Toolpath, row: int) -> Floats:
+    """Return the ends (n, axes) of the legs of an arc."""
+    plane = Plane(int(path.plane[row])).axes[:2]
+    frame = path.frames[int(path.frame[row])]
+    start, end = (frame.local(each[row : row + 1])[0] for each in (path.start, path.end))
+    away = [(place - _wide(path.centre[row], place))[[*plane]] for place in (start, end)]
+    sweep = float(path.sweep[row])
+    count = max(2, int(np.ceil(sweep / STEP)))
+    parts = (np.arange(count) + 0.5) / count
+    angle = np.arctan2(away[0][1], away[0][0]) + path.sense[row] * sweep * parts
+    radius = max(np.hypot(*away[0]), np.hypot(*away[1])) / np.cos(sweep / count / 2)
+    found = start + (end - start) * parts[:, None]
+    for k, axis in enumerate(plane):
+        found[:, axis] = path.centre[row, axis] + radius * (np.cos, np.sin)[k](angle)
+    return np.vstack([frame.placed(found), path.end[row]])
+
+
+def _wide(place: Floats, like: Floats) -> Floats:
+    """Return a place (3,) with as many axes as another, all others 0."""
+    return np.append(place, np.zeros(len(like) - len(place)))
+
+
+def _in_place(path: Toolpath, rows: Ints, counts: Ints, ends: Floats) -> Toolpath:
+    """Return a path with the ends of legs (n, axes) in the place of rows."""
+    is_leg = np.repeat(np.isin(np.arange(len(path)), rows), counts)
+    first = np.repeat(np.cumsum(counts) - counts, counts)
+    end = np.repeat(path.end, counts, axis=0)
+    end[is_leg] = ends
+    nth = np.where(is_leg, np.arange(len(is_leg)) - first, np.repeat(path.nth, counts))
+    kind = np.where(is_leg, np.int8(Kind.LINE), np.repeat(path.kind, counts)).astype(np.int8)
+    form = np.where(is_leg, np.int8(Form.TILTED), np.repeat(path.form, counts)).astype(np.int8)
+    sweep = np.where(is_leg, 0.0, np.repeat(path.sweep, counts))
+    centre = np.where(is_leg[:, None], np.nan, np.repeat(path.centre, counts, axis=0))
+    columns = {"end": end, "nth": nth, "kind": kind, "form": form, "sweep": sweep, "centre": centre}
+    return path.with_rows(counts, **columns)
