@@ -80,3 +80,21 @@ def test_the_codes_of_a_machine_are_none_of_another_control(here: Path) -> None:
         done = call("run", "-x", "absolute", *options, "part.nc")
         assert done.exit_code == 3
         assert "G100" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("dialect", "words", "known"),
+    [
+        ("haas", b"G13 I1. F10. Z-1. D1", False),
+        ("haas", b"G37 Z0 F10. H1", False),
+        ("fanuc", b"G100 X5. F3.", False),
+        ("fanuc", b"M250", True),
+    ],
+)
+def test_what_f_is_behind_a_code_of_its_own_is_not_known(
+    here: Path, dialect: str, words: bytes, known: bool
+) -> None:
+    text = b"G21 G90 G94 G17 G54\nG0 X0. Y0. Z5.\nG1 X1. F50.\n%s\nG90 G1 X7. Y7. Z7.\n" % words
+    machine = here / "machine.toml" if dialect == "fanuc" else None  # G100 is Haas' own
+    path = gx.read(text, dialect=dialect, machine=machine).path
+    assert (path.feed[-1] == 50.0) == known

@@ -113,6 +113,14 @@ def measures(takes: str) -> Code:
     return Code("non-modal", Effect.CALL, takes, act="unknown")
 
 
+def cuts(takes: str) -> Code:
+    """Return a code that cuts in a way of its own within its block: it is kept, places are lost.
+
+    Where positions are compensated it is refused, for its own would not be.
+    """
+    return Code("non-modal", Effect.CALL, takes, "it cuts in a way of its own", act="unknown")
+
+
 ISO: Mapping[str, Code] = {
     **{code: Code("motion") for code in ("G0", "G1", "G2", "G3")},
     "G4": Code("non-modal", Effect.DWELL),

@@ -107,6 +107,8 @@ class Depending:
     def _finds_other(self, line: int) -> str:
         """Return what a program that a line calls would find otherwise than in the source."""
         now, old, manner = self.path.blocks, self.original.blocks, self.task.manner
+        if manner.compensates and self._cuts(line):
+            return "errors of the machine that its own moves do not make up for"
         stays = EXACT + manner.promised + manner.rounding(bool(now.inch[line]))
         if not manner.compensates and self._stands_elsewhere(line, stays):
             return "other places of the axes"
@@ -116,6 +118,12 @@ class Depending:
         if not self.same.modes()[line] or now.feed_mode[line] != old.feed_mode[line]:
             return "other modes (G20 or G21, G90 or G91, G93 or G94)"
         return "another dialect" if manner.crossing else ""
+
+    def _cuts(self, line: int) -> bool:
+        """Whether a line has a code that cuts in a way of its own."""
+        called = self.task.table.meanings[int(self.task.shape[line])].call
+        code = self.task.manner.source.codes.get(called)
+        return code is not None and bool(code.reason)
 
     def _macro_codes(self, line: int) -> str:
         """Return the M codes of a line that may run macros."""

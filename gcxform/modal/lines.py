@@ -368,6 +368,8 @@ class Lines:
         for line in self.lost_before("F"):
             named[line] = named[line] or not present[line]
             present[line] = True
+        for call in self.kept_calls:  # F in its block is the call's, and what it left behind
+            named[call.line] = present[call.line] = call.ends not in ("", "unchanged")
         present = present | self._cleared(feed_mode, inch)
         self.feed_lost = fill(named, present, self.state.feed_lost)
         if self.live:

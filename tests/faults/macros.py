@@ -11,6 +11,20 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 
 RENUMBER = "plugins/gcxform_plugins/passes/renumber.py"
 MUTATIONS = (
+    Mutation(
+        "macros: the feed of before is in force behind a code that cuts",
+        "gcxform/modal/lines.py",
+        'call.ends not in ("", "unchanged")',
+        "False",
+        "tests/test_own_codes.py::test_what_f_is_behind_a_code_of_its_own_is_not_known",
+    ),
+    _macro(
+        "what a pocket cuts need not be compensated",
+        "gcxform/emit/depending.py",
+        "if manner.compensates and self._cuts(line):",
+        "if False:",
+        "volumetric/pocket-of-the-control",
+    ),
     _macro(
         "a hole that only the machine knows is where the axis stood",
         "gcxform/modal/moves/cycle_patterns.py",

@@ -26,9 +26,9 @@ refused. What is not named here is as in `fanuc`.
 | G52, G92 | Setting 33: refused unless `[control] g52 = "fanuc"` says that it is FANUC | manual |
 | canned cycles | L counts the holes, L0 stores; I, J, K, and P of G73, G83: refused | known |
 | a cycle without X and Y | Setting 28: stays, or `cycle-without-place = "drills"` | manual |
-| G12 G13 G70 G71 G72 G150, drilling | cycles: refused by name | manual |
+| G12 G13, G47 | pockets and engraving in their block: kept, places are lost behind it | manual |
+| G70 G71 G72 G150, drilling | cycles: refused by name | manual |
 | G31 | as Fanuc's | manual |
-| G47 | engraving: refused by name | manual |
 | G35 G36 G37 G136 | move to a signal and write an offset: kept, both are lost | manual |
 | G68, G101, G100 | as Fanuc's G68, G51.1, G50.1; G101 with zeros only; G51 is refused | manual |
 | G107 G112 G113 G234 G253 to G255 G268 G269 | another frame: refused | manual |
@@ -80,7 +80,7 @@ ARITHMETIC = replace(
     ),
 )
 """#10100 is another name of #100 (NGC); #1601 and above: flutes and the like of tools."""
-POCKETS = ("G12", "G13", "G70", "G71", "G72", "G150")
+PATTERNS = ("G70", "G71", "G72", "G150")
 FIVE_AXIS_CYCLES = ("G153", "G155", *(f"G{n}" for n in (161, 162, 163, 164, 165, 166, 169)))
 
 
@@ -99,9 +99,10 @@ class Haas(Fanuc):
         "G187": v.inert("non-modal", "PE"),
         "G154": Fanuc.codes["G54.1"],
         **{code: v.frame("frame", "work") for code in MORE_OFFSETS},
-        **{code: v.barrier("cycle", v.CYCLE, "DIJKLPQR") for code in POCKETS},
+        **{code: v.cuts("ZDIJKLPQR") for code in ("G12", "G13")},
+        **{code: v.barrier("cycle", v.CYCLE, "DIJKLPQR") for code in PATTERNS},
         "G77": v.barrier("cycle", v.CYCLE, "IJKLPQR"),
-        "G47": v.barrier("non-modal", v.CYCLE, "EDIJKPRQ"),
+        "G47": v.cuts("XYZEDIJKPRQ"),
         **{code: v.barrier("cycle", v.CYCLE, "EIJKLPQR") for code in FIVE_AXIS_CYCLES},
         **{code: v.barrier("cycle", v.SYNCHRONISED, "EIJKLPQR") for code in ("G174", "G184")},
         "G141": v.barrier("cutter-comp", v.COMP, "DIJK"),
