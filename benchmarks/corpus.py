@@ -48,8 +48,12 @@ BESIDE = HERE.parents[1] / "shared" / "corpus"
 MODEL = HERE.parent / "examples" / "lddm" / "model.toml"
 CHAIN = f"absolute | segment chord-error=5um | volumetric model={MODEL} outside=clamp tolerance=1um"
 CHAINS = {"absolute": "absolute", "compensated": CHAIN}
-OURS = ("fanuc", "grbl", "haas", "linuxcnc")
-BARS = {"fanuc": 32, "grbl": 38, "haas": 11, "linuxcnc": 129}
+OURS = ("fanuc", "grbl", "haas", "linuxcnc", "siemens")
+NAMED = {"sinumerik": "siemens"}
+"""The dialects of the corpus that have another name here."""
+WHOLE_LANGUAGES = ("siemens",)
+"""Those that are written in their own language: by passes that change no position."""
+BARS = {"fanuc": 32, "grbl": 38, "haas": 11, "linuxcnc": 129, "siemens": 42}
 """Programs that are to go through `absolute`; in the long chain a tenth fewer may."""
 SECONDS = 120
 START = Reading({"X": 0.0, "Y": 0.0, "Z": 0.0})
@@ -136,12 +140,13 @@ def counted(corpus: Path, ours: Iterable[str] = OURS) -> Iterator[Job]:
     with (corpus / "manifest.csv").open(newline="") as stream:
         programs = [r for r in csv.DictReader(stream) if r["role"] == "program"]
     for row in programs:
-        dialect, path = row["dialect"], row["path"]
+        dialect, path = NAMED.get(row["dialect"], row["dialect"]), row["path"]
         if dialect not in ours or (dialect == "linuxcnc" and path not in accepted):
             continue
         if dialect == "grbl" and not accepts((corpus / path).read_bytes()):
             continue
-        yield from (Job(corpus, path, dialect, chain) for chain in CHAINS)
+        chains = ["absolute"] if dialect in WHOLE_LANGUAGES else CHAINS
+        yield from (Job(corpus, path, dialect, chain) for chain in chains)
 
 
 def run(job: Job) -> Outcome:
@@ -162,7 +167,7 @@ def run(job: Job) -> Outcome:
         signal.alarm(0)
     if not result.certificate.verified:
         return Outcome(job, "NOT VERIFIED")
-    lost = what_is_lost(job.text, result.text)
+    lost = what_is_lost(job.text, result.text, job.dialect)
     return Outcome(job, "LOST", lost) if lost else Outcome(job)
 
 
@@ -181,22 +186,31 @@ def outcomes(jobs: Iterable[Job], processes: int = 2) -> list[Outcome]:
 WORD = rb"(?<![#<A-Z])[XYZABCUVW][ \t]*(?:[-+.0-9#\[]|[A-Z]{2,5}[ \t]*\[)"
 MOVES = re.compile(WORD, re.IGNORECASE)
 NAME = re.compile(rb"O[ \t]*(<[^<>]*>|[0-9]+)[ \t]*(?:SUB)?", re.IGNORECASE)
+SIEMENS = re.compile(rb"(?<![A-Z0-9_$])[XYZABCUVW][0-9]?[ \t]*(?:[-+.0-9]|=)", re.IGNORECASE)
+DEFINED = re.compile(rb"(?:N[0-9]+[ \t]+)?((?:DEF|PROC|EXTERN)\b.*)", re.IGNORECASE)
 FLOW = re.compile(rb"O[ \t]*(?:<[^<>]*>|[0-9]+)[ \t]*[A-Z]{2}", re.IGNORECASE)
 ASIDE = re.compile(rb"\([^()\n]*\)|;[^\n]*|^[/\s]*(?:N[0-9.]+)?\s+")
 
 
-def held(text: bytes) -> tuple[int, Counter[bytes]]:
-    """Return how many blocks move, and which names of subprograms there are, by patterns alone."""
+def held(text: bytes, dialect: str) -> tuple[int, Counter[bytes]]:
+    """Return how many blocks move, and which names of subprograms there are, by patterns alone.
+
+    Of a language with definitions these are what counts as names.
+    """
+    if dialect in WHOLE_LANGUAGES:
+        codes = [line.partition(b";")[0].strip() for line in text.splitlines()]
+        defined = Counter(m[1].lower() for m in map(DEFINED.fullmatch, codes) if m)
+        return sum(SIEMENS.search(line) is not None for line in codes), defined
     lines = [ASIDE.sub(b"", line).strip() for line in text.splitlines()]
     names = Counter(m[1].lower() for m in map(NAME.fullmatch, lines) if m)
     plain = [line for line in lines if FLOW.match(line) is None]
     return sum(MOVES.search(line) is not None for line in plain), names
 
 
-def what_is_lost(before: bytes, after: bytes) -> str:
+def what_is_lost(before: bytes, after: bytes, dialect: str = "") -> str:
     """Return a sentence about blocks and names of a source that its result has not; or nothing."""
-    moves, names = held(before)
-    moves_after, names_after = held(after)
+    moves, names = held(before, dialect)
+    moves_after, names_after = held(after, dialect)
     gone = names - names_after
     if gone:
         return f"{gone.total()} of {names.total()} definitions are gone"
@@ -232,7 +246,7 @@ def print_tables(found: list[Outcome]) -> None:
     table = through(found)
     print(f"\n| through | {' | '.join(CHAINS)} | of | bar |\n|---|{'--:|' * (len(CHAINS) + 2)}")
     for dialect in dict.fromkeys(key[0] for key in table):
-        counts = [table[dialect, chain][0] for chain in CHAINS]
+        counts = [table[dialect, chain][0] if (dialect, chain) in table else "" for chain in CHAINS]
         cells = [dialect, *counts, table[dialect, "absolute"][1], BARS[dialect]]
         print(f"| {' | '.join(map(str, cells))} |")
     causes = Counter((o.job.chain, o.job.dialect, o.cause, o.judgement) for o in found if o.code)
@@ -258,7 +272,8 @@ def main() -> int:
         if options.list or (options.cause and options.cause in why):
             print(f"{one.job.dialect} {one.job.chain} {one.job.path}: {why}")
     print_tables(found)
-    same = not options.bytes or all(prints_back(job.text, job.dialect) for job in jobs)
+    words = [job for job in jobs if job.dialect not in WHOLE_LANGUAGES]
+    same = not options.bytes or all(prints_back(job.text, job.dialect) for job in words)
     return 0 if same and not {"CRASH", "NOT VERIFIED"} & {one.code for one in found} else 1
 
 

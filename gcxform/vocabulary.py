@@ -1,6 +1,6 @@
 """The vocabulary for plugin authors: code tables, files of controls, and the types of columns."""
 
-from gcxform.dialect.arithmetic import MACRO_B, RS274
+from gcxform.dialect.arithmetic import MACRO_B, RS274, Arithmetic, NoValueError, Operator
 from gcxform.dialect.codes import (
     AXES,
     CALL,
@@ -45,6 +45,7 @@ from gcxform.dialect.cycle_rule import (
 from gcxform.dialect.logic import with_logic
 from gcxform.machine.formats import control_lines
 from gcxform.machine.machine import Axis, Machine, Tool
+from gcxform.modal.expressions.value import Evaluator, LocatedError
 from gcxform.system.arrays import Bytes, Flags, Floats, Ints, Small
 
 __all__ = [
@@ -73,15 +74,20 @@ __all__ = [
     "STOP",
     "SYNCHRONISED",
     "TRANSFORM",
+    "Arithmetic",
     "Axis",
     "Bytes",
     "Cycle",
     "CycleRule",
+    "Evaluator",
     "Flags",
     "Floats",
     "Ints",
     "Level",
+    "LocatedError",
     "Machine",
+    "NoValueError",
+    "Operator",
     "Small",
     "Step",
     "Tool",

@@ -13,7 +13,8 @@ import pytest
 import gcxform as gx
 from gcxform import vocabulary as v
 from gcxform.flow import translation
-from gcxform.flow.translation import SLOT, translated
+from gcxform.flow.translated import translated
+from gcxform.flow.translation import SLOT
 from gcxform.modal.state import Reading
 from gcxform.plugin.registry import default_registry
 from gcxform.syntax.source import Source

@@ -21,7 +21,7 @@ from gcxform.cli.program.tools import Extents, Tools
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.straightened import written_out
-from gcxform.flow.translation import translated_so_far
+from gcxform.flow.translated import translated_so_far
 from gcxform.guess import guess_dialect
 from gcxform.machine.machine import Machine
 from gcxform.modal.reader import WindowReader

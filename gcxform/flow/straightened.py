@@ -37,7 +37,7 @@ def written_out(
     runs.
     """
     if dialect.translator is not None:
-        from gcxform.flow.translation import translated
+        from gcxform.flow.translated import translated
 
         return translated(source, dialect, reading)
     assigns = target is not None and _assigns_for(source, dialect, target)

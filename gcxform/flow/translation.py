@@ -2,8 +2,9 @@
 
 A control with a language of its own is read in two steps. Its grammar takes a line apart into
 items, and a `Translator` says which blocks of words the items stand for, in order; those are read
-with the tables of the dialect, as any program is. So such a dialect is only read: what is written
-is a program of another one.
+with the tables of the dialect, as any program is. What is written is a program of another dialect,
+or of the same one where its translator `writes`: then each line whose blocks stayed as they were
+stands as it did, and one whose blocks changed is spelled anew (`gcxform/emit/respelling.py`).
 
 lark parses one line of each shape, as it does for words (`gcxform/syntax/scan.py`): two lines that
 differ only in their numbers have the same items. A line of plain words is a template that is filled
@@ -16,20 +17,17 @@ from __future__ import annotations
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple, NoReturn
 
-import numpy as np
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
-from gcxform.flow.executed import WrittenOut
 from gcxform.modal.state import Reading
 from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.grammar import parsed, refusal_of, rule_of, span_of
-from gcxform.syntax.source import Source
 from gcxform.system.limits import how_to_raise, limits
 
 NUMBER = "NUMBER"
@@ -111,13 +109,19 @@ class Translator(ABC):
     match the number of a code, which is then part of a name: `G54`."""
     signs: ClassVar[re.Pattern[bytes]]
     """What programs in this language have, and those of other controls have not."""
+    writes: ClassVar[bool] = False
+    """Whether programs in this language can be written as such again: see `spelled`."""
+    kept: ClassVar[str] = ""
+    """The code of blocks that stand for a line that is kept as it stands, whatever it does."""
 
     def __init__(self, lines: Sequence[str], file: str, dialect: type[Dialect], reading: Reading):
         self.lines = lines
         self.file = file
         self.dialect = dialect
         self.reading = reading
-        self.line = self.at = 0
+        self.line = self.at = self.visit = 0
+        self.assumed: dict[str, None] = {}
+        """What a line was taken to mean that it does not say, in sentences."""
         self.plainly = True
         """Whether plain lines are translated as such, and not by `blocks`."""
         self._lark: Lark = kept.grammar(*self.grammar)
@@ -140,6 +144,19 @@ class Translator(ABC):
     def closing(self) -> Iterable[str]:
         """Return the blocks behind the last line."""
         return ()
+
+    def spelled(self, line: str, blocks: Sequence[str]) -> str | None:
+        """Return a line that stands for new blocks, in its own manner; None where none is known.
+
+        What is returned is read again, and has to stand for those blocks.
+        """
+        del line, blocks
+        return None
+
+    def counts(self, line: str) -> bool:
+        """Return whether a line has words that count from where an axis stands."""
+        del line
+        return False
 
     # --- lines ---
 
@@ -180,9 +197,19 @@ class Translator(ABC):
             template = " ".join([*words, comments.replace("%", "%%")]).rstrip()
         return _Shape(parts, comments, template)
 
-    def _parsed(self, line: int) -> tuple[list[str], tuple[_Part, ...]]:
-        """Return the numbers of a line, and its parts."""
-        text = self.lines[line]
+    def items_in(self, text: str) -> tuple[Item, ...]:
+        """Return the items of a text that stands for the line. Raises InputError."""
+        numbers, parts = self._parsed(self.line, text)
+        bare = [number.replace(" ", "").replace("\t", "") for number in numbers]
+        return tuple(part.item(bare) for part in parts)
+
+    def grammar_named(self, package: str, name: str) -> Lark:
+        """Return another grammar of the language, as `grammar` names one."""
+        return kept.grammar(package, name)
+
+    def _parsed(self, line: int, text: str | None = None) -> tuple[list[str], tuple[_Part, ...]]:
+        """Return the numbers of a line, and its parts; or of another text for it."""
+        text = self.lines[line] if text is None else text
         try:
             tree = parsed(self._lark, text)
         except UnexpectedInput as error:
@@ -199,6 +226,7 @@ class Translator(ABC):
         left = most = QUICK * limits().steps + len(self.lines)
         while self.at < len(self.lines):
             self.line, self.at = self.at, self.at + 1
+            self.visit += 1
             left -= 1
             if left < 0:
                 message = f"the program is not over after {most} lines"
@@ -210,6 +238,7 @@ class Translator(ABC):
             for block in self._translated(shape, numbers):
                 yield self.line, block
         self.line = max(len(self.lines) - 1, 0)
+        self.visit += 1
         for block in self.closing():
             yield self.line, block
 
@@ -268,30 +297,6 @@ class Translator(ABC):
         return InputError((Diagnostic(code, message, where, hint),))
 
 
-class Translated(WrittenOut):
-    """The blocks of a program in another language; what is said about them shows its lines."""
-
-    def __init__(self, source: Source, lines: list[str], text: bytes, origin: list[int]) -> None:
-        super().__init__(source, text, np.array(origin, np.int64))
-        self.lines = lines
-
-    def shown(self, where: Location) -> Location:
-        """Return a place in the program, all of its line, for one in the blocks."""
-        line = self.line_of(where.line)
-        text = self.lines[line - 1]
-        start = len(text) - len(text.lstrip())
-        width = max(1, len(text.strip()))
-        return replace(where, line=line, column=start + 1, text=text, width=width)
-
-
-def translated(source: Source, dialect: type[Dialect], reading: Reading) -> Translated:
-    """Return the blocks of a program. Raises InputError where it is refused."""
-    found, refused = translated_so_far(source, dialect, reading)
-    if refused is not None:
-        raise refused
-    return found
-
-
 def translator_of(dialect: type[Dialect]) -> type[Translator]:
     """Return what reads the language of a dialect that has one of its own."""
     kind = dialect.translator
@@ -300,26 +305,7 @@ def translator_of(dialect: type[Dialect]) -> type[Translator]:
     return kind
 
 
-def translated_so_far(
-    source: Source, dialect: type[Dialect], reading: Reading
-) -> tuple[Translated, InputError | None]:
-    """Return the blocks of a program up to the line that is refused, and why it is."""
-    lines = _lines(b"".join(source.windows()))
-    if lines and not lines[-1]:
-        lines.pop()
-    kind = translator_of(dialect)
-    blocks, origin, refused = [], [], None
-    try:
-        for line, block in kind(lines, source.name, dialect, reading).run():
-            blocks.append(block)
-            origin.append(line)
-    except InputError as error:
-        refused = error
-    joined = "".join(f"{block}\n" for block in blocks).encode("latin-1")
-    return Translated(source, lines, joined, origin), refused
-
-
-def _lines(text: bytes) -> list[str]:
+def lines_of(text: bytes) -> list[str]:
     """Return the lines of a program, without the leader of a tape and what editors put first."""
     lines = LINE_END.split(text.removeprefix(BYTE_ORDER_MARK))
     return [line.decode("latin-1") if line.strip(LEADER) else "" for line in lines]
@@ -333,7 +319,7 @@ def has_signs(text: bytes, dialect: type[Dialect]) -> bool:
 def foreign_lines(text: bytes, dialect: type[Dialect]) -> tuple[int, int]:
     """Return how many lines a text has, empty ones left out, and how many the grammar refuses."""
     kind = translator_of(dialect)
-    lines = [line for line in _lines(text) if line.strip()]
+    lines = [line for line in lines_of(text) if line.strip()]
     reader = kind(lines, "", dialect, Reading())
     return len(lines), sum(not _accepted(reader, line) for line in range(len(lines)))
 

@@ -66,6 +66,8 @@ class Reading:
     tables_stay   whether a G10 may be read that writes into the control's tool table: its block
                   stays as it is, on the same control
     crosses       whether the program is to be written for another control
+    stays         whether it is to be written for the same one by passes that keep positions: then
+                  what is not understood may stay as it stands
     parameters    values of parameters before the first block, by number ("100") or name ("<a>")
     subprograms   folders in which subprograms are looked up, behind that of the program
     entry         how a subprogram is called that stands in a file by itself
@@ -87,6 +89,7 @@ class Reading:
     open_pecks: bool = False
     tables_stay: bool = True
     crosses: bool = False
+    stays: bool = False
     subprograms: tuple[Path, ...] = ()
     entry: Entry = field(default_factory=Entry)
 

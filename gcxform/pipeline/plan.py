@@ -147,8 +147,22 @@ class Plan:
 
     def _check_target(self) -> None:
         """Refuse to write, or to change the text of, programs that are only read."""
-        if not self.copies or self.passes:
+        if (not self.copies or self.passes) and not self._writes_back():
             check_written(self.target)
+
+    def _writes_back(self) -> bool:
+        """Whether a program in a language of its own is written in that language again.
+
+        Its lines are spelled anew where their blocks have changed, so no pass may change text, or
+        positions: what is not understood of such a program stays as it stands.
+        """
+        kind = self.source.translator
+        same = self.source is self.target and getattr(kind, "writes", False)
+        return (
+            same
+            and not self.text_passes
+            and stamp_of(self.passes, self.context, self.words) is None
+        )
 
     def _check_entry(self) -> None:
         """Refuse modes of `[entry]` that are none of the dialect, or two of one group."""
@@ -232,7 +246,9 @@ class Plan:
         same = self.source is self.target
         folds = any(WORKPIECE_FRAME in step.ensures for step in self.path_passes)
         open_pecks, tables_stay = same and not expands, same and not folds
-        return replace(reading, open_pecks=open_pecks, tables_stay=tables_stay, crosses=not same)
+        stays = self._writes_back() and not self.copies
+        reading = replace(reading, open_pecks=open_pecks, tables_stay=tables_stay)
+        return replace(reading, crosses=not same, stays=stays)
 
     def reading_at_start(self, axes: str) -> Reading:
         """Return what is known at the start; where only programmed words are written, 0 for axes.

@@ -29,6 +29,7 @@ from gcxform.pipeline.reasons import changed_lines
 from gcxform.pipeline.structure import Structure
 from gcxform.pipeline.text_passes import TextRun
 from gcxform.pipeline.whole_cuts import whole_cuts, whole_sections
+from gcxform.pipeline.written_back import WrittenBack, structure_of
 from gcxform.proof.inventory import Books, Others
 from gcxform.proof.verify import Findings, Verifier
 from gcxform.stamps.chain import check_stamps
@@ -79,13 +80,12 @@ class Run:
         self.steps = plan.path_passes
         self.text = TextRun(plan.text_passes, plan.target, source.name, self._tell)
         if not plan.copies:
-            given = plan.read_as, plan.machine_reading, plan.target
-            self.source = written_out(source, *given)
+            self.source = written_out(source, plan.read_as, plan.machine_reading, plan.target)
         self.executes = self.source is not source
         self.assumed = self.source.assumed
         self.executed = getattr(self.source, "executed", None)
         self.files = getattr(self.source, "files", ())
-        self.structure = Structure.of(plan, source, self.source, bool(self.marks.read))
+        self.structure = structure_of(plan, source, self.source, bool(self.marks.read))
         if self.executed is not None:
             self.executed.refuse(self.marks.changes, self.structure is not None)
         self.source, self.dialect = plan.without_tip_codes(self.source)
@@ -209,10 +209,11 @@ class Run:
             windows = ahead(reader, self._counted(texts, out))
             self._write_all(windows, proof, out, progress)
 
-    def _fold(self, structure: Structure, out: Output) -> None:
+    def _fold(self, structure: Structure | WrittenBack, out: Output) -> None:
         """Hand the program on with its calls and loops, or written out where that cannot be."""
         folded = structure.fold()
         if folded is None:
+            assert isinstance(structure, Structure)
             self._put(structure.text, structure.lines.tolist(), out, True)
             return
         if self.verify != "off":

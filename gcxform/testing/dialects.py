@@ -11,7 +11,8 @@ from gcxform.diagnostics import GcxformError
 from gcxform.dialect.codes import ISO, Effect
 from gcxform.dialect.dialect import INCH, Dialect
 from gcxform.emit.numbers import MOST_DECIMALS
-from gcxform.flow.translation import Translator, translated, translator_of
+from gcxform.flow.translated import translated
+from gcxform.flow.translation import Translator, translator_of
 from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.meaning.sorting import meaning_of
 from gcxform.modal.meaning.tables import COLUMNS, GROUPS, NUMBER

@@ -171,7 +171,7 @@ MUTATIONS = (
     ),
     Mutation(
         "translation: errors show the block",
-        TRANSLATION,
+        "gcxform/flow/translated.py",
         "column=start + 1, text=text, width=width)",
         "column=start + 1)",
         RUNS,

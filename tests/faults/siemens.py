@@ -10,6 +10,10 @@ ARCS = "plugins/gcxform_plugins/dialects/siemens/arcs.py"
 BLOCKS = "plugins/gcxform_plugins/dialects/siemens/blocks.py"
 READING = "plugins/gcxform_plugins/dialects/siemens/reading.py"
 CYCLES = "plugins/gcxform_plugins/dialects/siemens/cycles.py"
+DECIDING = "plugins/gcxform_plugins/dialects/siemens/deciding.py"
+PROGRAMS = "plugins/gcxform_plugins/dialects/siemens/programs.py"
+EXPRESSIONS = "plugins/gcxform_plugins/dialects/siemens/expressions.py"
+ARITHMETIC = "plugins/gcxform_plugins/dialects/siemens/arithmetic.py"
 RANDOM = "tests/test_siemens.py::test_it_reads_what_the_reference_reads"
 CASES = "tests/test_corpus.py::test_case"
 TIPS = "tests/test_siemens.py::test_five_axes_become_what_the_same_program_by_hand_becomes"
@@ -168,5 +172,68 @@ MUTATIONS = (
         'return said == "ORIAXES" and reference != "ORIWKS"',
         "return True",
         "tests/test_siemens.py::test_what_turns_between_ends_is_said",
+    ),
+    Mutation(
+        "siemens: a jump back looks ahead first",
+        "plugins/gcxform_plugins/dialects/siemens/structure.py",
+        '"GOTOB": (back,)',
+        '"GOTOB": (ahead, back)',
+        f"{CASES}[dialects/siemens/jump-back]",
+    ),
+    Mutation(
+        "siemens: FOR does not come to its end",
+        DECIDING,
+        "if value + 1 <= end:",
+        "if value + 1 < end:",
+        f"{CASES}[dialects/siemens/loop-for]",
+    ),
+    Mutation(
+        "siemens: what a kept line has set is known behind it",
+        PROGRAMS,
+        "        self.lose_set(self.line, self.line)\n",
+        "",
+        f"{CASES}[dialects/siemens/kept-value]",
+    ),
+    Mutation(
+        "siemens: lines that only the machine repeats are changed",
+        PROGRAMS,
+        "return None if self.tied else spelled(line, blocks)",
+        "return spelled(line, blocks)",
+        f"{CASES}[dialects/siemens/kept-loop]",
+    ),
+    Mutation(
+        "siemens: a call that is not here leaves G90 in force",
+        PROGRAMS,
+        'self.motion, self.unsaid, self.fed = "", {"distance"}, False',
+        'self.motion, self.fed = "", False',
+        f"{CASES}[dialects/siemens/kept-modes]",
+    ),
+    Mutation(
+        "siemens: AND binds behind comparisons, unasked",
+        EXPRESSIONS,
+        "if found != self._joined(values, AS_USUAL):",
+        "if False:",
+        f"{CASES}[dialects/siemens/logic-without-brackets]",
+    ),
+    Mutation(
+        "siemens: DIV rounds",
+        ARITHMETIC,
+        "return float(math.trunc(found))",
+        "return float(round(found))",
+        f"{CASES}[dialects/siemens/functions]",
+    ),
+    Mutation(
+        "siemens: what is kept may be executed in other modes",
+        "gcxform/proof/respelled.py",
+        "return [(old, new) for old, new in zip(one[2], other[2], strict=True) if old != new]",
+        "return []",
+        f"{CASES}[dialects/siemens/kept-in-steps]",
+    ),
+    Mutation(
+        "siemens: what was spelled is not read again",
+        "gcxform/proof/respelled.py",
+        "        if one != other:\n            raise _wrong(found, at)\n",
+        "",
+        f"{CASES}[dialects/siemens/spelled-otherwise]",
     ),
 )

@@ -18,7 +18,7 @@ from gcxform.diagnostics import Diagnostic, InputError, UsageError
 from gcxform.dialect.dialect import INCH, Dialect
 from gcxform.flow.executed import WrittenOut
 from gcxform.flow.straightened import written_out
-from gcxform.flow.translation import translated_so_far
+from gcxform.flow.translated import translated_so_far
 from gcxform.modal.meaning.tables import GROUPS, code_of
 from gcxform.modal.state import Reading, State
 from gcxform.syntax.source import Source

@@ -1,4 +1,7 @@
-"""SINUMERIK 840D sl and SINUMERIK ONE, milling, in its own language (G290): read only.
+"""SINUMERIK 840D sl and SINUMERIK ONE, milling, in its own language (G290).
+
+It is written from itself alone, by passes that keep positions: lines that are not changed keep
+their bytes, and what is refused below is then kept as it stands, with all that is lost behind it.
 
 | what | SINUMERIK | known from |
 |---|---|---|
@@ -50,17 +53,34 @@
 | CYCLE81, CYCLE82 | rapid to RFP + SDIS, feed to DP, dwell, rapid to RTP | C81 |
 | MCALL | that behind each line with axis words | C81 |
 | DP, DPR | absolute, or below RFP; both: refused; other cycles: refused | C81 |
-| R parameters, expressions, jumps, loops, subprograms, DEF, synchronous actions | refused | |
+| R parameters | not known until they are set; a block sets several, left to right | [K] |
+| DEF of INT REAL BOOL CHAR STRING, arrays | 0 or empty, from 0, last index first | JP 54 |
+| REAL to INT | as ROUND: halves up; negative halves are refused | JP 54 |
+| priorities | of PM 444: comparisons bind last, behind AND, XOR and OR | PM 444 |
+| `==`, `>` ... | to 1e-12 of the values; what differs by less has no order (MD10280) | JA 1-23 |
+| AND beside a comparison, no brackets | refused where the usual reading differs | PM 444 |
+| DIV, TRUNC, ROUNDUP | cut, cut, up also below zero | PM 443, JA 1-70 |
+| MOD | of positive whole numbers; others are refused | [K] |
+| IF ELSE, WHILE, REPEAT UNTIL, LOOP | as structures, up to the line that ends them | PM |
+| FOR | up by one; its variable is lost behind it | [K] |
+| GOTOF GOTOB GOTO GOTOC, labels, N numbers | the nearest in the direction | PM |
+| CASE OF DEFAULT | by value; on without a DEFAULT | PM |
+| a variable set and read in a word of one block | refused | [K] |
+| GOTOS, REPEAT of a label, RET with a label, REP() | refused | [K] |
+| `$AA_IW[X]`, `$P_EP[X]` | where X stands; the first only behind STOPRE | [K] |
+| other `$` variables, names that nothing defines | only the control knows them | |
+| PROC, what nobody calls | its parameters are not known | |
+| subprograms, synchronous actions, DEFINE | refused | |
 | M128, M129 | M codes of the machine: refused, as blocks say TRAORI with them | |
 | `/`, `/0` to `/9` | a switch decides: `block-delete` in `[input]` | [K] |
 | `MSG("...")` | a comment | PM |
 | G291 | ISO dialects: refused | PM |
 
-Manuals of Siemens: PM NC programming 12/2019 (6FC5398-2EP40-0BA0), 808D Programming 01/2014
-(6FC5398-4DP10-0BA1), OM Operating 05/2017, T Turning 01/2017, K2 Frames and 828D Basic functions
-09/2011, ISO Milling 04/2007, W1 Tool offset 11/2006, TR Transformations 06/2019 (A5E47435470B),
-R2 Axes and spindles 06/2019 (A5E47437747B), SW Swivelling 03/2013; C81 helmancnc.com on CYCLE81.
-[K]: not looked up.
+Manuals of Siemens: JA and JP Job planning 03/2006 and 07/2010, PM NC programming 12/2019
+(6FC5398-2EP40-0BA0), 808D Programming 01/2014 (6FC5398-4DP10-0BA1), OM Operating 05/2017, T Turning
+01/2017, K2 Frames and 828D Basic functions 09/2011, ISO Milling 04/2007, W1 Tool offset 11/2006, TR
+Transformations 06/2019 (A5E47435470B), R2 Axes and spindles 06/2019 (A5E47437747B), SW Swivelling
+03/2013; C81 helmancnc.com on CYCLE81. [K]: not looked up.
 """
 
 from __future__ import annotations
@@ -70,14 +90,14 @@ from typing import ClassVar
 
 import gcxform as gx
 from gcxform import vocabulary as v
-from gcxform_plugins.dialects.siemens.blocks import Blocks
+from gcxform_plugins.dialects.siemens.programs import Programs
 
 
 class Siemens(gx.Dialect):
-    """SINUMERIK 840D sl and ONE, milling, in its own language: read only."""
+    """SINUMERIK 840D sl and ONE, milling, in its own language."""
 
     name = "siemens"
-    translator = Blocks
+    translator = Programs
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
         "G95": gx.Code("feed-mode"),
@@ -92,6 +112,8 @@ class Siemens(gx.Dialect):
         6: gx.MCode("tool", loses_position=True, act="change-tool"),
         128: gx.MCode("tip", barrier=v.FOLLOWING),
         129: gx.MCode("tip"),
+        17: gx.MCode("stop", after=True, ends=True),
+        9000: gx.MCode("kept", loses_position=True, takes="P"),
     }
     chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
         "ABC", "rotary axes go where they are told, whichever way is shorter (MD30455)"

@@ -51,8 +51,8 @@ WHY = {
     "TRAORI": "TRAORI selects another transformation, or changes one",
 }
 AXES = LINEAR + ROTARY
-OWN = frozenset((128, 129))
-"""The M codes with which blocks say TRAORI and TRAFOOF: on a SINUMERIK they are the machine's."""
+OWN = frozenset((128, 129, 9000))
+"""The M codes with which blocks say TRAORI, TRAFOOF and what is kept: elsewhere the machine's."""
 PLAIN = "write plain numbers, or let the CAM write them"
 Reader = Callable[[Line, gx.Item], None]
 
@@ -169,6 +169,8 @@ class Statements(gx.Translator):
             line.others.append(f"S{number}")
         elif letter == "M" and number.isdigit() and int(number) == 6:
             line.changes = item
+        elif letter == "M" and number.isdigit() and int(number) == 17 and self.reading.crosses:
+            self.refuse("M17 returns to a program that is not here", item)
         elif letter == "M" and number.isdigit() and int(number) not in OWN:
             line.others.append(f"M{number}")
         elif letter == "T" and number.isdigit():

@@ -1,0 +1,73 @@
+"""Writes a program in the language it was read in, where that is not one of words.
+
+Its lines were turned into blocks, and those were transformed and written one after the other. A
+line whose blocks stayed as they were, every time it was executed, stands as it did, byte for byte;
+for another one its translator spells a new line, which has to be the same each time. What is not
+executed stays. `gcxform/proof/respelled.py` reads what comes out of here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import groupby
+
+from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.flow.translated import Translated
+from gcxform.flow.translation import BYTE_ORDER_MARK, LINE_END
+
+HINT = "let the CAM write plain moves in its place, or write for another dialect"
+
+
+def respelled(
+    given: bytes, source: Translated, blocks: list[list[bytes]], absolute: bool = False
+) -> bytes:
+    """Return a program for its blocks as they were written: lists of lines, by block.
+
+    `absolute`: words that count from where an axis stands are written as positions.
+    Raises InputError where a line cannot be spelled, or would differ between its executions.
+    """
+    new: dict[int, str] = {}
+    whole, translator = source.text.splitlines(), source.translator
+
+    def is_kept(block: bytes) -> bool:
+        return translator.kept.encode() in block.split()
+
+    for line, first, stop in _runs(source):
+        made = [b.rstrip(b"\r\n") for block in blocks[first:stop] for b in block]
+        raw = source.lines[line]
+        text: str | None = raw
+        stepped = absolute and translator.counts(raw) and not any(map(is_kept, made))
+        if made != whole[first:stop] or stepped:
+            text = translator.spelled(raw, [each.decode("latin-1") for each in made])
+        if text is None:
+            raise _refusal(source, line, "what this line became cannot be said in its language")
+        if new.setdefault(line, text) != text:
+            raise _refusal(source, line, "this line becomes another each time it is executed")
+    return _joined(given, new)
+
+
+def _runs(source: Translated) -> Iterator[tuple[int, int, int]]:
+    """Yield each execution of a line that has blocks: the line, its first block, the one behind."""
+    for _, group in groupby(range(len(source.visits)), key=lambda k: int(source.visits[k])):
+        blocks = [*group]
+        yield int(source.origin[blocks[0]]), blocks[0], blocks[-1] + 1
+
+
+def _joined(given: bytes, new: dict[int, str]) -> bytes:
+    """Return a program with other lines in place of some of its own; line ends stay."""
+    head = BYTE_ORDER_MARK if given.startswith(BYTE_ORDER_MARK) else b""
+    body = given[len(head) :]
+    found, at, line = [head], 0, 0
+    for end in (*LINE_END.finditer(body), None):
+        stop, behind = (len(body), len(body)) if end is None else end.span()
+        old = body[at:stop]
+        text = new.get(line, "").encode("latin-1")
+        found += [text if line in new and text.strip() != old.strip() else old, body[stop:behind]]
+        at, line = behind, line + 1
+    return b"".join(found)
+
+
+def _refusal(source: Translated, line: int, message: str) -> InputError:
+    text = source.lines[line]
+    where = Location(source.name, line + 1, 1, text, max(1, len(text.rstrip())))
+    return InputError((Diagnostic("GX501", message, where, HINT),))

@@ -1,0 +1,69 @@
+"""The blocks of a program in a language of its own, with the lines that they stand for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from gcxform.diagnostics import InputError, Location
+from gcxform.dialect.dialect import Dialect
+from gcxform.flow.executed import WrittenOut
+from gcxform.flow.translation import Translator, lines_of, translator_of
+from gcxform.modal.state import Reading
+from gcxform.syntax.source import Source
+from gcxform.system.arrays import Ints
+
+
+class Translated(WrittenOut):
+    """The blocks of a program in another language; what is said about them shows its lines.
+
+    `text` is all blocks, `visits` (blocks,) the number of the execution of a line that each is of.
+    """
+
+    def __init__(
+        self, source: Source, translator: Translator, text: bytes, origin: list[int], visits: Ints
+    ) -> None:
+        super().__init__(source, text, np.array(origin, np.int64), translator.assumed)
+        self.lines = translator.lines
+        self.translator = translator
+        self.text = text
+        self.visits = visits
+
+    def shown(self, where: Location) -> Location:
+        """Return a place in the program, all of its line, for one in the blocks."""
+        line = self.line_of(where.line)
+        text = self.lines[line - 1]
+        start = len(text) - len(text.lstrip())
+        width = max(1, len(text.strip()))
+        return replace(where, line=line, column=start + 1, text=text, width=width)
+
+
+def translated(source: Source, dialect: type[Dialect], reading: Reading) -> Translated:
+    """Return the blocks of a program. Raises InputError where it is refused."""
+    found, refused = translated_so_far(source, dialect, reading)
+    if refused is not None:
+        raise refused
+    return found
+
+
+def translated_so_far(
+    source: Source, dialect: type[Dialect], reading: Reading
+) -> tuple[Translated, InputError | None]:
+    """Return the blocks of a program up to the line that is refused, and why it is."""
+    lines = lines_of(b"".join(source.windows()))
+    if lines and not lines[-1]:
+        lines.pop()
+    kind = translator_of(dialect)
+    blocks, origin, visits, refused = [], [], [], None
+    translator = kind(lines, source.name, dialect, reading)
+    try:
+        for line, block in translator.run():
+            blocks.append(block)
+            origin.append(line)
+            visits.append(translator.visit)
+    except InputError as error:
+        refused = error
+    joined = "".join(f"{block}\n" for block in blocks).encode("latin-1")
+    made = Translated(source, translator, joined, origin, np.array(visits, np.int64))
+    return made, refused

@@ -1,0 +1,74 @@
+"""Writes programs in the language they were read in, where it is not one of words; proves them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from gcxform.emit.emitter import Emitted
+from gcxform.emit.folding import Folded
+from gcxform.emit.respelling import respelled
+from gcxform.flow.translated import Translated
+from gcxform.modal.inventory import Account
+from gcxform.modal.state import Reading
+from gcxform.pipeline.chain import facts_after
+from gcxform.pipeline.plan import Plan
+from gcxform.pipeline.structure import Structure
+from gcxform.proof.respelled import check_kept, check_respelled
+from gcxform.proof.verify import Findings
+from gcxform.syntax.source import Source
+from gcxform.toolpath.facts import ABSOLUTE
+
+
+@dataclass
+class WrittenBack:
+    """Gathers what is written for the blocks of one program, and spells it at its end."""
+
+    plan: Plan
+    given: Source
+    source: Translated
+    parts: list[Emitted] = field(default_factory=list)
+    why: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, plan: Plan, given: Source, source: Source) -> WrittenBack | None:
+        """Return what writes a program in its own language; None where that is another's."""
+        if plan.source is not plan.target or not isinstance(source, Translated):
+            return None
+        return cls(plan, given, source)
+
+    @property
+    def lines_read(self) -> int:
+        """How many lines the program has."""
+        return len(self.source.lines)
+
+    def fold(self) -> Folded:
+        """Return the program. Raises InputError where a line cannot be spelled."""
+        blocks: list[list[bytes]] = [[] for _ in self.source.origin]
+        for part in self.parts:
+            for line, block in zip(part.text.splitlines(), part.source.tolist(), strict=True):
+                blocks[block].append(line)
+        written = [line for part in self.parts for line in part.text.splitlines()]
+        check_kept(self.source, written, self.plan.target)
+        given = b"".join(self.given.windows())
+        absolute = ABSOLUTE in facts_after(self.plan.path_passes)
+        text = respelled(given, self.source, blocks, absolute)
+        return Folded(text, tuple(range(len(text.splitlines()))), (), ())
+
+    def prove(self, folded: Folded, reading: Reading, account: Account, findings: Findings) -> None:
+        """Check that a program says what has been proved. Raises GcxformError."""
+        del account
+        written = Source.of_bytes(folded.text, self.given.name)
+        written.folder, written.suffix = self.given.folder, self.given.suffix
+        blocks = [line for part in self.parts for line in part.text.splitlines()]
+        check_respelled(written, blocks, self.plan.target, reading)
+        if findings.output_line:
+            of = [line for part in self.parts for line in part.source.tolist()]
+            findings.output_line = self.source.line_of(of[findings.output_line - 1] + 1)
+
+
+def structure_of(
+    plan: Plan, given: Source, source: Source, takes_stamps: bool
+) -> Structure | WrittenBack | None:
+    """Return what hands a program on as it was programmed; None where its blocks are written."""
+    back = WrittenBack.of(plan, given, source)
+    return Structure.of(plan, given, source, takes_stamps) if back is None else back

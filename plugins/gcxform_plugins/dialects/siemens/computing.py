@@ -1,0 +1,118 @@
+"""Lines of a SINUMERIK that compute: they become the same lines with numbers, and decide nothing.
+
+A line with a flow word says where to go on (`deciding.py`), and is no block.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from lark import Tree
+from lark.exceptions import UnexpectedInput
+
+import gcxform as gx
+from gcxform import vocabulary as v
+from gcxform_plugins.dialects.siemens.deciding import Deciding
+from gcxform_plugins.dialects.siemens.nodes import Node, rule_of, span_of
+from gcxform_plugins.dialects.siemens.structure import StructureError
+from gcxform_plugins.dialects.siemens.variables import AXES
+
+COMPUTED = frozenset(("expression", "flow", "system", "array"))
+AS_THEY_STAND = frozenset(("word", "bare", "label", "sequence", "call", "text_call"))
+
+
+class Computing(Deciding):
+    """Executes lines that compute.
+
+    unsaid         modal groups of which it is not known what is in force
+    unknown_cycle  the line of MCALL with a cycle that is not read
+    fed            a feed is known to be in force, in `feed_mode`
+    """
+
+    def __init__(self, lines: Sequence[str], file: str, dialect: Any, reading: Any) -> None:
+        super().__init__(lines, file, dialect, reading)
+        self.kept_lines: list[tuple[int, str]] = []
+        self.unsaid: set[str] = set()
+        self.unknown_cycle = ""
+        self.fed, self.feed_mode = reading.feed is not None, "94"
+
+    # --- lines ---
+
+    def executed(self, items: Sequence[gx.Item]) -> list[str]:
+        """Return the blocks of a line. Raises InputError."""
+        self._arrive()
+        if not any(self._computes(item) for item in items):
+            return self._ended(items, [*super().blocks(items)])
+        text = self.lines[self.line]
+        try:
+            tree = self.grammar_of_expressions.parse(text)
+            straight = self._straight(tree, text)
+        except UnexpectedInput:
+            self.refuse("this is not read", items[-1] if items else None)
+        except v.NoValueError as why:
+            raise self.refusal(why.code, why.message, None, why.hint) from None
+        except StructureError as why:
+            self.line = why.line
+            raise self.refusal("GX223", why.message) from None
+        if not straight.strip():
+            return []
+        plain = self.items_in(straight)
+        return self._ended(plain, [*super().blocks(plain)])
+
+    def _arrive(self) -> None:
+        """Note the lines before this one; where lines are jumped over none is passed unseen."""
+        if self.decides:
+            self.last = self.place.line = self.line
+        else:
+            super()._arrive()
+
+    def _takes_plain_lines(self) -> bool:
+        """Whether axis words alone are a block as they stand; not where lines are passed over."""
+        known = not (self.decides or self.unsaid or self.unknown_cycle)
+        return known and (self.fed or self.motion == "0") and super()._takes_plain_lines()
+
+    def _computes(self, item: gx.Item) -> bool:
+        if item.kind == "indexed":
+            return item.name == "R"
+        return item.kind in COMPUTED or (item.kind == "named" and self._cell(item.name) is not None)
+
+    def _ended(self, items: Sequence[gx.Item], blocks: list[str]) -> list[str]:
+        """Return the blocks of a line; behind an end of the program there are no others."""
+        ends = any(i.kind == "word" and i.name == "M" and _whole(i) in (2, 17, 30) for i in items)
+        if ends and self.decides:
+            self.at = len(self.lines)
+        if any(item.names and item.name in AXES for item in items):
+            self.stopped = False
+        self.stopped |= any(item.name == "STOPRE" for item in items if item.names)
+        return blocks
+
+    def _straight(self, tree: Node, text: str) -> str:
+        """Return a line of plain words for one that computes; nothing where it decides."""
+        edits: list[tuple[int, int, str]] = []
+        set_names: set[str] = set()
+        for node in tree.children:
+            assert isinstance(node, Tree)
+            rule = rule_of(node)
+            if rule in self.flow:
+                if rule not in ("def", "proc"):
+                    self.decides, self.plainly = True, False
+                self.flow[rule](node)
+            if rule == "assignment":
+                edits += self._assignment(node, set_names)
+            elif rule not in AS_THEY_STAND:
+                edits.append((*span_of(node), ""))
+        text = text.partition(";")[0] if '"' not in text else _without_comment(text)
+        for start, end, new in sorted(edits, reverse=True):
+            text = text[:start] + new + text[end:]
+        return text
+
+
+def _without_comment(text: str) -> str:
+    found = re.match(r'(?:[^";]|"[^"]*")*', text)
+    return found[0] if found else text
+
+
+def _whole(item: gx.Item) -> int:
+    return int(item.numbers[0]) if item.numbers[0].isdigit() else -1

@@ -1,0 +1,234 @@
+"""What decides in a program for a SINUMERIK where it goes on: structures and jumps.
+
+Where only the machine knows it, all that it may execute is kept as it stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from typing import Any
+
+from lark import Token, Tree
+
+from gcxform import vocabulary as v
+from gcxform_plugins.dialects.siemens.cells import LOST, Value, converted
+from gcxform_plugins.dialects.siemens.expressions import PARAMETER, lost
+from gcxform_plugins.dialects.siemens.nodes import Node, rule_of
+from gcxform_plugins.dialects.siemens.structure import Part, StructureError
+from gcxform_plugins.dialects.siemens.variables import Variables
+
+
+class Deciding(Variables):
+    """Executes what decides.
+
+    kept_until   lines up to this one are kept: only the machine decides on them, `kept_why`
+    tied         why lines that were read may be executed again, by what only the machine knows
+    decides      something has decided where to go on;  loops_on: a loop may go on at its end
+    """
+
+    def __init__(self, lines: Sequence[str], file: str, dialect: Any, reading: Any) -> None:
+        super().__init__(lines, file, dialect, reading)
+        self.counting: dict[int, float] = {}
+        self.kept_until, self.kept_why, self.tied = 0, "", ""
+        self.decides = self.loops_on = False
+        self.flow: Mapping[str, Callable[[Node], None]] = {
+            "if": self._if,
+            "loop": lambda _: self._check(self._part()),
+            "endif": lambda _: self._check(self._part()),
+            "else": lambda _: self._go(self._part().last + 1),
+            "while": self._while,
+            "endwhile": lambda _: self._go(self._part().first),
+            "for": self._for,
+            "endfor": lambda _: self._next(),
+            "endloop": lambda _: self._go(self._part().first),
+            "until": self._until,
+            "repeat": self._repeat,
+            "jump": lambda node: self._jump(str(node.children[0]), node.children[1]),
+            "case": self._case,
+            "def": self._def,
+            "proc": self._proc,
+            "return": self._return,
+        }
+
+    @cached_property
+    def grammar_of_expressions(self) -> Any:
+        """The grammar of lines that compute."""
+        return self.grammar_named("gcxform_grammars", "siemens_computed")
+
+    # --- structures ---
+
+    def _part(self) -> Part:
+        part = self.structure.at.get(self.line)
+        if part is None:
+            raise StructureError(self.line, "this belongs to no structure")
+        return part
+
+    def _check(self, part: Part) -> None:
+        """Take a line that only begins or ends a structure."""
+
+    def _go(self, line: int) -> None:
+        self.at = line
+
+    def _decided(self, node: Any) -> bool | None:
+        """Return whether a condition holds; None where only the control knows."""
+        try:
+            value = self.worth.of(node)
+        except v.NoValueError as why:
+            if not why.lost or not self.reading.stays:
+                raise
+            return None
+        return bool(value)
+
+    def _if(self, node: Node) -> None:
+        if len(node.children) == 2:
+            self._if_structure(node.children[1])
+            return
+        parts = node.children
+        for k in range(0, len(parts), 4):
+            holds = self._decided(parts[k + 1])
+            if holds is None:
+                self._undecided(None)
+                return
+            if holds:
+                self._jump(str(parts[k + 2]), parts[k + 3])
+                return
+
+    def _if_structure(self, condition: Any) -> None:
+        part, holds = self._part(), self._decided(condition)
+        if holds is None:
+            self._undecided(part)
+        elif not holds:
+            self._go((part.last if part.other < 0 else part.other) + 1)
+
+    def _while(self, node: Node) -> None:
+        part, holds = self._part(), self._decided(node.children[1])
+        if holds is None:
+            self._undecided(part)
+        elif not holds:
+            self._go(part.last + 1)
+
+    def _for(self, node: Node) -> None:
+        _, name, first, _, last = node.children
+        part = self._part()
+        try:
+            start, end = self.worth.number(first), self.worth.number(last)
+        except v.NoValueError as why:
+            if not why.lost or not self.reading.stays:
+                raise
+            self._undecided(part)
+            return
+        self._count(str(name).upper(), start)
+        self.counting[part.first] = end
+        if start > end:
+            self._leave_for(part, str(name).upper())
+
+    def _count(self, name: str, value: Value) -> None:
+        if PARAMETER.fullmatch(name):
+            self.r[int(name[1:])] = value
+            return
+        cell = self._cell(name)
+        if cell is None or cell.size or cell.kind not in ("INT", "REAL"):
+            self.refuse(f"FOR counts in {name}, which is no INT or REAL of the program")
+        cell.values[0] = converted(cell.kind, value)
+
+    def _next(self) -> None:
+        """Count on at ENDFOR, and go back or on."""
+        part = self._part()
+        head = self.grammar_of_expressions.parse(self.lines[part.first]).children[-1]
+        _, name, _, _, last = head.children
+        upper = str(name).upper()
+        end = self.counting[part.first]
+        if self.worth.number(last) != end:
+            raise v.NoValueError("the end of FOR changes in its loop: which holds is not known")
+        cell = self._cell(upper)
+        value = cell.values[0] if cell is not None else self.r.get(int(upper[1:]), LOST)
+        if not isinstance(value, float):
+            raise lost(f"the value of {upper}")
+        self._count(upper, value + 1)
+        if value + 1 <= end:
+            self._go(part.first + 1)
+        else:
+            self._leave_for(part, upper)
+
+    def _leave_for(self, part: Part, name: str) -> None:
+        """Go on behind a loop that counts; what its variable is worth there no manual says."""
+        self._count(name, LOST)
+        self._go(part.last + 1)
+
+    def _until(self, node: Node) -> None:
+        part, holds = self._part(), self._decided(node.children[1])
+        if holds is None:
+            self.tied = f"only the control knows how often lines from {part.first + 1} are executed"
+            self.lose_set(part.first, part.last)
+            self.loops_on = True
+            raise lost("whether this loop is over")
+        if not holds:
+            self._go(part.first)
+
+    def _repeat(self, node: Node) -> None:
+        """Take REPEAT of UNTIL; sections that are repeated are not followed."""
+        if len(node.children) > 1:
+            self._elsewhere("how often REPEAT executes a section is known from no manual")
+
+    def _jump(self, way: str, destination: Any) -> None:
+        """Go to a label or a block number."""
+        way = way.upper()
+        child = destination.children[0]
+        if isinstance(child, Tree) and rule_of(child) == "variable" and len(child.children) == 1:
+            name = str(child.children[0])
+            if self._cell(name) is not None:
+                name = self.worth.text(self.worth.of(child))
+        elif isinstance(child, Token):
+            name = str(child).translate({32: None, 9: None})
+            name = name.strip('"')
+        else:
+            name = self.worth.text(self.worth.of(child))
+        if way == "GOTOS":
+            self._elsewhere("GOTOS goes to the start only where the PLC asks for it")
+            return
+        line = self.structure.target(way, name, self.line)
+        if line is None and way != "GOTOC":
+            raise self.refusal("GX223", f"there is no {name} that {way} leads to")
+        if line is not None:
+            self._go(line)
+
+    def _case(self, node: Node) -> None:
+        parts = [c for c in node.children if not (isinstance(c, Token) and c.type.endswith("CASE"))]
+        value = self.worth.number(parts[0])
+        for each in parts[1:]:
+            if isinstance(each, Tree) and rule_of(each) == "choice":
+                if self.worth.number(each.children[0]) == value:
+                    self._jump(str(each.children[1]), each.children[2])
+                    return
+            elif isinstance(each, Tree) and rule_of(each) == "destination":
+                self._jump(str(parts[parts.index(each) - 1]), each)
+                return
+
+    def _return(self, node: Node) -> None:
+        """Leave the program that nothing has called."""
+        if len(node.children) > 1:
+            self._elsewhere("RET(...) goes on where the caller says")
+            return
+        self.at = len(self.lines)
+
+    # --- what only the machine decides ---
+
+    def _undecided(self, part: Part | None) -> None:
+        """Keep what only the control decides on: a structure, or all that follows."""
+        if part is None or self.structure.leaves(part.first, part.last):
+            self._elsewhere("only the control knows where this goes on")
+            return
+        self._keep(part.last + 1, "only the control knows whether this is executed")
+
+    def _elsewhere(self, why: str) -> None:
+        """Keep all that follows, and all lines that may be executed once more."""
+        if not self.reading.stays:
+            self.refuse(why)
+        if self.structure.may_go_back(self.line):
+            self.tied = why
+        self._keep(len(self.lines), why)
+
+    def _keep(self, until: int, why: str) -> None:
+        self.kept_until, self.kept_why = until, why
+        self.refuse(why)

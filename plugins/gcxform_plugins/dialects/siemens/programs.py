@@ -1,0 +1,255 @@
+"""Programs for a SINUMERIK as they are executed: variables, decisions, jumps, and what is kept.
+
+A line that computes is turned into one of plain words, which is read as any other
+(`computing.py`). One that decides says where to go on. What is not understood stays as it stands,
+where the program is written for the same control and nothing that is written depends on it: behind
+it positions are lost, and what it may have set.
+"""
+
+from __future__ import annotations
+
+import re
+import zlib
+from collections.abc import Iterable, Iterator, Sequence
+
+import gcxform as gx
+from gcxform_plugins.dialects.siemens.computing import Computing
+from gcxform_plugins.dialects.siemens.line import Line
+from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
+from gcxform_plugins.dialects.siemens.spelling import spelled
+from gcxform_plugins.dialects.siemens.structure import StructureError, code
+
+KEPT = "M9000"
+DECIDES = re.compile(
+    r"(?:IF|ELSE|ENDIF|LOOP|ENDLOOP|FOR|ENDFOR|WHILE|ENDWHILE|REPEATB?|UNTIL|CASE|GOTO[BFCS]?|RET)"
+    r"(?![A-Z0-9_])"
+)
+FROM_HERE = re.compile(
+    r"(?<![A-Z0-9_])(?:WHEN|WHENEVER|EVERY|DO|SETINT|DEFINE|G0*291)(?![A-Z0-9_])"
+)
+"""What may act on all that follows: synchronous actions, interrupts, macros, another language."""
+KEEPABLE = frozenset(
+    ("GX203", "GX206", "GX207", "GX208", "GX209", "GX210", "GX213", "GX220", "GX221")
+)
+"""The refusals of what may stand as it is: it is not known, or not read."""
+STANDARD = re.compile(
+    r"(?:M?CALL[ \t]+)?(?:CYCLE[0-9]+|HOLES[12]|POCKET[1-4]|SLOT[12]|LONGHOLE)[ \t]*\(",
+    re.IGNORECASE,
+)
+"""Cycles of Siemens: they return modes and frames as they were (Cycles 11.02, 1.4)."""
+KEEPS = "as they stand: {}; where the axes are behind them is not known, nor what they have set"
+STEPPED = re.compile(r"=[ \t]*IC[ \t]*\(|(?<![A-Z0-9_])G[ \t]*0*91(?![0-9.])", re.IGNORECASE)
+FEED_MODES = frozenset(("93", "94", "95"))
+STATE = (
+    *("motion", "said", "plane", "work", "unit", "steps", "said_steps", "said_centres"),
+    *("following", "comp", "changed", "tool", "waiting", "edge", "drilling", "once"),
+    *("fed", "feed_mode"),
+)
+
+
+class Programs(Computing):
+    """Executes the lines of a program for a SINUMERIK."""
+
+    writes = True
+    kept = KEPT
+
+    def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
+        """Return the blocks of a line. Raises InputError."""
+        if not self.reading.stays:
+            return self.executed(items)
+        self._arrive()
+        if self.line < self.kept_until:
+            return self._kept(items, self.kept_why, True)
+        before = {name: getattr(self, name) for name in STATE}
+        orientation = [*self.orientation]
+        try:
+            if self.unknown_cycle and any(i.name in LINEAR for i in items if i.names):
+                self.refuse(f"{self.unknown_cycle} is called behind this block")
+            return [*self.executed(items)]
+        except gx.InputError as error:
+            (found, *_) = error.diagnostics
+            if found.code not in KEEPABLE:
+                raise
+            vars(self).update(before)
+            self.orientation = orientation
+            if any(i.kind == "flow" and DECIDES.match(i.name) for i in items):
+                self._decides_elsewhere(found.message)
+            return self._kept(items, found.message, False)
+
+    def _decides_elsewhere(self, why: str) -> None:
+        """Keep all that follows a decision that is not made here, where nothing less is kept."""
+        if self.kept_until > self.line or self.loops_on:
+            self.loops_on = False
+            return
+        self.kept_until, self.kept_why = len(self.lines), why
+        try:
+            back = self.structure.may_go_back(self.line)
+        except StructureError:
+            back = True
+        if back:
+            self.tied = why
+
+    def _kept(self, items: Sequence[gx.Item], why: str, opaque: bool) -> list[str]:
+        """Return the block of a line that stays as it stands."""
+        text = self.lines[self.line]
+        if not items:
+            return []
+        self.kept_lines.append((self.line, why))
+        if FROM_HERE.search(code(text).upper()):
+            self.kept_until, self.kept_why = len(self.lines), why
+        opaque |= self._calls(text, items)
+        line = self._codes_of(items)
+        if line.motion.isdigit():
+            self.motion = line.motion
+        self._lose(items, opaque)
+        motion = self.motion_code(line, self.motion) if self.motion.isdigit() else []
+        if "G91" in line.codes:  # it says so itself, and stays
+            line.codes.remove("G91")
+            self.unsaid.add("distance")
+            self.steps = self.said_steps
+        codes = [
+            *line.codes,
+            *motion,
+            *([f"F{line.feed}"] if line.feed and line.dwell is None else []),
+        ]
+        if "distance" not in self.unsaid:
+            codes += self.distance_code(line, self.steps)
+        self.said_steps = self.steps
+        number = zlib.crc32(text.strip().encode("latin-1")) & 0xFFFFF
+        if opaque:
+            self.motion, self.unsaid, self.fed = "", {"distance"}, False
+        self.plainly = False
+        return [f"{line.number}{' '.join([*codes, f'{KEPT} P{number}'])}"]
+
+    def _calls(self, text: str, items: Sequence[gx.Item]) -> bool:
+        """Whether a line may call what sets modes: all but words, assignments and known cycles."""
+        modal = any(item.name == "MCALL" for item in items)
+        if modal:
+            self.unknown_cycle, self.drilling = text.strip(), None
+        if STANDARD.search(text):
+            return False
+        kinds = ("call", "command", "flow", "array")
+        return any(item.kind in kinds or self._is_own(item) for item in items)
+
+    def _is_own(self, item: gx.Item) -> bool:
+        """Whether a word calls, or is an M code of the machine's own, which may be a program."""
+        number = item.numbers[0] if item.kind == "word" and item.numbers else ""
+        own = item.name == "M" and not (number.isdigit() and int(number) in self.dialect.m_codes)
+        return item.name in ("L", "P") or (own and item.kind == "word")
+
+    def _codes_of(self, items: Sequence[gx.Item]) -> Line:
+        """Return the modes and the number of a line that stays as it stands."""
+        line = Line()
+        for item in items:
+            if item.kind in ("word", "value") and item.name in ("G", "N", "F"):
+                try:
+                    self._word(line, item)
+                except gx.InputError:
+                    self.unsaid.add("distance")
+        return line
+
+    def _lose(self, items: Sequence[gx.Item], opaque: bool) -> None:
+        """Forget what a line may have changed."""
+        self.place.lose(LINEAR + ROTARY)
+        self.place.moved = True
+        self.lose_set(self.line, self.line)
+        self.fed &= not any(item.kind == "expression" and item.name == "F" for item in items)
+        words = {item.name for item in items}
+        if opaque or words & {"T", "M", "D"}:
+            self.tool = self.waiting = self.edge = None
+        if opaque:
+            self.lose_called(self.lines[self.line])
+
+    def spelled(self, line: str, blocks: Sequence[str]) -> str | None:
+        """Return a line that stands for new blocks; None where only the machine decides on it."""
+        return None if self.tied else spelled(line, blocks)
+
+    def counts(self, line: str) -> bool:
+        """Whether a line has a word that counts from where its axis stands."""
+        return STEPPED.search(code(line)) is not None
+
+    def closing(self) -> Iterator[str]:
+        """Say which lines are kept."""
+        if self.kept_lines:
+            self.assumed[self._told()] = None
+        return iter(())
+
+    def _told(self) -> str:
+        lines = sorted({line + 1 for line, _ in self.kept_lines})
+        first = min(self.kept_lines)
+        few = ", ".join(map(str, lines[:8])) + (" and more" if len(lines) > 8 else "")
+        why = f"line {first[0] + 1}: {first[1]}"
+        return f"lines {few} ({len(lines)}) are kept " + KEEPS.format(why)
+
+    def _moving(self, line: Line) -> str:
+        if "distance" in self.unsaid and any(not way for way, _, _ in line.axes.values()):
+            message = "G90 or G91 is needed here: what was called before may have changed it"
+            self.refuse(message, self.any_of(line), "write G90 in this block")
+        motion = line.motion or self.motion
+        if self.reading.stays and motion != "0" and not (line.feed or self.fed):
+            message = "no feed is known to be in force here"
+            self.refuse(message, self.any_of(line), "write F in this block")
+        return super()._moving(line)
+
+    def _code(self, line: Line, item: gx.Item, number: str) -> None:
+        super()._code(line, item, number)
+        if number.isdigit() and int(number) in (90, 91):
+            self.unsaid.discard("distance")
+
+    def _word(self, line: Line, item: gx.Item) -> None:
+        super()._word(line, item)
+        self.fed |= item.name == "F"
+
+    def _modal(self, line: Line, item: gx.Item, code: str) -> None:
+        super()._modal(line, item, code)
+        if code in FEED_MODES and code != self.feed_mode:
+            self.feed_mode, self.fed = code, bool(line.feed)
+
+    def _switched(self, line: Line, item: gx.Item, name: str) -> None:
+        if self.reading.stays:
+            self.refuse(f"{name}: what the words are of changes with it", item)
+        super()._switched(line, item, name)
+
+    def _other(self, line: Line, item: gx.Item, letter: str, number: str) -> None:
+        codes = self.dialect.m_codes
+        known = not number.isdigit() or int(number) in codes or int(number) in self.reading.inert_m
+        if self.reading.stays and letter == "M" and not known:
+            self.refuse(f"M{number} is one of the machine's own", item)
+        super()._other(line, item, letter, number)
+
+    def _command(self, line: Line, item: gx.Item) -> None:
+        if item.name == "MCALL":
+            self.unknown_cycle = ""
+        super()._command(line, item)
+
+    def _tooled(self, line: Line) -> Iterator[str]:
+        """Yield the blocks of T, M6 and D; on the same control lengths need not be known."""
+        if not self.reading.stays:
+            yield from super()._tooled(line)
+            return
+        if line.tool:
+            yield f"T{line.tool}"
+        if line.changes is not None:
+            if line.axes:
+                self.refuse("M6 beside a move", line.changes, "give M6 its own line")
+            yield "M6"
+        if line.edge is not None:
+            yield f"{KEPT} P{line.edge_number}"
+        self.tool = self.edge = None
+        self.changed |= line.changes is not None
+        self.place.lose(LINEAR if line.changes is None else LINEAR + ROTARY)
+
+    def _arc(self, line: Line) -> tuple[str, dict[str, float], list[str]]:
+        if self.reading.stays and any(self.place.known(axis) is None for axis in self.plane):
+            self.refuse("an arc, and where it starts is not known", self.any_of(line))
+        return super()._arc(line)
+
+    def _check_tool(self, line: Line) -> None:
+        """Ask nothing of the tool where words are words of the same control again."""
+        if not self.reading.stays:
+            super()._check_tool(line)
+
+    def check_plane(self, item: gx.Item | None) -> None:
+        """Ask nothing of the tool where words are words of the same control again."""
+        if not self.reading.stays:
+            super().check_plane(item)

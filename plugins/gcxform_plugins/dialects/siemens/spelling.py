@@ -1,0 +1,69 @@
+"""Lines of a SINUMERIK whose blocks have changed, in the manner in which they were programmed.
+
+Words keep their order, their blanks and their `=`; a word in IC becomes an absolute one, and G91
+becomes G90, as the block says. What cannot be said so is no line.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from decimal import Decimal
+
+CODE = re.compile(r'((?:[^";]|"[^"]*")*)(.*)', re.DOTALL)
+COMMENT = re.compile(r"\([^()]*\)")
+WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
+AXES = "XYZABC"
+VALUE = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
+AXIS = re.compile(
+    rf"(?<![A-Z0-9_])(?P<axis>[XYZABC])(?:(?P<blank>[ \t]*)(?P<plain>{VALUE})|"
+    r"(?P<equals>[ \t]*=[ \t]*)(?P<value>(?:AC|IC)[ \t]*\([^()]*(?:\([^()]*\)[^()]*)*\)|"
+    rf"{VALUE}(?![ \t]*(?:[-+*/<>=]|DIV|MOD))))(?![A-Z0-9_.])",
+    re.IGNORECASE,
+)
+RADIUS = re.compile(rf"(?<![A-Z0-9_])CR[ \t]*=[ \t]*{VALUE}", re.IGNORECASE)
+WAYS = re.compile(r"(?<![A-Z0-9_])([ABC])[ \t]*=[ \t]*(?:DC|ACP|ACN)[ \t]*\(", re.IGNORECASE)
+STEPS = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*91(?![0-9.])", re.IGNORECASE)
+ABSOLUTE = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*90(?![0-9.])", re.IGNORECASE)
+NUMBER = re.compile(r"[ \t]*(?:/[0-9]?)?[ \t]*(?:[N:][ \t]*[0-9]+)?[ \t]*", re.IGNORECASE)
+
+
+def spelled(line: str, blocks: Sequence[str]) -> str | None:
+    """Return a line that stands for a block; None where that is not known."""
+    if len(blocks) != 1:
+        return None
+    words = WORD.findall(COMMENT.sub("", blocks[0]))
+    values = {letter: text for letter, text in words if letter in AXES}
+    found = CODE.fullmatch(line)
+    assert found is not None
+    text, comment = found[1], found[2]
+    said = [m["axis"].upper() for m in AXIS.finditer(text)]
+    ways = {m[1].upper() for m in WAYS.finditer(text)}
+    if len(set(said)) != len(said) or not set(values) <= {*said, *ways} or (said and not values):
+        return None
+    text = AXIS.sub(lambda m: _axis(m, values), text)
+    centre = " ".join(f"{letter}{_number(value)}" for letter, value in words if letter in "IJK")
+    if centre:
+        text = RADIUS.sub(centre, text)
+    if ("G", "90") in words:
+        text = STEPS.sub("G90", text)
+        if not ABSOLUTE.search(text) and "=" not in line:
+            head = NUMBER.match(text)
+            at = head.end() if head else 0
+            text = f"{text[:at]}G90 {text[at:]}"
+    return text + comment
+
+
+def _number(text: str) -> str:
+    return format(Decimal(text).normalize(), "f")
+
+
+def _axis(found: re.Match[str], values: dict[str, str]) -> str:
+    """Return an axis word with its new value; one that does not move any more is left out."""
+    axis = found["axis"]
+    if axis.upper() not in values:
+        return ""
+    number = _number(values[axis.upper()])
+    if found["equals"] is not None:
+        return f"{axis}{found['equals']}{number}"
+    return f"{axis}{found['blank']}{number}"

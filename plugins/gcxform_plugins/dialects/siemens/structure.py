@@ -1,0 +1,131 @@
+"""Which lines of a program for a SINUMERIK belong together, and where jumps lead.
+
+Structures are IF, WHILE, FOR, LOOP and REPEAT with the lines that end them. A jump is looked for
+as text, the nearest first, in its direction; none leads into a structure.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+HEAD = re.compile(
+    r"[ \t]*(?:/[0-9]?)?[ \t]*(?:[N:][ \t]*(?P<number>[0-9]+))?"
+    r"[ \t]*(?:(?P<label>[A-Z_]{2}[A-Z0-9_]*)[ \t]*:(?!=))?[ \t]*(?P<word>[A-Z_][A-Z0-9_]*)?",
+    re.IGNORECASE,
+)
+STRING = re.compile(r'"[^"]*"')
+JUMP = re.compile(r"(?<![A-Z0-9_])GOTO[BFCS]?(?![A-Z0-9_])", re.IGNORECASE)
+LEAVES = re.compile(
+    r"(?<![A-Z0-9_])(?:GOTO[BFCS]?|RET|M0*(?:2|17|30|99)|PROC|REPEATB?[ \t]+[A-Z_])(?![A-Z0-9_])",
+    re.IGNORECASE,
+)
+BACK = re.compile(
+    r"(?<![A-Z0-9_])(?:GOTO|GOTO[BCS]|REPEATB?|RET|UNTIL|WHILE|FOR|LOOP)(?![A-Z0-9_])",
+    re.IGNORECASE,
+)
+SET = re.compile(
+    r"(?<![A-Z0-9_$.])([A-Z_][A-Z0-9_]*)[ \t]*(?:\[[^]]*\][ \t]*)?=(?!=)", re.IGNORECASE
+)
+ENDS = {"ENDIF": "IF", "ENDWHILE": "WHILE", "ENDFOR": "FOR", "ENDLOOP": "LOOP", "UNTIL": "REPEAT"}
+
+
+class StructureError(Exception):
+    """Lines that do not fit together: the line, and why."""
+
+    def __init__(self, line: int, message: str) -> None:
+        super().__init__(message)
+        self.line, self.message = line, message
+
+
+def code(text: str) -> str:
+    """Return a line without comment; what stands in texts is left out."""
+    return STRING.sub('""', text).partition(";")[0]
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A structure: its kind, its first line, that of ELSE (-1 without), and its last."""
+
+    kind: str
+    first: int
+    other: int
+    last: int
+
+
+class Structure:
+    """The structures of the lines from `first` up to `stop`. Raises StructureError."""
+
+    def __init__(self, lines: Sequence[str], first: int, stop: int) -> None:
+        self.lines, self.first, self.stop = lines, first, stop
+        self.parts: list[Part] = []
+        self.at: dict[int, Part] = {}
+        open_: list[tuple[str, int, int]] = []
+        for line in range(first, stop):
+            found = HEAD.match(code(lines[line]))
+            word = (found["word"] or "").upper() if found else ""
+            if word in ("IF", "WHILE", "FOR", "LOOP", "REPEAT") and self._opens(word, line):
+                open_.append((word, line, -1))
+            elif word == "ELSE":
+                if not open_ or open_[-1][0] != "IF" or open_[-1][2] >= 0:
+                    raise StructureError(line, "ELSE without an IF that is open")
+                open_[-1] = (*open_[-1][:2], line)
+            elif word in ENDS:
+                if not open_ or open_[-1][0] != ENDS[word]:
+                    raise StructureError(line, f"{word} ends nothing that is open here")
+                self._close(*open_.pop(), line)
+        if open_:
+            raise StructureError(open_[-1][1], f"{open_[-1][0]} has no end")
+
+    def _opens(self, word: str, line: int) -> bool:
+        text = code(self.lines[line])
+        if word == "IF":
+            return not JUMP.search(text)
+        found = HEAD.match(text)
+        return word != "REPEAT" or (found is not None and not text[found.end() :].strip())
+
+    def _close(self, kind: str, first: int, other: int, last: int) -> None:
+        part = Part(kind, first, other, last)
+        self.parts.append(part)
+        self.at[first] = self.at[last] = part
+        if other >= 0:
+            self.at[other] = part
+
+    def around(self, line: int) -> frozenset[int]:
+        """Return the first lines of the structures that a line stands in; heads stand outside."""
+        return frozenset(part.first for part in self.parts if part.first < line <= part.last)
+
+    def target(self, way: str, name: str, line: int) -> int | None:
+        """Return the line that a jump goes to, None where there is none. Raises StructureError."""
+        ahead, back = range(line + 1, self.stop), range(line, self.first - 1, -1)
+        for lines in {"GOTOF": (ahead,), "GOTOB": (back,)}.get(way, (ahead, back)):
+            for at in lines:
+                if self._is(at, name):
+                    if not self.around(at) <= self.around(line):
+                        raise StructureError(line, f"the jump to {name} leads into a structure")
+                    return at
+        return None
+
+    def _is(self, line: int, name: str) -> bool:
+        found = HEAD.match(code(self.lines[line]))
+        if found is None:
+            return False
+        number = name.upper().removeprefix("N")
+        if number.isdigit():
+            return found["number"] is not None and int(found["number"]) == int(number)
+        return found["label"] is not None and found["label"].upper() == name.upper()
+
+    def leaves(self, first: int, last: int) -> bool:
+        """Whether lines, first to last, may go on elsewhere than behind them."""
+        return any(LEAVES.search(code(self.lines[line])) for line in range(first, last + 1))
+
+    def may_go_back(self, line: int) -> bool:
+        """Whether a line or one behind it may lead back to lines before it."""
+        inside = any(p.kind != "IF" and p.first < line <= p.last for p in self.parts)
+        return inside or any(BACK.search(code(self.lines[at])) for at in range(line, self.stop))
+
+    def names_set(self, first: int, last: int) -> Iterator[str]:
+        """Yield the names, in capitals, that lines assign values to."""
+        for line in range(first, last + 1):
+            yield from (name.upper() for name in SET.findall(code(self.lines[line])))

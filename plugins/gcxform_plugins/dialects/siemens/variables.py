@@ -1,0 +1,202 @@
+"""Variables of a program for a SINUMERIK: how they are defined, set, read and lost.
+
+They live in cells (`cells.py`); what only the control knows is lost, and refused where it decides.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from typing import Any
+
+from lark import Token, Tree
+
+from gcxform import vocabulary as v
+from gcxform_plugins.dialects.siemens.blocks import Blocks
+from gcxform_plugins.dialects.siemens.cells import LOST, Cell, Value, converted
+from gcxform_plugins.dialects.siemens.expressions import PARAMETER, Expressions, number_text
+from gcxform_plugins.dialects.siemens.nodes import Node, names_in, rule_of, span_of, type_of
+from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
+from gcxform_plugins.dialects.siemens.structure import Structure
+
+WORDS = re.compile(r"[XYZABCIJKFSTDM]|[IJK]1|CR|AR|TURN|ADIS|ADISPOS|CTOL|OTOL|ATOL")
+POSITIONS = frozenset(("$P_EP", "$AA_IW"))
+AXES = frozenset(LINEAR + ROTARY)
+NAME = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
+
+
+class Variables(Blocks):
+    """Keeps the variables of a program.
+
+    r        R parameters;  levels: the variables of each call, by name in capitals
+    stopped  STOPRE has been, and nothing has moved since
+    """
+
+    def __init__(self, lines: Sequence[str], file: str, dialect: Any, reading: Any) -> None:
+        super().__init__(lines, file, dialect, reading)
+        self.r: dict[int, Value] = {}
+        self.levels: list[dict[str, Cell]] = [{}]
+        self.stopped = False
+        self.worth = Expressions(self.r, self._cell, self._system)
+
+    @cached_property
+    def structure(self) -> Structure:
+        """The structures of the program. Raises StructureError."""
+        return Structure(self.lines, 0, len(self.lines))
+
+    # --- assignments ---
+
+    def _assignment(self, node: Node, set_names: set[str]) -> Iterator[tuple[int, int, str]]:
+        """Make an assignment, or yield the word with its number."""
+        target, value = node.children
+        assert isinstance(target, Tree)
+        name = str(target.children[0]).upper()
+        index: Any = target.children[1] if len(target.children) > 1 else None
+        if self._is_variable(name, index):
+            self._set(name, index, value)
+            set_names.add(name)
+            yield (*span_of(node), "")
+            return
+        if index is not None or not WORDS.fullmatch(name):
+            self.refuse(f"{name} is neither a variable of the program nor a word that is read")
+        if set_names & set(names_in(value)):
+            self.refuse(
+                "a variable is set, and read in a word of the same block", None, "part them"
+            )
+        way, number = self._worded(value)
+        text = f"{way}({number})" if way else number
+        yield (*span_of(node), f" {name}={text} ")
+
+    def _is_variable(self, name: str, index: Node | None) -> bool:
+        return (
+            bool(PARAMETER.fullmatch(name))
+            or (name == "R" and index is not None)
+            or (self._cell(name) is not None)
+        )
+
+    def _worded(self, value: Any) -> tuple[str, str]:
+        """Return the way of a word (nothing, AC, IC ...), and its number or text."""
+        if isinstance(value, Tree) and rule_of(value) == "axis_value":
+            return str(value.children[0]).upper(), number_text(self.worth.number(value.children[1]))
+        found = self.worth.of(value)
+        return "", f'"{found}"' if isinstance(found, str) else number_text(self._finite(found))
+
+    def _finite(self, value: Value) -> float:
+        assert not isinstance(value, str)
+        assert value is not None
+        return self.worth.checked(value)
+
+    def _set(self, name: str, index: Node | None, value: Any) -> None:
+        """Set a variable; what only the control knows is lost with it."""
+        try:
+            given = self._values(value)
+        except v.NoValueError as why:
+            if not why.lost:
+                raise
+            given = [LOST]
+        if PARAMETER.fullmatch(name) or name == "R":
+            numbers = self.worth.indices(index) if index is not None else (int(name[1:]),)
+            if len(given) != 1 or len(numbers) != 1:
+                raise v.NoValueError("R parameters take one number")
+            self.r[numbers[0]] = converted("REAL", given[0])
+            return
+        cell = self._cell(name)
+        assert cell is not None
+        self._fill(cell, index, given)
+
+    def _fill(self, cell: Cell, index: Node | None, given: Sequence[Value]) -> None:
+        """Set elements of an array from one on, or a single value."""
+        many = len(given) > 1
+        if cell.size and index is None and not many and given == [LOST]:
+            cell.lose()
+            return
+        numbers = self.worth.indices(index) if index is not None else (0,) * len(cell.size)
+        at = cell.place(numbers)
+        if cell.size and index is None and not many:
+            raise v.NoValueError("an array takes SET(...), REP(...) or an index")
+        if at + len(given) > len(cell.values):
+            raise v.NoValueError("more values than elements")
+        for k, each in enumerate(given):
+            if each != "":
+                cell.values[at + k] = converted(cell.kind, each)
+
+    def _values(self, node: Any) -> list[Value]:
+        """Return the values of an assignment: several for SET and lists."""
+        rule = rule_of(node) if isinstance(node, Tree) else ""
+        if rule in ("repeated", "axis_value"):
+            self.refuse("REP(...) and ways of axes are not read in an assignment")
+        if rule == "list":
+            return [self.worth.of(each) for each in node.children]
+        if rule == "set_of":
+            slots = node.children[1:]
+            if not all(each.children for each in slots):
+                self.refuse("SET(...) with values left out is not read")
+            return [self.worth.of(each.children[0]) for each in slots]
+        return [self.worth.of(node)]
+
+    # --- variables ---
+
+    def _cell(self, name: str) -> Cell | None:
+        return self.levels[-1].get(name.upper())
+
+    def _system(self, name: str, index: Sequence[Any]) -> Value:
+        """Return what the control says of where an axis stands, if that is known."""
+        alone = len(index) == 1 and isinstance(index[0], Tree) and rule_of(index[0]) == "variable"
+        said = str(index[0].children[0]).upper() if alone else ""
+        known = name in POSITIONS and (name == "$P_EP" or self.stopped)
+        place = self.place.known(said) if known and said in AXES and self.unit != "G20" else None
+        return LOST if place is None else float(place)
+
+    def lose_set(self, first: int, last: int) -> None:
+        """Forget what lines may have set."""
+        for name in self.structure.names_set(first, last):
+            if PARAMETER.fullmatch(name):
+                self.r[int(name[1:])] = LOST
+            elif name == "R":
+                self.r.clear()
+            elif (cell := self._cell(name)) is not None:
+                cell.lose()
+
+    def lose_called(self, text: str) -> None:
+        """Forget what a call may have set: R parameters, and the variables that its line names."""
+        self.r.clear()
+        for name in NAME.findall(text):
+            if (cell := self._cell(name)) is not None:
+                cell.lose()
+
+    def _def(self, node: Node) -> None:
+        """Define variables."""
+        kind = type_of(node)
+        for each in (
+            c for c in node.children if isinstance(c, Tree) and rule_of(c) == "definition"
+        ):
+            self._define(kind, each)
+
+    def _define(self, kind: str, node: Node) -> None:
+        name, *rest = node.children
+        index = next((c for c in rest if isinstance(c, Tree) and rule_of(c) == "index"), None)
+        value = next((c for c in rest if c is not index), None)
+        upper = str(name).upper()
+        if WORDS.fullmatch(upper) or PARAMETER.fullmatch(upper):
+            self.refuse(f"{name} is a word of the control, and no name for a variable")
+        size = self.worth.indices(index) if index is not None else ()
+        cell = self.levels[-1][upper] = Cell.new(kind, size)
+        if value is None:
+            return
+        try:
+            self._fill(cell, None, self._values(value))
+        except v.NoValueError as why:
+            if not why.lost:
+                raise
+            cell.lose()
+
+    def _proc(self, node: Node) -> None:
+        """Take the parameters of a program that nothing has called: nobody knows them."""
+        for each in (c for c in node.children if isinstance(c, Tree) and rule_of(c) == "parameter"):
+            tokens, kind = [c for c in each.children if isinstance(c, Token)], type_of(each)
+            name = next(str(t).upper() for t in tokens if t.type.endswith("NAME"))
+            cell = self.levels[-1][name] = Cell.new(kind)
+            cell.lose()
+            if any(isinstance(c, Tree) and rule_of(c) == "bounds" for c in each.children):
+                del self.levels[-1][name]
