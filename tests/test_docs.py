@@ -357,7 +357,7 @@ def tracked():
 
 
 FORBIDDEN = ["py" + "pi.", "python" + "hosted", "/wo" + "rk/", "sess" + "ion", "/ro" + "ot/"]
-ALLOWED = re.compile(r'scope="\w+"')  # of pytest's fixtures
+ALLOWED = re.compile(r'scope="\w+"|pytest_\w+finish')  # of pytest's fixtures and hooks
 
 
 def test_no_file_names_a_registry_or_a_computer():

@@ -262,6 +262,11 @@ CODES: dict[str, tuple[str, str]] = {
         "above it. One that another user has put there is not taken by itself: it would decide "
         "what is cut. Look at it, and name it with -p if it is meant.",
     ),
+    "GX751": (
+        "A folder cannot be watched",
+        "Another watcher is at work in this folder, or its results would be dropped into it and be "
+        "taken for programs again. End the other one, or name another folder with -o.",
+    ),
     "GX760": (
         "A file names another that lies elsewhere",
         "A pipeline, machine or model file may name files in its own folder and below, or below "

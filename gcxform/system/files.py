@@ -47,6 +47,16 @@ def write_atomically(path: Path) -> Iterator[Callable[[bytes], object]]:
             temporary.unlink()
 
 
+def sync_folder(path: Path) -> None:
+    """Have the names in a folder on the disk, where the system can be asked for that."""
+    with suppress(OSError):
+        handle = os.open(path, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
 def _check_replaceable(path: Path) -> None:
     """Refuse to replace a file that is read for this run, or that may not be written to."""
     if is_read(path):

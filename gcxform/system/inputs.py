@@ -43,8 +43,12 @@ _VISIT: ContextVar[Visit | None] = ContextVar("visit", default=None)
 
 @contextmanager
 def visit() -> Iterator[Visit]:
-    """Watch what is read until the block ends; outside of a visit files may name any others."""
-    found = Visit()
+    """Watch what is read until the block ends; outside of a visit files may name any others.
+
+    What was allowed for a visit is allowed for those within it.
+    """
+    around = _VISIT.get()
+    found = Visit(around is not None and around.anywhere)
     folder = os.path.realpath(os.curdir)
     if folder != os.path.dirname(folder):  # everything is inside of the root of the file system
         found.roots.add(folder)

@@ -13,7 +13,7 @@ import io
 import json
 import math
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass, field
 from typing import Any, Final, TextIO
@@ -35,6 +35,7 @@ class Answer:
     values: dict[str, Any] = field(default_factory=dict)
     findings: list[Diagnostic] = field(default_factory=list)
     written: list[str] = field(default_factory=list)
+    real: TextIO = field(default_factory=lambda: sys.stdout)
     output: io.TextIOWrapper = field(
         default_factory=lambda: io.TextIOWrapper(
             io.BytesIO(), "utf-8", "surrogateescape", "", write_through=True
@@ -87,6 +88,25 @@ def note_written(name: str) -> None:
     """Remember a file that a verb has written."""
     if (found := asked()) is not None and name not in found.written:
         found.written.append(name)
+
+
+@contextmanager
+def lines_of_documents() -> Iterator[Callable[[str], None] | None]:
+    """Give what prints documents as they come, a line for each; None where lines are wanted.
+
+    No other document follows them.
+    """
+    context = click.get_current_context()
+    found: Answer | None = context.meta.get(ANSWER)
+    if found is None:
+        yield None
+        return
+
+    def put(text: str) -> None:
+        print(text, file=found.real, flush=True)
+
+    yield put
+    del context.meta[ANSWER]
 
 
 def option() -> click.Option:

@@ -102,6 +102,17 @@ def told(error: Exception, meta: Mapping[str, Any]) -> int:
     return _bug(words, bool(meta.get(DEBUG)))
 
 
+def reported(error: Exception) -> tuple[str, int, tuple[Diagnostic, ...]]:
+    """Return in words what went wrong with one program of many, the exit code, and the findings."""
+    if isinstance(error, OSError | MemoryError):
+        error = _as_failure(error)
+    if isinstance(error, GcxformError):
+        return error.render(), error.exit_code, error.diagnostics
+    trace = "".join(traceback.format_exception(error))
+    report = _report(f"gcxform {VERSION}, Python {sys.version}\n\n{trace}")
+    return f"internal error: {type(error).__name__}; please report it with {report}", BUG, ()
+
+
 def _misspelt(error: click.ClickException, found: list[Diagnostic] | None) -> int:
     """Report a command line that is not understood."""
     if found is None:
@@ -164,19 +175,24 @@ def _tolerate_names() -> None:
 
 def _system_failure(error: OSError | MemoryError, found: list[Diagnostic] | None) -> int:
     """Report what the operating system refused; a reader that went away is no news."""
-    if isinstance(error, MemoryError):
-        error = OSError(errno.ENOMEM, "there is not enough memory")
-    if error.errno == errno.EPIPE:
+    if isinstance(error, OSError) and error.errno == errno.EPIPE:
         _abandon_stdout()
         return FAILED
-    what = f"{error.filename}: " if error.filename else ""
-    failure = FileError.one("GX903", f"{what}{error.strerror or error}")
+    failure = _as_failure(error)
     if found is None:
         _abandon_stdout()
         say(paint(failure.render(), sys.stderr))
     else:
         found += failure.diagnostics
     return failure.exit_code
+
+
+def _as_failure(error: OSError | MemoryError) -> FileError:
+    """Return what the operating system refused as an error of ours."""
+    if isinstance(error, MemoryError):
+        error = OSError(errno.ENOMEM, "there is not enough memory")
+    what = f"{error.filename}: " if error.filename else ""
+    return FileError.one("GX903", f"{what}{error.strerror or error}")
 
 
 def _abandon_stdout() -> None:
