@@ -63,11 +63,18 @@ def _run(group: click.Command, name: str, words: list[str], extra: Mapping[str, 
         return INTERRUPTED
     except Exception as error:
         if "--json" in words and ANSWER not in meta:  # it was not come to yet
-            meta[ANSWER] = Answer(next(word for word in words if not word.startswith("-")))
+            meta[ANSWER] = Answer(_verb(error, words))
         code = told(error, {**meta, WORDS: words})
         if words[:1] == ["run"] and _asks(error) and ANSWER not in meta:
             say(ALL_AT_ONCE)
     return _finished(meta, code)
+
+
+def _verb(error: Exception, words: list[str]) -> str:
+    """Return the verb that a command line has come to."""
+    context = error.ctx if isinstance(error, click.UsageError) else None
+    path = "" if context is None else context.command_path.partition(" ")[2]
+    return path or next(word for word in words if not word.startswith("-"))
 
 
 def _finished(meta: Mapping[str, Any], code: int) -> int:
