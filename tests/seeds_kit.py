@@ -1,8 +1,17 @@
-"""Seeds of generated programs, in shares: each is a test of seconds, and they run side by side."""
+"""Seeds of generated programs, in shares: each is a test of seconds, and they run side by side.
+
+A property of which an example is dear (a program is drawn, run and compared, or LinuxCNC is asked)
+is tried on multiples of `DRAWN`: 30 where a cheap one is tried on 75, and as many as it over night.
+"""
 
 from __future__ import annotations
 
 import pytest
+from hypothesis import settings
+
+DRAWN = min(30, settings.default.max_examples)
+if settings.default.max_examples > 1000:  # the profile `long`
+    DRAWN = settings.default.max_examples
 
 
 def shares(count: int, size: int) -> pytest.MarkDecorator:

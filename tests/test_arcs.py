@@ -21,6 +21,7 @@ from hypothesis import strategies as st
 from oracles import rs274
 from properties.test_laws import at, point_of
 from reference.interpreter import Move, interpret
+from seeds_kit import DRAWN
 from test_verify import Change, dropped, inserted, said, swapped
 from test_verify import run as lie
 
@@ -33,8 +34,8 @@ from gcxform.syntax.source import Source
 
 EXAMPLES = Path(__file__).parents[1] / "examples" / "lddm"
 ROUNDING = 0.004  # mm; what three decimals may add along an arc
-SOME = settings(max_examples=max(settings.default.max_examples // 2, 1), deadline=None)
-FEW = settings(SOME, max_examples=max(settings.default.max_examples // 8, 1))
+SOME = settings(max_examples=max(DRAWN // 2, 1), deadline=None)
+FEW = settings(SOME, max_examples=max(DRAWN // 8, 1))
 
 
 def run(chain: str, program: bytes, dialect: str = "linuxcnc") -> gx.Result:

@@ -15,13 +15,14 @@ from properties.contours import contour
 from properties.test_whole import drawn as whole
 from reference.interpreter import Move, Program, Refused, interpret
 from reference.words import blocks
+from seeds_kit import DRAWN
 
 from gcxform.testing.generate import Options, program
 from gcxform.testing.strategies import lines_of_bytes, programs
 
 FACTS = Path(__file__).parents[2] / "shared" / "dialect-facts"
 ZERO = dict.fromkeys("XYZABC", 0.0)
-COUNT = 20 * settings.default.max_examples  # 1,500; a profile may ask for more
+COUNT = 20 * DRAWN
 CHUNK = 2000
 OTHERS = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 INSERTS = """X1 Y Z- A5 G0 G1 G2 G3 G4 G17 G18 G91 G90 G93 G94 G95 G20 G21 G80 G90.1 G91.1 F0 F-1

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from ball_kit import CENTRE, NOISE, around, clean, measured, rms, skew
 
-from gcxform.calibrate.rotary.axis import Centres, fitted, locate, without_each
+from gcxform.calibrate.rotary.axis import Centres, fitted, locate, residuals, slopes, without_each
 from gcxform.calibrate.rotary.check import warnings
 from gcxform.calibrate.rotary.circle import fit_circles
 from gcxform.diagnostics import InputError
@@ -47,6 +47,20 @@ def test_the_angles_make_the_centre_better(degrees, count, um):
     ]
     # within four standard deviations of such an rms, and of its two digits
     assert 1e3 * rms(np.array(every)[:, :2]) == pytest.approx(um, rel=0.17)
+
+
+@pytest.mark.parametrize("size", [1e-5, 0.01, 0.7])
+def test_the_slopes_of_the_fit_are_those_of_its_residuals(size):
+    """Far from the start as well, where turns do not add up."""
+    centres = clean(skew(), around(7, 200))
+    figure, step = locate(centres, NOISE).figure, size * np.random.default_rng(0).normal(size=7)
+    apart = [
+        residuals(centres, figure.moved(step + little))
+        - residuals(centres, figure.moved(step - little))
+        for little in np.eye(7) * 1e-6
+    ]
+    wanted = np.reshape(apart, (7, -1)).T / 2e-6
+    assert slopes(centres, figure, step) == pytest.approx(wanted, abs=1e-6)
 
 
 @pytest.mark.parametrize("degrees", [360, 150, 60])

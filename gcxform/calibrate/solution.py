@@ -25,13 +25,15 @@ RANK: Final = 1e-9  # of the largest singular value: below it a direction is not
 class Solution:
     """Least squares: values (n,), their covariance (n, n), directions without effect (n, d).
 
-    `residual` (m,) is divided by the standard deviation of each observation.
+    `residual` (m,) is divided by the standard deviation of each observation; `basis` (m, rank) are
+    the directions of such observations that the values can take, each of length 1.
     """
 
     value: Floats
     covariance: Floats
     free: Floats
     residual: Floats
+    basis: Floats
 
     @property
     def rank(self) -> int:
@@ -126,9 +128,9 @@ def solve(matrix: Floats, observed: Floats, deviation: Floats) -> Solution:
     padded = np.pad(scaled, ((0, missing), (0, 0)))
     left, size, right = np.linalg.svd(padded, full_matrices=False)
     known = size > RANK * size[0]
-    back = right[known].T / size[known]
-    value = back @ (left[: len(scaled), known].T @ target)
-    return Solution(value, back @ back.T, right[~known].T, target - scaled @ value)
+    back, basis = right[known].T / size[known], left[: len(scaled), known]
+    value = back @ (basis.T @ target)
+    return Solution(value, back @ back.T, right[~known].T, target - scaled @ value, basis)
 
 
 def belonging(standardised: Floats, outlying: float) -> Flags:

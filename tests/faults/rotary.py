@@ -56,6 +56,12 @@ MUTATIONS = (
     # the fit with angles
     _rotary(
         "gcxform/calibrate/rotary/axis.py",
+        "turns of the fit add up",
+        "design[..., 3:6] @ _added(step[3:6])",
+        "design[..., 3:6]",
+    ),
+    _rotary(
+        "gcxform/calibrate/rotary/axis.py",
         "the start turns the other way",
         "(u + np.cross(w, direction))",
         "(u - np.cross(w, direction))",

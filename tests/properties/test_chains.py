@@ -18,14 +18,14 @@ from hypothesis import settings
 from oracles import rs274, ways
 from oracles.canon import CanonProgram
 from properties import chains
-from seeds_kit import shares
+from seeds_kit import DRAWN, shares
 
 import gcxform as gx
 from gcxform.plugin.registry import default_registry
 from gcxform.testing.cases import read_case
 
 LONG = settings.default.max_examples > 1000
-COUNT = 20_000 if LONG else 375
+COUNT = DRAWN if LONG else 5 * DRAWN
 TARGETS = ("fanuc", "grbl", "haas", "linuxcnc")
 CASES = [case for case in map(read_case, test_corpus.paths()) if not case.xfail]
 

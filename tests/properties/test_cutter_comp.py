@@ -7,17 +7,16 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
 from oracles import rs274
 from oracles.canon import CanonMove, CanonProgram
 from properties.contours import contour
-from seeds_kit import shares
+from seeds_kit import DRAWN, shares
 
 import gcxform as gx
 from gcxform.machine.machine import Machine, Tool
 from gcxform.plugin.registry import default_registry
 
-COUNT = 4 * settings.default.max_examples  # 300; the profile `long` asks for more
+COUNT = 4 * DRAWN
 CLOSE = 1.1e-4  # mm: twice the rounding of the print
 REFUSED_BY_US = (
     "turns back on itself",  # LinuxCNC takes the inside or the outside of so sharp a corner
@@ -46,7 +45,7 @@ def centre_program(source: bytes) -> bytes | str:
         return error.diagnostics[0].message
 
 
-@shares(COUNT, 100)
+@shares(COUNT, 120)
 def test_the_centre_path_is_that_of_linuxcnc(seeds: range) -> None:
     same = both = ours = 0
     sources = [contour(seed) for seed in seeds]

@@ -14,17 +14,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import settings
 from oracles import rs274
 from oracles.canon import CanonMove, CanonProgram
 from properties.contours import contour
 from properties.test_cutter_comp import REFUSED_BY_US, centre_program, executed
+from seeds_kit import DRAWN
 
 import gcxform as gx
 from gcxform.machine.machine import Machine, Tool
 from gcxform.plugin.registry import default_registry
 
-COUNT = settings.default.max_examples  # 75; the profile `long` asks for more
+COUNT = DRAWN
 STEPS = (
     "absolute",
     "offsets",

@@ -12,17 +12,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
-from hypothesis import settings
 from oracles import rs274
 from oracles.canon import CanonProgram
 from properties.test_rs274 import chain, drawn
-from seeds_kit import shares
+from seeds_kit import DRAWN, shares
 
 import gcxform as gx
 from gcxform.plugin.registry import default_registry
 from gcxform.toolpath.columns import COLUMNS
 
-COUNT = settings.default.max_examples
+COUNT = DRAWN
 WORD = re.compile(
     r"(?<![A-Z#<])([ABCFIJKPRSTXYZ][ \t]*)([+-]?(?:\d+\.?\d*|\.\d+))(?![\d. \t]*[\d.])"
 )

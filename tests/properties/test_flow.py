@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import settings
 from oracles import flows, rich_flows, rs274, toolpaths
 from oracles.canon import CanonProgram
-from seeds_kit import shares
+from seeds_kit import DRAWN, shares
 
 import gcxform as gx
 
-COUNT = 3 * settings.default.max_examples  # 225; the profile `long` asks for 60,000
-RICH = 2 * settings.default.max_examples
+COUNT = 3 * DRAWN
+RICH = 2 * DRAWN
 NOT_RESOLVED = (
     "polar words are resolved in G8",
     "the control loses its place",

@@ -8,14 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import settings
 from oracles import flows, macro_flows, rs274, toolpaths
 from oracles.canon import CanonProgram
-from seeds_kit import shares
+from seeds_kit import DRAWN, shares
 
 import gcxform as gx
 
-COUNT = 3 * settings.default.max_examples  # 300; the profile `long` asks for more
+COUNT = 3 * DRAWN
 MACROS = """format = 1
 [input]
 dialect = "{}"
@@ -52,7 +51,7 @@ def how(program: bytes, done: gx.Result) -> str:
     return "all" if why and why[0].startswith("the whole") else "some" if why else "none"
 
 
-@shares(COUNT, 100)
+@shares(COUNT, 60)
 def test_what_keeps_its_structure_moves_as_before(seeds: range) -> None:
     programs = [flows.program(seed, flows.Kept) for seed in seeds]
     done = [(program, result) for program in programs if (result := folded(program)) is not None]
@@ -67,7 +66,7 @@ def test_what_keeps_its_structure_moves_as_before(seeds: range) -> None:
         assert not problem, f"{problem}\n{program.decode()}\n{text.decode()}"
 
 
-@shares(COUNT, 100)
+@shares(COUNT, 60)
 def test_a_program_without_increments_does_not_grow(seeds: range) -> None:
     """`absolute` has nothing to change in it, so no line is more than it was."""
     for seed in seeds:

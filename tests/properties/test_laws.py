@@ -20,6 +20,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from reference.interpreter import Move, Program, interpret
+from seeds_kit import DRAWN
 
 import gcxform as gx
 from gcxform.contract.options import ModelFile
@@ -27,7 +28,7 @@ from gcxform.pipeline.chain_text import parse_chain
 from gcxform.plugin.registry import default_registry
 from gcxform.testing.strategies import programs
 
-EXAMPLES = settings.default.max_examples
+EXAMPLES = DRAWN
 SOME = settings(
     max_examples=EXAMPLES, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
 )

@@ -3,8 +3,9 @@
 import random
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
+from seeds_kit import DRAWN
 
 import gcxform as gx
 from gcxform.modal import reader
@@ -72,6 +73,7 @@ def result(text: bytes, name: str, chain: str, target: str) -> object:
 
 @pytest.mark.parametrize(("chain", "target"), CHAINS)
 @pytest.mark.parametrize("name", ["linuxcnc", "fanuc"])
+@settings(max_examples=DRAWN)
 @given(seed=st.integers(0, 1 << 30))
 def test_outlines_change_no_program(name: str, chain: str, target: str, seed: int) -> None:
     text = program(seed, name)

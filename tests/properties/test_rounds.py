@@ -7,8 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from hypothesis import settings
-from seeds_kit import shares
+from seeds_kit import DRAWN, shares
 
 import gcxform as gx
 from gcxform.flow import rounds
@@ -19,7 +18,7 @@ from gcxform.plugin.registry import default_registry
 from gcxform.syntax.source import Source
 from gcxform.system.limits import Limits, in_force
 
-COUNT = 2 * settings.default.max_examples
+COUNT = 2 * DRAWN
 STEPS = 1500
 KEYS = ("#1", "#2", "#3", "#20", "#101")
 ADDED = ("[{k}+{e}]", "[{e}+{k}]", "[{k}-{e}]", "[{e}-{k}]", "{k}+{e}", "[{k}*{e}]", "[{e}]")

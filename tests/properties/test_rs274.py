@@ -9,13 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import settings
 from oracles import rs274
 from oracles.canon import CanonMove, CanonProgram
 from properties import test_laws as laws
 from reference.arcs import sweep
 from reference.interpreter import Move
-from seeds_kit import shares
+from seeds_kit import DRAWN, shares
 
 import gcxform as gx
 from gcxform.contract.options import ModelFile
@@ -23,7 +22,7 @@ from gcxform.plugin.registry import default_registry
 from gcxform.testing.generate import Options, program
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
-COUNT = 20 * settings.default.max_examples  # 1,500; the profile `long` asks for more
+COUNT = 20 * DRAWN
 CLOSE = 1e-4  # mm, degrees; beyond the rounding of the print
 PRINTED = 0.5e-4  # units of the program
 START = dict.fromkeys("XYZABC", 0.0)

@@ -9,11 +9,10 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
-from hypothesis import settings
 from oracles import rs274
 from oracles.canon import CanonMove, CanonProgram
 from oracles.toolpaths import HOMES, OFFSETS, START, difference, read
-from seeds_kit import shares
+from seeds_kit import DRAWN, shares
 
 import gcxform as gx
 from gcxform.machine.machine import Tool
@@ -25,7 +24,7 @@ from gcxform.testing.generate import Options
 from gcxform.testing.shifts import ShiftingBuilder
 
 INCH = 25.4
-COUNT = 20 * settings.default.max_examples  # 1,500; the profile `long` asks for more
+COUNT = 20 * DRAWN
 CHORD = 0.02  # mm
 CLOSE = 0.012  # mm; what is printed is rounded in inches, and read back from that
 

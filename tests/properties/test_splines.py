@@ -12,14 +12,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import settings
 from oracles import preview
+from seeds_kit import DRAWN
 
 import gcxform as gx
 from gcxform.testing.generate import Options, program
 from gcxform.toolpath.path import Toolpath
 
-COUNT = 3 * settings.default.max_examples  # 225; the profile `long` asks for more
+COUNT = 3 * DRAWN
 START = dict.fromkeys("XYZABC", 0.0)
 CLOSE = 1e-6  # mm; the preview prints all digits
 FINE = np.linspace(0.0, 1.0, 1001)

@@ -6,13 +6,12 @@ import random
 from typing import Any
 
 import pytest
-from hypothesis import settings
-from seeds_kit import shares
+from seeds_kit import DRAWN, shares
 
 import gcxform as gx
 from gcxform.modal.expressions.assignments import _Run
 
-COUNT = 2 * settings.default.max_examples
+COUNT = 2 * DRAWN
 KEYS = ("#1", "#2", "#40", "#100", "#<a>")
 START = dict.fromkeys("XYZ", 0.0)
 HEAD = "G21 G90 G94 G17 F100\n"

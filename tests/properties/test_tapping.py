@@ -12,14 +12,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import settings
 from oracles import rs274, toolpaths
 from oracles.canon import CanonProgram
+from seeds_kit import DRAWN
 
 import gcxform as gx
 from gcxform.toolpath.path import Form
 
-COUNT = 2 * settings.default.max_examples
+COUNT = 2 * DRAWN
 TOLERANCE = 0.002  # mm
 ROUNDING = 0.0018  # mm: three decimals in three axes, twice, where blocks are in G91
 BETWEEN = 0.1  # mm, of levels between taps, that no words say

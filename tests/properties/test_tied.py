@@ -6,14 +6,14 @@ import random
 import re
 
 import pytest
-from hypothesis import settings
 from oracles import rs274, toolpaths
 from oracles.canon import CanonProgram
 from properties import test_laws as laws
+from seeds_kit import DRAWN
 
 import gcxform as gx
 
-COUNT = 5 * settings.default.max_examples  # 375; the profile `long` asks for more
+COUNT = 5 * DRAWN
 CHUNK = 250
 NEAR = 1.2e-3  # mm: what is written is rounded to 1e-4 of a unit, which may be an inch
 

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from seeds_kit import shares
+from seeds_kit import DRAWN, shares
 
 import gcxform as gx
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 from gcxform.errormodel.model_text import to_toml
 
-COUNT = 60
+COUNT = DRAWN
 SIZE = 0.008  # mm, of the errors of an axis in each direction
 MOST = 3 * SIZE * np.sqrt(3)  # mm, of three axes together
 SLIP = 0.002  # mm: decimals of both programs, and what pairing adds

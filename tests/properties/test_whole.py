@@ -6,17 +6,16 @@ import random
 from collections import Counter
 
 import pytest
-from hypothesis import settings
 from oracles import rs274
 from oracles.canon import CanonProgram
 from oracles.toolpaths import difference, read
 from properties.test_shifts import TOOLS, vector
-from seeds_kit import shares
+from seeds_kit import DRAWN, shares
 
 from gcxform.testing.generate import Options
 from gcxform.testing.linuxcnc_language import WholeBuilder
 
-COUNT = 20 * settings.default.max_examples  # 1,500; the profile `long` asks for more
+COUNT = 20 * DRAWN
 
 pytestmark = pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
 

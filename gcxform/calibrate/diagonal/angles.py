@@ -31,7 +31,6 @@ from numpy.polynomial.legendre import legval
 from gcxform.calibrate.diagonal.equations import equations, increments
 from gcxform.calibrate.diagonal.readings import Diagonals, beam
 from gcxform.calibrate.diagonal.step_diagonal import Identified
-from gcxform.calibrate.solution import RANK
 from gcxform.errormodel.model import AXES
 from gcxform.system.arrays import Floats
 
@@ -211,10 +210,7 @@ def _left(found: Identified, every: list[Field]) -> Floats:
     system = equations(
         found.diagonals, found.linear, assumed.noise, assumed.of_linear, assumed.free_beams
     )
-    read = _read(found, every) / system.deviation[:, None]
-    scaled = system.matrix / system.deviation[:, None]
-    left, size, _ = np.linalg.svd(scaled, full_matrices=False)
-    basis = left[:, size > RANK * size[0]]
+    read, basis = _read(found, every) / system.deviation[:, None], found.solution.basis
     rest = np.asarray(read - basis @ (basis.T @ read))
     rest[np.abs(rest) < 1e-9 * np.abs(read).max(initial=0.0)] = 0.0
     return rest

@@ -304,11 +304,11 @@ def fitted(
     """
     from scipy.optimize import least_squares
 
-    first = start or _started(centres)
+    first, scales = start or _started(centres), np.repeat(scale, 3)
     found = least_squares(
-        lambda step: (residuals(centres, first.moved(step)) * scale[:, None]).ravel(),
+        lambda step: residuals(centres, first.moved(step)).ravel() * scales,
         np.zeros(UNKNOWNS),
-        "3-point",
+        lambda step: slopes(centres, first, step) * scales[:, None],
         x_scale="jac",
         loss=loss,
         **TIGHT,
@@ -337,12 +337,31 @@ def residuals(centres: Centres, figure: Figure) -> Floats:
     return np.asarray(centres.points - figure.centre - figure.arms(centres.degrees))
 
 
+def slopes(centres: Centres, figure: Figure, step: Floats) -> Floats:
+    """Return what a little more of each of a step (7,) does to the residuals, (3 n, 7)."""
+    design = jacobian(figure.moved(step), centres.degrees)
+    design[..., 3:6] = design[..., 3:6] @ _added(step[3:6])
+    return np.asarray(-design.reshape(-1, UNKNOWNS))
+
+
 def jacobian(figure: Figure, degrees: Floats) -> Floats:
     """Return what shift, turn (rad) and growth of a figure do to its points, (n, 3, 7)."""
     arms = figure.arms(degrees)
     shift = np.broadcast_to(np.eye(3), (len(arms), 3, 3))
     growth = (arms / figure.radius)[..., None]
     return np.concatenate([shift, -crossing(arms), growth], axis=-1)
+
+
+def _added(turn: Floats) -> Floats:
+    """Return (3, 3): the turn that follows a turn (3, rad) when a little is added to its vector.
+
+    The left Jacobian of SO(3), I + (1 - cos t) / t^2 K + (t - sin t) / t^3 K K with K v = turn x v.
+    """
+    size, across = float(np.linalg.norm(turn)), crossing(turn)
+    if size < 1e-4:  # the first terms of the series, exact to 1e-13
+        return np.asarray(np.eye(3) + across / 2.0 + across @ across / 6.0)
+    once, twice = (1.0 - math.cos(size)) / size**2, (size - math.sin(size)) / size**3
+    return np.asarray(np.eye(3) + once * across + twice * across @ across)
 
 
 def standardised(centres: Centres, figure: Figure, noise: float, weights: Floats) -> Floats:
