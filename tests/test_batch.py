@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import io
 import os
 import subprocess
 import sys
+from contextlib import redirect_stdout
 from pathlib import Path
 
 import pytest
-from cli_kit import ABSOLUTE, PART, PIPELINE, call, workplace
+from cli_kit import ABSOLUTE, MODEL, PART, PIPELINE, call, workplace
 
-from gcxform.cli.common import discovery
+from gcxform.cli import verbs
+from gcxform.cli.common import discovery, progress
+from gcxform.cli.common.failures import guarded
+from gcxform.syntax import source
 
 BAD = b"G21 G90\nG1 G2 X1 F100\nM2\n"
 DONE = b"G21 G90\nG1 X1 F100\nM2\n"
@@ -224,3 +229,47 @@ def test_a_diff_is_coloured_on_a_terminal_and_commands_it_nothing(shop: Path) ->
     os.close(master)
     assert b"\x1b[31m-G91 X1 (?2J)\x1b[0m\r\n" in shown
     assert b"\x1b[2J" not in shown
+
+
+# --- how far it is ---
+
+ROOM = ("--radius", "9", "--planes", "XY", "--outside", "extrapolate")
+
+
+@pytest.mark.parametrize(
+    "verb",
+    ["check", "compare", "calibrate circles", "calibrate plan", "simulate ballbar", "info"],
+)
+def test_on_a_terminal_it_is_said_what_is_being_done(
+    verb: str, shop: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (shop / "model.toml").write_text(MODEL)
+    (shop / "big.nc").write_bytes(b"G21 G90\nG1 X0 F100\n" + b"X1\nX0\n" * 2000 + b"M2\n")
+    rows = "".join(f"XY,{s},100,1000,{5 * k},0\n" for s in ("ccw", "cw") for k in range(72))
+    (shop / "c.csv").write_text(
+        f"plane,sense,radius [mm],feed [mm/min],angle [deg],reading [um]\n{rows}"
+    )
+    machine = str(Path(__file__).parents[1] / "examples" / "rtcp-loop" / "set.toml")
+    asked = {
+        "check": ("-f", "linuxcnc", "big.nc"),
+        "compare": ("-f", "linuxcnc", "big.nc", "big.nc"),
+        "info": ("-f", "linuxcnc", "big.nc"),
+        "calibrate circles": ("c.csv",),
+        "calibrate plan": ("-m", machine, "--ball", "155,0,20", "--poses", "9", "-o", "p.csv"),
+        "simulate ballbar": ("--model", "model.toml", *ROOM),
+    }[verb]
+
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    monkeypatch.setattr(progress, "PATIENCE", -1.0)
+    monkeypatch.setattr(progress, "PACE", -1.0)
+    monkeypatch.setattr(source, "WINDOW", 4096)
+    for stream in (Terminal(), io.StringIO()):
+        monkeypatch.setattr(sys, "stderr", stream)
+        with redirect_stdout(io.StringIO()):
+            code = guarded(verbs, "gcxform", [*verb.split(), *asked], {})
+        assert code in (0, 1, 3), stream.getvalue()
+        assert ("\r" in stream.getvalue()) == stream.isatty()
+        assert not stream.isatty() or stream.getvalue().endswith("\r\x1b[K") or code == 3

@@ -23,6 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gcxform.system.arrays import Floats, Ints
+from gcxform.system.stages import stage
 from gcxform.toolpath.circles import points_on_arcs
 from gcxform.toolpath.path import Kind, Plane, Toolpath
 
@@ -35,6 +36,7 @@ CLEAR = 4.0  # two ends are surely a pair if the rows about them are this many t
 STREAK = 8  # pairs in a row after which many are looked at together
 RUN = 1 << 12  # rows looked at together
 TURN = 2 * math.pi
+SAID = 1000  # turns of the walk after which it says how far it is
 CHORD = math.pi + 0.1  # rad; a chord stands for no more of an arc
 
 
@@ -112,8 +114,11 @@ class _Walk:
 
     def run(self) -> tuple[int, int] | None:
         """Walk to the end; return the rows at which the paths part, None if they do not."""
-        a, b = self.a, self.b
+        a, b, turns = self.a, self.b, 0
         while not (a.over and b.over):
+            turns += 1
+            if turns % SAID == 0:
+                stage("comparing", a.at / max(len(a.rows), 1))
             if self.streak >= STREAK:
                 self._many()
             elif not (self._step() or self._waits()):

@@ -28,6 +28,7 @@ from gcxform.simulate.programs import (
     linear_cycles,
 )
 from gcxform.system.arrays import Floats
+from gcxform.system.stages import stage
 
 POINTS_AROUND = 7200  # points of a circle: one every 0.05 degrees
 NEVER = 1e9  # mm; spacing of points where only the ends of moves are read
@@ -51,9 +52,12 @@ def _outcome(
     readings: Callable[[Track], Mapping[str, Reading]],
 ) -> Outcome[Reading]:
     """Run a program as it is and compensated, and read the instrument both times."""
+    stage("the program as it is", 0.0)
     before = chain.before(program, spacing)
     _check_inside(chain, before.commanded)
+    stage("the program compensated", 1 / 3)
     after, done = chain.after(program, spacing)
+    stage("the readings", 2 / 3)
     return Outcome(program, done, readings(before), readings(after))
 
 

@@ -23,6 +23,7 @@ from gcxform.diagnostics import FileError, InputError, Location
 from gcxform.syntax.undecided import DECIDED, Undecided
 from gcxform.system.inputs import is_changed
 from gcxform.system.limits import how_to_raise, limits
+from gcxform.system.stages import stage
 
 IN_MEMORY = 1 << 24  # bytes of a program or an output; more goes to a temporary file
 TICK = 0.01  # s; two writes may be that far apart and have the same time
@@ -139,11 +140,14 @@ class Source:
 
         The first is shorter, so that who works on what was read begins sooner.
         """
-        self.stream.seek(0)
         size = size or WINDOW
+        whole = self.size if self.is_long(size) else 0
+        self.stream.seek(0)
         rest, coming, done = b"", max(size // 8, 1), 0
         while chunk := self.stream.read(coming):
             coming = size
+            if whole:
+                stage(self.name, done / whole)
             text = rest + chunk
             if (at := _too_long(text)) is not None:
                 raise _refused(self._place(done + at))

@@ -27,6 +27,7 @@ from gcxform.calibrate.solution import CAUCHY, TIGHT, Scatter, belonging, cauchy
 from gcxform.diagnostics import InputError, Location
 from gcxform.machine.chain import Chain, Rotary
 from gcxform.system.arrays import Flags, Floats
+from gcxform.system.stages import stage
 
 BLIND: Final = 1e-7
 """Singular values below this part of the largest, columns of length 1, tell nothing."""
@@ -261,10 +262,15 @@ def _fitted(
     from scipy.optimize import least_squares
 
     rows = np.repeat(scale, 3)
+
+    def design(unknowns: Floats) -> Floats:
+        stage("fitting the axes")
+        return np.asarray(layout.design(unknowns) * rows[:, None])
+
     found = least_squares(
         lambda unknowns: (layout.readings(unknowns) - layout.poses.points).ravel() * rows,
         start,
-        lambda unknowns: layout.design(unknowns) * rows[:, None],
+        design,
         x_scale="jac",
         loss=loss,
         **TIGHT,

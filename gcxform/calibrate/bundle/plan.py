@@ -23,6 +23,7 @@ from gcxform.calibrate.bundle.clearance import clear, inside, upright
 from gcxform.diagnostics import UsageError
 from gcxform.machine.chain import Chain, Rotary, Triple
 from gcxform.system.arrays import Flags, Floats
+from gcxform.system.stages import stage
 
 GRID: Final = 15.0  # degrees
 FAINT: Final = 1e-6
@@ -139,7 +140,8 @@ def _best(design: Floats, count: int) -> list[int]:
     rows = (design / np.where(lengths > 0.0, lengths, 1.0)).reshape(-1, 3, design.shape[1])
     information = FAINT * np.eye(design.shape[1])
     taken: list[int] = []
-    for _ in range(count):
+    for done in range(count):
+        stage("choosing poses", done / count)
         inverse = np.linalg.inv(information)
         gains = np.linalg.slogdet(np.eye(3) + rows @ inverse @ np.swapaxes(rows, 1, 2))[1]
         gains[taken] = -np.inf

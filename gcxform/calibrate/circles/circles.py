@@ -34,6 +34,7 @@ from gcxform.calibrate.rotary.axis import arc
 from gcxform.calibrate.solution import Scatter, Solution, solve
 from gcxform.diagnostics import InputError, Location
 from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.system.stages import stage
 
 SENSES: Final[Mapping[str, int]] = {"ccw": 1, "cw": -1, "probed": 0}
 SEEN: Final = 3.0
@@ -324,7 +325,8 @@ def _fitted(setup: SetUp, runs: Sequence[Run], asked: Asked, among: Sequence[Cau
     matrix = np.column_stack([cause.column for cause in found])[used]
     readings = np.concatenate([run.readings for run in runs])[used]
     second = np.zeros(len(degrees))
-    for _ in range(ROUNDS):
+    for done in range(ROUNDS):
+        stage("fitting circles", done / ROUNDS)
         solution = solve(matrix, readings - second[used], np.full(len(readings), asked.noise))
         second = _of_pivot(setup, degrees, found, solution)
     return Fitted(setup, tuple(runs), asked, tuple(found), used, solution, second)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from gcxform.cli.calibration.shared import check_axis, path_of, write
+from gcxform.cli.common.answer import answer
 from gcxform.cli.common.options import LENGTH, THREE_LENGTHS, above_nothing, one_of
 from gcxform.cli.common.outputs import STDOUT, check_places
 from gcxform.cli.common.request import Asked
@@ -104,7 +105,7 @@ def plan(
         text = probing_program(chain, poses, lengths, given["dialect"], given["after_touch"])
         write(program, text)
     write(output, plan_csv(poses, chain.letters, axis))
-    click.echo("\n".join(said), err=STDOUT in (output, program))
+    answer({"said": said}, said, err=STDOUT in (output, program))
 
 
 def _bundle(

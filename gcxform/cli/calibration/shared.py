@@ -16,6 +16,7 @@ from gcxform.cli.common.answer import answer
 from gcxform.cli.common.options import ABOVE_NOTHING
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
 from gcxform.diagnostics import GcxformError, Location, UsageError
+from gcxform.system.stages import stage
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 NOISE = "Standard deviation of a coordinate of a centre."
@@ -29,6 +30,7 @@ def about(file: str) -> Iterator[None]:
     """
     import numpy as np
 
+    stage(file)
     try:
         with np.errstate(all="ignore"):
             yield

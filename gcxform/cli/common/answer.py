@@ -22,6 +22,7 @@ import click
 
 from gcxform.cli.common.findings import described
 from gcxform.diagnostics import Diagnostic
+from gcxform.system.stages import stage
 
 FORMAT: Final = 1
 ANSWER: Final = "gcxform.answer"
@@ -78,6 +79,7 @@ def asked() -> Answer | None:
 
 def answer(values: Mapping[str, Any], lines: Iterable[str], err: bool = False) -> None:
     """Print lines, to stderr if `err`; or add values to the document if one is asked for."""
+    stage("")
     if (found := asked()) is not None:
         found.values.update(values)
     elif text := "\n".join(lines):

@@ -20,9 +20,11 @@ from gcxform.catalogue.questions import questions
 from gcxform.cli.common import DEBUG
 from gcxform.cli.common.answer import ANSWER, Answer
 from gcxform.cli.common.options import ENVIRONMENT
+from gcxform.cli.common.progress import stages_shown
 from gcxform.cli.common.signals import Ended, ending
 from gcxform.diagnostics import Diagnostic, FileError, GcxformError, render_all
 from gcxform.system.inputs import visit
+from gcxform.system.stages import stage
 from gcxform.version import VERSION
 
 USAGE: Final = 2
@@ -30,6 +32,8 @@ FAILED: Final = 5
 BUG: Final = 70
 INTERRUPTED: Final = 130
 WORDS: Final = "gcxform.words"
+COUNTED: Final = ("run", "post", "watch")
+"""Verbs that show by themselves how far they are, or are read by other programs."""
 FOUND: Final = "gcxform.found"
 ALL_AT_ONCE: Final = "gcxform check, with the same words, says all that is missing at once, as TOML"
 
@@ -54,7 +58,8 @@ def _run(group: click.Command, name: str, words: list[str], extra: Mapping[str, 
         with group.make_context(name, [*words], **extra) as context:
             meta = context.meta
             meta[WORDS] = words
-            code = group.invoke(context)
+            with stages_shown(not words or words[0] not in COUNTED):
+                code = group.invoke(context)
             code = code if isinstance(code, int) else 0
     except click.exceptions.Exit as stop:
         return stop.exit_code
@@ -137,6 +142,7 @@ def _asks(error: Exception) -> bool:
 
 def say(text: str) -> None:
     """Write a line to stderr, if there is one."""
+    stage("")
     if sys.stderr is not None:
         with suppress(OSError):
             print(text, file=sys.stderr, flush=True)

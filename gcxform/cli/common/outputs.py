@@ -16,6 +16,7 @@ from gcxform.cli.common.request import excluding
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.syntax.source import IN_MEMORY
 from gcxform.system.files import write_atomically
+from gcxform.system.stages import stage
 
 STDOUT = "-"
 Put = Callable[[bytes], object]
@@ -44,6 +45,7 @@ def destination(name: str) -> Iterator[Put]:
 
 def _hand_on(copy: IO[bytes], name: str) -> None:
     """Copy a finished result to stdout, a pipe or a device."""
+    stage("")
     if name == STDOUT and sys.stdout is None:
         raise FileError.one("GX902", "cannot write stdout: it is closed")
     try:

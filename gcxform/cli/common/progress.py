@@ -9,10 +9,15 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Final
+
+from gcxform.system.stages import heard
 
 PATIENCE: Final = 0.5  # seconds
 PACE: Final = 0.1  # seconds between two numbers
+WIDEST: Final = 50  # characters of what is being done
 _CLEAR: Final = "\r\x1b[K"
 
 
@@ -48,6 +53,47 @@ class Progress:
         """Take the number away."""
         if self.shown:
             print(_CLEAR, end="", file=sys.stderr, flush=True)
+
+
+class Stages:
+    """Shows on a terminal what a verb is at, of which nobody knows before how long it takes."""
+
+    def __init__(self) -> None:
+        self.shown = False
+        self._next = time.monotonic() + PATIENCE
+
+    def __call__(self, what: str, share: float | None) -> None:
+        """Take note of what is being done, and of the share that is; of nothing: take it away."""
+        if not what:
+            self.close()
+            return
+        now = time.monotonic()
+        if now < self._next:
+            return
+        self._next, self.shown = now + PACE, True
+        text = "".join(c if c.isprintable() else "?" for c in what[-WIDEST:])
+        percent = "" if share is None else f" {100 * min(share, 1.0):3.0f} %"
+        print(f"{_CLEAR}{text}{percent}", end="", file=sys.stderr, flush=True)
+
+    def close(self) -> None:
+        """Take it away."""
+        if self.shown:
+            print(_CLEAR, end="", file=sys.stderr, flush=True)
+            self.shown = False
+
+
+@contextmanager
+def stages_shown(wanted: bool) -> Iterator[Stages | None]:
+    """Show what is being done if that is wanted and stderr is a terminal."""
+    if not wanted or sys.stderr is None or not sys.stderr.isatty():
+        yield None
+        return
+    shown = Stages()
+    try:
+        with heard(shown):
+            yield shown
+    finally:
+        shown.close()
 
 
 class FilterProgress(Progress):
