@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cli_kit import call
 from console_kit import check_block
 from gcxform_plugins.passes.volumetric.forward import lines
 
@@ -24,6 +25,7 @@ from gcxform.deviations.deviation import deviation
 from gcxform.machine.chain import chain_of
 from gcxform.machine.file import load_machine
 from gcxform.pipeline.file import KEYS, SECTIONS
+from gcxform.pipeline.schema import schema
 from gcxform.plugin.registry import KINDS as HOOKS
 from gcxform.plugin.registry import default_registry
 from gcxform.testing import check_dialect, check_pass
@@ -88,6 +90,36 @@ def test_every_key_of_a_certificate_is_explained():
     result = pipeline.run((ROOT / "examples" / "lddm" / "linear_in.nc").read_bytes())
     for key in json.loads(result.certificate.to_json()):
         assert key in ("format", "version") or f"`{key}`" in TEXT
+
+
+def _unsaid(table, where):
+    """Yield the keys of a table of a schema, and of those in it, that say nothing."""
+    for key, value in table.get("properties", {}).items():
+        if not value.get("description"):
+            yield f"{where}.{key}"
+        for inner in (value, value.get("additionalProperties"), value.get("items")):
+            if isinstance(inner, dict):
+                yield from _unsaid(inner, f"{where}.{key}")
+
+
+@pytest.mark.parametrize("kind", ["pipeline", "machine", "model"])
+def test_every_key_of_a_file_says_what_it_is(kind):
+    whole = schema(kind)
+    parts = {kind: whole, **whole.get("$defs", {})}
+    assert [key for name, part in parts.items() for key in _unsaid(part, name)] == []
+
+
+MADE = re.compile(r"^<!-- made: (\w+) -->\n(.*)$", re.MULTILINE)
+
+
+@pytest.mark.parametrize(("name", "line"), MADE.findall(TEXT))
+def test_what_the_site_has_more_is_printed_by_a_command(name, line):
+    """Who reads the pages in the repository is told which."""
+    command = re.fullmatch(r"\*Made from the code on the site; here `(.+)` prints it\.\*", line)
+    assert command, (name, line)
+    words = command[1].split()
+    if words[0] == "gcxform":
+        assert call(*words[1:]).exit_code == 0
 
 
 def test_the_version_is_one():

@@ -1,7 +1,13 @@
 """What mkdocs does with these pages: the reference is put in, and links out of `docs/` lead on.
 
 The pages are read in the repository as well, so their links are those of the repository. On the
-site, what they name outside of `docs/` is there too: other pages as pages, files as files.
+site, what they name outside of `docs/` is there too: other pages as pages, files as files. The
+reference is 4,700 lines that every change of the code would change again, so that the pages of the
+repository do not have them, and name the command that prints them.
+
+The site is made with MkDocs and its theme Material, which announces to be maintained until May
+2027. Pages are plain Markdown, and all that is made is made here: another builder needs
+`on_page_markdown`, `outside` and `console`.
 """
 
 from __future__ import annotations
@@ -21,7 +27,10 @@ DOCS = ROOT / "docs"
 PAGES = ("ARCHITECTURE.md", "CONTRIBUTING.md", "benchmarks/README.md", "tests/hazards.md")
 SHIM = "https://unpkg.com/iframe-worker/shim"  # which the plugin `offline` would load from there
 LINK = re.compile(r"(\]\()([^)#:\s]+)((?:#[^)\s]*)?\))")
-MARK = re.compile(r"^<!-- made: (\w+) -->$", re.MULTILINE)
+MARK = re.compile(
+    r"^<!-- made: (\w+) -->\n\*Made from the code on the site; here `(.+)` prints it\.\*$", re.M
+)
+"""Where the reference is put in: who reads the repository is told what prints it."""
 
 
 def on_config(config: Any) -> Any:

@@ -1,7 +1,7 @@
 """The reference, made from the running code: what `<!-- made: NAME -->` on a page stands for.
 
 Each function returns the lines of Markdown for one name. Nothing of it is kept in the repository,
-so nothing of it can be out of date; `gcxform list`, `explain` and `schema` print the same.
+so nothing of it can be out of date; the command that prints the same stands in its place.
 """
 
 from __future__ import annotations

@@ -33,9 +33,9 @@ CODES: dict[str, tuple[str, str]] = {
     "GX203": (
         "A word that belongs to nothing",
         "A word stands in a block twice, or no code of the block takes it: I, J, K or R without "
-        "an arc, P without a dwell. Controls differ in whether they ignore such words, keep "
-        "them for later, or stop, so there is no one meaning to keep. Remove the word, or write "
-        "the code that it belongs to.",
+        "an arc, P without a dwell. Controls differ in whether they ignore such words, keep them "
+        "for later, or stop, so there is no one meaning to keep. Correct the block: which of two "
+        "words is meant, and to which code one belongs, the program does not say.",
     ),
     "GX204": (
         "A feed or a time is missing",
@@ -91,10 +91,10 @@ CODES: dict[str, tuple[str, str]] = {
         "The code moves axes or shifts coordinates in a way which the program alone does not "
         "tell: a canned cycle, a return to reference, tool length or radius compensation, an "
         "offset in the control, a subprogram. A pass that needs positions would work on wrong "
-        "ones. Let the CAM system write plain moves, end the mode before the part that is "
-        "transformed, or leave such programs to pipelines that change text only. Of a code with "
-        "which the control follows the tip (G43.4, G43.5, G234) `rtcp` does the work, if "
-        "`tip-codes` says so; for positions of axes there is nothing to follow.",
+        "ones. Let the CAM system write plain moves for the part that is transformed, or leave "
+        "such programs to pipelines that change text only. Of a code with which the control "
+        "follows the tip (G43.4, G43.5, G234) `rtcp` does the work, if `tip-codes` says so; for "
+        "positions of axes there is nothing to follow.",
     ),
     "GX211": (
         "Block delete depends on a switch",
@@ -155,9 +155,9 @@ CODES: dict[str, tuple[str, str]] = {
     "GX230": (
         "Cutter compensation that the control refuses",
         "G41, G42 or G40 stands where the control stops with an alarm, or a code stands between "
-        "them that it does not take there: another plane, work offset or tool, for instance; or "
-        "D says nothing. Cancel compensation with G40 before such blocks, and begin and end it "
-        "with a straight move.",
+        "them that it does not take there: another plane, work offset or tool, for instance; or D "
+        "says nothing. Lead the tool off the contour and cancel compensation with G40 before such "
+        "blocks, and begin and end it with a straight move.",
     ),
     "GX231": (
         "The radius of the tool is not known",
@@ -169,7 +169,8 @@ CODES: dict[str, tuple[str, str]] = {
         "Cutter compensation that cannot be resolved",
         "Between G41 or G42 and G40 the program does what depends on the control, or what leaves "
         "open where the tool is: another side or tool without G40 between, an unknown position, "
-        "or an end without G40. Cancel compensation before such blocks.",
+        "or an end without G40. Lead the tool off the contour and cancel compensation before such "
+        "blocks.",
     ),
     "GX233": (
         "A contour under cutter compensation would be moved",
@@ -230,8 +231,8 @@ CODES: dict[str, tuple[str, str]] = {
     "GX304": (
         "Words of an arc that contradict each other",
         "The arc has both a centre and a radius, or a centre word that is not in its plane. "
-        "Controls differ in which of the words they follow. Remove one of them, or select the "
-        "plane that was meant with G17, G18 or G19.",
+        "Controls differ in which of the words they follow. Keep the one that is meant, or select "
+        "the plane that was meant with G17, G18 or G19.",
     ),
     "GX305": (
         "The number of turns is not a positive whole number",
@@ -300,8 +301,8 @@ CODES: dict[str, tuple[str, str]] = {
         "A machine errs everywhere: also at the points of the machine that G53 and G28 lead to, "
         "and where it stands before the program. Rapids there are written as they stand, and the "
         "certificate says how far off the machine is. A feed move that began or ended there would "
-        "be cut from a wrong place, slanting. Lead a rapid that names X, Y and Z to its beginning: "
-        "rapids to program positions are compensated.",
+        "be cut from a wrong place, slanting. Lead a rapid that names X, Y and Z to its "
+        "beginning, if the way there is clear: rapids to program positions are compensated.",
     ),
     "GX320": (
         "A feed that cannot be converted",

@@ -150,7 +150,7 @@ CODES: dict[str, tuple[str, str]] = {
         "Some codes move axes on one control and not on another: a tool change, a tool length. "
         "Behind one of them the control that is written for stands where the program does not "
         "say, and a block that names only some axes moves from there. Program all linear axes "
-        "between that code and this block.",
+        "between that code and this block, where the way is clear.",
     ),
     "GX510": (
         "The path is farther off than the budget",

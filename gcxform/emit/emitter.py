@@ -193,7 +193,7 @@ class _Job:
             if defines(task.table.shapes.shapes[number].block):
                 line = task.read.live + int(np.argmax(shapes == number))
                 message = "nothing calls this subprogram, and in another dialect it would be lost"
-                hint = "take it out of the file"
+                hint = "give it a file of its own"
                 raise InputError.one("GX226", message, task.location(line), hint)
 
     def _refuse_behind_end(self) -> None:

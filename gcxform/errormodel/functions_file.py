@@ -9,11 +9,12 @@ its displacement d and turn e count as -d - e x (its own position), at the nodes
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 import numpy as np
 
+from gcxform.config.keys import says
 from gcxform.config.toml_text import TomlText, convert
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.errormodel.functions import COLUMNS, AxisFunction, AxisFunctions, faults
@@ -26,49 +27,49 @@ Triple = tuple[float, float, float]
 
 
 class _Table(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
-    position: list[float]
-    at: Triple = NOWHERE
+    position: Annotated[list[float], says("positions that were measured, mm, rising")]
+    at: Annotated[Triple, says("where the other axes stood, mm; it matters with turns")] = NOWHERE
 
 
 class TableX(_Table, kw_only=True):
     """The functions of the axis X, mm and rad, over its position in mm."""
 
-    EXX: list[float]
-    EYX: list[float]
-    EZX: list[float]
-    EAX: list[float] | None = None
-    EBX: list[float] | None = None
-    ECX: list[float] | None = None
+    EXX: Annotated[list[float], says("errors in X at the positions, mm")]
+    EYX: Annotated[list[float], says("errors in Y at the positions, mm")]
+    EZX: Annotated[list[float], says("errors in Z at the positions, mm")]
+    EAX: Annotated[list[float] | None, says("turns about X at the positions, rad")] = None
+    EBX: Annotated[list[float] | None, says("turns about Y at the positions, rad")] = None
+    ECX: Annotated[list[float] | None, says("turns about Z at the positions, rad")] = None
 
 
 class TableY(_Table, kw_only=True):
     """The functions of the axis Y, mm and rad, over its position in mm."""
 
-    EXY: list[float]
-    EYY: list[float]
-    EZY: list[float]
-    EAY: list[float] | None = None
-    EBY: list[float] | None = None
-    ECY: list[float] | None = None
+    EXY: Annotated[list[float], says("errors in X at the positions, mm")]
+    EYY: Annotated[list[float], says("errors in Y at the positions, mm")]
+    EZY: Annotated[list[float], says("errors in Z at the positions, mm")]
+    EAY: Annotated[list[float] | None, says("turns about X at the positions, rad")] = None
+    EBY: Annotated[list[float] | None, says("turns about Y at the positions, rad")] = None
+    ECY: Annotated[list[float] | None, says("turns about Z at the positions, rad")] = None
 
 
 class TableZ(_Table, kw_only=True):
     """The functions of the axis Z, mm and rad, over its position in mm."""
 
-    EXZ: list[float]
-    EYZ: list[float]
-    EZZ: list[float]
-    EAZ: list[float] | None = None
-    EBZ: list[float] | None = None
-    ECZ: list[float] | None = None
+    EXZ: Annotated[list[float], says("errors in X at the positions, mm")]
+    EYZ: Annotated[list[float], says("errors in Y at the positions, mm")]
+    EZZ: Annotated[list[float], says("errors in Z at the positions, mm")]
+    EAZ: Annotated[list[float] | None, says("turns about X at the positions, rad")] = None
+    EBZ: Annotated[list[float] | None, says("turns about Y at the positions, rad")] = None
+    ECZ: Annotated[list[float] | None, says("turns about Z at the positions, rad")] = None
 
 
 class Squareness(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     """Squareness errors in rad, right-handed turns of an axis: Y to X, Z to X, Z to Y."""
 
-    C0Y: float = 0.0
-    B0Z: float = 0.0
-    A0Z: float = 0.0
+    C0Y: Annotated[float, says("turns Y about Z, from where it is square to X, rad")] = 0.0
+    B0Z: Annotated[float, says("turns Z about Y, from where it is square to X, rad")] = 0.0
+    A0Z: Annotated[float, says("turns Z about X, from where it is square to Y, rad")] = 0.0
 
 
 class AxisFunctionsFile(msgspec.Struct, forbid_unknown_fields=True, rename="kebab", kw_only=True):
@@ -78,16 +79,27 @@ class AxisFunctionsFile(msgspec.Struct, forbid_unknown_fields=True, rename="keba
     the way (mm) from the gauge point to the measured point; both matter with angular errors only.
     """
 
-    format: int
-    kind: Literal["axis-functions"]
-    values: Literal["error", "correction"]
-    convention: Literal["relative", "carriage"]
-    order: str = AXES
-    tool: Triple | None = None
-    X: TableX | None = None
-    Y: TableY | None = None
-    Z: TableZ | None = None
-    squareness: Squareness | None = None
+    format: Annotated[int, says("the form of this file; now 1")]
+    kind: Annotated[Literal["axis-functions"], says("the kind of the model")]
+    values: Annotated[
+        Literal["error", "correction"], says("what the numbers are: errors, or their corrections")
+    ]
+    convention: Annotated[
+        Literal["relative", "carriage"],
+        says("relative: of the tool to the workpiece; carriage: of what each axis moves"),
+    ]
+    order: Annotated[
+        str,
+        says("axes from the workpiece to the tool; with carriages F is the frame of the machine"),
+    ] = AXES
+    tool: Annotated[
+        Triple | None,
+        says("from the gauge point to the point that was measured, mm; turns need it"),
+    ] = None
+    X: Annotated[TableX | None, says("the functions of X")] = None
+    Y: Annotated[TableY | None, says("the functions of Y")] = None
+    Z: Annotated[TableZ | None, says("the functions of Z")] = None
+    squareness: Annotated[Squareness | None, says("squareness of the axes")] = None
 
 
 def axis_functions(document: TomlText) -> AxisFunctions | RigidBody:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 import numpy as np
 
+from gcxform.config.keys import says
 from gcxform.config.toml_text import TomlText, convert
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.errormodel.functions import ascending
@@ -29,19 +30,24 @@ class LatticeFile(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     need `tool`: the way in mm from the gauge point to the measured point.
     """
 
-    format: int
-    kind: Literal["lattice"]
-    values: Literal["error", "correction"]
-    X: list[float]
-    Y: list[float]
-    Z: list[float]
-    EX: Grid
-    EY: Grid
-    EZ: Grid
-    EA: Grid | None = None
-    EB: Grid | None = None
-    EC: Grid | None = None
-    tool: Triple | None = None
+    format: Annotated[int, says("the form of this file; now 1")]
+    kind: Annotated[Literal["lattice"], says("the kind of the model")]
+    values: Annotated[
+        Literal["error", "correction"], says("what the numbers are: errors, or their corrections")
+    ]
+    X: Annotated[list[float], says("positions of the grid in X, mm, rising")]
+    Y: Annotated[list[float], says("positions of the grid in Y, mm, rising")]
+    Z: Annotated[list[float], says("positions of the grid in Z, mm, rising")]
+    EX: Annotated[Grid, says("errors in X at `[x][y][z]`, mm")]
+    EY: Annotated[Grid, says("errors in Y at `[x][y][z]`, mm")]
+    EZ: Annotated[Grid, says("errors in Z at `[x][y][z]`, mm")]
+    EA: Annotated[Grid | None, says("turns about X at `[x][y][z]`, rad")] = None
+    EB: Annotated[Grid | None, says("turns about Y at `[x][y][z]`, rad")] = None
+    EC: Annotated[Grid | None, says("turns about Z at `[x][y][z]`, rad")] = None
+    tool: Annotated[
+        Triple | None,
+        says("from the gauge point to the point that was measured, mm; turns need it"),
+    ] = None
 
 
 class HeightMapFile(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
@@ -51,11 +57,11 @@ class HeightMapFile(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     the surface is higher than nominal the tool is too low by as much, so the tool is raised.
     """
 
-    format: int
-    kind: Literal["height-map"]
-    X: list[float]
-    Y: list[float]
-    height: list[list[float]]
+    format: Annotated[int, says("the form of this file; now 1")]
+    kind: Annotated[Literal["height-map"], says("the kind of the model")]
+    X: Annotated[list[float], says("positions that were probed in X, mm, rising")]
+    Y: Annotated[list[float], says("positions that were probed in Y, mm, rising")]
+    height: Annotated[list[list[float]], says("heights, a row for each position in Y, mm")]
 
 
 class SkewFile(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
@@ -64,11 +70,11 @@ class SkewFile(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     There is no error at `origin` (mm), and no limit.
     """
 
-    format: int
-    kind: Literal["skew"]
-    squareness: Squareness
-    scale: Triple = NOWHERE
-    origin: Triple = NOWHERE
+    format: Annotated[int, says("the form of this file; now 1")]
+    kind: Annotated[Literal["skew"], says("the kind of the model")]
+    squareness: Annotated[Squareness, says("squareness of the axes")]
+    scale: Annotated[Triple, says("scale errors of X, Y and Z, mm per mm")] = NOWHERE
+    origin: Annotated[Triple, says("where there is no error, mm")] = NOWHERE
 
 
 def lattice(document: TomlText) -> Lattice:

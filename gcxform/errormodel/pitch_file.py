@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal
+from typing import Annotated, Literal
 
 import msgspec
 import numpy as np
 
+from gcxform.config.keys import says
 from gcxform.config.toml_text import TomlText, convert
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.errormodel.functions import faults
@@ -22,20 +23,25 @@ class PitchAxis(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     it there is no backlash.
     """
 
-    position: list[float]
-    forward: list[float]
-    reverse: list[float] | None = None
+    position: Annotated[list[float], says("positions that were measured, mm, rising")]
+    forward: Annotated[list[float], says("errors there after travel in the positive direction, mm")]
+    reverse: Annotated[
+        list[float] | None,
+        says("errors there after travel in the negative direction, mm; absent: as forward"),
+    ] = None
 
 
 class PitchFile(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     """An error model of the kind `pitch`: a table for each axis that was measured."""
 
-    format: int
-    kind: Literal["pitch"]
-    values: Literal["error", "correction"]
-    X: PitchAxis | None = None
-    Y: PitchAxis | None = None
-    Z: PitchAxis | None = None
+    format: Annotated[int, says("the form of this file; now 1")]
+    kind: Annotated[Literal["pitch"], says("the kind of the model")]
+    values: Annotated[
+        Literal["error", "correction"], says("what the numbers are: errors, or their corrections")
+    ]
+    X: Annotated[PitchAxis | None, says("the table of X")] = None
+    Y: Annotated[PitchAxis | None, says("the table of Y")] = None
+    Z: Annotated[PitchAxis | None, says("the table of Z")] = None
 
 
 def pitch(document: TomlText) -> PitchTables:

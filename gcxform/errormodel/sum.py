@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import reduce
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import msgspec
 import numpy as np
 
+from gcxform.config.keys import says
 from gcxform.config.toml_text import TomlText
 from gcxform.diagnostics import UsageError
 from gcxform.errormodel.model import ErrorModel, Outside, State
@@ -106,9 +107,9 @@ class Sum(ErrorModel):
 class SumFile(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     """An error model of the kind `sum`: the files of models that are added."""
 
-    format: int
-    kind: Literal["sum"]
-    models: list[str]
+    format: Annotated[int, says("the form of this file; now 1")]
+    kind: Annotated[Literal["sum"], says("the kind of the model")]
+    models: Annotated[list[str], says("the model files that are added")]
 
 
 def checked_sum(document: TomlText, models: list[ErrorModel]) -> Sum:

@@ -13,11 +13,12 @@ import math
 from collections.abc import Iterator
 from datetime import datetime
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import msgspec
 import numpy as np
 
+from gcxform.config.keys import says
 from gcxform.config.toml_text import TomlText, convert
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.errormodel.functions import faults
@@ -37,10 +38,10 @@ class HeldFile(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     elasticity times cross-section of the screw in N.
     """
 
-    kA: float  # noqa: N815 (the names of the formula)
-    kB: float  # noqa: N815
-    EA: float
-    length: float
+    kA: Annotated[float, says("stiffness of the fixed bearing, N/um; inf is rigid")]  # noqa: N815 (the names of the formula)
+    kB: Annotated[float, says("stiffness of the other bearing, N/um; inf is rigid")]  # noqa: N815
+    EA: Annotated[float, says("modulus of elasticity times cross-section of the screw, N")]
+    length: Annotated[float, says("between the bearings, mm")]
 
 
 class ScrewFile(msgspec.Struct, forbid_unknown_fields=True, rename="kebab", kw_only=True):
@@ -51,16 +52,21 @@ class ScrewFile(msgspec.Struct, forbid_unknown_fields=True, rename="kebab", kw_o
     comes nearer. `homed-at` is the position in mm at which the axis was homed in this state.
     """
 
-    nut: float
-    direction: Literal[1, -1]
-    homed_at: float
-    held: HeldFile | None = None
+    nut: Annotated[float, says("from the fixed bearing to the nut where the axis is at 0, mm")]
+    direction: Annotated[
+        Literal[1, -1],
+        says("1: the nut runs away from the fixed bearing as positions rise, -1: it comes nearer"),
+    ]
+    homed_at: Annotated[float, says("the position at which the axis was homed in this state, mm")]
+    held: Annotated[HeldFile | None, says("what holds the screw where it is held at both ends")] = (
+        None
+    )
 
 
 class ScaleFile(msgspec.Struct, forbid_unknown_fields=True, rename="kebab", kw_only=True):
     """The scale of an axis whose position is measured with it: `fixed-at` is where, in mm."""
 
-    fixed_at: float
+    fixed_at: Annotated[float, says("the position at which the scale is fixed, mm")]
 
 
 class ThermalAxis(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
@@ -70,12 +76,19 @@ class ThermalAxis(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     places in mm: from the fixed bearing along a screw, axis positions along a scale.
     """
 
-    travel: tuple[float, float]
-    expansion: float
-    sensors: list[str]
-    at: list[float]
-    screw: ScrewFile | None = None
-    scale: ScaleFile | None = None
+    travel: Annotated[tuple[float, float], says("from to, mm")]
+    expansion: Annotated[float, says("of the screw or the scale, 1/K")]
+    sensors: Annotated[list[str], says("columns of the readings")]
+    at: Annotated[
+        list[float],
+        says("their places, mm: from the fixed bearing along a screw, positions along a scale"),
+    ]
+    screw: Annotated[
+        ScrewFile | None, says("the screw, where the position is measured at the motor")
+    ] = None
+    scale: Annotated[
+        ScaleFile | None, says("the scale, where the position is measured with one")
+    ] = None
 
 
 class ThermalScrewFile(msgspec.Struct, forbid_unknown_fields=True, rename="kebab", kw_only=True):
@@ -88,18 +101,26 @@ class ThermalScrewFile(msgspec.Struct, forbid_unknown_fields=True, rename="kebab
     the errors at the sensors.
     """
 
-    format: int
-    kind: Literal["thermal-screw"]
-    readings: str
-    reference: float | datetime
-    sensor_range: tuple[float, float]
-    time: datetime | None = None
-    max_age: float = 600.0
-    limit: float = 0.2
-    node_interpolation: Literal["exact", "linear"] = "exact"
-    X: ThermalAxis | None = None
-    Y: ThermalAxis | None = None
-    Z: ThermalAxis | None = None
+    format: Annotated[int, says("the form of this file; now 1")]
+    kind: Annotated[Literal["thermal-screw"], says("the kind of the model")]
+    readings: Annotated[str, says("temperatures by time: a CSV file")]
+    reference: Annotated[
+        float | datetime,
+        says("the state in which the geometry was measured: degC, or a time of the readings"),
+    ]
+    sensor_range: Annotated[tuple[float, float], says("readings outside are refused, degC")]
+    time: Annotated[
+        datetime | None, says("the state is that at this time; absent: the last one")
+    ] = None
+    max_age: Annotated[float, says("how old a reading may be, s")] = 600.0
+    limit: Annotated[float, says("a larger error within the travel is refused, mm")] = 0.2
+    node_interpolation: Annotated[
+        Literal["exact", "linear"],
+        says("between sensors: as the rod is, or straight as a control does"),
+    ] = "exact"
+    X: Annotated[ThermalAxis | None, says("the axis X")] = None
+    Y: Annotated[ThermalAxis | None, says("the axis Y")] = None
+    Z: Annotated[ThermalAxis | None, says("the axis Z")] = None
 
     @property
     def axes(self) -> tuple[ThermalAxis | None, ThermalAxis | None, ThermalAxis | None]:

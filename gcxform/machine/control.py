@@ -160,7 +160,11 @@ def _switch_findings(document: TomlText, control: Mapping[str, Value]) -> Iterat
 
 def schema() -> dict[str, Any]:
     """Return the JSON Schema of the section."""
-    codes = {"type": "array", "items": {"type": "integer"}}
+    codes = {
+        "type": "array",
+        "items": {"type": "integer"},
+        "description": "the machine's own M codes that move no axis and set no variable",
+    }
     known = {name: setting.schema() for name, setting in _KNOWN.items()}
     like = {"type": "string", "description": "a preset of a machine"}
     properties = {**known, INERT: codes, MACRO: macro_tables.schema(), LIKE: like}

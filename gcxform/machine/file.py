@@ -35,7 +35,7 @@ from gcxform.machine import control
 from gcxform.machine import kinds as presets
 from gcxform.machine.formats import NONE, Known
 from gcxform.machine.machine import (
-    MARK,
+    WITH_UNIT,
     Axis,
     Machine,
     MachineFile,
@@ -117,17 +117,16 @@ def schema() -> dict[str, Any]:
     """Return the JSON Schema of machine files."""
     found: dict[str, Any] = msgspec.json.schema(MachineFile)
     _admit_strings(found)
-    found["$defs"]["MachineFile"]["properties"]["control"] = control.schema()
+    keys = found["$defs"]["MachineFile"]["properties"]
+    keys["control"] = {**control.schema(), "description": keys["control"]["description"]}
     return found
 
 
 def _admit_strings(node: Any) -> None:
     """Let strings in wherever a number may have a unit, in place."""
     children = node.values() if isinstance(node, dict) else node if isinstance(node, list) else ()
-    if isinstance(node, dict) and node.get("description") == MARK:
-        for part in node.get("anyOf", [node]):
-            if part.get("type") == "number":
-                part["type"] = ["number", "string"]
+    if isinstance(node, dict) and node.pop(WITH_UNIT, False):
+        node["type"] = ["number", "string"]
     for child in children:
         _admit_strings(child)
 

@@ -7,14 +7,15 @@ from typing import Annotated, Literal
 
 import msgspec
 
+from gcxform.config.keys import says
 from gcxform.diagnostics import Location
 
-MARK = "a number, or a string with a unit"
-"""The description, in the schema, of what may be written with a unit."""
 SWITCHES = ("tip-on", "tip-off")
 TIP_AT_START = "tip-at-start"
 """Settings that name the M codes with which the control follows the tip of the tool, and stops."""
-Value = Annotated[float, msgspec.Meta(description=MARK)]
+WITH_UNIT = "with-unit"
+"""The mark, in a schema that is being made, of what may be written with a unit."""
+Value = Annotated[float, msgspec.Meta(extra_json_schema={WITH_UNIT: True})]
 Triple = tuple[Value, Value, Value]
 
 
@@ -27,12 +28,17 @@ class Axis(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="keba
     be given either way round: read from a file, the largest component of its direction is positive.
     """
 
-    limits: tuple[Value, Value] | None = None
-    max_speed: float | None = None
-    direction: tuple[float, float, float] | None = None
-    point: Triple | None = None
-    sign: int | None = None
-    wrap: Value | None = None
+    limits: Annotated[tuple[Value, Value] | None, says("its travel from to, mm or degrees")] = None
+    max_speed: Annotated[float | None, says("its top speed, mm/min or degrees/min")] = None
+    direction: Annotated[
+        tuple[float, float, float] | None, says("the way it points, with all axes at 0: any length")
+    ] = None
+    point: Annotated[Triple | None, says("a point on a rotary axis, with all axes at 0, mm")] = None
+    sign: Annotated[
+        int | None,
+        says("1: a positive command turns right-handed about the direction, -1: left-handed"),
+    ] = None
+    wrap: Annotated[Value | None, says("where the display begins anew, degrees")] = None
 
 
 NOT_SAID = float("nan")
@@ -45,10 +51,10 @@ class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="keba
     Length and radius are nan where they are not known.
     """
 
-    length: Value = NOT_SAID
-    radius: Value = NOT_SAID
-    x: Value = 0.0
-    y: Value = 0.0
+    length: Annotated[Value, says("from the gauge point to the tip, mm; else not known")] = NOT_SAID
+    radius: Annotated[Value, says("of the cutter, mm; else not known")] = NOT_SAID
+    x: Annotated[Value, says("offset of the tip in X, mm")] = 0.0
+    y: Annotated[Value, says("offset of the tip in Y, mm")] = 0.0
 
     @property
     def vector(self) -> tuple[float, float, float]:
@@ -59,36 +65,60 @@ class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="keba
 class Offset(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A work offset: the position of its origin by axis, mm and degrees."""
 
-    X: Value | None = None
-    Y: Value | None = None
-    Z: Value | None = None
-    U: Value | None = None
-    V: Value | None = None
-    W: Value | None = None
-    A: Value | None = None
-    B: Value | None = None
-    C: Value | None = None
+    X: Annotated[Value | None, says("where its zero is on X, mm")] = None
+    Y: Annotated[Value | None, says("where its zero is on Y, mm")] = None
+    Z: Annotated[Value | None, says("where its zero is on Z, mm")] = None
+    U: Annotated[Value | None, says("where its zero is on U, mm")] = None
+    V: Annotated[Value | None, says("where its zero is on V, mm")] = None
+    W: Annotated[Value | None, says("where its zero is on W, mm")] = None
+    A: Annotated[Value | None, says("where its zero is on A, degrees")] = None
+    B: Annotated[Value | None, says("where its zero is on B, degrees")] = None
+    C: Annotated[Value | None, says("where its zero is on C, degrees")] = None
 
 
 class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="kebab"):
     """A machine file as it is written."""
 
-    format: int
-    name: str = ""
-    kinematics: str | None = None
-    inclination: Value | None = None
-    table: list[str] = []
-    head: list[str] = []
-    gauge_point: Triple = (0.0, 0.0, 0.0)
-    errors: str | None = None
-    axis: dict[str, Axis] = {}
-    work_offset: dict[str, Offset] = {}
-    home: dict[str, Offset] = {}
-    tool: dict[str, Tool] = {}
-    tool_table: str | None = None
-    tool_table_units: Literal["mm", "in"] | None = None
-    tool_table_control: str = "linuxcnc"
-    control: dict[str, str | float | list[int] | dict[str, dict[str, str | int]]] = {}
+    format: Annotated[int, says("the form of this file; now 1")]
+    name: Annotated[str, says("what the machine is called in what is printed")] = ""
+    kinematics: Annotated[
+        str | None,
+        says(
+            "a kind of machines, which names and places its rotary axes (`gcxform list kinematics`)"
+        ),
+    ] = None
+    inclination: Annotated[Value | None, says("by how much a nutating axis leans, degrees")] = None
+    table: Annotated[
+        list[str],
+        says("letters of the rotary axes that carry the workpiece, from the base outwards"),
+    ] = []
+    head: Annotated[
+        list[str], says("letters of the rotary axes that carry the spindle, from the base outwards")
+    ] = []
+    gauge_point: Annotated[
+        Triple, says("of the spindle, in the machine with all axes at 0, mm")
+    ] = (0.0, 0.0, 0.0)
+    errors: Annotated[str | None, says("the error model of the machine: a file")] = None
+    axis: Annotated[dict[str, Axis], says("an axis by its letter")] = {}
+    work_offset: Annotated[
+        dict[str, Offset],
+        says('where the zero of a work offset is in the machine, by its code: G54, "G54.1 P1"'),
+    ] = {}
+    home: Annotated[
+        dict[str, Offset], says("where a reference point is in the machine, by its code: G28, G30")
+    ] = {}
+    tool: Annotated[dict[str, Tool], says("a tool by its number, that of T or of H")] = {}
+    tool_table: Annotated[str | None, says("a tool table of a control: a file")] = None
+    tool_table_units: Annotated[
+        Literal["mm", "in"] | None, says("the unit of its lengths, which it does not say itself")
+    ] = None
+    tool_table_control: Annotated[
+        str, says("the control whose table it is (`gcxform list controls`)")
+    ] = "linuxcnc"
+    control: Annotated[
+        dict[str, str | float | list[int] | dict[str, dict[str, str | int]]],
+        says("settings of the control on which the meaning of codes depends"),
+    ] = {}
 
 
 class Machine(msgspec.Struct, frozen=True, kw_only=True):

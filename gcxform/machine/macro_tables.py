@@ -108,4 +108,5 @@ def schema() -> dict[str, Any]:
         "variables": {"enum": [*VARIABLES], "description": "whose #1 to #33 it has"},
     }
     one = {"type": "object", "properties": properties, "additionalProperties": False}
-    return {"type": "object", "additionalProperties": one}
+    said = "what macros and codes of the machine's own do, by name: P9832, G100, M50"
+    return {"type": "object", "additionalProperties": one, "description": said}

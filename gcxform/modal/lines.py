@@ -34,6 +34,7 @@ DISTANCES = "XYZABCUVWIJKR"
 
 
 LENGTHS = LINEAR + "IJKR"
+POINT = "write it with a point, where the control has it"
 NOTHING = 0  # the shape of an empty line
 
 
@@ -225,7 +226,7 @@ class Lines:
         value, decimals = float(self.window.value[number]), int(self.window.decimals[number])
         if why := why_open(address, value, decimals, bool(self.inch[line])):
             message = f"{address} {why} depends on the control"
-            self.findings.add(line, "GX205", message, address, "write it with a point")
+            self.findings.add(line, "GX205", message, address, POINT)
 
     def _group(self, name: str) -> Small:
         """Return the number of the code in force of a group, on each line."""

@@ -128,14 +128,14 @@ class PipelineSpec:
 
 @dataclass(frozen=True)
 class _MachineSection:
-    """The section `[machine]`."""
+    """The section `[machine]`: the machine that the program is for."""
 
     file: Annotated[Path, Option("the machine file")]
 
 
 @dataclass(frozen=True)
 class _BudgetSection:
-    """The section `[budget]`."""
+    """The section `[budget]`: how far a result may be off, and how much longer it may be."""
 
     deviation: Annotated[
         Length | None, Option("what all steps together may deviate", above=0.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Mapping
 from typing import Any, Final, Literal
 
@@ -11,6 +12,7 @@ from gcxform.machine import file as machine_file
 from gcxform.pipeline.file import FORMAT, SECTIONS
 from gcxform.plugin.registry import Registry, default_registry
 
+FORM: Final = f"the form of this file; now {FORMAT}"
 _JSON_TYPES: Final[Mapping[str, str | list[str]]] = {
     "length": ["number", "string"],
     "increment system or length": ["number", "string"],
@@ -43,9 +45,12 @@ def schema(kind: Kind, registry: Registry | None = None) -> dict[str, Any]:
 
 def _pipeline_schema(passes: Mapping[str, type]) -> dict[str, Any]:
     steps = [_table(describe(each), use=name) for name, each in passes.items()]
-    properties: dict[str, Any] = {"format": {"const": FORMAT}}
-    properties |= {name: _table(describe(section)) for name, section in SECTIONS.items()}
-    properties["pass"] = {"type": "array", "items": {"anyOf": steps}}
+    properties: dict[str, Any] = {"format": {"const": FORMAT, "description": FORM}}
+    for name, section in SECTIONS.items():
+        said = (inspect.getdoc(section) or "").partition("\n\n")[0].rstrip(".")
+        properties[name] = {**_table(describe(section)), "description": " ".join(said.split())}
+    said = "a step of the chain, by its name; steps run in their order"
+    properties["pass"] = {"type": "array", "items": {"anyOf": steps}, "description": said}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "gcxform pipeline",

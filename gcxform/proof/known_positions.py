@@ -97,5 +97,6 @@ def lost_in_target(
         "GX509",
         f"where {axis} stands is not known to {name} here, as a code before it may have moved it",
         Location(file, line + 1),
-        f"program {axis} behind the last code that moves it on {name}: tool change, tool length",
+        f"program {axis}, with the way clear, behind the last code that moves it on {name}: "
+        "tool change, tool length",
     )

@@ -201,15 +201,15 @@ MUTATIONS = (
     Mutation(
         "cutter: a radius that is not said is 0",
         "gcxform/machine/machine.py",
-        "radius: Value = NOT_SAID",
-        "radius: Value = 0.0",
+        'of the cutter, mm; else not known")] = NOT_SAID',
+        'of the cutter, mm; else not known")] = 0.0',
         "tests/test_corpus.py::test_case[cutter-comp/radius-not-said]",
     ),
     Mutation(
         "cutter: a length that is not said is 0",
         "gcxform/machine/machine.py",
-        "length: Value = NOT_SAID",
-        "length: Value = 0.0",
+        'to the tip, mm; else not known")] = NOT_SAID',
+        'to the tip, mm; else not known")] = 0.0',
         "tests/test_corpus.py::test_case[dialects/fanuc/length-not-said]",
     ),
 )

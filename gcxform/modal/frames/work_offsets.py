@@ -182,7 +182,7 @@ def _set_tool(state: FrameState, asked: Asked, kind: int) -> FrameState:
         )
     if asked.incremental and not rule.g10_ignores_g91:
         message = f"under G91, G10 L{kind} adds to what the table has"
-        raise ActError("GX213", message, "write it in G90, and G91 again behind it")
+        raise ActError("GX213", message, "write it in G90 with the sum, and G91 again behind it")
     if "R" in asked.written and rule.g10_rotates:
         raise ActError("GX213", f"R in G10 L{kind} is a radius, and an angle in G10 L2")
     if across := sorted(set(asked.axes) - {"Z"}):
@@ -236,7 +236,7 @@ def _with_preset(state: FrameState, shift: Vector) -> FrameState:
 def _refuse_turned(state: FrameState, asked: Asked) -> None:
     if asked.incremental and not asked.dialect.offset_rule.g10_ignores_g91:
         message = f"under G91, {asked.code} adds on some controls and does not on others"
-        raise ActError("GX213", message, "write it under G90")
+        raise ActError("GX213", message, "write it under G90, with the numbers that are meant")
     if state.turns or state.polar:
         raise ActError("GX213", f"{asked.code} in turned or scaled coordinates")
 

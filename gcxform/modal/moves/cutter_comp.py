@@ -22,7 +22,7 @@ from gcxform.toolpath.path import Kind, Plane
 
 GIVEN = 3  # the number of G41.1: from here on D is the diameter itself
 SIDES = np.array([0, 1, -1, 1, -1], np.int8)  # by the number of the code: G40 G41 G42 G41.1 G42.1
-AGAIN = "cancel it with G40 before, and begin it again behind"
+AGAIN = "lead the tool off the contour and cancel it with G40 before, and begin it again behind"
 
 
 def compensation(lines: Lines, modes: Modes) -> tuple[Small, Floats]:

@@ -19,6 +19,11 @@ from gcxform.modal.noted import AT
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.path import Form, Kind, Plane
 
+TOOL_BACK = "draw the tool back, write G49 before, which may move it, and G43 after"
+PLAIN = "write G15 before, the place in plain coordinates, and G16 again behind"
+PLACE = "write it under G90, with its place in the machine"
+CLEAR = "write G0 in this block if the way is clear, or G1"
+
 
 def own_moves(track: Track, line: int) -> Rows | None:
     """Return the moves of a line that has such a code, None if it has none."""
@@ -42,7 +47,7 @@ def _refuse_polar(track: Track, line: int, code: str) -> None:
     plane = {"XYZ"[k] for k in Plane(int(track.modes.plane[line])).axes[:2]}
     if plane & set(track.words_on(line)):
         message = f"{code} in polar words: controls differ in what its words are"
-        track.findings.add(line, "GX213", message, hint="write G15 before, and G16 again behind")
+        track.findings.add(line, "GX213", message, hint=PLAIN)
 
 
 def _reference(track: Track, line: int, act: Act) -> str:
@@ -190,10 +195,10 @@ def _in_machine(track: Track, line: int) -> Rows:
     """G53: to a point in the coordinates of the machine, without any offset."""
     if track.modes.incremental[line] and track.dialect.motion_rule.g53_in_g91 != "absolute":
         message = "G53 under G91: controls refuse it, ignore it, or take it as absolute"
-        track.findings.add(line, "GX213", message, hint="write it under G90")
+        track.findings.add(line, "GX213", message, hint=PLACE)
     kind = int(track.modes.motion[line])
     if kind not in (Kind.RAPID, Kind.LINE):
-        track.findings.add(line, "GX213", "G53 needs G0 or G1", hint="write G0 in this block")
+        track.findings.add(line, "GX213", "G53 needs G0 or G1", hint=CLEAR)
         kind = Kind.RAPID
     if kind == Kind.LINE and track.dialect.motion_rule.g53_is_rapid:
         message = "G53 under G1: this control moves in rapid whatever is in force"

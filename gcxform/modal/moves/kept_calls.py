@@ -19,6 +19,9 @@ from gcxform.system.arrays import Flags
 
 UNKNOWN = "unknown"
 SAID_BY = {"motion": "a motion code", "distance": "G90 or G91"}
+COMP = "cutter compensation", "lead the tool off the contour and cancel it with G40"
+CYCLE = "a canned cycle", "end it with G80"
+"""What may be in force at a call, and how it ends."""
 
 
 def refuse_lost_modes(lines: Lines, modes: Modes) -> None:
@@ -70,13 +73,13 @@ def _refuse_calls(lines: Lines, modes: Modes) -> None:
         _note_computed(lines, call.line)
         lines.state.kept_calls[call.name] = lines.state.kept_calls.get(call.name, 0) + 1
         if modes.comp[call.line] or modes.cycle[call.line] != CYCLE_OFF:
-            what = "cutter compensation" if modes.comp[call.line] else "a canned cycle"
+            what, end = COMP if modes.comp[call.line] else CYCLE
             message = f"{what} is in force at the call of {call.name}, whose moves are not known"
             lines.findings.add(
                 call.line,
                 "GX210",
                 message,
-                hint="cancel it before the call, and begin it again behind",
+                hint=f"{end} before the call, and begin it again behind",
             )
         said = f"{call.name} is kept: {_taken(call.ends)}"
         lines.state.assumed.setdefault(said, None)

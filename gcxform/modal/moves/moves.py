@@ -23,7 +23,7 @@ from gcxform.modal.moves.arcs import ArcWords, resolve_arcs
 from gcxform.modal.moves.blind_moves import blind_rows, may_be_blind, ways
 from gcxform.modal.moves.cutter_comp import compensation, refuse_ends
 from gcxform.modal.moves.cycle_patterns import Drilling
-from gcxform.modal.moves.home import own_moves
+from gcxform.modal.moves.home import TOOL_BACK, own_moves
 from gcxform.modal.moves.nurbs import Nurbs
 from gcxform.modal.moves.rows import Rows, Stretches
 from gcxform.modal.moves.spindle_and_probe import Tied
@@ -276,7 +276,7 @@ class Moves:
             return
         for line in (line for line in self._new_units if first <= line < last):
             message = "another unit under a tool length, whose number this control then keeps"
-            self.findings.add(line, "GX213", message, hint="write G49 before, and G43 after")
+            self.findings.add(line, "GX213", message, hint=TOOL_BACK)
 
     # --- the path ---
 

@@ -100,7 +100,7 @@ class Pointing:
         yield self._with_words(), "GX336", "under G43.5 the tool axis is I, J, K alone", ""
         yield self._with_radius(), "GX203", "R belongs to arcs, and this is none", ""
         message = "I, J or K has no decimal point: its unit depends on the control"
-        yield self._pointless(), "GX205", message, "write it with a point"
+        yield self._pointless(), "GX205", message, "write it with a point, where the control has it"
 
     def _with_words(self) -> Flags:
         """Return the lines that name an axis besides X, Y and Z."""

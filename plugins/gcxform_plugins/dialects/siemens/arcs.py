@@ -47,7 +47,9 @@ def centre_words(line: Line, place: Place, plane: str) -> tuple[bool, list[str]]
         return False, [letter + number for letter, (_, number, _) in line.centres.items()]
     axes = {CENTRES[axis]: axis for axis in plane}
     if not line.centres.keys() <= axes.keys():
-        raise PlaceError("GX304", "a centre beside the plane of the arc", "select its plane before")
+        raise PlaceError(
+            "GX304", "a centre beside the plane of the arc", "select the plane that is meant before"
+        )
     starts = {letter: place.known(axis) for letter, axis in axes.items()}
     if None in starts.values():
         if len(ways) < len(axes) or "" in ways.values():

@@ -165,7 +165,7 @@ class Blocks(Moves):
     def _in_machine(self, line: Line) -> str:
         """Return the block of SUPA: in the coordinates of the machine, without a tool length."""
         self.motion = motion = line.motion or self.motion
-        hint = "write G0 SUPA with absolute words and D0, and TRAFOOF before"
+        hint = "say where the spindle shall stand: G0 SUPA, absolute words, D0; and TRAFOOF before"
         if self.edge != "0" or self.following:
             message = "SUPA with a tool length or TRAORI in force, or where that is not known"
             self.refuse(message, line.machine, hint)

@@ -99,7 +99,9 @@ class Place:
         """Take an absolute word. Raises PlaceError."""
         if axis in self.unwound:
             message = f"{axis} stands whole turns beside the number that the control has"
-            raise PlaceError("GX210", message, f"write {axis}=DC(...) for all of its words")
+            raise PlaceError(
+                "GX210", message, f"write {axis}=DC(...), the shortest way, for all of its words"
+            )
         self._stand(axis, number)
         self.shifted.pop(axis, None)
 

@@ -125,7 +125,8 @@ WRITTEN = (
     "the program writes the tool table with G10: set the radius at the control, give the machine "
     "file the same, and leave the block out"
 )
-AGAIN = "cancel it with G40 before, and begin it again behind"
+AGAIN = "lead the tool off the contour and cancel it with G40 before, and begin it again behind"
+END = "lead the tool off the contour, and end it with G40"
 CHOICES = {"corners": 'arc" or "linear', "entry": 'own" or "next'}
 
 
@@ -195,7 +196,7 @@ def _refuse_open_end(path: gx.Toolpath, context: gx.PassContext) -> None:
     if ended and context.source.cutter_comp.entry:
         return
     last = np.array([len(path) - 1])
-    raise path.refuse("GX232", last, "nothing cancels cutter compensation", "end it with G40")
+    raise path.refuse("GX232", last, "nothing cancels cutter compensation", END)
 
 
 class _CentrePath:

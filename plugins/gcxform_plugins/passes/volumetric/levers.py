@@ -132,7 +132,12 @@ def _check_tools(path: gx.Toolpath, turned: Flags) -> None:
     rows = np.flatnonzero(turned & bare[path.frame] & (path.kind != gx.Kind.RAPID))
     if len(rows):
         message = f"{UNKNOWN}no tool length is in force"
-        raise path.refuse("GX314", rows[:1], message, "put G43 with the tool before")
+        raise path.refuse(
+            "GX314",
+            rows[:1],
+            message,
+            "put G43 with the tool before, while it is clear of the part",
+        )
 
 
 def _check_angles(path: gx.Toolpath, head: tuple[str, ...], turned: Flags) -> None:

@@ -290,7 +290,9 @@ class Cutting:
         if self.place.chain.head:
             none = ~self.place.called
             message = "no tool length is in force, and the head is turned"
-            self._refuse("GX330", none & turned, message, "call it with G43 before")
+            self._refuse(
+                "GX330", none & turned, message, "call it with G43 before, clear of the part"
+            )
 
     def _check_feeds(self, moved: Flags) -> None:
         path = self.path

@@ -133,7 +133,7 @@ class Compensation(Window):
         own = np.flatnonzero(feeds & (self.path.form == gx.Form.MACHINE))
         if len(own):
             message = "a feed move to a point of the machine (G53) is not compensated"
-            hint = "write it without G53, in a work offset; or as a rapid, G53 G0"
+            hint = "name the place in a work offset; or go there in a rapid, if the way is clear"
             raise self.path.refuse("GX317", own[:1], message, hint)
 
     def _check_known(self) -> None:
