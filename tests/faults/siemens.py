@@ -236,4 +236,11 @@ MUTATIONS = (
         "",
         f"{CASES}[dialects/siemens/spelled-otherwise]",
     ),
+    Mutation(
+        "siemens: what is kept reaches back to the head of its loop",
+        PROGRAMS,
+        "if self.kept_from <= self.line < self.kept_until:",
+        "if self.line < self.kept_until:",
+        f"{CASES}[dialects/siemens/kept-in-a-loop]",
+    ),
 )

@@ -22,7 +22,7 @@ from gcxform_plugins.dialects.siemens.variables import Variables
 class Deciding(Variables):
     """Executes what decides.
 
-    kept_until   lines up to this one are kept: only the machine decides on them, `kept_why`
+    kept_from    from this line up to `kept_until` all are kept: only the machine decides on them
     tied         why lines that were read may be executed again, by what only the machine knows
     decides      something has decided where to go on;  loops_on: a loop may go on at its end
     """
@@ -30,7 +30,8 @@ class Deciding(Variables):
     def __init__(self, lines: Sequence[str], file: str, dialect: Any, reading: Any) -> None:
         super().__init__(lines, file, dialect, reading)
         self.counting: dict[int, float] = {}
-        self.kept_until, self.kept_why, self.tied = 0, "", ""
+        self.kept_from = self.kept_until = 0
+        self.kept_why = self.tied = ""
         self.decides = self.loops_on = False
         self.flow: Mapping[str, Callable[[Node], None]] = {
             "if": self._if,
@@ -230,5 +231,9 @@ class Deciding(Variables):
         self._keep(len(self.lines), why)
 
     def _keep(self, until: int, why: str) -> None:
-        self.kept_until, self.kept_why = until, why
+        self.keep_on(until, why)
         self.refuse(why)
+
+    def keep_on(self, until: int, why: str) -> None:
+        """Keep lines from this one up to another."""
+        self.kept_from, self.kept_until, self.kept_why = self.line, until, why

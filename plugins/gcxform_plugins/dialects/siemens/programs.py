@@ -58,8 +58,9 @@ class Programs(Computing):
         if not self.reading.stays:
             return self.executed(items)
         self._arrive()
-        if self.line < self.kept_until:
+        if self.kept_from <= self.line < self.kept_until:
             return self._kept(items, self.kept_why, True)
+        self.kept_until = 0
         before = {name: getattr(self, name) for name in STATE}
         orientation = [*self.orientation]
         try:
@@ -80,8 +81,12 @@ class Programs(Computing):
         """Keep all that follows a decision that is not made here, where nothing less is kept."""
         if self.kept_until > self.line or self.loops_on:
             self.loops_on = False
-            return
-        self.kept_until, self.kept_why = len(self.lines), why
+        else:
+            self._keep_rest(why)
+
+    def _keep_rest(self, why: str) -> None:
+        """Keep all that follows; and lines before, where it may lead back to them."""
+        self.keep_on(len(self.lines), why)
         try:
             back = self.structure.may_go_back(self.line)
         except StructureError:
@@ -96,7 +101,7 @@ class Programs(Computing):
             return []
         self.kept_lines.append((self.line, why))
         if FROM_HERE.search(code(text).upper()):
-            self.kept_until, self.kept_why = len(self.lines), why
+            self._keep_rest(why)
         opaque |= self._calls(text, items)
         line = self._codes_of(items)
         if line.motion.isdigit():
