@@ -1,10 +1,11 @@
 """Run every real program of a corpus and say which go through, and why each other does not.
 
-    python benchmarks/corpus.py [CORPUS] [--list] [--dialect NAME] [--cause TEXT] [--bytes]
+    python benchmarks/corpus.py [CORPUS] [--list] [--dialect NAME] [--cause TEXT] [--bytes] [--new]
 
 CORPUS is a folder with `manifest.csv`, `rs274_results.csv` and `programs/`; by default the one
-beside the checkout. Each program is run where it lies, through two chains, with what a user of its
-machine could have filled in (`corpus_machines/`, chosen by `corpus.toml`).
+beside the checkout. Each program is run where it lies, through two chains, with the files that
+`gcxform machine new` wrote and a user of its machine filled in (`corpus_machines/`, chosen by
+`corpus.toml`); `--new` writes them anew, and says what a user knows and was never asked for.
 
 *Through* is a program whose result is proved, and which holds what its source held: as many blocks
 that move, and every subprogram by its name, counted by patterns that know nothing of gcxform. What
@@ -31,6 +32,7 @@ from functools import cache
 from pathlib import Path
 from types import FrameType
 
+from corpus_files import known_of, written
 from grbl_rules import accepts
 
 import gcxform as gx
@@ -118,12 +120,33 @@ def pipeline(dialect: str, chain: str) -> Pipeline:
     return Pipeline(kind, kind, passes, START, numbers=NUMBERS)
 
 
+def machine_of(dialect: str, path: str) -> dict[str, str]:
+    """Return what `corpus.toml` says of the machine of a program."""
+    mine = [m for m in notes()["machine"] if m["dialect"] == dialect]
+    return [m for m in mine if re.search(m.get("programs", ""), path)][-1]
+
+
+def write_anew(jobs: Iterable[Job]) -> None:
+    """Write the files of the machines of programs, and print what was not asked for."""
+    programs: dict[tuple[str, str], dict[Path, None]] = {}
+    for job in jobs:
+        machine = job.dialect, machine_of(job.dialect, job.path)["file"]
+        programs.setdefault(machine, {})[job.corpus / job.path] = None
+    for (dialect, file), paths in programs.items():
+        place = HERE / "corpus_machines" / file
+        known = known_of(place.stem)
+        if known is None:
+            print(f"{file}: written by hand")
+            continue
+        left = written(dialect, [*paths], (None, CHAIN), place, known)
+        print(f"{file}: not asked for: {', '.join(left) or 'nothing'}")
+
+
 @cache
 def filled_in(dialect: str, path: str, chain: str, corpus: Path) -> Pipeline:
     """Return a chain with what the user of the machine of a program filled in."""
     registry = default_registry()
-    mine = [m for m in notes()["machine"] if m["dialect"] == dialect]
-    user = [m for m in mine if re.search(m.get("programs", ""), path)][-1]
+    user = machine_of(dialect, path)
     spec = load(HERE / "corpus_machines" / user["file"], registry)
     passes = tuple(parse_chain(CHAINS[chain], HERE, registry))
     made = Pipeline.of_spec(replace(spec, passes=passes), registry, dialect)
@@ -263,9 +286,12 @@ def main() -> int:
     parser.add_argument("--dialect", choices=OURS, help="these programs alone")
     parser.add_argument("--cause", help="list those alone whose cause has this text")
     parser.add_argument("--bytes", action="store_true", help="also that trees print the programs")
+    parser.add_argument("--new", action="store_true", help="write the files of the machines anew")
     options = parser.parse_args()
     ours = (options.dialect,) if options.dialect else OURS
     jobs = list(counted(options.corpus, ours))
+    if options.new:
+        write_anew(jobs)
     found = outcomes(jobs)
     for one in found:
         why = f"{one.code} {one.line}: {one.says}" if one.code else "through"

@@ -6,7 +6,7 @@ from gcxform.api import read_model as read_model
 from gcxform.api import write as write
 from gcxform.catalogue.offers import Hint as Hint
 from gcxform.catalogue.offers import put_before as put_before
-from gcxform.catalogue.offers import work_offsets_said as work_offsets_said
+from gcxform.catalogue.offers import ways_to_offsets as ways_to_offsets
 from gcxform.comparison import Comparison as Comparison
 from gcxform.comparison import Difference as Difference
 from gcxform.comparison import compare as compare

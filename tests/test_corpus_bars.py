@@ -10,6 +10,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 
+import corpus_files
 import grbl_rules
 
 import corpus
@@ -17,7 +18,7 @@ import corpus
 LEAST = {
     "fanuc": (34, 4),
     "grbl": (38, 37),
-    "haas": (13, 8),
+    "haas": (13, 9),
     "linuxcnc": (126, 56),
     "siemens": (53,),
 }
@@ -64,6 +65,16 @@ def test_what_a_result_has_lost_is_noticed(before: bytes, after: bytes, says: st
     lost = corpus.what_is_lost(before, after)
     assert says in lost
     assert bool(says) == bool(lost)
+
+
+def test_what_a_user_knows_takes_the_place_of_what_is_asked() -> None:
+    text = (
+        '[input]\n# "?" is open\nstart = { X = "?", Y = "?" }\nfeed = "?"\n[tool.3]\nlength = "?"\n'
+    )
+    known = {"input.start.*": 1.5, "tool.*.length": 120.0, "home.*": 0.0, "input.units": "mm"}
+    filled, asked = corpus_files.filled(text, known)
+    assert 'start = { X = 1.5, Y = 1.5 }\nfeed = "?"\n[tool.3]\nlength = 120.0\n' in filled
+    assert asked == {"input.start.*", "tool.*.length"}
 
 
 ACCEPTED = [

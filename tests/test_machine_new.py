@@ -178,3 +178,39 @@ def test_calls_and_codes_that_cannot_be_looked_up_are_asked_for(
     assert call(*check).exit_code != 0
     fill_in(here / "m.toml", ends='"unknown"')
     assert call(*check).exit_code == 0
+
+
+ALONE = """%
+O1
+G21 G94 G17 G54 G90 G0 X0. Y0. Z50.
+G43 H1
+G91 Z-1.
+G1 X9. F100.
+M30
+%
+"""
+KEPT = "%\nO1\nG21 G94 G17 G54 G90 G0 X0. Y0. Z50.\nG65 P9832\nG90 G21 G94 G1 X0. Y0. Z5. F100.\nM30\n%\n"
+MODEL = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"
+
+
+@pytest.mark.parametrize(
+    ("program", "asked"),
+    [
+        (ALONE, 'tool-length-alone = "?"'),
+        (KEPT, '[control.macro.P9832]\n# where axes are behind it: "unchanged"'),
+    ],
+)
+def test_a_compensation_asks_where_things_are_before_any_file_says_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str, asked: str
+) -> None:
+    here = workplace(tmp_path, monkeypatch)
+    (here / "part.nc").write_text(program)
+    chain = f"volumetric model={MODEL} outside=clamp"
+    new = call("machine", "new", "-f", "fanuc", "-x", chain, "part.nc", "-o", "m.toml")
+    assert new.exit_code == 0, new.stderr
+    text = (here / "m.toml").read_text()
+    assert asked in text
+    assert "[work-offset.G54]" in text
+    fill_in(here / "m.toml", tool_length_alone='"shifts"', ends='"unchanged"')
+    done = call("run", "-q", "-f", "fanuc", "-m", "m.toml", "-x", chain, "part.nc")
+    assert done.exit_code == 0, done.stderr

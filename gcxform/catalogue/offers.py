@@ -106,11 +106,25 @@ def _said(fields: dict[str, str]) -> dict[str, str]:
 # --- the words ---
 
 
-def work_offsets_said(*names: str) -> str:
+SET_ANEW: Final = " as set anew"
+"""What stands behind the name of a work offset whose zero was set to what is not known."""
+
+
+def _offsets_said(*names: str) -> str:
     """Return the settings of a machine file that say where work offsets are; `*` for no name."""
     quoted = {n: f'"{n}"' if "." in n or " " in n else n for n in names if OFFSET.fullmatch(n)}
     sections = list(dict.fromkeys(quoted.values())) if len(quoted) == len({*names}) else ["*"]
     return ", ".join(f"X = ... in [work-offset.{each}]" for each in sections)
+
+
+def ways_to_offsets(first: str, *names: str) -> str:
+    """Return what to do about work offsets of which it is not known where they are.
+
+    `first` is that from which positions count. No file says where a program or a call puts one.
+    """
+    if any(SET_ANEW in name for name in names):
+        return "the program sets it there, or a call whose program is not at hand"
+    return f"give a machine file with {_offsets_said(first, *names)}"
 
 
 def put_before(name: str, step: str = "", options: str = "", why: str = "") -> Hint:

@@ -12,6 +12,7 @@ from math import isfinite, nan
 
 import numpy as np
 
+from gcxform.catalogue.offers import SET_ANEW
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.frames import Frame, Matrix, Vector
 
@@ -42,8 +43,8 @@ class FrameState:
     tool_name     what the tool vector belongs to: "H3", "-H3" where it is taken off; "" for none
     number        the H in force, as part of such a name; "" where no block has stated one.
                   `lost_numbers` counts those that only the control knows
-    given         how often G10 has set each work offset, and all of them at once (""), so that
-                  zeros that are not known have names of their own
+    given         how often each work offset was set, or may have been, and all of them at once
+                  (""), so that zeros that are not known have names of their own
     written       how often G10 has written each tool into the control's table
     in_spindle    number of the tool, -1 where not known; `changes` counts the tool changes
     turns         rotation, scaling and mirror of the program, the innermost first
@@ -134,7 +135,7 @@ class FrameState:
         times = self.given.get(self.work, 0) + self.given.get("", 0)
         if not times:
             return self.work
-        return f"{self.work} as set by G10" + (f" ({times})" if times > 1 else "")
+        return f"{self.work}{SET_ANEW}" + (f" ({times})" if times > 1 else "")
 
     def in_work(self, work: str) -> FrameState:
         """Return the state in another work offset."""

@@ -68,6 +68,8 @@ class Reading:
     crosses       whether the program is to be written for another control
     stays         whether it is to be written for the same one by passes that keep positions: then
                   what is not understood may stay as it stands
+    modes_count   whether what is written depends on units, plane and feed mode: not where words of
+                  the same coordinates are said in another way
     parameters    values of parameters before the first block, by number ("100") or name ("<a>")
     subprograms   folders in which subprograms are looked up, behind that of the program
     entry         how a subprogram is called that stands in a file by itself
@@ -90,6 +92,7 @@ class Reading:
     tables_stay: bool = True
     crosses: bool = False
     stays: bool = False
+    modes_count: bool = False
     subprograms: tuple[Path, ...] = ()
     entry: Entry = field(default_factory=Entry)
 

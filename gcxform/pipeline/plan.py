@@ -47,7 +47,7 @@ from gcxform.stamps.comment import stamps_in
 from gcxform.stamps.writing import comment_line
 from gcxform.syntax.source import Source
 from gcxform.system.limits import Limits
-from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY, NO_CYCLES, WORKPIECE_FRAME
+from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY, METRIC, NO_CYCLES, WORKPIECE_FRAME
 
 ARC_ROUNDING = 2.0  # of the last decimal: what rounding ends and centre can add along an arc
 CENTRE_ROUNDING = 0.003  # mm: what rounding moves a centre by depends on the contour's corners
@@ -246,9 +246,11 @@ class Plan:
         same = self.source is self.target
         folds = any(WORKPIECE_FRAME in step.ensures for step in self.path_passes)
         open_pecks, tables_stay = same and not expands, same and not folds
+        counts = not same or expands or folds or not says_the_same(self.path_passes)
+        counts |= any(METRIC in step.ensures for step in self.path_passes)
         stays = self._writes_back() and not self.copies
         reading = replace(reading, open_pecks=open_pecks, tables_stay=tables_stay)
-        return replace(reading, crosses=not same, stays=stays)
+        return replace(reading, crosses=not same, stays=stays, modes_count=counts)
 
     def reading_at_start(self, axes: str) -> Reading:
         """Return what is known at the start; where only programmed words are written, 0 for axes.

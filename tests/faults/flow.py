@@ -458,13 +458,6 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[flow/null-doubtful]",
     ),
     _flow(
-        "a call that is kept leaves positions",
-        "gcxform/modal/meaning/calls.py",
-        "meaning.loses_position = meaning.runs_macro = True",
-        "meaning.runs_macro = True",
-        "tests/test_corpus.py::test_case[flow/kept-call-position]",
-    ),
-    _flow(
         "a call that is kept leaves G90",
         "gcxform/modal/moves/kept_calls.py",
         "lost[call.line] = not call.ends",

@@ -180,6 +180,27 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[hazards/work-offset-of-the-machine]",
     ),
     _macro(
+        "a call that is kept leaves the work offsets where they were",
+        "gcxform/modal/frames/work_offsets.py",
+        "return replace(state.shifted(), machine=unknown)",
+        "return replace(state, zeros={}, machine=unknown)",
+        "flow/kept-call-sets-zero",
+    ),
+    _macro(
+        "a call that is kept leaves units, plane and feed mode",
+        "gcxform/modal/moves/kept_calls.py",
+        "if lines.reading.modes_count:",
+        "if False:",
+        "flow/kept-call-unit-of-moves",
+    ),
+    Mutation(
+        "where a compensation stands nobody is asked",
+        "gcxform/cli/program/missing.py",
+        '"GX311", "GX314", "GX506"})',
+        '"GX311", "GX506"})',
+        "tests/test_machine_new.py",
+    ),
+    _macro(
         "M99 P of a Haas goes to its caller",
         "gcxform/flow/macros.py",
         "if 99 in codes and self.dialect.flow_rule.m99_jumps and",

@@ -16,7 +16,7 @@ from typing import Any, Final
 import msgspec
 
 from gcxform.catalogue.questions import OF_THE_STATE, PIPELINE, Question, kind_of, questions
-from gcxform.cli.program.used import ANY, Used, used_by
+from gcxform.cli.program.used import ANY, LENGTH_ALONE, Used, used_by
 from gcxform.diagnostics import Diagnostic, Severity
 from gcxform.machine.control import inert_of, settings_of
 from gcxform.machine.machine import Machine, Tool
@@ -30,15 +30,17 @@ ON_TRIAL: Final[Mapping[Question, Any]] = {
     ("tool", "radius"): 0.001,
     ("input", "parameters"): 1.0,
     ("control", "macro"): "unchanged",
+    LENGTH_ALONE: "shifts",
 }
 """Values on trial where 0 would not be one: mm, less than contours are wide; 0 has no unit."""
-LOST: Final = frozenset({"GX207", "GX208", "GX311", "GX506"})
+LOST: Final = frozenset({"GX207", "GX208", "GX311", "GX314", "GX506"})
 """Findings about a position that is not known; where the start does not help, it was lost."""
 WHERE_LOST: Final[tuple[Question, ...]] = (
     ("tool", ANY, "length"),
     ("home", ANY, "X"),
     ("work-offset", ANY, "X"),
     ("control", "macro", ANY, "ends"),
+    LENGTH_ALONE,
 )
 
 Look = Callable[[Pipeline, Source], list[Diagnostic]]

@@ -17,6 +17,8 @@ from gcxform.cli.common.request import Asked
 from gcxform.cli.program.asking import block
 from gcxform.cli.program.filled_files import with_questions
 from gcxform.cli.program.survey import Programs, Survey, dialect_of
+from gcxform.machine.machine import Machine
+from gcxform.pipeline.chain_text import parse_chain
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
 from gcxform.system.inputs import visit
@@ -55,9 +57,12 @@ def write_new(paths: Sequence[str], dialect: str | None, chain: str | None, plac
 def _pipelines(dialect: str, chain: str | None, places: Places) -> Iterator[Pipeline]:
     """Yield the pipelines for which programs are looked at, with what files say already."""
     machine = places.machine if _is_there(places.machine) else None
+    bare = Asked(chain="", dialect=dialect, machine=machine).build()
+    if bare.machine is None:  # passes ask for one that has none of what they need
+        bare = replace(bare, machine=Machine(file=Path(places.machine)))
     for each in (chain,) if chain is not None else ANY_PASSES:
-        asked = Asked(chain=each, dialect=dialect, machine=machine)
-        pipeline = asked.build()
+        steps = tuple(parse_chain(each, Path.cwd(), default_registry()))
+        pipeline = replace(bare, passes=steps)
         if places.pipeline and _is_there(places.pipeline):
             said = Asked(pipeline=places.pipeline, machine=machine).build()
             pipeline = _with_input(pipeline, said)

@@ -23,6 +23,7 @@ Places = dict[str, Location]
 """Where something is first used, by its name."""
 LENGTHS = frozenset({"length", "length-negative", "length-add", "vectors"})
 ANY = "*"
+LENGTH_ALONE: Question = ("control", "tool-length-alone")
 
 
 @dataclass
@@ -30,7 +31,8 @@ class Used:
     """What a program names of its machine, as machine files call it.
 
     `own_codes` are M codes that the dialect does not have, `calls` are those that are kept as their
-    programs are not at hand; `of_home` are the axes that go there.
+    programs are not at hand; `of_home` are the axes that go there. `length_alone`: a tool length is
+    called without a place along it.
     """
 
     first_offset: str = "G54"
@@ -42,6 +44,7 @@ class Used:
     axes: str = "XYZ"
     of_home: dict[str, str] = field(default_factory=dict)
     calls: Places = field(default_factory=dict)
+    length_alone: bool = False
 
     def keep_axes(self, letters: Collection[str]) -> None:
         """Keep the axes that a machine file names, if it names any: it takes no others."""
@@ -55,6 +58,8 @@ class Used:
         table, name, *key = question
         if table == "control" and key and key[0] == ANY:
             yield from ((table, name, call, *key[1:]) for call in self.calls)
+            return
+        if question == LENGTH_ALONE and not self.length_alone:
             return
         if table == "tool" and name == ANY:
             numbers = self.radii if key == ["radius"] else self.lengths
@@ -130,6 +135,7 @@ def _act(used: Used, dialect: type[Dialect], act: Act, block: _Block) -> None:
         used.offsets.setdefault(name + "".join(named), block.place)
     elif act.name in LENGTHS and words.get("H", 0.0) > 0:
         used.lengths.setdefault(f"{words['H']:g}", block.place)
+        used.length_alone |= dialect.tool_rule.length_may_move and "Z" not in block.meaning.axes
     elif act.name == "home":
         name = act.code + (f" P{words['P']:.0f}" if "P" in words else "")
         axes = used.of_home.get(name, "") + (block.meaning.axes or used.axes)

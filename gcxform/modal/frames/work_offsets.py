@@ -38,7 +38,7 @@ def behind_call(state: FrameState, asked: Asked) -> FrameState:
     unknown = (np.nan,) * len(state.axes)
     tool = (*state.tool[:2], np.nan) if state.tool_name else state.tool
     state = state.with_tool((tool[0], tool[1], tool[2]), state.tool_name)
-    return replace(state, zeros={}, machine=unknown)
+    return replace(state.shifted(), machine=unknown)
 
 
 def table(state: FrameState, asked: Asked) -> FrameState:

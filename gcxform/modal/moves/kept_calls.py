@@ -1,8 +1,9 @@
 """What is not known behind a call that is kept, as what it calls is not there to be read.
 
 Positions, variables of the program, offsets, and what macros set as they go: the motion code, G90
-or G91, F. Each has to be programmed again before it is needed. Of units, plane, feed mode, work
-offset and compensation it is assumed that they are as before; the certificate says so.
+or G91, F. Each has to be programmed again before it is needed. Units, plane and feed mode are taken
+to be as before where what is written is the same in any of them, as for `absolute`; the certificate
+says so. Where a length, an arc or a time is made of what is read they are needed as well.
 """
 
 from __future__ import annotations
@@ -13,12 +14,20 @@ from gcxform.modal.columns import fill
 from gcxform.modal.findings import Findings
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.calls import computed_words
+from gcxform.modal.meaning.tables import NUMBER
 from gcxform.modal.noted import Unknown
 from gcxform.modal.state import CYCLE_OFF, Modes
 from gcxform.system.arrays import Flags
 
 UNKNOWN = "unknown"
-SAID_BY = {"motion": "a motion code", "distance": "G90 or G91"}
+SAID_BY = {
+    "motion": "a motion code",
+    "distance": "G90 or G91",
+    "units": "G20 or G21",
+    "plane": "G17, G18 or G19",
+    "feed-mode": "G93, G94 or G95",
+}
+STRAIGHT = (NUMBER["G0"], NUMBER["G1"])
 COMP = "cutter compensation", "lead the tool off the contour and cancel it with G40"
 CYCLE = "a canned cycle", "end it with G80"
 """What may be in force at a call, and how it ends."""
@@ -31,6 +40,10 @@ def refuse_lost_modes(lines: Lines, modes: Modes) -> None:
         return
     moves = lines.flag("moves")
     needing = {"motion": moves & ~lines.flag("own_moves"), "distance": moves}
+    if lines.reading.modes_count:
+        needing["units"] = moves
+        needing["plane"] = moves & ~np.isin(modes.motion, STRAIGHT)
+        needing["feed-mode"] = moves & (modes.motion != NUMBER["G0"])
     for group, needs in needing.items():
         known = _known(lines, group)
         for line in _first_of_each(needs & ~known, lines):
@@ -81,7 +94,7 @@ def _refuse_calls(lines: Lines, modes: Modes) -> None:
                 message,
                 hint=f"{end} before the call, and begin it again behind",
             )
-        said = f"{call.name} is kept: {_taken(call.ends)}"
+        said = f"{call.name} is kept: {_taken(call.ends, lines.reading.modes_count)}"
         lines.state.assumed.setdefault(said, None)
 
 
@@ -92,10 +105,10 @@ def _note_computed(lines: Lines, line: int) -> None:
         lines.unknown.append(Unknown(line, computed, ""))
 
 
-def _taken(ends: str) -> str:
-    if ends == UNKNOWN:
-        return "positions, offsets and variables are lost behind it"
+def _taken(ends: str, modes_count: bool) -> str:
+    if ends == UNKNOWN or (not ends and modes_count):
+        return "positions, offsets and variables are lost behind it" + ", and modes" * (not ends)
     if ends:
         return f"the machine file says that it ends {ends}; variables are lost behind it"
-    modes = "units, plane, feed mode, work offset and compensation are as before"
+    modes = "units, plane, feed mode and compensation are as before"
     return f"positions, offsets and variables are lost behind it, and {modes}"

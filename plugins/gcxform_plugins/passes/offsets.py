@@ -56,7 +56,7 @@ class Offsets(gx.Pass):
             if unknown:
                 rows = np.flatnonzero(path.frame == number)[:1]
                 message = f"how far {unknown[0]} is from {path.first} is not known"
-                hint = f"give a machine file with {gx.work_offsets_said(path.first, unknown[0])}"
+                hint = gx.ways_to_offsets(path.first, unknown[0])
                 raise path.refuse("GX314", rows, message, hint)
 
     def _check_turned(self, path: gx.Toolpath) -> None:

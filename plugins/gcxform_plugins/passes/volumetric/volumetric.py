@@ -72,8 +72,7 @@ class Volumetric(VolumetricOptions, gx.Pass):
             message = f"volumetric does not compensate backlash, and the model has some on {axes}"
             hint = 'backlash = "mean" compensates what both directions have in common'
             raise gx.UsageError.one("GX484", message, hint=hint)
-        offsets = context.machine.work_offsets if context.machine else {}
-        if self.part_origin is None and not offsets:
+        if self.part_origin is None and context.machine is None:
             raise gx.UsageError.one(
                 "GX721",
                 "volumetric needs to know where the program's origin is in the machine",
@@ -178,7 +177,7 @@ def _ways_to_know(first: str, named: list[str], tools: bool) -> str:
     known = " and ".join(dict.fromkeys(name for name in named if name != first))
     if not tools:
         return f"not known: {known}; a machine file says it, with part-origin left out"
-    said = gx.work_offsets_said(first, *(name.split(" + ")[0] for name in named))
+    said = gx.ways_to_offsets(first, *(name.split(" + ")[0] for name in named))
     if any(" + " in name for name in named):
         said += ", length = ... in [tool.*]"
-    return f"not known: {known}; give a machine file with {said}"
+    return f"not known: {known}; {said}"
