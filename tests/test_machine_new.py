@@ -189,7 +189,7 @@ G1 X9. F100.
 M30
 %
 """
-KEPT = "%\nO1\nG21 G94 G17 G54 G90 G0 X0. Y0. Z50.\nG65 P9832\nG90 G21 G94 G1 X0. Y0. Z5. F100.\nM30\n%\n"
+KEPT = ALONE.replace("G43 H1\nG91 Z-1.\nG1 X9.", "G65 P9832\nG90 G21 G94 G1 X9. Y0. Z5.")
 MODEL = Path(__file__).parents[1] / "examples" / "lddm" / "model.toml"
 
 
