@@ -93,7 +93,7 @@ def test_what_a_setting_does_not_end_is_not_asked_for(here: Path) -> None:
 
 
 def test_behind_a_block_that_nothing_helps_the_rest_is_found(here: Path) -> None:
-    (here / "p.nc").write_text("O0001\nG90 G0 X0 Y0 Z0\nG27 X1.\nG1 X10 F100.\n/M8\nM30\n")
+    (here / "p.nc").write_text("O0001\nG90 G0 X0 Y0 Z0\nG27 X1.\nG1 X10 F100.\n/X5.\nM30\n")
     _, out, err = check(here, "fanuc", "absolute")
     assert re.findall(r"GX\d+", err) == ["GX210", "GX211", "GX205"]
     assert pasted(out)["input"] == {"increment": "?", "block-delete": "?"}

@@ -88,6 +88,7 @@ END1
 G0 Z9.
 M30
 """
+SLASH = b"O1\nG21 G90 G94\nG0 X0. Y0. Z5.\n/M8\nM1\n/G4 P100\nX5.\nM30\n"
 GRBL = b"G21 G90 G94\nG0 X1\nG1 X2 F100\n"
 
 
@@ -202,6 +203,9 @@ FAULTS = {
     "what perhaps is set is another": (WAITS, rewrites(b"#502+1", b"#502+2")),
     "a loop has no end": (WAITS, rewrites(b"END1\n", b"")),
     "what is needed is left out": (WAITS, rewrites(b"#1=3.\n", b"")),
+    "a slash is lost": (SLASH, rewrites(b"/M8", b"M8")),
+    "a slash is lost before a dwell": (SLASH, rewrites(b"/G4", b"G4")),
+    "a block gets a slash": (SLASH, rewrites(b"M1", b"/M1")),
     "percent signs are forgotten": (GRBL, replaces(Frame, "put", lambda s, t, a, b: (t, 0, 0))),
     "only one percent sign": (
         GRBL,
@@ -214,7 +218,7 @@ FAULTS = {
 def test_the_proof_of_a_run_catches(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     program, plant = FAULTS[name]
     fanuc = "fanuc", "fanuc"
-    kinds = {MACRO: fanuc, LOST: fanuc, WAITS: fanuc, GRBL: ("grbl", "linuxcnc")}.get(
+    kinds = {MACRO: fanuc, LOST: fanuc, WAITS: fanuc, SLASH: fanuc, GRBL: ("grbl", "linuxcnc")}.get(
         program, ("linuxcnc",) * 2
     )
     assert run(program, *kinds).certificate.verified

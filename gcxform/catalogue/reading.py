@@ -100,7 +100,8 @@ CODES: dict[str, tuple[str, str]] = {
         "Block delete depends on a switch",
         "A block that begins with a slash is executed or skipped by a switch on the control "
         "panel. The path after it depends on that switch, and one output cannot be right for "
-        'both positions. Say which it is: `block-delete = "execute"` or `"skip"` in [input], or '
+        "both positions. A block that does nothing but switch, stop or wait stays as it is. Of "
+        'others say which it is: `block-delete = "execute"` or `"skip"` in [input], or '
         "--block-delete.",
     ),
     "GX212": (

@@ -19,7 +19,6 @@ from gcxform.system.arrays import Flags, Ints, Small
 CARRIED = ("motion", "plane", "distance", "arc-distance")
 """Groups that may be changed, if they are programmed again before they count."""
 UNMINDED = frozenset({"spindle"})
-STILL_WORDS = frozenset("NS")
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +35,7 @@ class Effect:
 
 def is_still(meaning: Meaning, block: Block) -> bool:
     """Whether a block neither moves anything nor changes a mode: it waits, counts or tells."""
-    changes = meaning.acts or meaning.ends or meaning.loses_position or meaning.changes_tool
-    changes = changes or meaning.runs_macro or meaning.percent or meaning.deleted or meaning.sends
-    words = set(meaning.slots) <= STILL_WORDS and set(meaning.groups.values()) <= {"G4"}
-    return block.error is None and meaning.refusal is None and words and not changes
+    return block.error is None and meaning.is_still and not meaning.deleted
 
 
 def effect_of(run: RunState, lines: Ints) -> Effect:

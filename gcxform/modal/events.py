@@ -10,6 +10,9 @@ from gcxform.modal.lines import Lines
 from gcxform.system.arrays import Ints
 from gcxform.toolpath.path import Event
 
+SWITCHED = "/"
+"""Before the name of an event that a switch of the control decides on."""
+
 
 def events_of(
     lines: Lines, rows: Ints, within: Sequence[tuple[int, int, Event]] = ()
@@ -18,7 +21,8 @@ def events_of(
 
     `rows` (n,) are the lines of the moves. `within` is what happens within canned cycles: the
     first line of a stretch, how many moves behind its first, and what. A piece of a line that only
-    the machine can compute is an event as well: its text, which has to stay.
+    the machine can compute is an event as well: its text, which has to stay. One in a block with a
+    slash has that in its name where nobody said whether such blocks are executed.
     """
     events: list[Event] = []
     after: list[bool] = []
@@ -26,11 +30,13 @@ def events_of(
     begin, end = np.searchsorted(rows, having), np.searchsorted(rows, having, "right")
     columns = [c.tolist() for c in (having, lines.shape[having], lines.first[having], begin, end)]
     meanings, first_line = lines.table.meanings, lines.window.first_line
+    open_ = not lines.reading.blocks_with_a_slash(lines.dialect)
     for line, number, first, first_row, last_row in zip(*columns, strict=True):
         for shape in meanings[number].events:
             values = tuple(_value(lines, shape.what, a, first + n) for a, n in shape.slots)
             where = last_row if shape.after else first_row
-            events.append(Event(where, shape.what, values, line + first_line))
+            what = SWITCHED + shape.what if open_ and meanings[number].deleted else shape.what
+            events.append(Event(where, what, values, line + first_line))
             after.append(shape.after)
     if not within and not lines.unknown:
         return tuple(events)

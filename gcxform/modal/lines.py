@@ -172,6 +172,8 @@ class Lines:
             self.shape[deleted] = NOTHING
             return
         for line in deleted.tolist():
+            if self.table.meanings[int(self.shape[line])].switches and not self.reading.crosses:
+                continue  # it stays, and so does the question
             self.findings.add(
                 line,
                 "GX211",

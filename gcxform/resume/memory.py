@@ -89,9 +89,13 @@ class Memory:
     def look(self, shape: Shape, meaning: Meaning, line: int) -> None:
         """Note what blocks of a shape hold that cannot be restated; `line` has it, from 1."""
         for word in shape.block.words:
-            reason = self._reason(word)
-            if reason and (self.unsafe is None or line < self.unsafe[0]):
-                self.unsafe = line, reason
+            if reason := self._reason(word):
+                self.refuse(line, reason)
+
+    def refuse(self, line: int, reason: str) -> None:
+        """Note why no restart is safe behind a line, from 1; the first of all is kept."""
+        if self.unsafe is None or line < self.unsafe[0]:
+            self.unsafe = line, reason
 
     def _reason(self, word: Word) -> str:
         """Return why a word keeps a restart from being safe, nothing if it does not."""

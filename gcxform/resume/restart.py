@@ -85,7 +85,10 @@ class Restart:
         found = self.interpreter.interpret(window, self.reader.table)
         shapes, meanings = self.reader.shapes.shapes, self.reader.table.meanings
         for number, first in shapes_seen(found.shape):
-            self.memory.look(shapes[number], meanings[number], window.first_line + first + 1)
+            at = window.first_line + first + 1
+            self.memory.look(shapes[number], meanings[number], at)
+            if meanings[number].deleted and not self.reading.blocks_with_a_slash(self.dialect):
+                self.memory.refuse(at, "a switch decides whether a block before is executed")
             self.placed.update(meanings[number].axes)
         grammar = self.dialect.load_grammar()
         inch = found.modes.inch

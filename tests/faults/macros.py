@@ -12,6 +12,27 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 RENUMBER = "plugins/gcxform_plugins/passes/renumber.py"
 MUTATIONS = (
     Mutation(
+        "a slash is no part of what a block does",
+        "gcxform/modal/events.py",
+        "what = SWITCHED + shape.what if",
+        "what = shape.what if",
+        "tests/test_planted_inventory.py::test_the_proof_of_a_run_catches",
+    ),
+    _macro(
+        "nothing hangs on whether a block is executed",
+        "gcxform/modal/lines.py",
+        "if self.table.meanings[int(self.shape[line])].switches and",
+        "if",
+        "bad/gx211-slash",
+    ),
+    _macro(
+        "another control does the same with a slash",
+        "gcxform/modal/lines.py",
+        ".switches and not self.reading.crosses:",
+        ".switches:",
+        "dialects/across/slash-of-a-switch",
+    ),
+    Mutation(
         "macros: the feed of before is in force behind a code that cuts",
         "gcxform/modal/lines.py",
         'call.ends not in ("", "unchanged")',

@@ -94,6 +94,7 @@ ACT_ORDER = (
     "probe",
 )
 """The order in which a block's acts are done; those with the name of a move are its motion."""
+STILL_WORDS = frozenset("NS")
 OWN_MOVES = frozenset({"home", "machine", "probe"})
 FRAMING = frozenset(
     {"diameter", *ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")]}
@@ -147,6 +148,22 @@ class Meaning:
     def is_length(self, address: str) -> bool:
         """Whether a code takes a word as a length: D of G41.1, where D of G41 is a number."""
         return any(taken == address for _, taken, _ in self.lengths)
+
+    @property
+    def is_still(self) -> bool:
+        """Whether the block neither moves anything nor changes a mode: it waits, counts or tells.
+
+        Its assignments and its errors aside.
+        """
+        changes = self.ends or self.loses_position or self.changes_tool or self.runs_macro
+        changes = changes or self.percent or self.sends or bool(self.acts or self.refusal)
+        still = set(self.slots) <= STILL_WORDS and set(self.groups.values()) <= {"G4"}
+        return still and not changes
+
+    @property
+    def switches(self) -> bool:
+        """Whether no other block hangs on whether the block is executed."""
+        return self.is_still and not (self.assignments or self.expressions or self.prints)
 
     @property
     def compensates(self) -> bool:
