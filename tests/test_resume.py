@@ -192,10 +192,10 @@ def test_skipped_blocks(tmp_path: Path) -> None:
     assert "GX211" in call(*words, "--line", "5").stderr
     assert "skipped" in call(*words, "--block-delete", "skip", "--line", "4").stderr
     assert call(*words, "--block-delete", "skip", "--line", "5").exit_code == 0
+    assert "G0 X1." in call(*words, "--block-delete", "execute", "--line", "5").stdout
     (tmp_path / "p.nc").write_text(HEAD + "/M8\nX2.\nX3.\nM2\n")
     assert "GX732" in call(*words, "--line", "6").stderr
     assert call(*words, "--block-delete", "execute", "--line", "6").exit_code == 0
-    assert "G0 X1." in call(*words, "--block-delete", "execute", "--line", "5").stdout
 
 
 COMPENSATED = b"""G21 G90 G17 G94 G40
