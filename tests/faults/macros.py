@@ -299,6 +299,13 @@ MUTATIONS = (
         "flow/kept-call-rounded",
     ),
     _macro(
+        "a G code behind a call is of the call",
+        "gcxform/modal/meaning/calls.py",
+        'if word.address == "G" and word is not call:',
+        'if word.address == "G" and word is None:',
+        "flow/kept-call-before-code",
+    ),
+    _macro(
         "words beside an M code that may call a macro are changed",
         "gcxform/emit/depending.py",
         "for line in np.flatnonzero(shares & ~copied)[:1].tolist():",

@@ -50,6 +50,7 @@ def read_call(
     """Fill the meaning of a call, and yield what speaks against it."""
     name = _name(word)
     yield from _others(shape)
+    yield from _other_codes(shape, word, name)
     if name in dialect.codes:
         meaning.groups[dialect.codes[name].group] = name
     meaning.call, meaning.call_slots = name, _slots(shape)
@@ -83,6 +84,15 @@ def _others(shape: Shape) -> Iterator[Refusal]:
         if isinstance(item, Statement):
             width = item.end - item.start
             yield Refusal("GX206", item.start, width, "this belongs to no word of the call")
+
+
+def _other_codes(shape: Shape, call: Word, name: str) -> Iterator[Refusal]:
+    """Refuse G codes behind a call: no argument is called G (16i B-63684EN p. 278)."""
+    for word in shape.block.words:
+        if word.address == "G" and word is not call:
+            message = f"whether the call of {name} or the control takes this code is not certain"
+            hint = "write it in a block of its own"
+            yield Refusal("GX210", word.start, word.end - word.start, message, hint)
 
 
 def _slots(shape: Shape) -> tuple[tuple[str, int], ...]:
