@@ -119,15 +119,15 @@ CODES: dict[str, tuple[str, str]] = {
         "A block that can only stay as it is would have to change",
         "Canned cycles, returns to reference, moves in machine coordinates and blocks that set "
         "coordinates from where the axes stand are copied as they are, or not at all: what a pass "
-        'asks for cannot be said in such a block. Resolve it first: the pass "cycles" writes '
-        'cycles as plain moves, the pass "offsets" folds shifts into coordinates. Taps are written '
-        "again with their ends moved, if the place, which is one for top and bottom, is right for "
-        "both within what the passes promise; otherwise give the pass a larger tolerance. G28, G30 "
+        "asks for cannot be said in such a block. G92 and G10 L20 get other words behind moves "
+        "that were compensated, if they set the same zero with as many decimals as are written. "
+        'Resolve it first: the pass "cycles" writes cycles as plain moves, "offsets" folds shifts '
+        "into coordinates; inert-m says that an M code calls no macro with the words beside it. "
+        "Taps are written again with their ends moved, if the place, one for top and bottom, is "
+        "right for both within what is promised; else give the pass a larger tolerance. G28, G30 "
         "and G53 are written in another unit where it is known where they lead (G53 needs a "
-        "machine file with work offsets), and if their numbers have points where these decide. "
-        "The moves of a cycle end exactly: under G64 a LinuxCNC program gets G61 before them and "
-        "G64, with its words, behind them. Where that cannot be said again, or means something "
-        "else to the control, write G61 before the cycle.",
+        "machine file with work offsets). The moves of a cycle end exactly: under G64 a LinuxCNC "
+        "program gets G61 before them and G64 behind them, or the cycle needs a G61 before it.",
     ),
     "GX507": (
         "The program grows beyond the budget",

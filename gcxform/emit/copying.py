@@ -10,7 +10,7 @@ from gcxform.dialect.dialect import LINEAR
 from gcxform.emit.converting import convertible
 from gcxform.emit.depending import Depending
 from gcxform.emit.manner import Believed, Task
-from gcxform.emit.pieces import Pieces
+from gcxform.emit.pieces import PLACES, Pieces
 from gcxform.emit.positions import Positions, as_written
 from gcxform.emit.same_rows import SameRows
 from gcxform.emit.stated import Stated
@@ -280,6 +280,7 @@ class Copying:
         if not copied.any() and not believed.any():
             return np.broadcast_to(False, (len(path), 3))
         plain = (path.form == Form.PLAIN) & ~path.blocks.incremental[path.block]
+        plain |= np.isin(path.form, PLACES) & self.positions.last
         whole = np.mod(path.sweep + 1e-9, TURN) < 2e-9  # a circle leaves the axes where they are
         shifts = [frame.matrix is None and not frame.polar for frame in path.frames]
         by_axis = np.array(shifts, np.bool_)[path.frame]

@@ -17,6 +17,8 @@ from gcxform.modal.meaning.meaning import FRAMING
 from gcxform.modal.noted import BY_WAY, Unknown
 from gcxform.system.arrays import Flags
 
+STORES = "store-home"
+
 
 class Depending:
     """Looks at the blocks of a window whose effect depends on modes or places.
@@ -46,10 +48,24 @@ class Depending:
         if self.path.folded:
             return
         for line in self.task.counted_from_axes():
-            if self._stands_elsewhere(line):
+            if self._stands_elsewhere(line) and not self._follows(line):
                 message = "this block counts from where the axes stand, and they stand elsewhere"
                 hint = put_before("offsets")
                 raise InputError.one("GX506", message, self.task.location(line), hint)
+
+    def _follows(self, line: int) -> bool:
+        """Whether what a block sets can be said by other words (`gcxform/emit/presets.py`).
+
+        A place that it stores has no words: ways home would lead to where the machine was told to
+        be, now and in other programs.
+        """
+        acts = {act.name: act.code for act in self.task.table.meanings[self.task.shape[line]].acts}
+        if STORES not in acts or not self.task.manner.compensates:
+            return self.task.manner.compensates and not self.task.manner.crossing
+        message = f"{acts[STORES]} would store where the machine is told to stand to make up for"
+        message += " its error, for this program and others"
+        hint = "store it before the first move, or leave out the pass that compensates"
+        raise InputError.one("GX506", message, self.task.location(line), hint)
 
     def _stands_elsewhere(self, line: int, by: float = EXACT) -> bool:
         """Whether the axes stand elsewhere before a line than in the source, by a distance (mm)."""

@@ -24,6 +24,7 @@ from gcxform.emit.manner import Believed, Manner, Task
 from gcxform.emit.path_modes import ENDS_EXACTLY, Exactness, PathMode
 from gcxform.emit.pieces import pieces_of
 from gcxform.emit.positions import Positions, motion_kinds
+from gcxform.emit.presets import Presets
 from gcxform.emit.render import interleave
 from gcxform.emit.stated import stated_by
 from gcxform.emit.tapping import Taps
@@ -123,6 +124,9 @@ class _Job:
             task, self.pieces, self.stated, self.taps, self.positions, emitter.believed
         )
 
+        self.presets = Presets(task, self.positions, self.copying, emitter.believed)
+        self.copying.lines &= ~self.presets.lines
+
     def run(self) -> Emitted:
         copied = self.copying.lines
         self._refuse_rounding()
@@ -133,8 +137,9 @@ class _Job:
         empty = self._without_words() | self._foreign() | self._gone() | self._only_compensates()
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
         self._refuse_lost_times(chosen)
-        style, columns = self.emitter.style, (self.stated, self.positions, self.taps, centre)
-        text, lengths = Writing(self.task, style, self.pieces, *columns).text(chosen)
+        columns = self.stated, self.positions, self.taps, centre, self.presets
+        writing = Writing(self.task, self.emitter.style, self.pieces, *columns)
+        text, lengths = writing.text(chosen)
         line, nth = self.pieces.line[chosen], self.pieces.of_rows(self.path.nth, 0)[chosen]
         whole, source, nth = interleave(self.task, copied, line, nth, text, lengths)
         self._carry()
@@ -287,6 +292,7 @@ class _Job:
             believed.position = np.array(held)
             believed.exact = exact
             believed.said = np.array(self.copying.said_exactly()[-1])
+            believed.stands = self.presets.standing(len(self.path) - 1)
         if len(self.pieces.line):
             believed.motion = int(stated.motion.after[-1])
             believed.feed = float(stated.feed.after[-1])

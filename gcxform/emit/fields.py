@@ -41,8 +41,9 @@ class Key:
     nothing. `silent`: a motion code that moves nothing is left out.
     `expanded`: the block called a canned cycle, of which this is a move. `thread`: it is one whose
     code and K stay. `tap`: it is a canned cycle whose ends have moved; `apart`: one of its repeats,
-    which become blocks of their own. `converted`: its words stay, in the other unit. `arc`: whether
-    centre words are written, in `plane`; `turns`: full turns beyond the arc.
+    which become blocks of their own. `converted`: its words stay, in the other unit. `preset`: it
+    sets a zero, for axes that stand elsewhere. `arc`: whether centre words are written, in `plane`;
+    `turns`: full turns beyond the arc.
     """
 
     role: Role
@@ -58,6 +59,7 @@ class Key:
     tap: bool
     apart: bool
     converted: bool
+    preset: bool
     arc: bool
     plane: int
     turns: int
@@ -110,6 +112,14 @@ class Converted:
 
 
 @dataclass(frozen=True, slots=True)
+class Preset:
+    """A word in a slot of the source line that sets a zero for axes that stand elsewhere."""
+
+    address: str
+    slot: int
+
+
+@dataclass(frozen=True, slots=True)
 class Axis:
     """An axis word: left out where it need not be written, its gap where nothing is before it."""
 
@@ -141,7 +151,8 @@ class FeedWord:
     gap: bytes
 
 
-Field = Literal | Copied | CopiedText | Computed | Converted | Axis | CycleWord | Centre | FeedWord
+Number = Copied | Computed | Converted | Preset
+Field = Literal | Number | CopiedText | Axis | CycleWord | Centre | FeedWord
 
 
 class CycleWords:

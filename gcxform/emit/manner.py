@@ -73,7 +73,8 @@ class Believed:
     `said` (3,): in which of X, Y and Z it is, because a block that was copied named them.
     `level`: from where the canned cycle in force has begun, along its axis; nan: there is none, or
     it has no moves. `tapping`: its taps have moved, so that each needs words of its own.
-    `aside`: how far (mm) it stands from where it shall be, after a tap.
+    `aside`: how far (mm) it stands from where it shall be, after a tap. `stands`: its position, to
+    the last bit in those axes of `said`.
     """
 
     position: Floats
@@ -89,6 +90,7 @@ class Believed:
     level: float = np.nan
     tapping: bool = False
     aside: float = 0.0
+    stands: Floats = field(default_factory=lambda: np.zeros(0))
 
     @classmethod
     def at_start(cls, manner: Manner, position: Floats) -> Believed:
@@ -101,6 +103,7 @@ class Believed:
             NUMBER[initial["distance"]],
             NUMBER[initial["arc-distance"]],
             NUMBER[initial["feed-mode"]],
+            stands=position.copy(),
         )
 
 

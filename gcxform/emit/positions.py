@@ -100,7 +100,7 @@ class Positions:
             self.write[:, column] = known & ~self.stays[:, column] & ~beside
         else:
             moved = ~(np.abs(held - self.before[:, column]) < 0.5 * self.step[column])
-            said = programmed & self._last & (self.task.path.nth == 0)
+            said = programmed & self.last & (self.task.path.nth == 0)
             self.write[:, column] = (moved | said) & known & ~self.stays[:, column]
 
     def _off_grid(self) -> bool:
@@ -138,7 +138,7 @@ class Positions:
         return np.where(halved[path.frame][:, None], words * (0.5, 1.0, 1.0), words)
 
     @property
-    def _last(self) -> Flags:
+    def last(self) -> Flags:
         """Rows that are the last of their block."""
         block = self.task.path.block
         return np.append(block[1:] != block[:-1], True)[: len(block)]

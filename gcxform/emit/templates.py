@@ -35,6 +35,7 @@ from gcxform.emit.fields import (
     Field,
     Key,
     Literal,
+    Preset,
     Role,
 )
 from gcxform.emit.manner import Manner
@@ -212,9 +213,9 @@ class TemplateWriter:
             self.codes.g_word(word, lead)
         elif address == "M":
             self.codes.m_word(word, lead)
-        elif self.key.converted and address in self.meaning.axes and address in LINEAR:
+        elif (other := self._other_number(address, slot)) is not None:
             self.draft.literal(lead, "")
-            self.draft.fields.append(Converted(address, slot))
+            self.draft.fields.append(other)
         elif address in self.meaning.slots and not verbatim and self._motion(word, lead):
             return
         elif address == "F" and "F" in self.meaning.slots:
@@ -223,6 +224,13 @@ class TemplateWriter:
             return
         elif self.key.role not in (Role.MIDDLE, Role.LAST):
             self._copy(word, lead, slot)
+
+    def _other_number(self, address: str, slot: int) -> Converted | Preset | None:
+        """Return what is written for a word of a code whose number is another one here."""
+        if self.key.converted and address in self.meaning.axes and address in LINEAR:
+            return Converted(address, slot)
+        taken = address in self.source.axes and address not in self.meaning.slots
+        return Preset(address, slot) if self.key.preset and taken else None
 
     def _motion(self, word: Word, lead: bytes) -> bool:
         """Write what a word of the motion stands for; return whether it is one."""

@@ -35,12 +35,14 @@ from gcxform.emit.fields import (
     Field,
     Key,
     Literal,
+    Preset,
     Role,
 )
 from gcxform.emit.manner import Task
 from gcxform.emit.numbers import MOST_DECIMALS, decimals_for, decimals_of, quantise
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions
+from gcxform.emit.presets import Presets
 from gcxform.emit.render import Renderer, groups_of
 from gcxform.emit.stated import Stated
 from gcxform.emit.tapping import Taps
@@ -89,6 +91,7 @@ class Writing:
     positions: Positions
     taps: Taps
     centre: Floats
+    presets: Presets
 
     def text(self, chosen: Ints) -> tuple[bytes, Ints]:
         """Return the text of pieces, and the length of each. Raises InputError."""
@@ -122,6 +125,7 @@ class Writing:
             (pieces.tap, 2),
             (pieces.apart, 2),
             (pieces.converted, 2),
+            (self.presets.lines[pieces.line], 2),
             (stated.feed.word, 3),
             (inch, 2),
         ]
@@ -169,6 +173,7 @@ class Writing:
             bool(pieces.tap[piece]),
             bool(pieces.apart[piece]),
             bool(pieces.converted[piece]),
+            bool(self.presets.lines[line]),
             arc,
             int(self.task.path.plane[row]) if arc else 0,
             int(self._turns()[row]) if arc else 0,
@@ -215,8 +220,8 @@ class Writing:
             self._copied_text(field, self.pieces.line[members], renderer)
         elif isinstance(field, Computed):
             self._computed(field, self.pieces.line[members], renderer)
-        elif isinstance(field, Converted):
-            self._converted(field, self.pieces.line[members], inch, renderer)
+        elif isinstance(field, Converted | Preset):
+            self._other_number(field, self.pieces.line[members], inch, renderer)
         elif isinstance(field, Axis):
             column = self.task.path.axes.index(field.address)
             present = self.positions.write[rows, column]
@@ -265,13 +270,19 @@ class Writing:
             raise InputError.one("GX501", message, where)
         renderer.number(b"", field.address, whole, decimals, np.ones(len(lines), np.bool_), False)
 
-    def _converted(self, field: Converted, lines: Ints, inch: bool, renderer: Renderer) -> None:
-        """Write lengths of the source in the unit that is in force now: `inch`, or millimetres."""
-        value = self.task.read.value[self.task.window.first_number[lines] + field.slot]
+    def _other_number(
+        self, field: Converted | Preset, lines: Ints, inch: bool, renderer: Renderer
+    ) -> None:
+        """Write lengths in the unit that is in force now, `inch` or millimetres, and zeros."""
+        numbers = self.task.window.first_number[lines] + field.slot
+        if isinstance(field, Converted):
+            value = self.task.read.value[numbers]
+            value = value / INCH if inch else value * INCH
+        else:
+            value = self.presets.value[numbers]
         decimals = self.task.manner.decimals_of(field.address, inch)
-        whole = quantise(value / INCH if inch else value * INCH, decimals)
         everywhere = np.ones(len(lines), np.bool_)
-        renderer.number(b"", field.address, whole, decimals, everywhere)
+        renderer.number(b"", field.address, quantise(value, decimals), decimals, everywhere)
 
     # --- what is refused ---
 

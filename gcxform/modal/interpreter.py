@@ -43,7 +43,8 @@ class Interpreted:
     are the window's numbers, those that were computed among them; `assigned` are the parameters
     that the lines set, in order, and `unknown` what of them only the machine can compute. `perhaps`
     (live,) are lines that move something and may not be executed; None: there are none. `loses`
-    (live,) are lines behind which no position is known.
+    (live,) are lines behind which no position is known. `zeroed` are the lines of the program, from
+    0, that set where something counts from, and the state of the frames behind each.
     """
 
     path: Toolpath
@@ -56,6 +57,7 @@ class Interpreted:
     unknown: tuple[Unknown, ...] = ()
     perhaps: Flags | None = None
     loses: Flags = field(default_factory=lambda: np.zeros(0, np.bool_))
+    zeroed: tuple[tuple[int, FrameState], ...] = ()
 
 
 PECKS = ("peck-return", "peck-clearance")
@@ -139,14 +141,24 @@ class Interpreter:
         note_prints(lines)
         modes = lines.modes()
         refuse_lost_modes(lines, modes)
-        path = Moves(lines, modes, self.axes).path()
+        moves = Moves(lines, modes, self.axes)
+        path = moves.path()
         refuse_limits(lines, modes, path.events)
         lines.findings.raise_if_any()
         self._carry(lines, modes)
-        value, assigned = lines.window.value, tuple(lines.assigned)
-        unknown = tuple(lines.unknown)
-        found = value, assigned, unknown, lines.perhaps, lines.loses_position()
-        return Interpreted(path, modes, lines.live, lines.shape, before, *found)
+        return Interpreted(
+            path,
+            modes,
+            lines.live,
+            lines.shape,
+            before,
+            lines.window.value,
+            tuple(lines.assigned),
+            tuple(lines.unknown),
+            lines.perhaps,
+            lines.loses_position(),
+            tuple(moves.track.zeroed),
+        )
 
     def _carry(self, lines: Lines, modes: Modes) -> None:
         """Leave the state in which the window ends."""

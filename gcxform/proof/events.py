@@ -2,7 +2,8 @@
 
 Claimed, with e_1 ... e_n the events of the source and f_1 ... f_m those read from the output,
 lengths in mm, without those that are folded or taken over by a pass: n = m, and for every j what
-e_j and f_j do and their numbers are the same, f_j is in a block of the line of e_j, and the written
+e_j and f_j do and their numbers are the same, but for those that set a zero from where the axes
+stand (`gcxform/proof/zeros.py`), f_j is in a block of the line of e_j, and the written
 row before which f_j stands is the one for the row before which e_j stands (`Trace.stands_before`);
 rows no longer together than the budget may lie between.
 """
@@ -13,12 +14,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from gcxform.contract.passes import PassContext
+from gcxform.dialect.codes import Effect
+from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.meaning.meaning import FRAMING
 from gcxform.modal.meaning.sorting import only_for_cycles
 from gcxform.modal.moves.blind_moves import BY
 from gcxform.proof.feeds import Wrong
 from gcxform.proof.known_positions import in_mm
 from gcxform.proof.trace import Trace
+from gcxform.proof.zeros import zeros_differ
 from gcxform.toolpath.path import Event, Toolpath
 
 
@@ -54,13 +58,37 @@ class EventProof:
         codes = self.context.source.codes
         return tuple(e for e in events if e.what not in codes or codes[e.what].act not in FRAMING)
 
+    def wrong_zeros(self, read: Interpreted, back: Interpreted, trace: Trace) -> Iterator[Wrong]:
+        """Yield where a zero would be elsewhere; another control may know others of them."""
+        if self.context.source is self.context.target and not (self.folded or self.homes):
+            yield from zeros_differ(read.zeroed, back.zeroed, trace)
+
+    def _values(self, event: Event) -> tuple[tuple[str, float], ...]:
+        """Return the numbers of an event that are those of the source.
+
+        Where a zero is set from where the axes stand the words of axes are others, if they stand
+        elsewhere: the proof of zeros compares what they set, and here it is which axes there are.
+        """
+        code = self.context.source.codes.get(event.what)
+        here = code is not None and code.effect is Effect.FRAME and self._counts(code.act, event)
+        if not here or self.context.source is not self.context.target:
+            return event.values
+        axes = self.context.source.axes
+        return tuple((a, 0.0 if a in axes else value) for a, value in event.values)
+
+    def _counts(self, act: str, event: Event) -> bool:
+        """Whether a code sets a zero from where the axes stand."""
+        here = self.context.source.offset_rule.g10_l20 == "here"
+        return act == "preset" or (act == "set-work" and here and ("L", 20.0) in event.values)
+
     def wrong(
         self, old: tuple[Event, ...], new: tuple[Event, ...], trace: Trace, budget: float
     ) -> Iterator[Wrong]:
         """Yield where events are not the same, in order, at the same place between the moves."""
         for before, after in zip(old, new, strict=False):
             line = trace.line_of(after.line)
-            same = (before.what, before.values, before.line) == (after.what, after.values, line)
+            same = (before.what, before.line) == (after.what, line)
+            same &= self._values(before) == self._values(after)
             if not same or not trace.stands_before(after.row, before.row, budget):
                 message = f"{before.what} of the source became {after.what}, or moved"
                 yield Wrong(message, before.line, after.line)

@@ -144,9 +144,7 @@ class Verifier:
     ) -> Findings:
         """Check the text written for a window; return what has been found in the program so far.
 
-        `lines` are those of the window, `source` is the input line of each output line. `nth` says
-        which of the moves of its input line the first move of an output line is.
-        Raises VerificationError.
+        XX        Raises VerificationError.
         """
         again = self.reader.read(text)
         self.interpreter.undecided = self.undecided.through(source, again.first_line)
@@ -178,6 +176,7 @@ class Verifier:
         self.findings.events += len(old)
         lost = assignments_differ(read.assigned, back.assigned, trace, self.context)
         wrongs = *self.events.wrong(old, new, trace, self.budget), lost
+        wrongs = *wrongs, *self.events.wrong_zeros(read, back, trace)
         for found in filter(None, (*wrongs, *elsewhere(read, trace, self.budget))):
             self._raise(*found)
         self._given(read.path, again, source)

@@ -24,7 +24,7 @@ from gcxform.modal.frame_state import FrameState
 from gcxform.modal.frames.act import ActError, Asked
 from gcxform.modal.frames.acts import ACTS, unheard
 from gcxform.modal.lines import LENGTHS, Lines
-from gcxform.modal.meaning.meaning import Act
+from gcxform.modal.meaning.meaning import ZEROING, Act
 from gcxform.modal.state import Modes
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
@@ -67,7 +67,8 @@ class Break:
 class Track:
     """Follows position and frame; `state.position` and `state.frames` are left up to date.
 
-    `may_step` (lines,) are the moves that may go by distances from where it is not known.
+    `may_step` (lines,) are the moves that may go by distances from where it is not known. `zeroed`
+    are the lines that set where something counts from, and the state behind them.
     """
 
     def __init__(self, lines: Lines, modes: Modes, axes: str) -> None:
@@ -82,6 +83,7 @@ class Track:
         if self.state.row_frame not in (None, self.frame):
             self.frames.insert(0, self.state.row_frame)
         self.breaks: list[Break] = []
+        self.zeroed: list[tuple[int, FrameState]] = []
         self._columns: dict[str, tuple[Floats, Flags] | None] = {}
         self.may_step = np.zeros(lines.live, np.bool_)
 
@@ -127,6 +129,8 @@ class Track:
             message = f"{asked.code} takes {word}, and what this asks for is not known"
             raise ActError("GX213", message)
         self.state.frames = frames = ACTS[act.name](before, asked)
+        if act.name in ZEROING:
+            self.zeroed.append((line + self.lines.window.first_line, frames))
         if act.name in FRAMELESS:
             return
         if act.name == "work" and not before.known:

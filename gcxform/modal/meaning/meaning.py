@@ -102,6 +102,8 @@ FRAMING = frozenset(
 """Acts that folding takes into the words of moves, so that their codes are not written."""
 PRESETS = frozenset({"preset", "set-work", "store-home"})
 """Acts whose effect may depend on where the axes stand."""
+ZEROING = PRESETS | {"local", "preset-restore"}
+"""Acts that say where coordinates, or ways home, count from."""
 TAKES_MOTION = frozenset({"home", "store-home", "set-work", "local", "preset", "length-vector"})
 """Acts whose axis words are theirs, so that the block can have no other motion."""
 
