@@ -127,6 +127,11 @@ def ways_to_offsets(first: str, *names: str) -> str:
     return f"give a machine file with {_offsets_said(first, *names)}"
 
 
+def tool_said(number: float) -> str:
+    """Return the setting of a machine file that puts a tool into the table."""
+    return f"if it is in the table of the control: length = ... in [tool.{number:g}]"
+
+
 def put_before(name: str, step: str = "", options: str = "", why: str = "") -> Hint:
     """Offer a pass before a step, before all if none is named; `options` as typed in a chain."""
     given = ", ".join(each.replace("=", ' = "', 1) + '"' for each in options.split())

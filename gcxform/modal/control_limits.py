@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from gcxform.catalogue.offers import tool_said
 from gcxform.modal.findings import Findings
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import NURBS
@@ -68,8 +69,8 @@ def _no_such_tool(lines: Lines, events: Iterable[Event]) -> None:
     for event in events:
         named = event.values[0][1] if event.what in NAMES_TOOL and event.values else 0.0
         if named > 0 and named not in tools:
-            message = f"the tool table has no tool {named:g}"
-            lines.findings.add(event.line - lines.window.first_line, "GX213", message)
+            message, hint = f"the tool table has no tool {named:g}", tool_said(named)
+            lines.findings.add(event.line - lines.window.first_line, "GX213", message, hint=hint)
 
 
 def _other_spindle(lines: Lines, events: Iterable[Event]) -> None:

@@ -121,9 +121,11 @@ def gcxform_kinematics() -> list[type[gx.Kinematics]]:
 @gx.hookimpl
 def gcxform_machine_presets() -> list[type[gx.MachinePreset]]:
     """Return the machines that files can be like."""
+    from gcxform_plugins.presets import smithy
     from gcxform_plugins.presets.tormach import Pcnc770, Pcnc1100
 
-    return [Pcnc770, Pcnc1100]
+    mills = [smithy.Mill1240, smithy.Mill622]
+    return [Pcnc770, Pcnc1100, *mills, smithy.Gecko1240, smithy.Gecko622, smithy.Gecko1034]
 
 
 @gx.hookimpl

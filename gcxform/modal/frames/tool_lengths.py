@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from gcxform.catalogue.offers import tool_said
 from gcxform.modal.frame_state import NO_TOOL, FrameState
 from gcxform.modal.frames.act import ActError, Asked
 
@@ -119,7 +120,7 @@ def _tool_vector(
         return NO_TOOL, ""
     tool = asked.reading.tools.get(int(number))
     if tool is None and asked.reading.tools and asked.dialect.tool_rule.g43_takes_spindle_tool:
-        raise ActError("GX213", f"the tool table has no tool {number:g}")
+        raise ActError("GX213", f"the tool table has no tool {number:g}", tool_said(number))
     times = state.written.get(int(number), 0)
     if tool is None or times:
         return _unknown_length(f"H{number:g}" + f" as set by G10 ({times})" * bool(times), sign)

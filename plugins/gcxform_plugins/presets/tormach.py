@@ -1,9 +1,4 @@
-"""Mills of Tormach, as the sample configurations of LinuxCNC have them.
-
-| value | from | and there |
-|---|---|---|
-| limits | `MIN_LIMIT`, `MAX_LIMIT` of the axis | inches; -0.000001 and 0.000001 are taken for 0 |
-| max-speed | `MAX_VELOCITY` of the axis | inches per second |
+"""Mills of Tormach, as the sample configurations of LinuxCNC have them (`inches.py`).
 
 The files are `configs/by_machine/tormach/*.ini` of LinuxCNC 2.9, `LINEAR_UNITS = inch`. The axis A
 is an option of these mills, and not said here; nor is G28, which each machine has in its variables.
@@ -11,16 +6,10 @@ is an option of these mills, and not said here; nor is G28, which each machine h
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import gcxform as gx
-
-IPS = 60 * 25.4  # mm/min
-
-
-def _axis(low: float, high: float, speed: float) -> dict[str, Any]:
-    """Return an axis of these limits (inch) and top speed (inch/s)."""
-    return {"limits": [f"{low:g} in", f"{high:g} in"], "max-speed": round(speed * IPS, 3)}
+from gcxform_plugins.presets.inches import axis
 
 
 class Pcnc1100(gx.MachinePreset):
@@ -29,7 +18,7 @@ class Pcnc1100(gx.MachinePreset):
     name = "tormach-pcnc-1100-series-ii"
     source = "LinuxCNC 2.9, by_machine/tormach/pcnc-1100-seriesII.ini"
     values: ClassVar = {
-        "axis": {"X": _axis(0, 18, 1.5), "Y": _axis(0, 9.5, 1.5), "Z": _axis(-20, 0, 1.083)}
+        "axis": {"X": axis(0, 18, 1.5), "Y": axis(0, 9.5, 1.5), "Z": axis(-20, 0, 1.083)}
     }
 
 
@@ -39,5 +28,5 @@ class Pcnc770(gx.MachinePreset):
     name = "tormach-pcnc-770"
     source = "LinuxCNC 2.9, by_machine/tormach/pcnc-770.ini"
     values: ClassVar = {
-        "axis": {"X": _axis(0, 14, 2.25), "Y": _axis(0, 7.5, 2.25), "Z": _axis(-13.25, 0, 1.666)}
+        "axis": {"X": axis(0, 14, 2.25), "Y": axis(0, 7.5, 2.25), "Z": axis(-13.25, 0, 1.666)}
     }
