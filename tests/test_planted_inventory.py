@@ -89,6 +89,7 @@ G0 Z9.
 M30
 """
 SLASH = b"O1\nG21 G90 G94\nG0 X0. Y0. Z5.\n/M8\nM1\n/G4 P100\nX5.\nM30\n"
+PROBE = b"G21 G90 G94\nG91 G38.2 Z-20 F50\nG90 G0 Z5\nM2\n"
 GRBL = b"G21 G90 G94\nG0 X1\nG1 X2 F100\n"
 
 
@@ -206,6 +207,7 @@ FAULTS = {
     "a slash is lost": (SLASH, rewrites(b"/M8", b"M8")),
     "a slash is lost before a dwell": (SLASH, rewrites(b"/G4", b"G4")),
     "a block gets a slash": (SLASH, rewrites(b"M1", b"/M1")),
+    "a probe from nowhere known goes further": (PROBE, rewrites(b"Z-20", b"Z-25")),
     "percent signs are forgotten": (GRBL, replaces(Frame, "put", lambda s, t, a, b: (t, 0, 0))),
     "only one percent sign": (
         GRBL,

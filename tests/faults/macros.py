@@ -12,6 +12,13 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 RENUMBER = "plugins/gcxform_plugins/passes/renumber.py"
 MUTATIONS = (
     Mutation(
+        "a probe from nowhere known may go by anything",
+        "gcxform/modal/moves/spindle_and_probe.py",
+        "note_way(track, line)",
+        "pass",
+        "tests/test_planted_inventory.py::test_the_proof_of_a_run_catches",
+    ),
+    Mutation(
         "a slash is no part of what a block does",
         "gcxform/modal/events.py",
         "what = SWITCHED + shape.what if",

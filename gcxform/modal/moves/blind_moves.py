@@ -15,6 +15,7 @@ import numpy as np
 from gcxform.dialect.dialect import INCH
 from gcxform.modal.frames.track import Track
 from gcxform.modal.lines import Lines
+from gcxform.modal.meaning.tables import PROBES
 from gcxform.modal.moves.rows import Rows
 from gcxform.modal.noted import BY_WAY, Unknown
 from gcxform.modal.state import Modes
@@ -32,7 +33,7 @@ def may_be_blind(lines: Lines, modes: Modes, moving: Flags, alone: bool) -> Flag
     if lines.reading.crosses or not alone:
         return np.zeros(lines.live, np.bool_)
     plain = moving & modes.incremental & (modes.comp == 0)
-    return np.asarray(plain & (modes.motion <= Kind.ARC_CCW))
+    return np.asarray(plain & ((modes.motion <= Kind.ARC_CCW) | np.isin(modes.motion, PROBES)))
 
 
 def ways(track: Track, lines: Ints) -> Floats:

@@ -16,6 +16,7 @@ from gcxform.dialect.dialect import INCH
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames.track import SPATIAL, Break, Track
 from gcxform.modal.meaning.tables import NUMBER, PROBES, TAP, THREAD, THREAD_CYCLE
+from gcxform.modal.moves.blind_moves import note_way
 from gcxform.modal.moves.rows import Rows
 from gcxform.modal.moves.thread_cycles import thread_cycle
 from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE
@@ -137,6 +138,8 @@ def probe(track: Track, line: int) -> Rows:
     if not named or np.array_equal(start, end):
         message = "a probing move that goes nowhere"
         track.findings.add(line, "GX216", message, hint=leave_out_block())
+    if track.may_step[line] and any(np.isnan(end[track.axes.index(axis)]) for axis in named):
+        note_way(track, line)
     lost = sum(1 << track.axes.index(axis) for axis in named)
     if lost & SPATIAL and track.frame.matrix is not None:
         lost |= SPATIAL
