@@ -164,7 +164,7 @@ def test_another_length_would_be_seen(tmp_path, shared):
     assert ends > 1.0
 
 
-@pytest.mark.parametrize("size", [100, 5000])
+@pytest.mark.parametrize("size", [1000, 5000])
 def test_windows_of_the_boat_are_alike(tmp_path, shared, size):
     """The length and what is followed go from window to window."""
     name, parts = "boat-xyzbc.ngc", []

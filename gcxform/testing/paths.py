@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -80,12 +80,15 @@ class PlainXY(Plain):
     arc_rule = ArcRule(planes=frozenset({"XY"}))
 
 
-def paths() -> Iterator[tuple[str, Toolpath]]:
-    """Yield the toolpaths on which passes are tried, each with its name."""
+@cache
+def paths() -> tuple[tuple[str, Toolpath], ...]:
+    """Return the toolpaths on which passes are tried, each with its name."""
+    found = []
     for name, program in PROGRAMS.items():
         reader = WindowReader(Plain)
         window = reader.read(program.encode())
-        yield name, Interpreter(Plain).interpret(window, reader.table).path
+        found.append((name, Interpreter(Plain).interpret(window, reader.table).path))
+    return tuple(found)
 
 
 def locked(path: Toolpath) -> Toolpath:
@@ -107,7 +110,7 @@ def differs(a: Toolpath, b: Toolpath, allowed: float) -> str:
     """Return the name of something in which two paths differ, or nothing."""
     for name in (*COLUMNS, "entry"):
         one, other = getattr(a, name), getattr(b, name)
-        if one.shape != other.shape or not np.allclose(one, other, 0.0, allowed, equal_nan=True):
+        if not _close(one, other, allowed):
             return name
     for name in BLOCK_MODES:
         if not np.array_equal(getattr(a.blocks, name), getattr(b.blocks, name)):
@@ -116,6 +119,13 @@ def differs(a: Toolpath, b: Toolpath, allowed: float) -> str:
         if getattr(a, name) != getattr(b, name):
             return name
     return ""
+
+
+def _close(one: NDArray[Any], other: NDArray[Any], allowed: float) -> bool:
+    """Tell whether columns are of one shape and as near as that; most are the same."""
+    if one.shape != other.shape:
+        return False
+    return np.array_equal(one, other) or np.allclose(one, other, 0.0, allowed, equal_nan=True)
 
 
 def halves(path: Toolpath, line: int) -> tuple[Toolpath, Toolpath]:
@@ -137,8 +147,7 @@ def differs_joined(whole: Toolpath | None, parts: list[Toolpath | None], allowed
     first, second = (part for part in parts if part is not None)
     for name in COLUMNS:
         joined = np.concatenate([getattr(first, name), getattr(second, name)])
-        one = getattr(whole, name)
-        if one.shape != joined.shape or not np.allclose(one, joined, 0.0, allowed, equal_nan=True):
+        if not _close(getattr(whole, name), joined, allowed):
             return name
     if len(first) and not np.allclose(second.entry, first.end[-1], 0.0, allowed, equal_nan=True):
         return "entry"
