@@ -38,6 +38,9 @@ class FrameState:
     machine       position of the machine's zero
     rotation      deg, about Z, of work offsets (G10 L2 R)
     preset, held  the shift of G92, and what G92.3 would restore
+    adrift        by axis, the number of the G92 that has set it where it stood nowhere known: what
+                  that shifted is not known, and `preset` counts from there; `held_adrift` is that
+                  of G92.3, and `presets` counts such blocks
     local         the shift of G52 where it is not that of G92
     tool          mm, from the tip to the reference point; nan where a length is not known
     tool_name     what the tool vector belongs to: "H3", "-H3" where it is taken off; "" for none
@@ -65,6 +68,9 @@ class FrameState:
     rotation: Mapping[str, float] = field(default_factory=dict)
     preset: Vector = ()
     held: Vector = ()
+    adrift: Mapping[int, int] = field(default_factory=dict)
+    held_adrift: Mapping[int, int] = field(default_factory=dict)
+    presets: int = 0
     local: Vector = ()
     tool: tuple[float, float, float] = NO_TOOL
     tool_name: str = ""
@@ -154,6 +160,9 @@ class FrameState:
         zero = self.zero_of(self.work)
         away = self._unknown_zero()
         origin = [self.first if isfinite(place) else away for place in zero]
+        matrix, offset = self._matrix()
+        for k, name in self._set_anywhere(matrix is not None).items():
+            origin[k] += name
         shift = [place if isfinite(place) else 0.0 for place in zero]
         assert self.axes[:3] == "XYZ"
         for k, length in enumerate(self.tool):
@@ -162,7 +171,6 @@ class FrameState:
             else:
                 origin[k] += f" + {self.tool_name}"
         origin = [each + self.tilt + self.tip for each in origin]
-        matrix, offset = self._matrix()
         for k, value in enumerate(offset):
             shift[k] += value
         for k in range(0 if matrix is None else 3, len(shift)):
@@ -178,6 +186,15 @@ class FrameState:
             self.following,
             bool(self.tool_name),
         )
+
+    def _set_anywhere(self, turned: bool) -> dict[int, str]:
+        """Return by axis what names an origin that G92 has set nobody knows where.
+
+        Where coordinates are turned, what one of X, Y and Z counts from is not known of any.
+        """
+        names = {k: f"{SET_ANEW} by G92 ({nth})" for k, nth in self.adrift.items()}
+        together = "".join(names[k] for k in sorted(names) if k < 3)
+        return {**names, **dict.fromkeys(range(3), together)} if turned and together else names
 
     def _matrix(self) -> tuple[Matrix | None, Sequence[float]]:
         """Return matrix and shift (3,) of what is done to words before the work offset is added.

@@ -50,8 +50,8 @@ MUTATIONS = (
     Mutation(
         "frames: G92.3 restores nothing",
         "gcxform/modal/frames/work_offsets.py",
-        "return replace(state, preset=shift, held=shift)",
-        "return replace(state, preset=shift)",
+        "preset=shift, held=shift, adrift=adrift",
+        "preset=shift, adrift=adrift",
         SHIFTS,
     ),
     Mutation(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -134,7 +135,8 @@ def _set_zero(state: FrameState, asked: Asked, name: str) -> FrameState:
     if asked.incremental and not asked.dialect.offset_rule.g10_ignores_g91:
         raise ActError("GX213", "under G91, G10 adds on some controls and does not on others")
     turned = "R" in asked.written or state.rotation.get(name, 0.0)
-    if turned and name == state.work and any(state.preset[:2]):
+    shifted = any(state.preset[:2]) or not state.adrift.keys().isdisjoint({0, 1})
+    if turned and name == state.work and shifted:
         raise ActError("GX213", "G10 L2 turns the work offset in force, under G52 or G92")
     zero = list(state.zero_of(name))
     for axis, value in asked.axes.items():
@@ -167,6 +169,8 @@ def _set_zero_here(state: FrameState, asked: Asked, name: str) -> FrameState:
         local[:2] = about @ local[:2]
     named = [asked.column(state, axis) for axis in asked.axes] + [0, 1] * bool(turned)
     zero[named] = (here - local)[named]
+    if not state.adrift.keys().isdisjoint(named):
+        zero[named] = np.nan
     return state.with_zero(name, tuple(zero.tolist()))
 
 
@@ -200,7 +204,9 @@ def local(state: FrameState, asked: Asked) -> FrameState:
     if not asked.axes:
         raise ActError("GX213", f"{asked.code} names no axis")
     if asked.dialect.offset_rule.g52_is_g92:
-        return _with_preset(state, moved_to_names(state, asked, state.preset))
+        named = {asked.column(state, axis) for axis in asked.axes}
+        adrift = {k: nth for k, nth in state.adrift.items() if k not in named}
+        return _with_preset(state, moved_to_names(state, asked, state.preset), adrift)
     _refuse_unset(asked)
     return replace(state, local=moved_to_names(state, asked, state.local))
 
@@ -215,22 +221,30 @@ def preset(state: FrameState, asked: Asked) -> FrameState:
         message = f"{asked.code} under a shift of G52: whether that shift stays is not certain"
         raise ActError("GX213", message, "write G52 with zeros before it")
     here = state.frame().local(np.asarray(asked.position)[None, :])[0]
-    shift = np.array(state.preset)
+    shift, adrift, presets = np.array(state.preset), dict(state.adrift), state.presets
     for axis, value in asked.axes.items():
         k = asked.column(state, axis)
         shift[k] += here[k] - value
         if np.isnan(shift[k]):
-            raise ActError(
-                "GX213",
-                f"{asked.code} counts {axis} from where it stands, and that is not known",
-                f"program {axis} before, or say start = {{ {axis} = ... }} in [input]",
-            )
-    return _with_preset(state, tuple(shift.tolist()))
+            _refuse_tied(state, asked, axis)
+            shift[k], presets, adrift[k] = 0.0, presets + 1, presets + 1
+    return replace(_with_preset(state, tuple(shift.tolist()), adrift), presets=presets)
 
 
-def _with_preset(state: FrameState, shift: Vector) -> FrameState:
+def _refuse_tied(state: FrameState, asked: Asked, axis: str) -> None:
+    """Refuse G92 of an axis that is nowhere known where more than its own zero hangs on that."""
+    turned = state.rotation.get(state.work, 0.0) and axis in "XY"
+    if turned or asked.reading.crosses or state.following:
+        raise ActError(
+            "GX213",
+            f"{asked.code} counts {axis} from where it stands, and that is not known",
+            f"program {axis} before",
+        )
+
+
+def _with_preset(state: FrameState, shift: Vector, adrift: Mapping[int, int]) -> FrameState:
     """Return the state with another shift of G92, which is also what G92.3 restores."""
-    return replace(state, preset=shift, held=shift)
+    return replace(state, preset=shift, held=shift, adrift=adrift, held_adrift=adrift)
 
 
 def _refuse_turned(state: FrameState, asked: Asked) -> None:
@@ -255,18 +269,17 @@ def _refuse_unset(asked: Asked) -> None:
 
 def preset_clear(state: FrameState, asked: Asked) -> FrameState:
     """G92.1: no shift."""
-    none = (0.0,) * len(state.axes)
-    return replace(state, preset=none, held=none)
+    return _with_preset(state, (0.0,) * len(state.axes), {})
 
 
 def preset_suspend(state: FrameState, asked: Asked) -> FrameState:
     """G92.2: no shift, but what it was is kept."""
-    return replace(state, preset=(0.0,) * len(state.axes))
+    return replace(state, preset=(0.0,) * len(state.axes), adrift={})
 
 
 def preset_restore(state: FrameState, asked: Asked) -> FrameState:
     """G92.3: the shift that was kept."""
-    return replace(state, preset=state.held)
+    return replace(state, preset=state.held, adrift=state.held_adrift)
 
 
 # --- reference points ---
@@ -275,6 +288,7 @@ def preset_restore(state: FrameState, asked: Asked) -> FrameState:
 def store_home(state: FrameState, asked: Asked) -> FrameState:
     """G28.1, G30.1: where the axes stand is the reference point from now on."""
     name = asked.code.split(".")[0]
-    where = np.asarray(asked.position) - np.array(state.machine)
+    known = [origin == state.first for origin in state.frame().origin]  # where others are nobody is
+    where = np.where(known, np.asarray(asked.position) - np.array(state.machine), np.nan)
     place = {a: float(w) for a, w in zip(state.axes, where, strict=True) if np.isfinite(w)}
     return replace(state, homes={**state.homes, name: place})
