@@ -55,6 +55,7 @@ def calls(words: list[Block], position: tuple[float, float, float], **more: obje
         "spindle": np.array([int(w.get("spindle", 1)) for w in words]),
         "other_axes": np.array(["A" in w for w in words]),
         "inverse": np.zeros(count, np.bool_),
+        "lost": np.zeros(count, np.bool_),
         "line": np.array([int(w.get("line", n)) for n, w in enumerate(words)]),
         "position": np.array([position[axis] for axis in plane.axes]),
         "plane": plane,

@@ -117,6 +117,13 @@ MUTATIONS = (
         "dialects/linuxcnc/preset-from-nowhere-turned",
     ),
     _of(
+        "a word of the machine is no axis word of a cycle",
+        "gcxform/modal/cycles/stretch.py",
+        "has_axes = ~absent | calls.lost",
+        "has_axes = ~absent",
+        "flow/hole-at-x-of-the-machine",
+    ),
+    _of(
         "strip makes one name of two",
         "plugins/gcxform_plugins/passes/strip.py",
         '" " * bool(found[1] and found[2])',

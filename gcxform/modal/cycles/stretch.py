@@ -38,6 +38,7 @@ class Calls:
     spindle      (n,) how it turns: +1, -1, 0, or `UNKNOWN`
     other_axes   (n,) whether there are words of axes other than X, Y, Z
     inverse      (n,) G93
+    lost         (n,) whether an axis of the plane is named whose value only the machine knows
     line         (n,) of the program, from 0
     position     (3,) first, second, normal before the stretch; nan where unknown
     plane        the plane of all of them
@@ -60,6 +61,7 @@ class Calls:
     spindle: Ints
     other_axes: Flags
     inverse: Flags
+    lost: Flags
     line: Ints
     position: Floats
     plane: Plane = Plane.XY
@@ -209,7 +211,8 @@ class _Follower:
         calls, mode, rule, count = self.calls, self.mode, self.rule, len(self.calls)
         words = {name: self._kept(name) for name in STICKY}
         repeats = np.where(np.isnan(calls.repeats), 1.0, calls.repeats)
-        has_axes = ~(np.isnan(calls.first) & np.isnan(calls.second) & np.isnan(calls.normal))
+        absent = np.isnan(calls.first) & np.isnan(calls.second) & np.isnan(calls.normal)
+        has_axes = ~absent | calls.lost
         wanted = has_axes | ~np.isnan(calls.r) if rule.stores else has_axes
         drilled = wanted & (repeats > 0)
         clearance, bottom = words["r"], words["normal"]

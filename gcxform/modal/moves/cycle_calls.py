@@ -42,7 +42,8 @@ class _Common:
 class CallColumns:
     """The calls of one window, and columns of their words: nan where a line has none, mm and s.
 
-    `calls` are the lines that call a cycle. The columns are made when first asked for, because most
+    `calls` are the lines that call a cycle, `lost` those of them that name an axis of the plane
+    whose value only the machine knows. The columns are made when first asked for, because most
     windows have no cycle.
     """
 
@@ -50,6 +51,7 @@ class CallColumns:
         self.track = track
         self.lines, self.modes = track.lines, track.modes
         self.calls = self._calls()
+        self.lost = np.zeros(self.lines.live, np.bool_)
         self._columns: dict[str, Floats] = {}
         self._lasts: dict[str, Ints] = {}
         self._increments: dict[str, Floats | None] = {}
@@ -204,6 +206,7 @@ class CallColumns:
             common.spindle[here],
             common.other_axes[here],
             common.inverse[here],
+            self.lost[here],
             common.line[here],
             position,
             plane,

@@ -60,6 +60,7 @@ class Drilling:
         self.events: list[tuple[int, int, Event]] = []
         self.columns = CallColumns(track)
         self.calls = self.columns.calls
+        self.columns.lost[[*self._lost]] = True
         self._followed: list[_Followed] = []
 
     def borders(self) -> Ints:
