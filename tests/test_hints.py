@@ -252,3 +252,52 @@ def test_where_axes_stand_at_the_start_is_asked_only_where_that_helps(
     found = call("check", "-f", "heidenhain", *start, str(tmp_path / "f.h"))
     assert helps == ("GX207" not in found.stderr)
     assert helps or "write X absolute before: what line 2 does loses it" in hint
+
+
+# --- hints that are words ---
+
+HEAD = "G21 G90 G94 G17"
+WORDS = {
+    "a motion code": (
+        "write G1 in this block, or G0 if the way is clear",
+        f"{HEAD} F9.\nX1.\n",
+        f"{HEAD} F9.\nG1 X1.\n",
+    ),
+    "a feed": (
+        "write an F word",
+        f"{HEAD}\nG0 X0. Y0.\nG1 X1.\n",
+        f"{HEAD}\nG0 X0. Y0.\nG1 X1. F50.\n",
+    ),
+    "a start of an arc": (
+        "begin with a line to a known point",
+        f"{HEAD} F9.\nG2 X1. Y0. I.5 J0.\n",
+        f"{HEAD} F9.\nG1 X0. Y0.\nG2 X1. Y0. I.5 J0.\n",
+    ),
+    "a place of the machine in G91": (
+        "write it under G90, with its place in the machine",
+        f"{HEAD} F9.\nG0 X0. Y0. Z0.\nG91\nG53 G0 Z0.\n",
+        f"{HEAD} F9.\nG0 X0. Y0. Z0.\nG91\nG90 G53 G0 Z0.\n",
+    ),
+    "a place of the machine by an arc": (
+        "write G0 in this block if the way is clear, or G1",
+        f"{HEAD} F9.\nG0 X0. Y0. Z0.\nG2 X1. Y0. I.5 J0.\nG53 X5.\n",
+        f"{HEAD} F9.\nG0 X0. Y0. Z0.\nG2 X1. Y0. I.5 J0.\nG53 G0 X5.\n",
+    ),
+    "a plane in a contour": (
+        "lead the tool off the contour and cancel it with G40 before, and begin it again behind",
+        f"{HEAD} F9.\nG0 X0. Y0. Z0.\nG41.1 D2 G1 X10.\nX20.\nG18\nX30.\nG40 G1 Y20.\n",
+        f"{HEAD} F9.\nG0 X0. Y0. Z0.\nG41.1 D2 G1 X10.\nX20.\nG40 G1 Y20.\nG18\nX30.\nG17\n"
+        "G41.1 D2 G1 X40.\nX50.\nG40 G1 Y40.\n",
+    ),
+}
+"""Advice in words: what it says, a program that gets it, and the program that follows it."""
+
+
+@pytest.mark.parametrize("name", WORDS)
+def test_advice_in_words_is_followed_and_leads_out(name: str) -> None:
+    said, before, after = WORDS[name]
+    chain = gx.Pipeline.parse("absolute", "linuxcnc")
+    with pytest.raises(gx.InputError) as caught:
+        chain.run(f"{before}M2\n".encode())
+    assert said in caught.value.diagnostics[0].hint
+    assert chain.run(f"{after}M2\n".encode()).certificate.verified
