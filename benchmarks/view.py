@@ -6,7 +6,8 @@ The program is that of `surfacing.py`. It is shown alone, and with what `surfaci
 it. The page is opened in headless Chromium (Debian's, driven by Playwright) that draws in software,
 on as many processors as there are; a graphics card is many times faster. Pictures a second are
 counted while the path is turned about the vertical and the page is drawn as fast as it can be;
-`sharp` is one picture with all that a pixel shows, until it is there.
+`sharp` is one picture with all that a pixel shows, until it is there; `wait` is the longest that
+the page stands still while it becomes so by itself, in shares.
 """
 
 from __future__ import annotations
@@ -36,6 +37,19 @@ TURN = """(seconds) => new Promise((done) => {
         requestAnimationFrame(turn);
     };
     turn();
+})"""
+WAIT = """() => new Promise((done) => {
+    const { drawing } = gcxformView;
+    gcxformView.turnBy(0.02);
+    let [longest, last] = [0, performance.now()];
+    const look = () => {
+        const now = performance.now();
+        longest = Math.max(longest, now - last);
+        last = now;
+        if (drawing.rest?.length === 0) return done(longest);
+        requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
 })"""
 MOVES = "() => gcxformView.programs.reduce((sum, each) => sum + each.path.count, 0)"
 SHARP = """() => {
@@ -70,6 +84,7 @@ def opened(browser: Any, page: Path, seconds: float) -> dict[str, float]:
     tab.wait_for_timeout(1000 * LEFT_TO_SETTLE)
     found["sharp"] = tab.evaluate(SHARP)
     found["rate"] = tab.evaluate(TURN, seconds)
+    found["wait"] = tab.evaluate(WAIT)
     found["moves"] = tab.evaluate(MOVES)
     context.close()
     return found
@@ -87,8 +102,11 @@ def measured(lines: int, seconds: float, folder: Path) -> None:
         "before and after": ["-p", str(HERE / "surfacing.toml"), str(program)],
     }
     print(f"{lines} lines, {program.stat().st_size / 1e6:.1f} MB; {os.cpu_count()} processors\n")
-    print("| page | moves | MB | bytes a move | written s (CPU) | ready s | sharp ms | a second |")
-    print("|---|---|---|---|---|---|---|---|")
+    print(
+        "| page | moves | MB | bytes a move | written s (CPU) | ready s | sharp ms | wait ms "
+        "| a second |"
+    )
+    print("|---|---|---|---|---|---|---|---|---|")
     with sync_playwright() as driver:
         place = shutil.which("chromium")
         browser = driver.chromium.launch(executable_path=place, args=SOFTWARE)
@@ -99,7 +117,7 @@ def measured(lines: int, seconds: float, folder: Path) -> None:
             print(
                 f"| {name} | {found['moves']:.0f} | {size / 1e6:.2f} | {size / found['moves']:.2f} "
                 f"| {wall:.1f} ({cpu:.1f}) | {found['ready']:.1f} | {found['sharp']:.0f} "
-                f"| {found['rate']:.1f} |"
+                f"| {found['wait']:.0f} | {found['rate']:.1f} |"
             )
         browser.close()
 

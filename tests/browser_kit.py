@@ -71,11 +71,11 @@ class Sight:
         """Return what a function of JavaScript returns; `view` is what the page knows."""
         return self.page.evaluate(f"(value) => {{ const view = gcxformView; {script} }}", value)
 
-    def pixels(self) -> np.ndarray:
-        """Return the picture of the path (high, wide, 4) as it stands, drawn sharp."""
+    def pixels(self, now: bool = True) -> np.ndarray:
+        """Return the picture of the path (high, wide, 4), drawn sharp, or else as it stands."""
         script = """
             const { renderer } = view.drawing;
-            view.drawNow();
+            if (value) view.drawNow();
             const gl = renderer.getContext();
             const [w, h] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
             const octets = new Uint8Array(4 * w * h);
@@ -85,7 +85,7 @@ class Sight:
                 text += String.fromCharCode(...octets.subarray(at, at + 8192));
             }
             return [w, h, text];"""
-        wide, high, text = self.run(script)
+        wide, high, text = self.run(script, now)
         octets = np.frombuffer(text.encode("latin-1"), np.uint8)
         return octets.reshape(high, wide, 4)[::-1]
 

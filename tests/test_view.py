@@ -271,6 +271,26 @@ def test_what_stands_around_the_path_is_seen(bracket) -> None:
         bracket.page.click(f".tools button:text-is('{name}')")
 
 
+def test_a_picture_drawn_by_shares_is_the_one_drawn_at_once(bracket) -> None:
+    script = """
+        const { drawing } = view;
+        drawing.share = 1;
+        view.turnBy(0.3);
+        return new Promise((done) => {
+            const lengths = new Set();
+            const look = () => {
+                if (drawing.rest) lengths.add(drawing.rest.length);
+                return lengths.has(0) ? done([...lengths]) : requestAnimationFrame(look);
+            };
+            look();
+        });"""
+    assert bracket.run(script) == [1, 0]
+    by_shares = bracket.pixels(now=False)
+    assert coloured(by_shares) > 500
+    assert (by_shares == bracket.pixels()).all()
+    bracket.run("view.drawing.share = 50_000; view.turnBy(-0.3)")
+
+
 def test_time_is_that_of_info(bracket, monkeypatch) -> None:
     monkeypatch.chdir(BRACKET)
     found = call("info", "--json", "-f", "linuxcnc", "-m", "machine.toml", "bracket.nc")

@@ -25,7 +25,7 @@ export function drawingOn(canvas) {
   const controls = new THREE.OrbitControls(camera, canvas);
   controls.zoomToCursor = true;
   const drawing = {
-    canvas, renderer, camera, controls, software, scene: new THREE.Scene(), paths: [], rest: null, ground: new THREE.Color(),
+    canvas, renderer, camera, controls, software, scene: new THREE.Scene(), paths: [], rest: null, share: SHARE, ground: new THREE.Color(),
     coarse: SHARP, moved: 0, stirred: false, asked: false, last: 0, size: 100, middle: [0, 0, 0], frames: 0, beforeDrawn: [],
   };
   controls.addEventListener("change", () => stir(drawing));
@@ -120,7 +120,7 @@ function renderShare(drawing) {
     for (const chunk of drawing.rest) show(chunk, false);
   }
   const share = [];
-  for (let pieces = 0; drawing.rest.length && pieces < SHARE; pieces += share.at(-1).pieces) share.push(drawing.rest.shift());
+  for (let pieces = 0; drawing.rest.length && pieces < drawing.share; pieces += share.at(-1).pieces) share.push(drawing.rest.shift());
   for (const chunk of share) show(chunk, true);
   if (drawing.rest.length) for (const shown of seen) drawing.renderer.render(shown.group, drawing.camera);
   else drawing.renderer.render(drawing.scene, drawing.camera);
