@@ -196,12 +196,19 @@ class Branches:
         run.changes += 1
         here, since = run.blocks, min(each.line for each in arrivals)
         self.labels[here] = line
+        if self._only_ends(line):
+            return  # who comes here ends here: nothing hangs on what was jumped over
         self.forgets[here] = frozenset(lost)
         self.joins.append(Join(tuple(each.line for each in arrivals), here, line))
         found = self._effect(since, here)
         if found.letters:
             self.lost[here] = found.letters
         self.perhaps.update(range(since + 1, here) if found.moves else ())
+
+    def _only_ends(self, line: int) -> bool:
+        """Whether a line ends the program, or stops it with an alarm, and moves nothing."""
+        meaning, block = self.run.listing.meaning(line), self.run.listing.block(line)
+        return self.run.is_over(block) and not (meaning.axes or meaning.acts)
 
     def _effect(self, since: int, here: int) -> Effect:
         """Return what executed lines change that may be jumped over."""

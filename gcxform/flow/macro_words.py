@@ -194,9 +194,9 @@ class MacroWords(Jumping):
     # --- ends ---
 
     def _ends(self, block: Block) -> bool:
-        return super()._ends(block) or self._alarms(block)
+        return super()._ends(block) or self.alarms(block)
 
-    def _alarms(self, block: Block) -> bool:
+    def alarms(self, block: Block) -> bool:
         """Whether a block stops the control with an alarm (#3000 of Fanuc and Haas)."""
         alarm = self.arithmetic.machine.alarm
         statements = (item for item in block.items if isinstance(item, Statement))
@@ -204,7 +204,7 @@ class MacroWords(Jumping):
 
     def stop(self, block: Block) -> None:
         """End the program, or go on where a jump ahead may lead to: an alarm ends nothing else."""
-        if self.branches.open and self._alarms(block):
+        if self.branches.open and self.alarms(block):
             self.branches.over = True
         else:
             super().stop(block)

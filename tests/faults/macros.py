@@ -11,6 +11,13 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 
 RENUMBER = "plugins/gcxform_plugins/passes/renumber.py"
 MUTATIONS = (
+    _macro(
+        "what ends the program may move as well",
+        "gcxform/flow/branches.py",
+        "and not (meaning.axes or meaning.acts)",
+        "",
+        "flow/fanuc-branch-to-a-way-home",
+    ),
     Mutation(
         "a probe from nowhere known may go by anything",
         "gcxform/modal/moves/spindle_and_probe.py",
@@ -168,14 +175,14 @@ MUTATIONS = (
     _macro(
         "nothing is executed behind an alarm, but for where it was a branch",
         "gcxform/flow/macro_words.py",
-        "if self.branches.open and self._alarms(block):",
-        "if self._alarms(block) and not self.branches.open:",
+        "if self.branches.open and self.alarms(block):",
+        "if self.alarms(block) and not self.branches.open:",
         "flow/fanuc-alarm",
     ),
     _macro(
         "a program goes on behind an alarm",
         "gcxform/flow/macro_words.py",
-        "return super()._ends(block) or self._alarms(block)",
+        "return super()._ends(block) or self.alarms(block)",
         "return super()._ends(block)",
         "flow/fanuc-alarm-behind-end",
     ),
