@@ -12,6 +12,7 @@ from cli_kit import call
 from oracles import rs274
 from oracles.canon import CanonProgram
 from reference.interpreter import Move, interpret
+from seeds_kit import DRAWN
 
 import gcxform as gx
 from gcxform import vocabulary as v
@@ -23,7 +24,7 @@ from gcxform.testing.generate import Options, program
 
 NAMES = ("fanuc", "grbl", "haas", "linuxcnc")
 CLEAR = "2000"
-PROGRAMS = 15
+PROGRAMS = min(DRAWN // 5, 15)
 CLOSE = 2e-6  # mm, degrees
 
 
@@ -109,14 +110,14 @@ def test_restart_at_every_line(name: str, tmp_path: Path) -> None:
 @pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
 def test_linuxcnc_restarts_at_every_line(tmp_path: Path) -> None:
     cases = []
-    for seed in range(100, 112):
+    for seed in range(100, 100 + PROGRAMS):
         text = drawn("linuxcnc", seed)
         for line in range(1, text.count(b"\n") + 1):
             if made := restarted(tmp_path, text, "linuxcnc", line):
                 cases.append((text, line, *made))
     originals = rs274.run_many([text for text, *_ in cases])
     restarts = rs274.run_many([out for _, _, out, _ in cases])
-    assert len(cases) > 80
+    assert len(cases) > 6 * PROGRAMS
     for (_, line, out, first), one, other in zip(cases, originals, restarts, strict=True):
         assert isinstance(one, CanonProgram)
         assert isinstance(other, CanonProgram), (other, out)
