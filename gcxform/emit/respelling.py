@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from itertools import groupby
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.flow.annexed import BYTE_ORDER_MARK, LINE_END
 from gcxform.flow.translated import Translated
-from gcxform.flow.translation import BYTE_ORDER_MARK, LINE_END
 
 HINT = "let the CAM write plain moves in its place, or write for another dialect"
 
@@ -39,6 +39,8 @@ def respelled(
         stepped = absolute and translator.counts(raw) and not any(map(is_kept, made))
         if made != whole[first:stop] or stepped:
             text = translator.spelled(raw, [each.decode("latin-1") for each in made])
+        if text != raw and line >= translator.own:
+            raise _refusal(source, line, "this line would change, and stands in another file")
         if text is None:
             raise _refusal(source, line, "what this line became cannot be said in its language")
         if new.setdefault(line, text) != text:
@@ -69,5 +71,5 @@ def _joined(given: bytes, new: dict[int, str]) -> bytes:
 
 def _refusal(source: Translated, line: int, message: str) -> InputError:
     text = source.lines[line]
-    where = Location(source.name, line + 1, 1, text, max(1, len(text.rstrip())))
+    where = Location(*source.translator.place_of(line), 1, text, max(1, len(text.rstrip())))
     return InputError((Diagnostic("GX501", message, where, HINT),))

@@ -8,8 +8,9 @@ import numpy as np
 
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.dialect import Dialect
+from gcxform.flow.annexed import lines_of
 from gcxform.flow.executed import WrittenOut
-from gcxform.flow.translation import Translator, lines_of, translator_of
+from gcxform.flow.translation import Translator, translator_of
 from gcxform.modal.state import Reading
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Ints
@@ -24,7 +25,8 @@ class Translated(WrittenOut):
     def __init__(
         self, source: Source, translator: Translator, text: bytes, origin: list[int], visits: Ints
     ) -> None:
-        super().__init__(source, text, np.array(origin, np.int64), translator.assumed)
+        files = tuple(translator.annexed.files) if translator.annexed is not None else ()
+        super().__init__(source, text, np.array(origin, np.int64), translator.assumed, files)
         self.lines = translator.lines
         self.translator = translator
         self.text = text
@@ -32,11 +34,11 @@ class Translated(WrittenOut):
 
     def shown(self, where: Location) -> Location:
         """Return a place in the program, all of its line, for one in the blocks."""
-        line = self.line_of(where.line)
-        text = self.lines[line - 1]
+        text = self.lines[self.line_of(where.line) - 1]
         start = len(text) - len(text.lstrip())
         width = max(1, len(text.strip()))
-        return replace(where, line=line, column=start + 1, text=text, width=width)
+        file, line = self.place_of(where.line)
+        return replace(where, file=file, line=line, column=start + 1, text=text, width=width)
 
 
 def translated(source: Source, dialect: type[Dialect], reading: Reading) -> Translated:
@@ -56,6 +58,8 @@ def translated_so_far(
         lines.pop()
     kind = translator_of(dialect)
     blocks, origin, visits, refused = [], [], [], None
+    beside = () if source.folder is None else (source.folder,)
+    reading = replace(reading, subprograms=(*beside, *reading.subprograms))
     translator = kind(lines, source.name, dialect, reading)
     try:
         for line, block in translator.run():

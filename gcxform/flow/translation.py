@@ -25,6 +25,8 @@ from lark.exceptions import UnexpectedInput
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
+from gcxform.flow.annexed import Annexed, lines_of
+from gcxform.flow.lookup import Folders, LookupFailedError
 from gcxform.modal.state import Reading
 from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.grammar import parsed, refusal_of, rule_of, span_of
@@ -32,10 +34,7 @@ from gcxform.system.limits import how_to_raise, limits
 
 NUMBER = "NUMBER"
 """The terminal of a grammar that stands for numbers."""
-BYTE_ORDER_MARK = b"\xef\xbb\xbf"
-LEADER = b"\0\x7f"  # NUL and DEL, as in `iso.lark`
 COMMENT, BLOCK_DELETE = "comment", "block_delete"
-LINE_END = re.compile(rb"\r\n|\n|\r")
 HINT = "let the CAM write plain moves in its place"
 QUICK = 4  # lines that are only translated, in the time of one that is executed
 BRACKETS = str.maketrans("()", "[]")
@@ -114,12 +113,15 @@ class Translator(ABC):
     kept: ClassVar[str] = ""
     """The code of blocks that stand for a line that is kept as it stands, whatever it does."""
 
-    def __init__(self, lines: Sequence[str], file: str, dialect: type[Dialect], reading: Reading):
+    def __init__(self, lines: list[str], file: str, dialect: type[Dialect], reading: Reading):
         self.lines = lines
         self.file = file
         self.dialect = dialect
         self.reading = reading
         self.line = self.at = self.visit = 0
+        self.own = len(lines)
+        """How many lines are those of the program; behind them are those of files that it calls."""
+        self.annexed: Annexed | None = None
         self.assumed: dict[str, None] = {}
         """What a line was taken to mean that it does not say, in sentences."""
         self.plainly = True
@@ -219,12 +221,39 @@ class Translator(ABC):
         numbers: list[str] = []
         return numbers, tuple(_part(child, numbers) for child in tree.children)
 
+    # --- files ---
+
+    def called_file(self, name: str) -> range | None:
+        """Return the lines of the file of a subprogram that is called by a name; None without one.
+
+        They are put behind those there are. Raises InputError for two files that differ.
+        """
+        if self.annexed is None:
+            folders = Folders(self.reading.subprograms, self.dialect.flow_rule.lookup)
+            self.annexed = Annexed(self.lines, folders)
+        try:
+            return self.annexed.file(name)
+        except LookupFailedError as why:
+            raise self.refusal("GX227", f"{name}: {why}") from None
+
+    def at_end(self) -> None:
+        """Come to the end of a file: that of the program is its end."""
+        self.at = len(self.lines)
+
+    def place_of(self, line: int) -> tuple[str, int]:
+        """Return the file in which a line stands, and which of its lines that is, from 1."""
+        other = None if self.annexed is None else self.annexed.place(line)
+        return other or (self.file, line + 1)
+
     # --- the walk ---
 
     def run(self) -> Iterator[tuple[int, str]]:
         """Yield blocks with the line that each is for, from 0. Raises InputError."""
         left = most = QUICK * limits().steps + len(self.lines)
         while self.at < len(self.lines):
+            if self.annexed is not None and self.at in self.annexed.seams:
+                self.at_end()
+                continue
             self.line, self.at = self.at, self.at + 1
             self.visit += 1
             left -= 1
@@ -237,7 +266,7 @@ class Translator(ABC):
                 continue
             for block in self._translated(shape, numbers):
                 yield self.line, block
-        self.line = max(len(self.lines) - 1, 0)
+        self.line = max(self.own - 1, 0)
         self.visit += 1
         for block in self.closing():
             yield self.line, block
@@ -293,7 +322,7 @@ class Translator(ABC):
         self, line: int, code: str, message: str, place: tuple[int, int], hint: str
     ) -> InputError:
         start, end = place
-        where = Location(self.file, line + 1, start + 1, self.lines[line], max(1, end - start))
+        where = Location(*self.place_of(line), start + 1, self.lines[line], max(1, end - start))
         return InputError((Diagnostic(code, message, where, hint),))
 
 
@@ -303,12 +332,6 @@ def translator_of(dialect: type[Dialect]) -> type[Translator]:
     assert kind is not None
     assert issubclass(kind, Translator), f"{kind.__name__} is no Translator"
     return kind
-
-
-def lines_of(text: bytes) -> list[str]:
-    """Return the lines of a program, without the leader of a tape and what editors put first."""
-    lines = LINE_END.split(text.removeprefix(BYTE_ORDER_MARK))
-    return [line.decode("latin-1") if line.strip(LEADER) else "" for line in lines]
 
 
 def has_signs(text: bytes, dialect: type[Dialect]) -> bool:

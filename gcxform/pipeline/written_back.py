@@ -39,7 +39,7 @@ class WrittenBack:
     @property
     def lines_read(self) -> int:
         """How many lines the program has."""
-        return len(self.source.lines)
+        return self.source.translator.own
 
     def fold(self) -> Folded:
         """Return the program. Raises InputError where a line cannot be spelled."""

@@ -31,7 +31,7 @@ class Computing(Deciding):
     fed            a feed is known to be in force, in `feed_mode`
     """
 
-    def __init__(self, lines: Sequence[str], file: str, dialect: Any, reading: Any) -> None:
+    def __init__(self, lines: list[str], file: str, dialect: Any, reading: Any) -> None:
         super().__init__(lines, file, dialect, reading)
         self.kept_lines: list[tuple[int, str]] = []
         self.unsaid: set[str] = set()
@@ -47,7 +47,7 @@ class Computing(Deciding):
             return self._ended(items, [*super().blocks(items)])
         text = self.lines[self.line]
         try:
-            tree = self.grammar_of_expressions.parse(text)
+            tree = self.tree_of(text)
             straight = self._straight(tree, text)
         except UnexpectedInput:
             self.refuse("this is not read", items[-1] if items else None)

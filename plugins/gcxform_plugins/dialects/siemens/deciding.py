@@ -5,7 +5,7 @@ Where only the machine knows it, all that it may execute is kept as it stands.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any
 
@@ -22,16 +22,16 @@ from gcxform_plugins.dialects.siemens.variables import Variables
 class Deciding(Variables):
     """Executes what decides.
 
-    kept_from    from this line up to `kept_until` all are kept: only the machine decides on them
+    kept_until   lines up to this one are kept: only the machine decides on them, `kept_why`
     tied         why lines that were read may be executed again, by what only the machine knows
     decides      something has decided where to go on;  loops_on: a loop may go on at its end
     """
 
-    def __init__(self, lines: Sequence[str], file: str, dialect: Any, reading: Any) -> None:
+    def __init__(self, lines: list[str], file: str, dialect: Any, reading: Any) -> None:
         super().__init__(lines, file, dialect, reading)
         self.counting: dict[int, float] = {}
-        self.kept_from = self.kept_until = 0
-        self.kept_why = self.tied = ""
+        self._trees: dict[str, Node] = {}
+        self.kept_until, self.kept_why, self.tied = 0, "", ""
         self.decides = self.loops_on = False
         self.flow: Mapping[str, Callable[[Node], None]] = {
             "if": self._if,
@@ -58,6 +58,12 @@ class Deciding(Variables):
         return self.grammar_named("gcxform_grammars", "siemens_computed")
 
     # --- structures ---
+
+    def tree_of(self, text: str) -> Any:
+        """Return the tree of a line that computes. Raises UnexpectedInput."""
+        if text not in self._trees:
+            self._trees[text] = self.grammar_of_expressions.parse(text)
+        return self._trees[text]
 
     def _part(self) -> Part:
         part = self.structure.at.get(self.line)
@@ -136,7 +142,7 @@ class Deciding(Variables):
     def _next(self) -> None:
         """Count on at ENDFOR, and go back or on."""
         part = self._part()
-        head = self.grammar_of_expressions.parse(self.lines[part.first]).children[-1]
+        head = self.tree_of(self.lines[part.first]).children[-1]
         _, name, _, _, last = head.children
         upper = str(name).upper()
         end = self.counting[part.first]
@@ -211,7 +217,7 @@ class Deciding(Variables):
         if len(node.children) > 1:
             self._elsewhere("RET(...) goes on where the caller says")
             return
-        self.at = len(self.lines)
+        self.at = self.part.stop if self.calls else len(self.lines)
 
     # --- what only the machine decides ---
 
@@ -226,9 +232,21 @@ class Deciding(Variables):
         """Keep all that follows, and all lines that may be executed once more."""
         if not self.reading.stays:
             self.refuse(why)
-        if self.structure.may_go_back(self.line):
+        self.keep_rest(why)
+        self.refuse(why)
+
+    def keep_rest(self, why: str) -> None:
+        """Keep all that follows; and lines before, where it may lead back to them.
+
+        In a subprogram, which is not written, only what it has done is not known behind it.
+        """
+        self.keep_on(self.part.stop, why)
+        try:
+            back = self.structure.may_go_back(self.line)
+        except StructureError:
+            back = True
+        if back and not self.calls:
             self.tied = why
-        self._keep(len(self.lines), why)
 
     def _keep(self, until: int, why: str) -> None:
         self.keep_on(until, why)
@@ -236,4 +254,4 @@ class Deciding(Variables):
 
     def keep_on(self, until: int, why: str) -> None:
         """Keep lines from this one up to another."""
-        self.kept_from, self.kept_until, self.kept_why = self.line, until, why
+        self.kept_until, self.kept_why = until, why

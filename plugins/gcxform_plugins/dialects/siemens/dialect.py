@@ -70,7 +70,10 @@ their bytes, and what is refused below is then kept as it stands, with all that 
 | `$AA_IW[X]`, `$P_EP[X]` | where X stands; the first only behind STOPRE | [K] |
 | other `$` variables, names that nothing defines | only the control knows them | |
 | PROC, what nobody calls | its parameters are not known | |
-| subprograms, synchronous actions, DEFINE | refused | |
+| `NAME(...)`, `L10 P2` | `NAME.SPF`, `.MPF` beside the program; VAR is the caller's own | PM |
+| what is left out of a call | its default in PROC, or 0 | PM |
+| SAVE, MCALL of one, RET with a label, M30 in one, calls of itself | refused | |
+| subprograms that are not there, synchronous actions, DEFINE | refused | |
 | M128, M129 | M codes of the machine: refused, as blocks say TRAORI with them | |
 | `/`, `/0` to `/9` | a switch decides: `block-delete` in `[input]` | [K] |
 | `MSG("...")` | a comment | PM |
@@ -117,6 +120,9 @@ class Siemens(gx.Dialect):
     }
     chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
         "ABC", "rotary axes go where they are told, whichever way is shorter (MD30455)"
+    )
+    flow_rule = gx.FlowRule(
+        lookup=gx.LookupRule(names=("{name}",), endings=(".SPF", ".MPF"), any_case=True)
     )
     settings = (
         gx.Setting("edge-after-tool-change", "siemens: D behind M6 (MD20270)", (0, 1)),

@@ -13,11 +13,11 @@ import zlib
 from collections.abc import Iterable, Iterator, Sequence
 
 import gcxform as gx
-from gcxform_plugins.dialects.siemens.computing import Computing
+from gcxform_plugins.dialects.siemens.calls import Calls
 from gcxform_plugins.dialects.siemens.line import Line
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
 from gcxform_plugins.dialects.siemens.spelling import spelled
-from gcxform_plugins.dialects.siemens.structure import StructureError, code
+from gcxform_plugins.dialects.siemens.structure import code
 
 KEPT = "M9000"
 DECIDES = re.compile(
@@ -47,7 +47,7 @@ STATE = (
 )
 
 
-class Programs(Computing):
+class Programs(Calls):
     """Executes the lines of a program for a SINUMERIK."""
 
     writes = True
@@ -58,7 +58,7 @@ class Programs(Computing):
         if not self.reading.stays:
             return self.executed(items)
         self._arrive()
-        if self.kept_from <= self.line < self.kept_until:
+        if self.line < self.kept_until:
             return self._kept(items, self.kept_why, True)
         self.kept_until = 0
         before = {name: getattr(self, name) for name in STATE}
@@ -82,17 +82,7 @@ class Programs(Computing):
         if self.kept_until > self.line or self.loops_on:
             self.loops_on = False
         else:
-            self._keep_rest(why)
-
-    def _keep_rest(self, why: str) -> None:
-        """Keep all that follows; and lines before, where it may lead back to them."""
-        self.keep_on(len(self.lines), why)
-        try:
-            back = self.structure.may_go_back(self.line)
-        except StructureError:
-            back = True
-        if back:
-            self.tied = why
+            self.keep_rest(why)
 
     def _kept(self, items: Sequence[gx.Item], why: str, opaque: bool) -> list[str]:
         """Return the block of a line that stays as it stands."""
@@ -101,7 +91,7 @@ class Programs(Computing):
             return []
         self.kept_lines.append((self.line, why))
         if FROM_HERE.search(code(text).upper()):
-            self._keep_rest(why)
+            self.keep_rest(why)
         opaque |= self._calls(text, items)
         line = self._codes_of(items)
         if line.motion.isdigit():
@@ -180,11 +170,16 @@ class Programs(Computing):
         return iter(())
 
     def _told(self) -> str:
-        lines = sorted({line + 1 for line, _ in self.kept_lines})
-        first = min(self.kept_lines)
-        few = ", ".join(map(str, lines[:8])) + (" and more" if len(lines) > 8 else "")
-        why = f"line {first[0] + 1}: {first[1]}"
+        lines = sorted({line for line, _ in self.kept_lines})
+        few = ", ".join(map(self._line_named, lines[:8])) + (" and more" if len(lines) > 8 else "")
+        line, why = min(self.kept_lines)
+        why = f"line {self._line_named(line)}: {why}"
         return f"lines {few} ({len(lines)}) are kept " + KEEPS.format(why)
+
+    def _line_named(self, line: int) -> str:
+        """Return the number of a line, with its file where that is another one."""
+        file, number = self.place_of(line)
+        return str(number) if line < self.own else f"{number} of {file}"
 
     def _moving(self, line: Line) -> str:
         if "distance" in self.unsaid and any(not way for way, _, _ in line.axes.values()):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -69,7 +70,7 @@ class Statements(gx.Translator):
     """
 
     def __init__(
-        self, lines: Sequence[str], file: str, dialect: type[gx.Dialect], reading: Any
+        self, lines: list[str], file: str, dialect: type[gx.Dialect], reading: Any
     ) -> None:
         super().__init__(lines, file, dialect, reading)
         self.place = Place(self.reading.start, self._words_of)
@@ -309,6 +310,11 @@ class Statements(gx.Translator):
             self.drilling = None
         else:
             self.refuse(WHY.get(name, f"{name} is not read"), item)
+
+    def knows(self, name: str) -> bool:
+        """Whether a name is one of the language, or of a cycle of Siemens, and no subprogram's."""
+        said = {*QUIET, *ORIENTATION, *FRAMES, *WHY, "SUPA", "CIP", "TRAFOOF", "MCALL", "WORKPIECE"}
+        return name.upper() in said or re.fullmatch(r"CYCLE[0-9]+", name.upper()) is not None
 
     def _switched(self, line: Line, item: gx.Item, name: str) -> None:
         line.act = ("M128" if name == "TRAORI" else "M129"), item

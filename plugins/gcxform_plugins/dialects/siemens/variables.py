@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from functools import cached_property
+from dataclasses import dataclass
 from typing import Any
 
 from lark import Token, Tree
@@ -26,24 +26,44 @@ AXES = frozenset(LINEAR + ROTARY)
 NAME = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
 
 
+@dataclass
+class Call:
+    """A subprogram that is executed: its lines, the line behind the call, how often it is due."""
+
+    lines: range
+    back: int
+    times: int = 1
+
+
 class Variables(Blocks):
     """Keeps the variables of a program.
 
+    calls    those that are open
     r        R parameters;  levels: the variables of each call, by name in capitals
     stopped  STOPRE has been, and nothing has moved since
     """
 
-    def __init__(self, lines: Sequence[str], file: str, dialect: Any, reading: Any) -> None:
+    def __init__(self, lines: list[str], file: str, dialect: Any, reading: Any) -> None:
         super().__init__(lines, file, dialect, reading)
         self.r: dict[int, Value] = {}
         self.levels: list[dict[str, Cell]] = [{}]
+        self.calls: list[Call] = []
+        self._structures: dict[int, Structure] = {}
         self.stopped = False
         self.worth = Expressions(self.r, self._cell, self._system)
 
-    @cached_property
+    @property
+    def part(self) -> range:
+        """The lines of the file that is executed."""
+        return self.calls[-1].lines if self.calls else range(self.own)
+
+    @property
     def structure(self) -> Structure:
-        """The structures of the program. Raises StructureError."""
-        return Structure(self.lines, 0, len(self.lines))
+        """The structures of the file that is executed. Raises StructureError."""
+        part = self.part
+        if part.start not in self._structures:
+            self._structures[part.start] = Structure(self.lines, part.start, part.stop)
+        return self._structures[part.start]
 
     # --- assignments ---
 

@@ -1,0 +1,210 @@
+"""Subprograms of a SINUMERIK: by their names, by L and a number, with parameters.
+
+They stand in files beside the program, `NAME.SPF` or `NAME.MPF`, or in folders that the user names.
+What they set of modes stays set behind them; one that says SAVE is not followed, nor one that is
+not there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from lark import Token, Tree
+from lark.exceptions import UnexpectedInput
+
+import gcxform as gx
+from gcxform import vocabulary as v
+from gcxform_plugins.dialects.siemens.cells import LOST, Cell, Value, converted, initial
+from gcxform_plugins.dialects.siemens.computing import Computing
+from gcxform_plugins.dialects.siemens.expressions import PARAMETER
+from gcxform_plugins.dialects.siemens.nodes import Node, rule_of, type_of
+from gcxform_plugins.dialects.siemens.structure import code
+from gcxform_plugins.dialects.siemens.variables import WORDS, Call
+
+LEVELS = 8  # calls inside each other, on the smallest of these controls
+MOST = 9999  # times that one call may ask for
+CALLED = re.compile(r"([A-Z_][A-Z0-9_]*)", re.IGNORECASE)
+OUTSIDE = frozenset(("sequence", "label"))
+
+
+class Calls(Computing):
+    """Executes calls."""
+
+    def executed(self, items: Sequence[gx.Item]) -> list[str]:
+        """Return the blocks of a line; none of one that calls. Raises InputError."""
+        if self._returns(items):
+            self._leave()
+            return []
+        name = self._name_of(items)
+        if name and (lines := self.called_file(name)) is not None:
+            self._arrive()
+            self._enter(name, lines)
+            return []
+        return super().executed(items)
+
+    def _name_of(self, items: Sequence[gx.Item]) -> str:
+        """Return the name that a line calls, if it may be one; nothing for all else."""
+        bare = [i for i in items if i.kind not in ("label", "main_number") and i.name != "N"]
+        item = bare[0] if bare else None
+        if item is None or not self.reading.subprograms:
+            return ""
+        if item.kind == "word" and item.name == "L":
+            return f"L{item.numbers[0]}"
+        if item.kind == "command" and all(i.kind == "word" and i.name == "P" for i in bare[1:]):
+            return "" if self.knows(item.name) else item.name
+        found = CALLED.match(item.name) if item.kind == "call" else None
+        return "" if found is None or self.knows(found[1]) else found[1]
+
+    # --- in and out ---
+
+    def _enter(self, name: str, lines: range) -> None:
+        """Begin a subprogram. Raises InputError."""
+        if len(self.calls) >= LEVELS or any(call.lines == lines for call in self.calls):
+            self.refuse(f"{name} calls itself, or {LEVELS} calls are inside each other")
+        if self.drilling is not None or self.comp:
+            self.refuse(f"{name} is called under MCALL or compensation")
+        proc = self._proc_of(name, lines)
+        times, given = self._given()
+        level = self._bound(proc, given)
+        self.decides, self.plainly = True, False
+        self.calls.append(Call(lines, self.at, times))
+        self.levels.append(level)
+        self.at = lines.start
+
+    def _proc_of(self, name: str, lines: range) -> Node | None:
+        """Return the first block of a subprogram, if it names parameters. Raises InputError."""
+        first = next((self.lines[n] for n in lines if code(self.lines[n]).strip()), "")
+        if not re.match(r"[ \t]*(?:N[0-9]+[ \t]*)?PROC(?![A-Z0-9_])", first, re.IGNORECASE):
+            return None
+        try:
+            node: Node = self.tree_of(first).children[-1]
+        except UnexpectedInput:
+            self.refuse(f"{name}: its PROC is not read")
+        tokens = [str(c).upper() for c in node.children if isinstance(c, Token)]
+        bare = [c for c in node.children if isinstance(c, Tree) and rule_of(c) == "bare"]
+        words = [str(c.children[0]).upper() for c in bare]
+        if name.upper() not in tokens:
+            self.refuse(f"the file of {name} has a PROC of another name")
+        if not {*words} <= {"DISPLOF", "SBLOF"}:
+            self.refuse(f"{name} says {words[0]} behind PROC")
+        return node
+
+    def _given(self) -> tuple[int, list[Any]]:
+        """Return how often a line calls, and its arguments: None for one that is left out."""
+        try:
+            tree = self.tree_of(self.lines[self.line])
+        except UnexpectedInput:
+            self.refuse("this call is not read")
+        (node, *others) = [c for c in tree.children if rule_of(c) not in OUTSIDE]
+        count = [str(o.children[0])[1:] for o in others if rule_of(o) == "word"]
+        if rule_of(node) == "call":
+            times = next((c for c in node.children if rule_of(c) == "times"), None)
+            slots: list[Any] = next(
+                (c.children for c in node.children if rule_of(c) == "arguments"), []
+            )
+            given = [slot.children[0] if slot.children else None for slot in slots]
+            number = self.worth.number(times.children[1]) if times is not None else 1.0
+            return self._often(number), [] if given == [None] else given
+        return self._often(float(count[0]) if count else 1.0), []
+
+    def _often(self, number: float) -> int:
+        if number != int(number) or not 1 <= number <= MOST:
+            self.refuse(f"a call for {number:g} times")
+        return int(number)
+
+    def _bound(self, proc: Node | None, given: Sequence[Any]) -> dict[str, Cell]:
+        """Return the variables of a call: its parameters. Raises InputError."""
+        nodes: list[Any] = [] if proc is None else proc.children
+        wanted = [c for c in nodes if rule_of(c) == "parameter"]
+        if len(given) > len(wanted):
+            self.refuse("this call has more values than its PROC")
+        level = {}
+        for k, parameter in enumerate(wanted):
+            value = given[k] if k < len(given) else None
+            tokens = [t for t in parameter.children if isinstance(t, Token)]
+            name = next(str(t).upper() for t in tokens if t.type.endswith("NAME"))
+            if WORDS.fullmatch(name) or PARAMETER.fullmatch(name):
+                self.refuse(f"{name} is a word of the control, and no name for a parameter")
+            shared = any(t.type.endswith("VAR") for t in tokens)
+            level[name] = self._shared(parameter, value) if shared else self._own(parameter, value)
+        return level
+
+    def _shared(self, parameter: Node, value: Any) -> Cell:
+        """Return the variable of the caller that a parameter with VAR is."""
+        cell = None
+        if rule_of(value) == "variable" and len(value.children) == 1:
+            cell = self._cell(str(value.children[0]))
+        nodes: list[Any] = parameter.children
+        bounds: list[Any] = next((c.children for c in nodes if rule_of(c) == "bounds"), [])
+        if cell is None or cell.kind != type_of(parameter) or len(cell.size) != len(bounds):
+            self.refuse("a parameter with VAR takes a variable of its type, and of its dimensions")
+        return cell
+
+    def _own(self, parameter: Node, value: Any) -> Cell:
+        """Return a parameter that has a value of its own."""
+        kind = type_of(parameter)
+        if any(rule_of(c) == "bounds" for c in parameter.children):
+            self.refuse("an array is handed on with VAR alone")
+        default = [c for c in parameter.children if _is_value(c)]
+        node = value if value is not None else (default[-1] if default else None)
+        found: Value = initial(kind)
+        if node is not None:
+            try:
+                found = converted(kind, self.worth.of(node))
+            except v.NoValueError as why:
+                if not why.lost:
+                    raise
+                found = LOST
+        return Cell(kind, (), [found])
+
+    def _proc(self, node: Node) -> None:
+        """Take parameters: those of a call are known already."""
+        if not self.calls:
+            super()._proc(node)
+
+    def _return(self, node: Node) -> None:
+        """Leave a program, or go back to what has called it."""
+        if not self.calls or len(node.children) > 1:
+            super()._return(node)
+        else:
+            self._leave()
+
+    def _returns(self, items: Sequence[gx.Item]) -> bool:
+        """Whether M17 in a line goes back to what has called. Raises InputError for other ends."""
+        numbers = [i.numbers[0] for i in items if i.kind == "word" and i.name == "M"]
+        codes = {int(number) for number in numbers if number.isdigit()}
+        if not self.calls or not codes & {2, 17, 30}:
+            return False
+        if codes != {17} or len([i for i in items if i.name != "N" and i.kind != "label"]) > 1:
+            self.refuse("a subprogram ends here with other words, or ends the program")
+        return True
+
+    def _leave(self) -> None:
+        """Go back, or begin a subprogram once more."""
+        call = self.calls[-1]
+        call.times -= 1
+        if call.times:
+            self.at = call.lines.start
+            return
+        self.calls.pop()
+        self.levels.pop()
+        self.at = call.back
+
+    def at_end(self) -> None:
+        """Come to the end of a file. Raises InputError where that of a subprogram has no M17."""
+        if not self.calls:
+            super().at_end()
+            return
+        if not self.kept_until:
+            self.refuse("the file of a subprogram ends here, without M17 or RET")
+        self._leave()
+        self.kept_until = 0
+
+
+def _is_value(node: Any) -> bool:
+    """Whether a part of a parameter is its default."""
+    if isinstance(node, Token):
+        return node.type.rsplit("__", 1)[-1] in ("NUMBER", "STRING", "HEX")
+    return isinstance(node, Tree) and rule_of(node) not in ("bounds", "length")
