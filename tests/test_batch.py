@@ -170,6 +170,23 @@ def test_a_folder_is_its_programs(shop: Path) -> None:
     assert found.stderr.endswith("3 programs: 1 as they were, 1 would change, 1 failed\n")
 
 
+@pytest.mark.parametrize(
+    "name", ["-o.nc", "--diff", "a b.nc", "a\nb.nc", "a\x1b[2Jb.nc", b"\xff.nc"]
+)
+def test_any_name_will_do_and_commands_no_terminal(name: str | bytes, shop: Path) -> None:
+    file = os.fsdecode(name)
+    for folder, text in (("odd", PART), ("worse", BAD)):
+        (shop / folder).mkdir()
+        (shop / folder / file).write_bytes(text)
+    found = call("run", "-o", "out", "odd", "worse/")
+    assert found.exit_code == 2, "they would be written to one place"
+    found = call("run", "--in-place", "odd", "worse")
+    assert found.exit_code == 3
+    assert found.stderr.count("\n") == 7
+    assert "\x1b" not in found.stderr
+    assert (shop / "odd" / file).read_bytes() == ABSOLUTE
+
+
 # --- what would change ---
 
 

@@ -18,6 +18,7 @@ from gcxform.cli.common.jobs import Places
 from gcxform.cli.common.pipelines import Pipelines
 from gcxform.cli.common.request import Asked
 from gcxform.cli.common.transform import Done, Job, edited_since
+from gcxform.diagnostics import shown
 from gcxform.pipeline.certificate import Certificate
 from gcxform.pipeline.pipeline import Pipeline
 
@@ -66,11 +67,11 @@ def command(
 def _tell(outcome: Outcome, pipelines: Pipelines, diff: bool, quiet: bool) -> None:
     """Say what became of a program, and show what would change of it."""
     if (document := asked()) is not None:
-        shown = {"diff": described(outcome.done)} if diff and outcome.done else {}
-        document.values.setdefault("programs", []).append({**outcome.described(), **shown})
+        parts = {"diff": described(outcome.done)} if diff and outcome.done else {}
+        document.values.setdefault("programs", []).append({**outcome.described(), **parts})
     if outcome.done is None:
         if outcome.state == "done-before" and not quiet and document is None:
-            say(f"{outcome.job.file}: {outcome.why}")
+            say(f"{shown(outcome.job.file)}: {outcome.why}")
         return
     if not quiet:
         warn((*edited_since(outcome.done.certificate), *outcome.done.certificate.warnings))
@@ -96,7 +97,7 @@ def summary(pipeline: Pipeline, done: Done) -> str:
     if pipeline.copies and not pipeline.text_passes:
         counts = "copied byte for byte"
     steps = " | ".join(step.name for step in pipeline.passes) or "no passes"
-    head = f"{found.source['name']}: {pipeline.source.name} -> {pipeline.target.name}"
+    head = f"{shown(found.source['name'])}: {pipeline.source.name} -> {pipeline.target.name}"
     first = f"{head}   {counts}   {steps}   {done.seconds:.2f} s"
     return "\n  ".join([first, *_states(found), *_measured(found), _proof(found)])
 

@@ -47,6 +47,7 @@ from faults import (
     twins,
     userlines,
     vectors,
+    watching,
     writing,
 )
 from faults.mutation import Mutation
@@ -58,6 +59,7 @@ MUTATIONS: tuple[Mutation, ...] = (
     *guarding.MUTATIONS,
     *fagor.MUTATIONS,
     *batches.MUTATIONS,
+    *watching.MUTATIONS,
     *commands.MUTATIONS,
     *hosts.MUTATIONS,
     *computing.MUTATIONS,

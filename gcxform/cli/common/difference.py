@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any, Final, NamedTuple
 
 from gcxform.cli.common.transform import Done, Texts
+from gcxform.diagnostics import shown
 from gcxform.stamps.comment import is_stamp
 
 CONTEXT: Final = 3  # lines around those that change
@@ -87,11 +88,6 @@ def described(done: Done) -> list[dict[str, Any]]:
         }
         for part in parts_of(done)
     ]
-
-
-def shown(name: str) -> str:
-    """Return the name of a file in one line, whatever it is made of."""
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in name)
 
 
 # --- which lines belong together ---

@@ -9,6 +9,7 @@ import click
 from gcxform.cli.common.answer import asked as document
 from gcxform.cli.common.failures import FOUND, say, warn
 from gcxform.cli.common.request import Asked
+from gcxform.diagnostics import shown
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
 
@@ -50,4 +51,4 @@ def announce(what: Asked, says: bool = True) -> None:
     if (found := document()) is not None:
         found.values["pipeline"] = what.found
     elif says:
-        say(f"pipeline {what.found}")
+        say(f"pipeline {shown(what.found)}")

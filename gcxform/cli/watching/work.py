@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, Final
 
 from gcxform.cli.common.batch import Outcome
-from gcxform.cli.common.difference import shown
 from gcxform.cli.common.failures import reported
 from gcxform.cli.common.findings import described
 from gcxform.cli.common.transform import Job
@@ -22,7 +21,7 @@ from gcxform.cli.watching.folders import (
     free_name,
 )
 from gcxform.cli.watching.settling import Look
-from gcxform.diagnostics import Diagnostic, FileError, GcxformError, render_all
+from gcxform.diagnostics import Diagnostic, FileError, GcxformError, render_all, shown
 from gcxform.stamps.chain import DONE
 
 SOON, LATE = 1.0, 60.0  # s: after which what could not be done is tried again, first and at most
