@@ -323,8 +323,8 @@ class Branches:
                 return
             run.times[at] = 1
             run.put(run.listing.raw(at, at + 1), np.array([at]))
-            if run.is_over(block):
-                return
+            if run.is_over(block) and not (at + 1 < run.listing.own and self._only_ends(at + 1)):
+                return  # an end behind an alarm stays with it
             if meaning.refusal is not None or not is_still(meaning, block):
                 break
             at += 1
