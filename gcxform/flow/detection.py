@@ -31,6 +31,8 @@ NAMES = "|".join(STANDS).upper().encode()
 POSITION = rb"#[ \t]*(?:5[ \t]*4[ \t]*2|<[ \t]*(?:%s)[ \t]*>(?![ \t]*=))" % NAMES
 PRINTED = re.compile(rb"\([ \t]*(?:DEBUG|PRINT|LOG)[ \t]*,[^()\n\r]*" + POSITION, re.IGNORECASE)
 """Messages of LinuxCNC that may print where the axes stand, or modes."""
+READS = rb"#[ \t]*(?:40(?:0[123567]|14)|4109|4120|500[123])(?![0-9])"
+"""Variables of macro B that say modes of the block before, and where the axes stand."""
 SIGNS: dict[str, tuple[tuple[bytes, bytes], ...]] = {
     "o-words": (
         (b"O", rb"O[ \t]*[0-9<#]"),
@@ -47,6 +49,7 @@ SIGNS: dict[str, tuple[tuple[bytes, bytes], ...]] = {
         (b"[", rb"IF[ \t]*\["),
         (b"G", WITH_VALUES),
         (b"#", NULL),
+        (b"#", READS),
     ),
 }
 """A byte, and what a program with flow has where it has that byte."""
@@ -59,7 +62,7 @@ PROOFS = {
         re.IGNORECASE | re.MULTILINE,
     ),
     "macro-b": re.compile(
-        rb"|".join((CALLS, rb"GOTO|WHILE|IF[ \t]*\[", WITH_VALUES, NULL)), re.IGNORECASE
+        rb"|".join((CALLS, rb"GOTO|WHILE|IF[ \t]*\[", WITH_VALUES, NULL, READS)), re.IGNORECASE
     ),
 }
 """What that looks like outside of comments."""

@@ -18,7 +18,8 @@ from gcxform.flow.macro_programs import PACKED, MacroPrograms
 from gcxform.flow.macro_words import statement_of
 from gcxform.flow.modal_calls import BEGINS, ENDS, Modal, ModalCalls
 from gcxform.flow.numbered_files import begins_program, program_number
-from gcxform.flow.run_state import Call, whole_number
+from gcxform.flow.run_state import UNKNOWN, Call, whole_number
+from gcxform.flow.state_read import ALL, NAMES, StateRead
 from gcxform.flow.subprogram_file import returns
 from gcxform.modal.meaning.tables import COLUMNS
 from gcxform.modal.state import Reading
@@ -35,6 +36,8 @@ class MacroB(MacroPrograms):
         super().__init__(listing, reading, keeps)
         self.values = ValueCalls(self)
         self.modals = ModalCalls(self, self._modal_call)
+        self.state = StateRead(self, self.branches)
+        self.state_is_read = False
 
     # --- what lines do ---
 
@@ -43,6 +46,7 @@ class MacroB(MacroPrograms):
         if begins_program(block) and self.line != self.bounds[0]:
             message = "the program before goes on into this one, without M30 or M99"
             raise self.refusal("GX223", message)
+        self._read_state(block)
         statement = statement_of(block)
         if statement is not None:
             getattr(self, f"_{statement.kind}")(statement)
@@ -75,6 +79,22 @@ class MacroB(MacroPrograms):
             what = f"M99 in line {line} stands in no call: it returns, or begins the program anew"
             self.assumed[what] = None
         return False
+
+    def _read_state(self, block: Block) -> None:
+        """Give the variables their values that say modes and where the axes stand."""
+        if NAMES.search(block.text):
+            found = self.state.values()
+            self.parameters |= found
+            self.state_is_read = True
+            if any(value == value for value in found.values()):
+                self.acted = True
+                self.tied = "modes or positions are read (#4001 to #4120, #5001 to #5003)"
+        elif self.state_is_read:
+            self.parameters |= dict.fromkeys(ALL, UNKNOWN)
+
+    def decides(self, line: int) -> bool:
+        """Whether a line reads modes, or where the axes stand."""
+        return NAMES.search(self.listing.window.line(line).decode("latin-1")) is not None
 
     def _refuse_beginning_anew(self, block: Block) -> None:
         """Refuse M99 outside a call where this program goes on in a state that it has left.
@@ -199,8 +219,8 @@ class MacroB(MacroPrograms):
         return call
 
     def steady(self) -> bool:
-        """Whether no move calls a program."""
-        return not self.modals.open and super().steady()
+        """Whether no move calls a program, and nothing reads the state of the control."""
+        return not (self.modals.open or self.state_is_read) and super().steady()
 
     def next_stop(self) -> int:
         """Return the next line to which a jump may lead, or behind which a program is called."""

@@ -49,6 +49,11 @@ class Places:
                 raise self.program.located(error) from None
         return self.interpreter.state
 
+    @property
+    def axes(self) -> str:
+        """The axes whose positions are known, in order."""
+        return self.interpreter.axes
+
     def words(self) -> dict[str, float]:
         """Return where the axes stand, as the words of a block would say it; nan: not known."""
         state = self.now()

@@ -51,8 +51,8 @@ MUTATIONS = (
     _flow(
         "rounds: moves call nothing",
         "gcxform/flow/macros.py",
-        "return not self.modals.open and super().steady()",
-        "return super().steady()",
+        "return not (self.modals.open or self.state_is_read) and super().steady()",
+        "return not self.state_is_read and super().steady()",
         MINDED,
     ),
     _flow(

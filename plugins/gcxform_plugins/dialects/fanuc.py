@@ -63,6 +63,9 @@
 | ROUND in a word | rounds to the increment of the word: refused |
 | computed S T F D H L P | must be whole numbers |
 | #1000 and above | belong to the control: what they go into is lost; outputs, timers may be set |
+| #4001 to #4003, #4005 to #4007, #4014, #4109, #4120 | modes that the program states, F and T |
+| #5001 to #5003 | where X, Y and Z stand, in plain coordinates; else lost |
+| #3000 | an alarm: nothing behind it is executed |
 | #2001, #5221, #7001, #10001, #14001 ... | tables that may be set: lengths, zeros are lost behind |
 | IF WHILE GOTO | executed, or kept where only the machine decides; almost equal: refused |
 | POPEN DPRNT BPRNT PCLOS | alone in a block; kept, what they print is set before |
