@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 
 SOFTWARE = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
+SMALL = {"width": 900, "height": 800}  # what is read of it takes the time
 COLOURS = 256  # of a picture that is kept
 PLACE = os.environ.get("PICTURES", "")
 
@@ -47,9 +48,9 @@ class Sight:
     @classmethod
     def of(cls, browser: Any, file: Path, name: str = "", **manner: Any) -> Sight:
         """Open a file without a network, and wait until the page is ready."""
-        manner = {"viewport": {"width": 1280, "height": 800}} | manner
+        manner = {"viewport": SMALL} | manner
         if PLACE:
-            manner["device_scale_factor"] = 2
+            manner |= {"viewport": {"width": 1280, "height": 800}, "device_scale_factor": 2}
         context = browser.new_context(offline=True, **manner)
         sight = cls(context.new_page())
         sight.page.set_default_timeout(20_000)

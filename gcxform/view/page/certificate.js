@@ -3,6 +3,7 @@
 export function showCertificate(page, certificate) {
   const verdict = child(page, "p", verdictOf(certificate));
   verdict.className = `verdict ${certificate.verified ? "good" : "bad"}`;
+  child(page, "p", "Lengths are in mm, angles in degrees.").className = "units";
   tableOf(page, "Programs", [...pairs("source ", certificate.source), ...pairs("output ", certificate.output)]);
   listOf(page, "What was done", certificate.steps.map((step) => told(step)));
   tableOf(page, "Budget", pairs("", certificate.budget));

@@ -84,7 +84,7 @@ function addCertificate() {
 
 function setTab(name) {
   for (const tab of byId("tabs").children) tab.ariaSelected = String(tab.textContent === name);
-  byId("path").hidden = name !== "path";
+  for (const part of [byId("path"), document.querySelector(".tools"), document.querySelector("footer")]) part.hidden = name !== "path";
   byId("certificate").hidden = name !== "certificate";
 }
 
