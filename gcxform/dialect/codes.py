@@ -113,12 +113,13 @@ def measures(takes: str) -> Code:
     return Code("non-modal", Effect.CALL, takes, act="unknown")
 
 
-def cuts(takes: str) -> Code:
+def cuts(takes: str, group: str = "non-modal") -> Code:
     """Return a code that cuts in a way of its own within its block: it is kept, places are lost.
 
-    Where positions are compensated it is refused, for its own would not be.
+    Where positions are compensated it is refused, for its own would not be. In group "motion" it
+    leaves a motion code in force of which nothing is known.
     """
-    return Code("non-modal", Effect.CALL, takes, "it cuts in a way of its own", act="unknown")
+    return Code(group, Effect.CALL, takes, "it cuts in a way of its own", act="unknown")
 
 
 ISO: Mapping[str, Code] = {

@@ -41,6 +41,7 @@ class OWords(OWordLoops):
     def __init__(self, listing: Listing, reading: Reading, keeps: bool = False) -> None:
         super().__init__(listing, reading, keeps)
         self.ahead: set[str] = set()
+        self.contours: dict[int, Construct] = {}
         self.modes = StoredModes(self)
         self.places = Places(self)
         self.returned()
@@ -61,6 +62,30 @@ class OWords(OWordLoops):
         return self.subprograms.arranged.construct
 
     # --- what lines do ---
+
+    def write(self, block: Block) -> None:
+        """Write a block out; one that cuts a contour needs the subprogram as it stands."""
+        if self.listing.meaning(self.line).call:
+            self._contour(block)
+        super().write(block)
+
+    def _contour(self, block: Block) -> None:
+        """Note the subprogram that a lathe cycle cuts: it stays where nothing calls it."""
+        number = next((whole_number(word) for word in block.words if word.address == "Q"), None)
+        first = self.subprograms.arranged.subs.get((0, str(number)))
+        if first is None or self.line >= self.listing.own:
+            message = "the contour of this cycle is a subprogram of this file, by its number in Q"
+            raise self.refusal("GX210", message)
+        self.contours[self.line] = first
+
+    def close(self, kept: tuple[Definition, ...]) -> None:
+        """Write what stands behind the end. Raises InputError for a contour that is called too."""
+        for line, contour in self.contours.items():
+            self.line = line
+            if self.times[contour.lines[0] + 1 : contour.last].any():
+                message = "the contour of this cycle is called as well, and may not be changed"
+                raise self.refusal("GX210", message, "give the cycle a subprogram of its own")
+        super().close(kept)
 
     def act(self, block: Block) -> bool:
         """Do what an O-word, a call or a stored mode does."""

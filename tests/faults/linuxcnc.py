@@ -124,6 +124,20 @@ MUTATIONS = (
         "flow/hole-at-x-of-the-machine",
     ),
     _of(
+        "a motion code is in force as before behind a lathe cycle",
+        "gcxform/modal/moves/kept_calls.py",
+        'lost[call.line] |= group == "motion" and',
+        "lost[call.line] |= False and",
+        "dialects/linuxcnc/contour-motion",
+    ),
+    _of(
+        "a contour that is called is changed",
+        "gcxform/flow/owords.py",
+        "if self.times[contour.lines[0] + 1 : contour.last].any():",
+        "if False:",
+        "dialects/linuxcnc/contour-called",
+    ),
+    _of(
         "strip makes one name of two",
         "plugins/gcxform_plugins/passes/strip.py",
         '" " * bool(found[1] and found[2])',

@@ -48,8 +48,9 @@ def refuse_lost_modes(lines: Lines, modes: Modes) -> None:
         known = _known(lines, group)
         for line in _first_of_each(needs & ~known, lines):
             message = f"{SAID_BY[group]} is needed here: {_name_before(lines, line)} may have"
-            hint = "write it in this block, or say what the call does: "
-            hint += f'ends = "{UNKNOWN}" in [control.macro.{_name_before(lines, line)}]'
+            hint = "write it in this block"
+            if not _leaves_motion(lines, name := _name_before(lines, line)):
+                hint += f', or say what the call does: ends = "{UNKNOWN}" in [control.macro.{name}]'
             lines.findings.add(line, "GX210", f"{message} changed it", hint=hint)
     lines.state.lost_by = _name_before(lines, lines.live)
 
@@ -62,8 +63,18 @@ def _first_of_each(which: Flags, lines: Lines) -> list[int]:
     return [int(line) for line in found[first][: Findings.enough]]
 
 
+def _leaves_motion(lines: Lines, name: str) -> bool:
+    """Whether a code leaves a motion code in force of which nothing is known."""
+    code = lines.dialect.codes.get(name)
+    return code is not None and code.group == "motion"
+
+
 def _name_before(lines: Lines, line: int) -> str:
-    before = [call.name for call in lines.kept_calls if call.line < line and not call.ends]
+    before = [
+        call.name
+        for call in lines.kept_calls
+        if call.line < line and (not call.ends or _leaves_motion(lines, call.name))
+    ]
     return before[-1] if before else lines.state.lost_by
 
 
@@ -72,8 +83,9 @@ def _known(lines: Lines, group: str) -> Flags:
     lost = np.zeros(lines.live, np.bool_)
     for call in lines.kept_calls:
         lost[call.line] = not call.ends
+        lost[call.line] |= group == "motion" and _leaves_motion(lines, call.name)
     said = lines.stated(group)
-    known = fill(said, said | lost, group not in lines.state.lost_modes).astype(np.bool_)
+    known = fill(said & ~lost, said | lost, group not in lines.state.lost_modes).astype(np.bool_)
     if lines.live:
         gone = {group} if not known[-1] else set()
         lines.state.lost_modes = lines.state.lost_modes - {group} | gone

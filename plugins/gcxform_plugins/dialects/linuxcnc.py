@@ -26,6 +26,7 @@
 | G98, G99 at start | G99 |
 | canned cycles | R, Z, P, Q stay within one cycle; from below R first up; 0.254 mm between pecks |
 | G74, G84 in G18, G19 | the axes of the feed moves are mixed up: refused |
+| G70 to G72.2 | cut the contour of a subprogram: kept with it, places are lost behind |
 | G76 | a thread in passes, with Z, P, I, J and K: copied; it ends at its Z |
 | G5 | a cubic Bezier curve in G17: I J from its start, P Q from its end, also in G91 and G90.1 |
 | G5 without I J | minus the P Q of the G5 before; with no G5 directly before: refused |
@@ -150,7 +151,7 @@ class LinuxCNC(gx.Dialect):
         **{code: gx.Code("motion") for code in ("G33", "G33.1")},
         **{code: gx.Code("motion") for code in ("G38.2", "G38.3", "G38.4", "G38.5")},
         **{
-            code: v.barrier("motion", v.CYCLE, "DEIJKLPQR")
+            code: v.cuts("XZDEIKPQR", "motion")
             for code in ("G70", "G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2")
         },
         **{
