@@ -17,6 +17,7 @@ from cli_kit import MODEL, PART, call, workplace
 from jsonschema import Draft202012Validator
 
 from gcxform.cli import VERBS, verbs
+from gcxform.cli.common.answer import Answer
 from gcxform.cli.schema import FOLDER, answers
 
 ROOT = Path(__file__).parents[1]
@@ -164,6 +165,9 @@ def test_what_is_not_known_is_null(here: Path) -> None:
     found = call("compare", "--json", *READ, "part.nc", "other.nc")
     assert "Infinity" not in found.stdout
     check(found.stdout, "compare", 1)
+    values = {"a": float("inf"), "b": [{"c": float("nan"), "d": 1.5}]}
+    said = json.loads(Answer("info", values).text(0), parse_constant=pytest.fail)
+    assert (said["a"], said["b"]) == (None, [{"c": None, "d": 1.5}])
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no such device")

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from contextlib import redirect_stdout
 from pathlib import Path
+from typing import Any
 
 import pytest
 from cli_kit import ABSOLUTE, MODEL, PART, PIPELINE, call, workplace
@@ -15,6 +16,7 @@ from cli_kit import ABSOLUTE, MODEL, PART, PIPELINE, call, workplace
 from gcxform.cli import verbs
 from gcxform.cli.common import discovery, progress
 from gcxform.cli.common.failures import guarded
+from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax import source
 
 BAD = b"G21 G90\nG1 G2 X1 F100\nM2\n"
@@ -185,6 +187,30 @@ def test_any_name_will_do_and_commands_no_terminal(name: str | bytes, shop: Path
     assert found.stderr.count("\n") == 7
     assert "\x1b" not in found.stderr
     assert (shop / "odd" / file).read_bytes() == ABSOLUTE
+
+
+@pytest.mark.parametrize("how", ["replaced", "written to", "taken away"])
+def test_a_program_that_changes_before_its_result_is_there_is_kept(
+    how: str, shop: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = Pipeline.run_stream
+
+    def run_stream(*given: Any) -> Any:
+        found = real(*given)
+        if how == "replaced":
+            (shop / "new.nc").write_bytes(DONE)
+            (shop / "new.nc").replace(shop / "part.nc")
+        elif how == "written to":
+            (shop / "part.nc").write_bytes(DONE)
+        else:
+            (shop / "part.nc").unlink()
+        return found
+
+    monkeypatch.setattr(Pipeline, "run_stream", run_stream)
+    found = call("run", "--in-place", "part.nc")
+    assert (found.exit_code, "GX904" in found.stderr) == (5, True)
+    left = (shop / "part.nc").read_bytes() if how != "taken away" else DONE
+    assert (left, (shop / "part.nc").exists()) == (DONE, how != "taken away")
 
 
 # --- what would change ---

@@ -21,7 +21,8 @@ from cli_kit import ABSOLUTE, MODEL, PART, PIPELINE, call
 from gcxform.cli import verbs
 from gcxform.cli.common.batch import Outcome
 from gcxform.cli.common.transform import Job
-from gcxform.cli.watching.folders import Folders, beside
+from gcxform.cli.watching.folders import Folders, beside, file_away, moved
+from gcxform.cli.watching.loop import waker
 from gcxform.cli.watching.settling import Settling
 from gcxform.cli.watching.work import Told, Work
 from gcxform.diagnostics import FileError, InputError
@@ -501,6 +502,15 @@ def test_a_program_that_is_dropped_anew_while_it_is_run_is_another(tmp_path: Pat
     assert tree(tmp_path) == {"done/a.nc": b"first", "done/a.2.nc": b"second"}
 
 
+def test_nothing_is_moved_over_another_file(tmp_path: Path) -> None:
+    (tmp_path / "a.nc").write_bytes(b"mine")
+    (tmp_path / "done").mkdir()
+    (tmp_path / "done" / "a.nc").write_bytes(b"another")
+    assert not moved(tmp_path / "a.nc", tmp_path / "done" / "a.nc")
+    assert file_away(tmp_path / "a.nc", tmp_path / "done") == "a.2.nc"
+    assert tree(tmp_path) == {"done/a.nc": b"another", "done/a.2.nc": b"mine"}
+
+
 def test_a_bug_ends_one_program_and_not_the_watcher(tmp_path: Path) -> None:
     shop = Shop(tmp_path)
     (tmp_path / "a.nc").write_bytes(b"good")
@@ -519,6 +529,25 @@ def test_a_pipeline_that_is_changed_counts_for_the_next_program(hot: Path) -> No
     (hot / "b.nc").write_bytes(PART)
     call("watch", *ONCE, "hot")
     assert b"N10" in (hot / "out" / "b.nc").read_bytes()
+
+
+def test_it_looks_by_itself_where_nothing_tells_it(
+    hot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "watchdog.events", None)
+    with waker(hot) as wait:
+        assert wait is time.sleep
+    (hot / "part.nc").write_bytes(PART)
+    assert call("watch", *ONCE, "hot").exit_code == 0
+
+
+def test_an_event_wakes_it(hot: Path) -> None:
+    pytest.importorskip("watchdog")
+    with waker(hot) as wait:
+        (hot / "part.nc").write_bytes(PART)
+        began = time.monotonic()
+        wait(60.0)
+    assert time.monotonic() - began < 30.0
 
 
 # --- services ---

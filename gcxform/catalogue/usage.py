@@ -313,7 +313,8 @@ CODES: dict[str, tuple[str, str]] = {
     "GX904": (
         "A file changed while it was read",
         "Somebody writes into it at this moment: a CAM system that has not finished, or a copy "
-        "that is under way. What was read would be a mixture. Nothing was written; run it again "
-        "when the file is complete.",
+        "that is under way; or it was replaced before its result could be. What was read would be "
+        "a mixture, or what is there now would be lost. Nothing was written; run it again when the "
+        "file is complete.",
     ),
 }

@@ -39,13 +39,15 @@ class Source:
     `assumed` is what was chosen among several meanings where the text was made of another one, and
     `undecided` what of it only the machine decides;
     `written` is when its file was (seconds of the epoch), None for what is no file; `folder` is
-    where that lies, whose other files it may call, and `suffix` the ending of its name.
+    where that lies, whose other files it may call, `suffix` the ending of its name, and `state`
+    what the system said of it when it was read.
     """
 
     assumed: tuple[str, ...] = ()
     undecided: Undecided = DECIDED
     folder: Path | None = None
     suffix = ""
+    state: os.stat_result | None = None
 
     def __init__(self, stream: BinaryIO, name: str = "-", written: float | None = None) -> None:
         self.stream = stream
@@ -92,7 +94,20 @@ class Source:
                 raise FileError.one("GX904", f"{name} changed while it was read")
             copy.seek(0)
             stack.pop_all()  # from here on the source has it
-        return cls(cast(BinaryIO, copy), name, before.st_mtime if before else None)
+        found = cls(cast(BinaryIO, copy), name, before.st_mtime if before else None)
+        found.state = before
+        return found
+
+    def is_still(self, path: Path) -> bool:
+        """Whether a file is the one that was read, and has not been written to since."""
+        try:
+            now = path.stat()
+        except OSError:
+            return False
+        before = self.state
+        return before is None or (
+            os.path.samestat(before, now) and not is_changed(before, now, now.st_size)
+        )
 
     def line_of(self, line: int) -> int:
         """Return the line of the file, from 1, that a line of the text came from; 0 for 0."""

@@ -67,10 +67,10 @@ MUTATIONS = (
         WATCH,
     ),
     Mutation(
-        "watch: stamped programs are run",
+        "watch: programs stamped by others are left alone as well",
         WORK,
-        "if look is not None and self._is_done(path):",
-        "if False:",
+        "            return error.diagnostics[0].code == DONE\n        return False",
+        "            return True\n        return False",
         WATCH,
     ),
     Mutation(

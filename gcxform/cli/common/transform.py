@@ -7,11 +7,12 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from gcxform.cli.common.outputs import Put, destination
 from gcxform.cli.common.progress import FilterProgress, Progress
 from gcxform.cli.common.source_map import SourceMap
-from gcxform.diagnostics import Diagnostic
+from gcxform.diagnostics import Diagnostic, FileError, shown
 from gcxform.pipeline.certificate import Certificate
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.stamps.chain import edited
@@ -98,6 +99,8 @@ def transformed(pipeline: Pipeline, source: Source, job: Job) -> Done:
             texts.source = _whole(source)
             if mapped is not None:
                 mapped += texts.lines
+        if job.out == job.file and not source.is_still(Path(job.file)):
+            raise FileError.one("GX904", f"{shown(source.name)} changed while it was worked on")
         _write_beside(job, certificate, mapped)
     return Done(certificate, time.perf_counter() - began, texts)
 
