@@ -187,8 +187,10 @@ CODES: dict[str, tuple[str, str]] = {
         "positions are those of G28 and G30.",
     ),
     "GX437": (
-        "Not a tool number",
-        "The tables of tools are called by whole numbers, [tool.1] for T1, each once.",
+        "Not a tool",
+        "The tables of tools are called by whole numbers, [tool.1] for T1, each once. A tool has a "
+        "radius, or d as its control shows it: then d-is in [control] says which of the two a "
+        "parameter makes of d, the diameter or the radius.",
     ),
     "GX438": (
         "Not a line of a tool table",

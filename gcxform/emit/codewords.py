@@ -67,7 +67,9 @@ class CodeWords:
 
     def _refuse(self, word: Word, name: str, what: str) -> NoReturn:
         """Refuse a G code; one of a cycle that can be expanded has a way out."""
-        if name not in EXPANDED:
+        rule = self.source.cycle_rule
+        cycle = None if rule is None else rule.cycles.get(int(float(name[1:])))
+        if name not in EXPANDED or cycle is None or cycle.refused:
             self.draft.refuse(word, what)
         if name in self.target.codes:
             what += f" as {self.source.name} means it"

@@ -23,6 +23,8 @@ INERT: Final = "inert-m"
 Value = str | float | list[int] | dict[str, dict[str, str | int]]
 LIKE: Final = "like"
 """The key that names a preset, which is gone when the settings are read."""
+D_IS: Final = "d-is"
+"""The setting that says what `d` of a tool is."""
 _OWN_CODE = re.compile("M[1-9][0-9]{2,3}")
 
 
@@ -95,6 +97,7 @@ declare(
         Setting("peck-clearance", "how far above the last depth a peck of G83 begins"),
         _Code("tip-on", "the M code from which the control follows the tip of the tool"),
         _Code("tip-off", "the M code from which it does not"),
+        Setting(D_IS, "what D calls: 5004#2 of fanuc, Setting 40 of haas", ("diameter", "radius")),
         Setting("tool-length-alone", "what G43 without Z does: Z, or zero", ("moves", "shifts")),
         Setting("tool-length-axis", "where lengths stay in G18 and G19", ("Z",)),
         Setting(TIP_AT_START, "whether it does before the first block", ("off", "on")),

@@ -105,7 +105,7 @@ def _tools(document: TomlText, file: MachineFile, known: Known) -> dict[int, Too
     if twice:
         message = f"the tool {twice[0]} stands in {file.tool_table} as well"
         raise UsageError.one("GX437", message, document.where("tool", twice[0]))
-    return tools | {int(number): tool for number, tool in file.tool.items()}
+    return tools | {int(n): _with_radius(tool, file) for n, tool in file.tool.items()}
 
 
 def _given(offset: Offset) -> dict[str, float]:
@@ -176,7 +176,7 @@ def _converted(document: TomlText) -> MachineFile:
 def _quantity_at(keys: Keys) -> Quantity | None:
     """Return what the value at a path of a machine file is, None if it has no unit."""
     match keys:
-        case ("gauge-point", int()) | ("tool", _, "length" | "radius" | "x" | "y"):
+        case ("gauge-point", int()) | ("tool", _, "length" | "radius" | "d" | "x" | "y"):
             return LENGTH
         case ("axis", _, "point", int()):
             return LENGTH
@@ -336,9 +336,37 @@ def _tool_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic
             yield Diagnostic("GX437", f"the tool {int(number)} stands twice", where)
         else:
             numbers.add(int(number))
-        if tool.radius < 0.0:
-            message = f"radius of tool {number} is {tool.radius:g}, it cannot be negative"
-            yield Diagnostic("GX434", message, document.where("tool", number, "radius"))
+        for key, value in (("radius", tool.radius), ("d", tool.d)):
+            if value < 0.0:
+                message = f"{key} of tool {number} is {value:g}, it cannot be negative"
+                yield Diagnostic("GX434", message, document.where("tool", number, key))
+        yield from _d_findings(document, file, number, tool)
+
+
+def _d_findings(
+    document: TomlText, file: MachineFile, number: str, tool: Tool
+) -> Iterator[Diagnostic]:
+    """Yield why it is not known what D calls: a radius beside it, or nothing that says what it is.
+
+    A parameter decides: 5004#2 of a Fanuc, Setting 40 of a Haas.
+    """
+    where = document.where("tool", number, "d")
+    if math.isnan(tool.d):
+        return
+    if not math.isnan(tool.radius):
+        yield Diagnostic("GX437", f"the tool {number} has a radius and d: give one of them", where)
+    if control.D_IS not in file.control:
+        message = f"whether d of tool {number} is its diameter or its radius is not said"
+        hint = 'say so in [control] of this file: d-is is "diameter" or "radius"'
+        yield Diagnostic("GX437", message, where, hint)
+
+
+def _with_radius(tool: Tool, file: MachineFile) -> Tool:
+    """Return a tool with its radius, where what D calls is given instead."""
+    if math.isnan(tool.d):
+        return tool
+    half = file.control[control.D_IS] == "diameter"
+    return msgspec.structs.replace(tool, radius=tool.d / 2 if half else tool.d, d=math.nan)
 
 
 def _normalised(axis: Axis) -> Axis:

@@ -48,11 +48,15 @@ NOT_SAID = float("nan")
 class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="kebab", kw_only=True):
     """A tool, in mm: length from gauge point to tip, radius, offset of the tip in X and Y.
 
-    Length and radius are nan where they are not known.
+    Length and radius are nan where they are not known; `d` gives way to the radius when a file is
+    loaded.
     """
 
     length: Annotated[Value, says("from the gauge point to the tip, mm; else not known")] = NOT_SAID
     radius: Annotated[Value, says("of the cutter, mm; else not known")] = NOT_SAID
+    d: Annotated[
+        Value, says("instead of the radius: what D calls, as the control shows it, mm; see `d-is`")
+    ] = NOT_SAID
     x: Annotated[Value, says("offset of the tip in X, mm")] = 0.0
     y: Annotated[Value, says("offset of the tip in Y, mm")] = 0.0
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import CUTTER, Mutation
+from faults.mutation import CORPUS, CUTTER, Mutation
 
 PLANTED = "tests/test_planted_comp.py"
 
@@ -34,6 +34,27 @@ MUTATIONS = (
         "np.where(radius < 0, -SIDES[code], SIDES[code])",
         "SIDES[code]",
         CUTTER,
+    ),
+    Mutation(
+        "cutter: d of a tool is a radius, whatever d-is says",
+        "gcxform/machine/file.py",
+        "radius=tool.d / 2 if half else tool.d",
+        "radius=tool.d",
+        f"{CORPUS}[cutter-comp/d-is-a-diameter]",
+    ),
+    Mutation(
+        "cutter: d of a tool is a radius where nothing says it",
+        "gcxform/machine/file.py",
+        "if control.D_IS not in file.control:",
+        "if False:",
+        f"{CORPUS}[bad/gx437-d]",
+    ),
+    Mutation(
+        "a thread in passes is offered to be written out",
+        "gcxform/emit/codewords.py",
+        "if name not in EXPANDED or cycle is None or cycle.refused:",
+        "if name not in EXPANDED:",
+        f"{CORPUS}[dialects/across/thread-in-passes]",
     ),
     Mutation(
         "cutter: the diameter is taken for the radius",

@@ -19,7 +19,7 @@
 | an M code not listed | may run a macro: positions and variables are unknown after it |
 | words beside it, and beside M6 | may be those of a macro (6080 to 6089): never changed |
 | M codes listed in `[control] inert-m` | move no axis and set no variable |
-| G41, G42 | D stays in force; its radius is the machine file's, D0 is none |
+| G41, G42 | D stays in force, D0 is none; the file has radii, or `d` and `d-is` (5004#2) |
 | G41, G42, G40 with an arc | refused: alarm 34 |
 | G43 without Z | moves Z or shifts zero: Z is lost, or `[control] tool-length-alone` says which |
 | G43 without H | takes the H that is in force |
