@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gcxform.dialect.dialect import LINEAR, Dialect
+from gcxform.dialect.dialect import EXTRUDER, LINEAR, Dialect
 from gcxform.flow.translation import foreign_lines, has_signs
 from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.reader import WindowReader
@@ -30,7 +30,7 @@ FOREIGN = frozenset({"GX101", "GX201", "GX202", "GX203"})  # blocks the control 
 WINDOWS = 2  # of the program that are looked at
 HOPELESS = 0.25  # the share of foreign lines from which on no dialect fits
 ALIKE = 0.5  # scores that differ by less say the same
-DISTANCES = LINEAR + "IJK"
+DISTANCES = LINEAR.replace(EXTRUDER, "") + "IJK"
 SHOWN = 3  # words that are named of those a dialect does not have
 
 

@@ -329,7 +329,7 @@ PLANTED: dict[str, tuple[Callable[[], Kind], str]] = {
     ),
     # letters
     "Z before Y": (lambda: changed(FANUC, axes="XZYABC"), "X, Y and Z come first"),
-    "an axis that is no axis": (lambda: changed(GRBL, axes="XYZE"), "letters of"),
+    "an axis that is no axis": (lambda: changed(GRBL, axes="XYZQ"), "letters of"),
     "B before A": (lambda: changed(HAAS, axes="XYZBAC"), "in the order"),
     "an axis missing": (lambda: changed(NGC, axes="XYZABC"), "no words of the dialect"),
     "an axis and a word": (lambda: letters(GRBL.block_rule.words + "X"), "an axis and a word"),

@@ -34,7 +34,8 @@ from gcxform.syntax.grammar import Grammar, load
 
 MOST_DECIMALS = 15  # what a double holds
 INCH = 25.4  # mm, exact by definition
-LINEAR = "XYZUVW"
+EXTRUDER = "E"
+LINEAR = "XYZUVW" + EXTRUDER
 ROTARY = "ABC"
 
 

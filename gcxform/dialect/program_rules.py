@@ -79,6 +79,8 @@ class BlockRule:
     m_first           M codes that may move axes do so before the motion of their block, for certain
     m_order_chosen    the machine decides when an M code beside a move acts, so that it is assumed
     mill              blocks that only lathes have, such as G50 S or G71 P Q, are refused as such
+    one_command       a block is one command, G or M with its words: a second one is refused, and a
+                      motion code holds for its block alone
     spindle_words     codes, and S, beside which a word `$` says which spindle is meant
     """
 
@@ -92,6 +94,7 @@ class BlockRule:
     m_first: bool = False
     m_order_chosen: bool = False
     mill: bool = False
+    one_command: bool = False
     spindle_words: frozenset[str] = frozenset()
 
 

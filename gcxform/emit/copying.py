@@ -235,7 +235,7 @@ class Copying:
         if len(points):
             placed = self.same.starts(rows[points], others[points])
             good[points] &= starts_exact[points] | placed
-        incremental = self.path.blocks.incremental[self.path.block[rows]]
+        incremental = self.path.steps[rows].any(axis=1)
         doubtful = np.flatnonzero(good & plain & incremental & ~starts_exact)
         if len(doubtful):
             good[doubtful] &= self.same.starts(rows[doubtful], others[doubtful])

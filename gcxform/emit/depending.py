@@ -48,7 +48,8 @@ class Depending:
         if self.path.folded:
             return
         for line in self.task.counted_from_axes():
-            if self._stands_elsewhere(line) and not self._follows(line):
+            elsewhere = self._stands_elsewhere(line, named=self._preset(line))
+            if elsewhere and not self._follows(line):
                 message = "this block counts from where the axes stand, and they stand elsewhere"
                 hint = put_before("offsets")
                 raise InputError.one("GX506", message, self.task.location(line), hint)
@@ -67,15 +68,28 @@ class Depending:
         hint = "store it before the first move, or leave out the pass that compensates"
         raise InputError.one("GX506", message, self.task.location(line), hint)
 
-    def _stands_elsewhere(self, line: int, by: float = EXACT) -> bool:
-        """Whether the axes stand elsewhere before a line than in the source, by a distance (mm)."""
+    def _preset(self, line: int) -> list[bool] | None:
+        """Return which axes a block sets to where they stand, if that is all it does (G92)."""
+        acts = self.task.table.meanings[int(self.task.shape[line])].acts
+        if any(act.name != "preset" for act in acts):
+            return None
+        named = {address for act in acts for address, _ in act.slots}
+        return [axis in named for axis in self.path.axes]
+
+    def _stands_elsewhere(
+        self, line: int, by: float = EXACT, named: list[bool] | None = None
+    ) -> bool:
+        """Whether the axes stand elsewhere before a line than in the source, by a distance (mm).
+
+        Only those that are `named` count, where that is given.
+        """
         now = np.searchsorted(self.path.block, line) - 1
         was = np.searchsorted(self.original.block, line) - 1
         if self.exact[now] if now >= 0 else self.believed.exact:
             return False
         stands = self.positions.after[now] if now >= 0 else self.believed.position
         gap = np.abs(stands - (self.original.end[was] if was >= 0 else self.original.entry))
-        return bool((gap > by).any())
+        return bool((gap > by)[np.array(named) if named else ...].any())
 
     def _refuse_other_values(self) -> None:
         """Refuse what only the machine can compute if it would compute something else.

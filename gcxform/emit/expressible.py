@@ -220,7 +220,8 @@ def same_m(code: MCode, other: MCode, words: set[str]) -> bool:
 
 def comment_in(target: type[Dialect], text: str) -> str:
     """Return a comment as a dialect writes it."""
-    if text[0] in target.text_rule.comments:
+    begins = target.text_rule.comments
+    if text[0] in begins and (begins[0] == "(" or text[0] == begins[0]):
         return text
     inner = text[1:-1] if text[0] == "(" else text[1:]
     if target.text_rule.comments.startswith("("):

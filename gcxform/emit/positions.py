@@ -148,9 +148,13 @@ class Positions:
         step = self.step[column]
         if isinstance(step, np.ndarray):
             step = step[rows]
-        incremental = self.task.path.blocks.incremental[self.task.path.block[rows]]
+        incremental = self._steps(column, rows)
         before = np.where(incremental, self.before[rows, column], 0.0)
         return np.asarray(before + self.words_of(column, rows) * step)
+
+    def _steps(self, column: int, rows: Ints) -> Flags:
+        """Return in which rows the words of an axis are distances."""
+        return np.asarray(self.task.path.steps[rows, column])
 
     def words_of(self, column: int, rows: Ints) -> Floats:
         """Return the numbers to be written, as whole numbers of the last decimal."""
@@ -158,7 +162,7 @@ class Positions:
         if isinstance(step, np.ndarray):
             step = step[rows]
         value = self.held[rows, column]
-        incremental = self.task.path.blocks.incremental[self.task.path.block[rows]]
+        incremental = self._steps(column, rows)
         if incremental.any():
             value = np.where(incremental, value - self.before[rows, column], value)
         return np.asarray(np.rint(value / step))

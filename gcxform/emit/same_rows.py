@@ -39,6 +39,7 @@ class SameRows:
         return np.asarray(
             self.units()
             & (now.incremental == old.incremental)
+            & (now.extruded == old.extruded)
             & (now.absolute_centre == old.absolute_centre)
         )
 
@@ -72,7 +73,7 @@ class SameRows:
         way, old_way = end - start, old - _where_left(self.original.start[others], start)
         unknown = np.isnan(end) & np.isnan(old)
         same = (np.abs(end - old) <= EXACT) | unknown
-        incremental = self.path.blocks.incremental[self.path.block[rows]][:, None]
+        incremental = self.path.steps[rows]
         still = np.abs(old_way) <= EXACT
         cycle = np.isin(self.path.form[rows], OWN_PLACES)[:, None]
         as_far = (np.abs(way - old_way) <= EXACT) & (incremental | (still & ~cycle))
@@ -105,7 +106,8 @@ class SameRows:
         """Return which rows begin where their source begins, in the axes that count for them."""
         start = self._in_frames(self.original.start, rows, others)
         same = np.abs(self.positions.before[rows] - start) <= EXACT
-        unnamed = ~self.positions.programmed[rows]
+        plain = (self.path.form[rows] == Form.PLAIN)[:, None]
+        unnamed = ~self.positions.programmed[rows] | (plain & ~self.path.steps[rows])
         thread = (self.path.form[rows] == Form.PASSES)[:, None]  # its start has no words
         same |= thread & np.isnan(start) & np.isnan(self.positions.before[rows])
         inner = (self.path.form[rows] == Form.TILTED) & (self.path.nth[rows] > 0)  # of one block
@@ -134,8 +136,7 @@ class SameRows:
             return np.broadcast_to(True, (len(rows), len(self.path.axes)))
         now, was = (np.array([frame.shift for frame in some]) for some in frames)
         gap = now[_take(self.path.frame, rows)] - was[_take(self.original.frame, others)]
-        distance = self.path.blocks.incremental[_take(self.path.block, rows)]
-        return np.asarray((np.abs(gap) <= EXACT) | distance[:, None])
+        return np.asarray((np.abs(gap) <= EXACT) | self.path.steps[rows])
 
     def _diameters(self, rows: Ints, others: Ints) -> Flags:
         """Return which rows name no X, or are in frames that agree on what X is."""
@@ -162,10 +163,10 @@ class SameRows:
     def _old_words(self, rows: Ints, others: Ints) -> Floats:
         """Return the ends of source rows as programmed; distances count in any frame."""
         words = _take(self.original.words, others)
-        distance = self.path.blocks.incremental[self.path.block[rows]]
+        distance = self.path.steps[rows]
         if self.path.frames == self.original.frames or not distance.any():
             return words
-        return np.where(distance[:, None], self._in_frames(self.original.end, rows, others), words)
+        return np.where(distance, self._in_frames(self.original.end, rows, others), words)
 
     def _in_frames(self, positions: Floats, rows: Ints, others: Ints) -> Floats:
         """Return positions of source rows in the frames of the rows that stand for them."""

@@ -162,7 +162,8 @@ class _Needs:
         after = fill(sets, sets >= 0, self.believed.motion)
         before = self._held(sets, "motion", self.believed.motion)
         explicit = self._stated_in("motion")
-        changes = moves & (before != after)
+        alone = self.task.manner.target.block_rule.one_command
+        changes = moves & ((before != after) | alone)
         code = np.where(moves & (explicit | changes), after, NOTHING)
         thread = pieces.has_row & ((form == Form.THREAD) | (form == Form.SYNCHRONISED))
         repaired = silent | (changes & ~explicit)

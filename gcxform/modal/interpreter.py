@@ -16,7 +16,7 @@ import numpy as np
 from gcxform.config.quantities import LENGTH
 from gcxform.diagnostics import UsageError
 from gcxform.dialect.arithmetic import Key
-from gcxform.dialect.dialect import INCH, Dialect
+from gcxform.dialect.dialect import EXTRUDER, INCH, Dialect
 from gcxform.modal.control_limits import refuse_limits
 from gcxform.modal.cycles.expansion import Cycles
 from gcxform.modal.expressions.assignments import compute
@@ -78,6 +78,10 @@ def _key_of(parameter: str) -> Key:
         raise UsageError.one("GX701", f"parameters: {error}") from None
 
 
+UNSAID = {EXTRUDER: 0.0}
+"""Where axes stand that count from anywhere: filament has no place, and programs set it by G92."""
+
+
 class Interpreter:
     """Reads the windows of one program in order; `undecided` is what of it the machine decides."""
 
@@ -100,7 +104,7 @@ class Interpreter:
         if self.reading.units:
             groups["units"] = int(self.reading.units == "in")
         start = self.reading.start
-        position = np.array([start.get(axis, np.nan) for axis in self.axes])
+        position = np.array([start.get(axis, UNSAID.get(axis, np.nan)) for axis in self.axes])
         feed = np.nan if self.reading.feed is None else self.reading.feed
         unit = INCH if groups["units"] else 1.0
         frames = FrameState.at_start(
@@ -121,7 +125,7 @@ class Interpreter:
         retract = int(rule is None or rule.initial_level)
         spindle = 0 if self.dialect.program_rule.spindle_stands else UNKNOWN_SPINDLE
         state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": spindle, "behind": 0}
-        state.memory["tool-length"] = NUMBER["G49"]
+        state.memory |= {"tool-length": NUMBER["G49"], "extrusion": 0, "extruded": 0}
         return state
 
     def _given(self) -> dict[Key, float]:

@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from gcxform.dialect.dialect import INCH, LINEAR, Dialect
-from gcxform.modal.columns import fill
+from gcxform.dialect.dialect import EXTRUDER, INCH, LINEAR, Dialect
+from gcxform.modal.columns import extruded, fill
 from gcxform.modal.findings import Findings
 from gcxform.modal.meaning.calls import NUMBERED
 from gcxform.modal.meaning.lathe import LATHE
@@ -232,19 +232,18 @@ class Lines:
 
     def _group(self, name: str) -> Small:
         """Return the number of the code in force of a group, on each line."""
-        index = COLUMNS.index(name)
+        index, resets = COLUMNS.index(name), self.dialect.program_rule.resets_at_end
         before = self.state.memory[name] if name in MEMORY else self.state.groups[name]
-        if not self._stated[index] and name not in self.dialect.program_rule.resets_at_end:
+        if not self._stated[index] and name not in resets:
             return np.broadcast_to(np.int8(before), (self.live,))
         values = self.table.groups[self.shape, index]
         present = values >= 0
         if present.any():
             self.state.stated.add(name)
-        if name in self.dialect.program_rule.resets_at_end:
-            after = np.flatnonzero(self.flag("ends")) + 1
-            after = after[after < self.live]
+        if name in resets:
+            after = np.flatnonzero(self.flag("ends")[:-1]) + 1
             after = after[~present[after]]
-            values[after] = NUMBER[self.dialect.program_rule.resets_at_end[name]]
+            values[after] = NUMBER[resets[name]]
             present[after] = True
         return fill(values, present, before)
 
@@ -258,6 +257,7 @@ class Lines:
             groups["motion"],
             groups["plane"],
             groups["distance"] == 1,
+            self._extruded(groups["distance"]),
             groups["arc-distance"] == 1,
             groups["feed-mode"],
             inch,
@@ -270,6 +270,13 @@ class Lines:
             self.remembered("retract"),
             self.remembered("spindle"),
         )
+
+    def _extruded(self, distance: Small) -> Small:
+        """Return whether words of an extruder are distances on each line, as `Modes` has it."""
+        if EXTRUDER not in self.dialect.axes:
+            return distance
+        own, said = self.remembered("extrusion"), self.stated("extrusion")
+        return extruded(own, said, distance, self.stated("distance"), self.state.memory)
 
     def _without_splines(self, motion: Small) -> Small:
         """Return the motion code in force on each line: a spline's is that of its own block alone.
@@ -319,9 +326,8 @@ class Lines:
         """
         if self.dialect.cycle_rule is None:
             return np.broadcast_to(np.int8(CYCLE_OFF), (self.live,))
-        if any(
-            code.group == "motion" for name, code in self.dialect.codes.items() if name == "G81"
-        ):
+        drill = self.dialect.codes.get("G81")
+        if drill is not None and drill.group == "motion":
             cycle = np.isin(motion, CYCLES) & (motion != THREAD_CYCLE)
             return np.where(cycle, motion, CYCLE_OFF).astype(np.int8)
         if not (self._stated[COLUMNS.index("cycle")] or self.state.memory["cycle"] != CYCLE_OFF):
@@ -380,10 +386,8 @@ class Lines:
         if self.dialect.feed_rule.before_units:
             inch = np.append(self.state.groups["units"] == 1, inch[:-1])[: self.live]
         unit = np.where(inch, INCH, 1.0)
-        return (
-            fill(value, present, self.state.feed),
-            fill(unit, present, self.state.feed_unit),
-        )
+        feed = fill(value, present, self.state.feed)
+        return feed, fill(unit, present, self.state.feed_unit)
 
     def _cleared(self, feed_mode: Small, inch: Flags) -> Flags:
         """Return the lines that leave no feed in force unless they program one."""

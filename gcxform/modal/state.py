@@ -221,13 +221,16 @@ class Modes:
     """Per line of a window, after its words: the number of the code in force of each group.
 
     `feed` is the number last programmed and `feed_unit` what 1 of it is worth in mm; `tool` is the
-    number of the last T word, -1 for none; `cycle` is that of the canned cycle in force, or
-    `CYCLE_OFF`; `retract` is 1 in G98; `spindle` is 0 for M5, 1 for M3, 2 for M4.
+    number of the last T word, -1 for none; `extruded` is 1 where words of an extruder are distances
+    (M83), 0 where they are not (M82), and -1 where that is not known; `cycle` is that of the canned
+    cycle in force, or `CYCLE_OFF`; `retract` is 1 in G98; `spindle` is 0 for M5, 1 for M3, 2 for
+    M4.
     """
 
     motion: Small
     plane: Small
     incremental: Flags
+    extruded: Small
     absolute_centre: Flags
     feed_mode: Small
     inch: Flags

@@ -41,9 +41,9 @@ def comment_line(dialect: type[Dialect], content: str) -> bytes:
 
     It is read again with the grammar of the control, and that is its proof.
     """
-    for begin, end in (("(", ")"), (";", "")):
-        line = begin + content + end
-        if begin not in dialect.text_rule.comments or dialect.text_rule.executes(line):
+    for begin in dialect.text_rule.comments:
+        line = begin + content + (")" if begin == "(" else "")
+        if dialect.text_rule.executes(line):
             continue
         block = dialect.load_grammar().parse(line)
         spans = [(item.start, item.end) for item in block.items if isinstance(item, Comment)]

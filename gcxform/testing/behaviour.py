@@ -18,10 +18,11 @@ import numpy as np
 from gcxform.api import read
 from gcxform.diagnostics import GcxformError
 from gcxform.dialect.codes import Effect
-from gcxform.dialect.dialect import Dialect
+from gcxform.dialect.dialect import EXTRUDER, Dialect
 from gcxform.machine.machine import Tool
 from gcxform.modal.meaning.tables import FAMILIES, NUMBER
 from gcxform.testing.canon import MEANINGS, WORK
+from gcxform.testing.one_command import written_for
 from gcxform.toolpath.path import Toolpath
 
 QUARTER, REST = pi / 2, 3 * pi / 2
@@ -128,13 +129,14 @@ def _followed(dialect: type[Dialect], blocks: str) -> Toolpath:
     """Return what blocks do behind a start at a known place. Raises GcxformError."""
     codes = dialect.codes
     modes = " ".join(m for m in MODES if m in codes and codes[m].effect is Effect.MODAL)
-    lines = [modes, dialect.initial["frame"], f"G0 {START}", blocks]
-    text = "\n".join(line for line in lines if line) + "\n"
+    frame = dialect.initial["frame"]
+    lines = [modes, frame if frame in codes else "", f"G0 {START}", blocks]
+    text = written_for(dialect, "\n".join(line for line in lines if line) + "\n")
     return read(text.encode(), dialect, **_reading(dialect)).path
 
 
 def _reading(dialect: type[Dialect]) -> dict[str, Any]:
-    given = {a: 0.0 for a in dialect.axes}
+    given = {a: 0.0 for a in dialect.axes if a != EXTRUDER}
     homes = {name: {**given, **place} for name, place in HOMES.items()}
     offsets = {name: {**given, **place} for name, place in OFFSETS.items()}
     return {

@@ -21,6 +21,7 @@ from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax.shapes import Shape, slots_of
 from gcxform.syntax.source import Source
 from gcxform.testing.behaviour import check_doing
+from gcxform.testing.one_command import written_for
 from gcxform.testing.tables import check_declared
 from gcxform.toolpath.path import Plane, Toolpath
 
@@ -202,7 +203,7 @@ def program(dialect: type[Dialect]) -> str:
 
 def _check_program(dialect: type[Dialect]) -> None:
     """Check that a program is written anew, verified, and written the same way again."""
-    text = program(dialect).encode()
+    text = written_for(dialect, program(dialect)).encode()
     try:
         pipeline = Pipeline(dialect, dialect, (Same(),), words="all")
         first = pipeline.run(text, verify="full")

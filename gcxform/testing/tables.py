@@ -11,7 +11,7 @@ from itertools import combinations
 
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.cycle_rule import Cycle
-from gcxform.dialect.dialect import LINEAR, ROTARY, Dialect
+from gcxform.dialect.dialect import EXTRUDER, LINEAR, ROTARY, Dialect
 from gcxform.dialect.program_rules import ProgramRule
 from gcxform.modal.frames.acts import WORDS
 from gcxform.modal.meaning.meaning import ACT_ORDER
@@ -130,7 +130,7 @@ def _words_of_codes(dialect: type[Dialect]) -> Complaints:
             lengths = "".join(a for a in code.takes if a in "PQ")
         if code.lengths != lengths:
             yield name, f"{name} has the lengths {code.lengths!r}; they are {lengths!r}"
-        bare = set(code.takes) & set(LINEAR + "IJK") - set(code.lengths)
+        bare = set(code.takes) & set(LINEAR + "IJK") - {*code.lengths, EXTRUDER}
         if bare:
             yield name, f"{name} takes {sorted(bare)}, which are lengths, and does not say so"
 
@@ -305,7 +305,7 @@ def _letters(dialect: type[Dialect]) -> Complaints:
         yield "block_rule.words", f"a letter stands twice in words, {words!r}"
     if set(axes) - set(LINEAR + ROTARY):
         yield "axes", f"axes are {axes!r}; they are letters of {LINEAR + ROTARY}"
-    order = ROTARY + "UVW"
+    order = ROTARY + "UVW" + EXTRUDER
     if list(axes[3:]) != sorted(axes[3:], key=order.find):
         yield "axes", f"axes are {axes!r}; behind XYZ they stand in the order {order}"
     wanted = "F" + ("IJK" if {"G2", "G3"} <= set(dialect.codes) else "")

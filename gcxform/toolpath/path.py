@@ -17,6 +17,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.dialect.dialect import EXTRUDER
 from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.system.distinct import distinct
 from gcxform.system.limits import how_to_raise, limits
@@ -100,6 +101,7 @@ class Blocks:
     first           line of the program, from 0, that the first value belongs to
     inch            lengths are written in inches (G20)
     incremental     axis words are distances from where the axis stands (G91)
+    extruded        words of an extruder are (M83)
     absolute_centre I, J, K are the centre itself (G90.1)
     feed_mode       `FeedMode` in which the block is read
     leaves          whether after the block something else than this program may run: it ends, or
@@ -113,6 +115,7 @@ class Blocks:
     first: int
     inch: Flags
     incremental: Flags
+    extruded: Flags
     absolute_centre: Flags
     feed_mode: Small
     leaves: Flags
@@ -121,7 +124,8 @@ class Blocks:
     uncompensated: bool = False
 
 
-BLOCK_MODES = ("inch", "incremental", "absolute_centre", "feed_mode", "leaves", "apart", "named")
+MODES = ("inch", "incremental", "extruded", "absolute_centre", "feed_mode")
+BLOCK_MODES = (*MODES, "leaves", "apart", "named")
 
 
 @dataclass(frozen=True, slots=True)
@@ -305,6 +309,13 @@ class Toolpath(Tabled):
     def starts_known(self) -> Flags:
         """(n,) whether every axis that a move takes somewhere is known to start somewhere."""
         return np.asarray(~(np.isnan(self.start) & ~np.isnan(self.end)).any(axis=1))
+
+    @cached_property
+    def steps(self) -> Flags:
+        """(n, axes) whether the words of a move, as it is to be written, are distances."""
+        blocks, block = self.blocks, self.block
+        by = [blocks.extruded if axis == EXTRUDER else blocks.incremental for axis in self.axes]
+        return np.column_stack([each[block] for each in by])
 
     @property
     def is_arc(self) -> Flags:

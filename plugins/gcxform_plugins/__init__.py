@@ -14,9 +14,10 @@ def gcxform_dialects() -> list[type[gx.Dialect]]:
     from gcxform_plugins.dialects.haas import Haas
     from gcxform_plugins.dialects.heidenhain.dialect import Heidenhain
     from gcxform_plugins.dialects.linuxcnc import LinuxCNC
+    from gcxform_plugins.dialects.marlin import Marlin
     from gcxform_plugins.dialects.siemens.dialect import Siemens
 
-    return [Fagor, Fanuc, Grbl, Haas, Heidenhain, LinuxCNC, Siemens]
+    return [Fagor, Fanuc, Grbl, Haas, Heidenhain, LinuxCNC, Marlin, Siemens]
 
 
 @gx.hookimpl

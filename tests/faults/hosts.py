@@ -24,8 +24,8 @@ MUTATIONS = (
     Mutation(
         "hosts: a blank ends a path",
         "gcxform/cli/host/hosts.py",
-        '"sh": shlex.join',
-        '"sh": " ".join',
+        "else shlex.join(words)",
+        'else " ".join(words)',
         HOSTS,
     ),
 )

@@ -36,7 +36,7 @@ MUTATIONS = (
     Mutation(
         "writing: a motion code that has changed is not stated",
         "gcxform/emit/stated.py",
-        "changes = moves & (before != after)",
+        "changes = moves & ((before != after) | alone)",
         "changes = np.zeros(len(before), np.bool_)",
         LAWS + "::test_a_motion_code_that_no_longer_holds_is_stated",
     ),

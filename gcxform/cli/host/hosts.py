@@ -1,26 +1,18 @@
 """The hosts, and the text that each one is to be given, with the command in it as it calls it.
 
-A text lies beside this module, one file for each host. In it stand the command in the quotes of the
-host's shell, and marks for what differs from place to place:
-
-| mark | what stands there |
-|---|---|
-| `{sh:WORDS}` | gcxform and its words, quoted for a POSIX shell |
-| `{win:WORDS}` | the same, quoted as programs of Windows take words |
-| `{exe}` | gcxform's own file alone |
-| `{words:WORDS}` | the words alone, quoted as programs of Windows take them |
-
-`PIPELINE` among the words is the pipeline file, `FILE` and its like stay as they stand.
+A text lies beside this module, one file for each host. A mark in it stands for the command:
+`{call:WORDS}` for gcxform and its words in the quotes of this system, a POSIX shell or Windows.
+`PIPELINE` among the words is the pipeline file; FILE and its like stay as they stand.
 """
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -28,7 +20,7 @@ from typing import Final
 
 from gcxform.diagnostics import UsageError
 
-MARK: Final = re.compile(r"\{(exe|sh|win|words)(?::([^{}]*))?\}")
+MARK: Final = re.compile(r"\{call:([^{}]*)\}")
 PIPELINE: Final = "PIPELINE"
 
 
@@ -49,6 +41,7 @@ HOSTS: Final = {
     "linuxcnc": Host(
         "LinuxCNC: AXIS, QtVCP, Gmoccapy, by [FILTER] of the INI file", "linuxcnc", 255
     ),
+    "prusaslicer": Host("PrusaSlicer, SuperSlicer, OrcaSlicer: a post-processing script"),
 }
 
 
@@ -70,23 +63,18 @@ def filled(text: str, command: list[str], pipeline: Path) -> str:
     """Return a text with the words of a command in the place of its marks."""
 
     def fill(mark: re.Match[str]) -> str:
-        kind, words = mark[1], (mark[2] or "").split()
-        said = [str(pipeline) if word == PIPELINE else word for word in words]
-        return {"exe": " ".join(command[:1])}.get(kind) or _JOINED[kind](
-            said if kind == "words" else [*command, *said]
-        )
+        words = [str(pipeline) if word == PIPELINE else word for word in mark[1].split()]
+        return quoted([*command, *words])
 
     return MARK.sub(fill, text)
+
+
+def quoted(words: list[str]) -> str:
+    """Return words as one line of this system's shell."""
+    return subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)
 
 
 def program() -> list[str]:
     """Return the words that start gcxform from anywhere: of what runs now, not of the PATH."""
     beside = shutil.which("gcxform", path=str(Path(sys.executable).parent))
     return [beside] if beside else [sys.executable, "-m", "gcxform.cli"]
-
-
-_JOINED: Final[dict[str, Callable[[Iterable[str]], str]]] = {
-    "sh": shlex.join,
-    "win": lambda words: subprocess.list2cmdline([*words]),
-    "words": lambda words: subprocess.list2cmdline([*words]),
-}

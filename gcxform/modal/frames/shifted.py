@@ -30,7 +30,7 @@ class Shifted:
             for k, word in words
             if word is not None
         ]
-        added = track.worded & track.modes.incremental
+        added = track.worded & (track.modes.incremental | (track.modes.extruded == 1))
         self._added_until = np.append(0, np.cumsum(added)) if added.any() else None
         self._bounds: list[tuple[int, int]] = []
         self._frames: list[int] = []

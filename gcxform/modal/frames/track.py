@@ -17,7 +17,7 @@ from math import isfinite, remainder
 
 import numpy as np
 
-from gcxform.dialect.dialect import INCH, LINEAR, ROTARY
+from gcxform.dialect.dialect import EXTRUDER, INCH, LINEAR, ROTARY
 from gcxform.modal.columns import fill, with_increments
 from gcxform.modal.findings import Findings
 from gcxform.modal.frame_state import FrameState
@@ -235,11 +235,17 @@ class Track:
     def _lose(self, line: int, axes: int) -> None:
         if not axes:
             return
+        axes &= self._losable
         self.note_lost(axes)
         for k in range(len(self.axes)):
             if axes >> k & 1:
                 self.state.position[k] = np.nan
         self.breaks.append(Break(line, axes))
+
+    @cached_property
+    def _losable(self) -> int:
+        """The axes, as bits, that something can take where it is not known: no filament."""
+        return sum(1 << k for k, axis in enumerate(self.axes) if axis != EXTRUDER)
 
     def lose_all(self, line: int) -> None:
         """Note that from a line on no position is known."""
@@ -275,18 +281,18 @@ class Track:
         end = np.array(before)
         polar = self.polar(here) if self.frame.polar else {}
         for k, axis in enumerate(self.axes):
-            if lost_here is None and axis not in polar and self.column(axis) is None:
+            gone = lost_here if self._losable >> k & 1 else None
+            if gone is None and axis not in polar and self.column(axis) is None:
                 continue
-            position = self._axis(axis, float(before[k]), here, lost_here, polar.get(axis))
+            position = self._axis(axis, float(before[k]), here, gone, polar.get(axis))
             words[:, k] = position[rows - first]
             end[k] = position[-1]
             if np.isnan(end[k]) and self._computed(axis, here):
                 self.note_lost(1 << k)
         self.state.position = np.array(self.frame.positions(end[None, :])[0])
         if lost_here is not None:
-            self.note_lost((1 << len(self.axes)) - 1)
-            axes = (1 << len(self.axes)) - 1
-            self.breaks += [Break(first + int(n), axes) for n in np.flatnonzero(lost_here)]
+            self.note_lost(self._losable)
+            self.breaks += [Break(first + int(n), self._losable) for n in np.flatnonzero(lost_here)]
         return self.frame.positions(words)
 
     @cached_property
@@ -304,9 +310,9 @@ class Track:
         """How many lines before each line have axis words."""
         return np.append(0, np.cumsum(self.worded))
 
-    @cached_property
-    def _any_incremental(self) -> bool:
-        return bool(self.modes.incremental.any())
+    def _steps(self, axis: str) -> Flags:
+        """Return on which lines words of an axis are distances."""
+        return self.modes.incremental if axis != EXTRUDER else self.modes.extruded == 1
 
     def _axis(
         self,
@@ -322,9 +328,10 @@ class Track:
             assert lost is not None
             return fill(np.full(len(lost), np.nan), lost, before)
         value, present = word if instead else (word[0][here], word[1][here])
-        if lost is None and not self._any_incremental:
+        steps = self._steps(axis)
+        if lost is None and not steps.any():
             return fill(value, present, before)
-        incremental = self.modes.incremental[here] & present
+        incremental = steps[here] & present
         placed = present & ~incremental
         if lost is not None:
             value = np.where(lost & ~present, np.nan, value)

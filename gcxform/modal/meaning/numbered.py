@@ -38,7 +38,7 @@ def offset_word(dialect: type[Dialect], meaning: Meaning) -> set[str]:
     elif dialect.cutter_comp.stored and named:
         meaning.events.append(EventShape(45, "D", named))
     takes = dialect.codes[code].takes if code in dialect.codes else ""
-    if named and "D" in dialect.codes[code].lengths:
+    if named and code in dialect.codes and "D" in dialect.codes[code].lengths:
         meaning.lengths.append((code, *named[0]))
     return set("D") if dialect.cutter_comp.stored or "D" in takes else set()
 

@@ -292,8 +292,8 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
             message = f"{name} and {groups[code.group]} are of one modal group"
             yield Refusal("GX202", word.start, width, message)
         groups[code.group] = name
-        if code.group == "spindle":
-            meaning.groups["spindle"] = name
+        if code.group in ("spindle", "extrusion"):
+            meaning.groups[code.group] = name
         if code.barrier:
             called = dialect.tip_rule.spelled.get(name, name)
             yield Refusal("GX210", word.start, width, f"{called} is not resolved: {code.barrier}")
@@ -312,8 +312,13 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
 
 
 def _too_many(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
-    """Refuse more M words than the control takes in a block."""
-    most = dialect.block_rule.most_m_words
+    """Refuse more M words, or more commands, than the control takes in a block."""
+    rule = dialect.block_rule
+    commands = [word for word in shape.block.words if word.address in "GM"]
+    for word in commands[1:2] if rule.one_command else ():
+        message = f"{dialect.name} takes one command in a block, and would not hear this one"
+        yield Refusal("GX219", word.start, word.end - word.start, message, "write two blocks")
+    most = rule.most_m_words
     for word in [word for word in shape.block.words if word.address == "M"][most:][:1]:
         if most:
             message = f"{dialect.name} takes {most} M words in a block"

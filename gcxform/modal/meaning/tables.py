@@ -24,8 +24,8 @@ GROUPS = (
     "frame",
     "cutter-comp",
 )
-MEMORY = ("cycle", "retract", "spindle", "tool-length")
-"""Groups that matter to canned cycles alone, and to tool vectors."""
+MEMORY = ("cycle", "retract", "spindle", "tool-length", "extrusion")
+"""Groups that matter to canned cycles alone, to tool vectors, and to extruders."""
 COLUMNS = (*GROUPS, *MEMORY)
 THREAD, TAP = 33, 34
 """The numbers of G33 and G33.1, whose moves are tied to the spindle."""
@@ -59,6 +59,8 @@ NUMBER = {
     "G54.1": 9,
     "G99": 0,
     "G98": 1,
+    "M82": 0,
+    "M83": 1,
     "M5": 0,
     "M19": 0,
     "M3": 1,
@@ -84,6 +86,7 @@ FAMILIES = {
     "arc-distance": ("G91.1", "G90.1"),
     "feed-mode": ("G93", "G94", "G95"),
     "units": ("G21", "G20"),
+    "extrusion": ("M82", "M83"),
     "cutter-comp": ("G40", "G41", "G42", "G41.1", "G42.1"),
 }
 """The codes of each of the groups, but for work offsets, which have names."""

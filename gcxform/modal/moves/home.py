@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, Severity
-from gcxform.dialect.dialect import INCH, LINEAR
+from gcxform.dialect.dialect import EXTRUDER, INCH, LINEAR
 from gcxform.modal.frames.track import LEFT, Track
 from gcxform.modal.meaning.calls import CALL
 from gcxform.modal.meaning.meaning import OWN_MOVES, Act
@@ -88,7 +88,7 @@ def _home(track: Track, line: int, code: str) -> Rows:
     _refuse_one_of_turned(track, line, code, words)
     place = track.state.frames.homes.get(code, {})
     for k, axis in enumerate(track.axes):
-        if axis in words or not words:
+        if axis in words or (not words and axis != EXTRUDER):
             home[k] = _in_frame(track, k, place.get(axis, np.nan))
             track.note_lost(int(np.isnan(home[k])) << k)
     rows = _rows(track, line, Form.HOME, [*moves, (Kind.RAPID, home)])

@@ -25,6 +25,7 @@ from gcxform.modal.moves.cutter_comp import compensation, refuse_ends
 from gcxform.modal.moves.cycle_patterns import Drilling
 from gcxform.modal.moves.home import TOOL_BACK, own_moves
 from gcxform.modal.moves.nurbs import Nurbs
+from gcxform.modal.moves.printers import SAY_MOTION, UNMOVED, refuse_unheard
 from gcxform.modal.moves.rows import Rows, Stretches
 from gcxform.modal.moves.spindle_and_probe import Tied
 from gcxform.modal.moves.splines import read_splines, with_splines
@@ -66,6 +67,7 @@ class Moves:
         """Return the moves as a toolpath."""
         self.nurbs.check()
         moving = self._moving()
+        refuse_unheard(self.track, moving)
         self.track.may_step = may_be_blind(self.lines, self.modes, moving, self.pointing is None)
         lost = self.lines.loses_position()
         of = self._stretches(moving, lost)
@@ -122,20 +124,13 @@ class Moves:
         arc = (self.modes.motion == 2) | (self.modes.motion == 3)
         arc |= self.splines
         for line in np.flatnonzero(moves & (self.modes.motion == NUMBER["G80"])).tolist():
-            self.findings.add(
-                line,
-                "GX209",
-                "axis words, but no motion code is in force",
-                hint="write G1 in this block, or G0 if the way is clear",
-            )
+            self.findings.add(line, "GX209", UNMOVED, hint=SAY_MOTION)
         behind = self.lines.behind_cycle(self.modes.cycle) & (self.modes.motion != Kind.RAPID)
         for line in np.flatnonzero(behind & moves).tolist():
             message = (
                 "after a cycle controls differ in whether G0 or the code before it is in force"
             )
-            self.findings.add(
-                line, "GX209", message, hint="write G1 in this block, or G0 if the way is clear"
-            )
+            self.findings.add(line, "GX209", message, hint=SAY_MOTION)
         for line in np.flatnonzero(centre & ~((arc | self.tied.driven) & ~own)).tolist():
             self.findings.add(line, "GX203", "I, J, K and R belong to arcs, and this is none")
         moves &= self.modes.motion != NUMBER["G80"]
@@ -325,6 +320,7 @@ class Moves:
                 self.lines.window.first_line,
                 self.modes.inch,
                 self.modes.incremental,
+                self.modes.extruded == 1,
                 self.modes.absolute_centre,
                 self.modes.feed_mode,
                 self.lines.flag("ends") | self.lines.flag("loses_position"),
