@@ -41,12 +41,36 @@ HOSTS: Final = {
     "linuxcnc": Host(
         "LinuxCNC: AXIS, QtVCP, Gmoccapy, by [FILTER] of the INI file", "linuxcnc", 255
     ),
+    "freecad": Host("FreeCAD: a post processor that runs another one, and then gcxform"),
     "prusaslicer": Host("PrusaSlicer, SuperSlicer, OrcaSlicer: a post-processing script"),
 }
 
 
+MACROS: Final = {
+    "win32": ("APPDATA", "FreeCAD", "Macro"),
+    "darwin": ("HOME", "Library", "Application Support", "FreeCAD", "Macro"),
+    "linux": ("HOME", ".local", "share", "FreeCAD", "Macro"),
+}
+"""Where FreeCAD looks for post processors of a user: a variable, and folders below it."""
+
+
+def freecad_post(pipeline: Path) -> str:
+    """Return the module for FreeCAD, with where gcxform and a pipeline file are."""
+    text = files("gcxform.cli.host").joinpath("freecad_post.py").read_text("utf-8")
+    text = text.replace('GCXFORM = ["gcxform"]', f"GCXFORM = {program()!r}")
+    return text.replace('PIPELINE = ""', f"PIPELINE = {str(pipeline)!r}")
+
+
+def place_of_post() -> Path:
+    """Return where the module for FreeCAD belongs."""
+    variable, *folders = MACROS.get(sys.platform, MACROS["linux"])
+    return Path(os.environ.get(variable, Path.home()), *folders, "gcxform_post.py")
+
+
 def text_of(name: str, pipeline: Path) -> str:
     """Return what a host is to be given, for a pipeline file. Raises UsageError."""
+    if name == "freecad":
+        return freecad_post(pipeline)
     text = files("gcxform.cli.host").joinpath("texts", f"{name}.txt").read_text("utf-8")
     said = filled(text, program(), pipeline)
     longest = max(map(len, said.splitlines()))

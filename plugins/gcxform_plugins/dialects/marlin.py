@@ -12,7 +12,7 @@
 | comments | `;`; `(...)` on a line of its own: a command that is not known, and does nothing |
 | a letter without a number | names an axis to G28 and M84, and is nothing to a move |
 | line | at most 96 characters with blanks; here 64 without blanks and comments |
-| arcs | in XY, by I and J; cut into chords by the firmware: how fine is not known here |
+| arcs | in XY, by I and J, K is dropped; how fine the firmware cuts them is not known here |
 | G20, G5, G10, G11, G29, G92 alone, T | firmware differs: refused |
 | M codes of heaters, fans, motors, limits | move nothing |
 
@@ -71,5 +71,5 @@ class Marlin(gx.Dialect):
     point_rule = gx.PointRule(dwell={"P": 0.001, "S": 1.0})
     numbers = gx.NumberFormat(mm=5, inch=6)
     motion_rule = gx.MotionRule(g28_without_axes=True)
-    arc_rule = gx.ArcRule(planes=frozenset({"XY"}))
+    arc_rule = gx.ArcRule(planes=frozenset({"XY"}), drops_third=True)
     offset_rule = gx.OffsetRule(known_at_start=True, g10_offsets=())

@@ -1,0 +1,69 @@
+(Exported by FreeCAD)
+(Post Processor: dynapath_post)
+(Output Time:then)
+(begin preamble)
+G17
+G90
+;G90.1 ;needed for simulation only
+G80
+G40
+G21
+(begin operation: TC: Default Tool)
+(Path: TC: Default Tool)
+(TC: Default Tool)
+(begin toolchange)
+M6 T1.000
+M3 S8000.000
+(finish operation: TC: Default Tool)
+(begin operation: Profile)
+(Path: Profile)
+(Profile)
+(Compensated Tool Path. Diameter: 5.0)
+G0 Z10.000
+G0 X41.768 Y31.768
+G0 Z8.000
+G1 X41.768 Y31.768 Z-0.000 F200.000
+G2 X42.500 Y30.000 Z-0.000 I-1.768 J-1.768 F600.000
+G1 X42.500 Y0.000 Z0.000 F600.000
+G2 X40.000 Y-2.500 Z0.000 I-2.500 J0.000 F600.000
+G1 X0.000 Y-2.500 Z0.000 F600.000
+G2 X-2.500 Y0.000 Z0.000 I0.000 J2.500 F600.000
+G1 X-2.500 Y30.000 Z-0.000 F600.000
+G2 X0.000 Y32.500 Z-0.000 I2.500 J-0.000 F600.000
+G1 X40.000 Y32.500 Z-0.000 F600.000
+G2 X41.768 Y31.768 Z-0.000 I-0.000 J-2.500 F600.000
+G1 X41.768 Y31.768 Z-1.000 F200.000
+G2 X42.500 Y30.000 Z-1.000 I-1.768 J-1.768 F600.000
+G1 X42.500 Y0.000 Z-1.000 F600.000
+G2 X40.000 Y-2.500 Z-1.000 I-2.500 J0.000 F600.000
+G1 X0.000 Y-2.500 Z-1.000 F600.000
+G2 X-2.500 Y0.000 Z-1.000 I0.000 J2.500 F600.000
+G1 X-2.500 Y30.000 Z-1.000 F600.000
+G2 X0.000 Y32.500 Z-1.000 I2.500 J-0.000 F600.000
+G1 X40.000 Y32.500 Z-1.000 F600.000
+G2 X41.768 Y31.768 Z-1.000 I-0.000 J-2.500 F600.000
+G0 Z10.000
+G0 Z10.000
+(finish operation: Profile)
+(begin operation: Drilling)
+(Path: Drilling)
+(Drilling)
+(Begin Drilling)
+G0 Z10.000
+G90
+G98
+G0 X20.000 Y15.000
+G0 Z8.000
+G81 X20.000 Y15.000 Z0.000 F200.000 R8.000
+G80
+G0 Z8.000
+G0 Z10.000
+(finish operation: Drilling)
+(begin postamble)
+M09
+M05
+G80
+G40
+G17
+G90
+M30
