@@ -85,9 +85,8 @@ class Lines:
 
     def flag(self, name: str) -> Flags:
         """Return a flag of the meaning of each line."""
-        if not self._flagged[FLAGS.index(name)]:
-            return np.zeros(self.live, np.bool_)
-        return self.table.flag(name, self.shape)
+        none = not self._flagged[FLAGS.index(name)]
+        return np.zeros(self.live, np.bool_) if none else self.table.flag(name, self.shape)
 
     def loses_position(self) -> Flags:
         """Return the lines after which no position is known: not those that the machine excepts."""
@@ -136,8 +135,7 @@ class Lines:
 
     def _refusal_code(self, line: int) -> str:
         """Return the code with which a line is refused by its shape."""
-        refusal = self.table.meanings[int(self.shape[line])].refusal
-        return refusal.code if refusal is not None else ""
+        return getattr(self.table.meanings[int(self.shape[line])].refusal, "code", "")
 
     def _live(self) -> int:
         """Return how many lines the control executes before the program ends."""
@@ -150,8 +148,7 @@ class Lines:
             if self.reading.blocks_with_a_slash(self.dialect) != "execute":
                 ends &= ~self.table.flag("deleted", shape)
         percent = np.flatnonzero(self.table.flag("percent", shape))
-        for line in percent[max(0, 1 - self.state.percents) :][:1]:
-            ends[line] = True
+        ends[percent[max(0, 1 - self.state.percents) :][:1]] = True
         self.state.percents += len(percent)
         if not ends.any():
             return len(shape)

@@ -37,7 +37,7 @@ MUTATIONS = (
     ),
     Mutation(
         "printers: a second command in a block is taken",
-        "gcxform/modal/meaning/sorting.py",
+        "gcxform/modal/meaning/too_many.py",
         "for word in commands[1:2] if rule.one_command else ():",
         "for word in ():",
         CASE.format("one-command"),

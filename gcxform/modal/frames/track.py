@@ -237,9 +237,7 @@ class Track:
             return
         axes &= self._losable
         self.note_lost(axes)
-        for k in range(len(self.axes)):
-            if axes >> k & 1:
-                self.state.position[k] = np.nan
+        self.state.position[[bool(axes >> k & 1) for k in range(len(self.axes))]] = np.nan
         self.breaks.append(Break(line, axes))
 
     @cached_property
@@ -299,10 +297,8 @@ class Track:
     def worded(self) -> Flags:
         """The lines with axis words."""
         named = np.zeros(self.lines.live, np.bool_)
-        for axis in self.axes:
-            word = self.column(axis)
-            if word is not None:
-                named |= word[1]
+        for word in filter(None, map(self.column, self.axes)):
+            named |= word[1]
         return named
 
     @cached_property

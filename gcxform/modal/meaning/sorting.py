@@ -30,6 +30,7 @@ from gcxform.modal.meaning.numbered import (
     table_acts,
 )
 from gcxform.modal.meaning.printed import is_output, print_hangs_on, prints_values, read_output
+from gcxform.modal.meaning.too_many import too_many
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import CODES, Comment, Expression, Mark, Number, Statement, Word
 
@@ -279,7 +280,7 @@ def _take(
 def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
     """Turn M codes into events."""
     groups: dict[str, str] = {}
-    yield from _too_many(shape, dialect)
+    yield from too_many(shape, dialect)
     for word in shape.block.words:
         if word.address != "M" or not isinstance(word.value, Number):
             continue
@@ -309,20 +310,6 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         if code.act:
             meaning.acts.append(Act(code.act, name, taken, word.start, width))
         meaning.events.append(EventShape(order, name, taken, code.after))
-
-
-def _too_many(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
-    """Refuse more M words, or more commands, than the control takes in a block."""
-    rule = dialect.block_rule
-    commands = [word for word in shape.block.words if word.address in "GM"]
-    for word in commands[1:2] if rule.one_command else ():
-        message = f"{dialect.name} takes one command in a block, and would not hear this one"
-        yield Refusal("GX219", word.start, word.end - word.start, message, "write two blocks")
-    most = rule.most_m_words
-    for word in [word for word in shape.block.words if word.address == "M"][most:][:1]:
-        if most:
-            message = f"{dialect.name} takes {most} M words in a block"
-            yield Refusal("GX219", word.start, word.end - word.start, message)
 
 
 def only_for_cycles(name: str, source: type[Dialect], target: type[Dialect]) -> bool:
