@@ -135,7 +135,7 @@ MUTATIONS = (
     ),
     Mutation(
         "limits: one M word more",
-        "gcxform/modal/meaning/sorting.py",
+        "gcxform/modal/meaning/too_many.py",
         'word.address == "M"][most:][:1]',
         'word.address == "M"][most + 1 :][:1]',
         FACTS,
