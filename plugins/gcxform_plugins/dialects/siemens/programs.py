@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import gcxform as gx
 from gcxform_plugins.dialects.siemens.calls import Calls
-from gcxform_plugins.dialects.siemens.line import Line
+from gcxform_plugins.dialects.siemens.line import FRAMES, Line
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
 from gcxform_plugins.dialects.siemens.spelling import spelled
 from gcxform_plugins.dialects.siemens.structure import code
@@ -25,9 +25,13 @@ DECIDES = re.compile(
     r"(?![A-Z0-9_])"
 )
 FROM_HERE = re.compile(
-    r"(?<![A-Z0-9_])(?:WHEN|WHENEVER|EVERY|DO|SETINT|DEFINE|G0*291)(?![A-Z0-9_])"
+    r"(?<![A-Z0-9_])(?:WHEN|WHENEVER|EVERY|DO|SETINT|DEFINE|G0*(?:70|291)|DIAM(?!OF)[A-Z0-9]*)"
+    r"(?![A-Z0-9_])"
 )
-"""What may act on all that follows: synchronous actions, interrupts, macros, another language."""
+"""What may act on all that follows: synchronous actions, interrupts, macros, another language,
+another unit, and diameters, of which steps may be radii (DIAM90)."""
+FRAMING = re.compile(r"A?(?:TRANS|ROTS?|SCALE|MIRROR)|SUPA|TRAORI|TRAFOOF")
+"""Commands that may stay as they stand, and change no mode: positions alone are lost."""
 KEEPABLE = frozenset(
     ("GX203", "GX206", "GX207", "GX208", "GX209", "GX210", "GX213", "GX220", "GX221")
 )
@@ -37,7 +41,10 @@ STANDARD = re.compile(
     re.IGNORECASE,
 )
 """Cycles of Siemens: they return modes and frames as they were (Cycles 11.02, 1.4)."""
-KEEPS = "as they stand: {}; where the axes are behind them is not known, nor what they have set"
+KEEPS = (
+    "as they stand: {}; where the axes are behind them is not known, nor what they have set; "
+    "units, plane, feed mode and compensation are taken to be as before"
+)
 STEPPED = re.compile(r"=[ \t]*IC[ \t]*\(|(?<![A-Z0-9_])G[ \t]*0*91(?![0-9.])", re.IGNORECASE)
 FEED_MODES = frozenset(("93", "94", "95"))
 STATE = (
@@ -124,7 +131,10 @@ class Programs(Calls):
         if STANDARD.search(text):
             return False
         kinds = ("call", "command", "flow", "array")
-        return any(item.kind in kinds or self._is_own(item) for item in items)
+        return any(
+            (item.kind in kinds and not FRAMING.fullmatch(item.name)) or self._is_own(item)
+            for item in items
+        )
 
     def _is_own(self, item: gx.Item) -> bool:
         """Whether a word calls, or is an M code of the machine's own, which may be a program."""
@@ -141,12 +151,13 @@ class Programs(Calls):
                     self._word(line, item)
                 except gx.InputError:
                     self.unsaid.add("distance")
+                    self.motion = ""
         return line
 
     def _lose(self, items: Sequence[gx.Item], opaque: bool) -> None:
         """Forget what a line may have changed."""
         self.place.lose(LINEAR + ROTARY)
-        self.place.moved = True
+        self.place.moved, self.work = True, ""
         self.lose_set(self.line, self.line)
         self.fed &= not any(item.kind == "expression" and item.name == "F" for item in items)
         words = {item.name for item in items}
@@ -185,6 +196,10 @@ class Programs(Calls):
         if "distance" in self.unsaid and any(not way for way, _, _ in line.axes.values()):
             message = "G90 or G91 is needed here: what was called before may have changed it"
             self.refuse(message, self.any_of(line), "write G90 in this block")
+        turning = [a for a in ROTARY if a in line.axes and self._steps(line.axes[a][0])]
+        if self.reading.stays and turning:
+            message = f"{turning[0]} goes by a step: which way it goes to a number is a setting"
+            self.refuse(f"{message} (MD30455)", self.any_of(line))
         motion = line.motion or self.motion
         if self.reading.stays and motion != "0" and not (line.feed or self.fed):
             message = "no feed is known to be in force here"
@@ -217,9 +232,15 @@ class Programs(Calls):
             self.refuse(f"M{number} is one of the machine's own", item)
         super()._other(line, item, letter, number)
 
+    def _quiet(self, name: str, given: Sequence[str]) -> bool:
+        """Whether a call moves nothing; what it ends may be kept where it was begun."""
+        return not (self.reading.stays and name == "CYCLE800") and super()._quiet(name, given)
+
     def _command(self, line: Line, item: gx.Item) -> None:
         if item.name == "MCALL":
             self.unknown_cycle = ""
+        if self.reading.stays and item.name in FRAMES:
+            self.refuse(f"{item.name} ends frames that may have been kept", item)
         super()._command(line, item)
 
     def _tooled(self, line: Line) -> Iterator[str]:
