@@ -332,6 +332,7 @@ def test_the_tool_axis_is_that_of_the_chain(browser, tmp_path: Path) -> None:
     cone = "return view.programs.map(({ path }) => [...path.corners].slice(-4, -1).map("
     ends = sight.run(f"{cone}(value, k) => value + path.middle[k]))")
     assert np.allclose(*ends, atol=2e-3)  # axes as written end where the tip does
+    assert "as written: X, Y, Z are taken for those of the axes" in sight.text("#note")
     assert sight.page.query_selector("button:text-is('tool axes')") is not None
     sight.run("view.goTo(0.5 * view.player.total)")
     sight.picture("view-five-axes.png")

@@ -20,6 +20,8 @@ from gcxform.view.results import outcome
 
 PARTED = "From some line on nothing of the two paths fits: what has no colour was not compared."
 
+TIP = "{}: X, Y, Z are taken for those of the axes, and drawn is the tip, by the machine file."
+
 
 @dataclass
 class Page:
@@ -80,9 +82,13 @@ class Page:
 
     def _written(self, *programs: tuple[Shown, Told]) -> bytes:
         store = Store()
+        found = [described(shown, store, self.speeds, told) for shown, told in programs]
+        for program in found:
+            if "tips" in program["path"]:
+                self.notes.append(TIP.format(program["name"]))
         head = {
             "title": self.title,
-            "programs": [described(shown, store, self.speeds, told) for shown, told in programs],
+            "programs": found,
             "certificate": self.certificate,
             "scene": self.scene,
             "notes": self.notes,
