@@ -36,7 +36,8 @@ TABLE = {number: Tool(radius=0.05 * INCH) for number in range(1, 60)}
 BESIDE = HERE.parents[1] / "shared" / "corpus"
 AGREE, REFUSED, BOTH = "agree", "refused by gcxform", "refused by both"
 ALONE, DISAGREE, HANG = "refused by rs274 alone", "DISAGREE", "rs274 did not end"
-THREADS = "threads in passes, of which only the last is in our path (tests/test_thread_cycles.py)"
+THREADS = "threads and lathe cycles in passes, which are not in our path"
+LATHE = ("G70", "G71", "G72")
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,8 @@ def outcome(corpus: Path, row: dict[str, str]) -> Outcome:
         return Outcome(name, kind, first.code, f"line {line}: {first.message}")
     if row["exit"] != "0":
         return Outcome(name, ALONE, "", said)
-    if (path.form == Form.PASSES).any():
+    lathe = any(event.what.startswith(LATHE) for event in path.events)
+    if lathe or (path.form == Form.PASSES).any():
         return Outcome(name, THREADS)
     canon = gzip.decompress((corpus / row["canon_file"]).read_bytes()).decode("latin-1")
     problem = difference(path, parsed(canon))
