@@ -125,7 +125,8 @@ class Structure:
         inside = any(p.kind != "IF" and p.first < line <= p.last for p in self.parts)
         return inside or any(BACK.search(code(self.lines[at])) for at in range(line, self.stop))
 
-    def names_set(self, first: int, last: int) -> Iterator[str]:
-        """Yield the names, in capitals, that lines assign values to."""
-        for line in range(first, last + 1):
-            yield from (name.upper() for name in SET.findall(code(self.lines[line])))
+
+def names_set(lines: Sequence[str]) -> Iterator[str]:
+    """Yield the names, in capitals, that lines assign values to."""
+    for line in lines:
+        yield from (name.upper() for name in SET.findall(code(line)))

@@ -18,7 +18,7 @@ from gcxform_plugins.dialects.siemens.cells import LOST, Cell, Value, converted
 from gcxform_plugins.dialects.siemens.expressions import PARAMETER, Expressions, number_text
 from gcxform_plugins.dialects.siemens.nodes import Node, names_in, rule_of, span_of, type_of
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
-from gcxform_plugins.dialects.siemens.structure import Structure
+from gcxform_plugins.dialects.siemens.structure import Structure, names_set
 
 WORDS = re.compile(r"[XYZABCIJKFSTDM]|[IJK]1|CR|AR|TURN|ADIS|ADISPOS|CTOL|OTOL|ATOL")
 POSITIONS = frozenset(("$P_EP", "$AA_IW"))
@@ -170,7 +170,7 @@ class Variables(Blocks):
 
     def lose_set(self, first: int, last: int) -> None:
         """Forget what lines may have set."""
-        for name in self.structure.names_set(first, last):
+        for name in names_set(self.lines[first : last + 1]):
             if PARAMETER.fullmatch(name):
                 self.r[int(name[1:])] = LOST
             elif name == "R":
