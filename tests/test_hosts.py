@@ -5,7 +5,12 @@ Where LinuxCNC is installed, its interfaces filter programs by their own code.
 
 from __future__ import annotations
 
+import json
 import os
+import re
+import shlex
+import shutil
+import subprocess
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -103,6 +108,53 @@ def test_a_bar_is_shown(shop: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     said = call(*words).stderr.splitlines()
     bar = kit.taken(kit.AXIS, "progress_re")["progress_re"]
     assert [bar.match(line)[1] for line in said] == ["100"]
+
+
+def lines_for(name: str, folder: Path) -> str:
+    """Return what a host is to be given."""
+    printed = call("hosts", name, "-p", str(folder / "mill 1.toml"))
+    assert printed.exit_code == 0, printed.output
+    return printed.stdout
+
+
+def by_fusion(folder: Path, program: Path) -> int:
+    """Call what `execute` of a post is given: a program, and its words as one text."""
+    said = re.search(r'execute\((".*"), (".*") \+ " \\"" \+', lines_for("fusion", folder))
+    assert said is not None
+    exe, words = (json.loads(text) for text in said.groups())
+    return subprocess.run([exe, *shlex.split(words), str(program)], check=False).returncode
+
+
+def by_vectric(folder: Path, program: Path) -> int:
+    """Call what the two lines of the file say, with the program in the place of %s."""
+    exe, words = lines_for("vectric", folder).splitlines()
+    words = words.replace("%s", shlex.quote(str(program)))
+    return subprocess.run([exe, *shlex.split(words)], check=False).returncode
+
+
+def by_nx(folder: Path, program: Path) -> int:
+    """Run the lines in Tcl, with nothing behind the commands of the post."""
+    if shutil.which("tclsh") is None:
+        pytest.skip("tclsh is not installed: the lines for NX are not run")
+    stand_ins = "proc MOM_close_output_file f {}\nproc MOM_open_output_file f {}\n"
+    text = f"{stand_ins}set ptp_file_name {{{program}}}\n{lines_for('nx', folder)}"
+    return subprocess.run(["tclsh"], input=text.encode(), check=False).returncode
+
+
+@pytest.mark.parametrize("host", [by_fusion, by_nx, by_vectric])
+def test_posts_call_it_in_place(host: Callable[[Path, Path], int], shop: Path) -> None:
+    """The file, with blanks and quotes in its name, is what `run` writes; again, it stays."""
+    wanted = call("run", "-q", "-p", str(shop / "mill 1.toml"), str(shop / "a part.ngc"))
+    assert host(shop, shop / "a part.ngc") == 0
+    assert (shop / "a part.ngc").read_bytes() == wanted.stdout_bytes != stamp_kit.PLATE
+
+
+def test_a_pipe_has_both_ends(shop: Path) -> None:
+    """Program and result are both called -, and are not one file."""
+    words = ("run", "-q", "-p", str(shop / "mill 1.toml"))
+    done = call(*words, "-", stdin=stamp_kit.PLATE)
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert done.stdout_bytes == call(*words, str(shop / "a part.ngc")).stdout_bytes
 
 
 @pytest.mark.skipif(not LONG, reason="AXIS is looked at with HYPOTHESIS_PROFILE=long")

@@ -28,4 +28,11 @@ MUTATIONS = (
         'else " ".join(words)',
         HOSTS,
     ),
+    Mutation(
+        "hosts: a pipe is taken for a file that is replaced",
+        "gcxform/cli/common/transform.py",
+        "if job.out == job.file != STDOUT and not",
+        "if job.out == job.file and not",
+        HOSTS + "::test_a_pipe_has_both_ends",
+    ),
 )

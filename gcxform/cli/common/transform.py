@@ -9,7 +9,7 @@ from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from gcxform.cli.common.outputs import Put, destination
+from gcxform.cli.common.outputs import STDOUT, Put, destination
 from gcxform.cli.common.progress import FilterProgress, Progress
 from gcxform.cli.common.source_map import SourceMap
 from gcxform.diagnostics import Diagnostic, FileError, shown
@@ -99,7 +99,7 @@ def transformed(pipeline: Pipeline, source: Source, job: Job) -> Done:
             texts.source = _whole(source)
             if mapped is not None:
                 mapped += texts.lines
-        if job.out == job.file and not source.is_still(Path(job.file)):
+        if job.out == job.file != STDOUT and not source.is_still(Path(job.file)):
             raise FileError.one("GX904", f"{shown(source.name)} changed while it was worked on")
         _write_beside(job, certificate, mapped)
     return Done(certificate, time.perf_counter() - began, texts)

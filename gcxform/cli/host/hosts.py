@@ -1,12 +1,16 @@
 """The hosts, and the text that each one is to be given, with the command in it as it calls it.
 
 A text lies beside this module, one file for each host. A mark in it stands for the command:
-`{call:WORDS}` for gcxform and its words in the quotes of this system, a POSIX shell or Windows.
+`{call:WORDS}` for gcxform and its words in the quotes of this system, a POSIX shell or Windows;
+`{tcl:WORDS}` for the same as a list of Tcl; `{exe}` for the program alone and `{args:WORDS}` for
+what follows it, both as they stand in a text of JavaScript, which is that of JSON; `{ini:WORDS}`
+for the program in one line and what follows in the next.
 `PIPELINE` among the words is the pipeline file; FILE and its like stay as they stand.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shlex
@@ -20,7 +24,7 @@ from typing import Final
 
 from gcxform.diagnostics import UsageError
 
-MARK: Final = re.compile(r"\{call:([^{}]*)\}")
+MARK: Final = re.compile(r"\{(call|tcl|exe|args|ini):?([^{}]*)\}")
 PIPELINE: Final = "PIPELINE"
 
 
@@ -42,7 +46,10 @@ HOSTS: Final = {
         "LinuxCNC: AXIS, QtVCP, Gmoccapy, by [FILTER] of the INI file", "linuxcnc", 255
     ),
     "freecad": Host("FreeCAD: a post processor that runs another one, and then gcxform"),
+    "fusion": Host("Fusion, HSMWorks, Inventor CAM: lines for a post (.cps)"),
+    "nx": Host("NX: lines for a post (Tcl)"),
     "prusaslicer": Host("PrusaSlicer, SuperSlicer, OrcaSlicer: a post-processing script"),
+    "vectric": Host("VCarve, Aspire, Cut2D: direct output of a post (.pp)"),
 }
 
 
@@ -87,8 +94,18 @@ def filled(text: str, command: list[str], pipeline: Path) -> str:
     """Return a text with the words of a command in the place of its marks."""
 
     def fill(mark: re.Match[str]) -> str:
-        words = [str(pipeline) if word == PIPELINE else word for word in mark[1].split()]
-        return quoted([*command, *words])
+        said = [str(pipeline) if word == PIPELINE else word for word in mark[2].split()]
+        words = [*command, *said]
+        match mark[1]:
+            case "tcl":
+                return " ".join(f"{{{word}}}" for word in words)
+            case "exe":
+                return json.dumps(words[0])
+            case "args":
+                return json.dumps(quoted(words[1:]))
+            case "ini":
+                return f"{words[0]}\n{quoted(words[1:])}"
+        return quoted(words)
 
     return MARK.sub(fill, text)
 
