@@ -9,9 +9,13 @@ from __future__ import annotations
 import pytest
 from hypothesis import settings
 
-DRAWN = min(30, settings.default.max_examples)
-if settings.default.max_examples > 1000:  # the profile `long`
-    DRAWN = settings.default.max_examples
+LONG = settings.default.max_examples > 1000  # the profile of that name
+DRAWN = settings.default.max_examples if LONG else min(30, settings.default.max_examples)
+
+
+def some(count: int) -> range:
+    """Return the seeds that are tried, of so many over night: two in five of them."""
+    return range(count if LONG else max(2 * count // 5, 1))
 
 
 def shares(count: int, size: int) -> pytest.MarkDecorator:

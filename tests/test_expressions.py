@@ -9,12 +9,13 @@ import pytest
 from oracles import rs274
 from oracles.canon import CanonProgram
 from oracles.expressions import program
+from seeds_kit import some
 
 import gcxform as gx
 from gcxform.modal.expressions.value import parameter_key
 
 START = dict.fromkeys("XYZABC", 0.0)
-COUNT = 250
+COUNT = len(some(250))
 PRINTED = 0.51e-4  # mm: rs274 prints four decimals
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from oracles.toolpaths import moves_of
 from reference import siemens as reference
+from seeds_kit import some
 
 import gcxform as gx
 from gcxform.contract.tip_codes import with_switches
@@ -246,7 +247,7 @@ class Builder:
             self.put(self.draw.choice(["S1000 M3", "M8", "G4 F1.5", "CYCLE800()", "M5 M9"]))
 
 
-@pytest.mark.parametrize("seed", range(300))
+@pytest.mark.parametrize("seed", some(300))
 def test_it_reads_what_the_reference_reads(seed):
     builder = Builder(seed)
     for _ in range(builder.draw.randint(5, 40)):
@@ -430,7 +431,7 @@ def test_what_turns_between_ends_is_said(said, words, told, good):
 GOOD = FIVE_AXES.splitlines()
 
 
-@pytest.mark.parametrize("seed", range(200))
+@pytest.mark.parametrize("seed", some(200))
 def test_broken_lines_are_refused_or_read_and_never_fail(seed):
     """Lines are cut, mixed, and have signs put in; each is read, or there is a diagnostic."""
     draw = random.Random(seed)

@@ -10,6 +10,7 @@ from random import Random
 
 import numpy as np
 import pytest
+from seeds_kit import some
 
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
@@ -89,7 +90,7 @@ def told(paths: list[Toolpath]) -> tuple[np.ndarray, list[tuple[object, ...]]]:
     return np.vstack(rows), events
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", some(60))
 def test_stretches_read_together_are_those_read_one_by_one(seed: int) -> None:
     text = program(Random(seed))
     whole, events = told(read([text]))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from gcxform_plugins.passes.rtcp.forward.cutting import Cutting
 from rtcp_kit import LENGTH, axes, chain_of_kind, machine_text, pipeline, positions
+from seeds_kit import some
 
 import gcxform as gx
 from gcxform.contract.tip_codes import with_switches
@@ -75,7 +76,7 @@ def without(lines, gone):
     return text_of(lines[k] for k in kept), kept
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", some(12))
 def test_it_writes_what_it_writes_of_a_program_without_the_codes(tmp_path, seed):
     lines, senses = switched(seed)
     plain, kept = without(lines, senses)
@@ -98,7 +99,7 @@ def test_windows_of_any_size_are_alike(tmp_path, seed, size):
     assert b"".join(parts) == step.run(program).text
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", some(12))
 @pytest.mark.parametrize("size", [1, 0])
 def test_each_code_counts(tmp_path, seed, size):
     """With the senses turned round it is a program in axes wherever it was one of tips."""
@@ -143,7 +144,7 @@ def anyhow(rng):
     return [*lines, "M2"], wrong, plain
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", some(60))
 def test_a_model_that_reads_line_by_line_agrees(tmp_path, seed):
     rng = np.random.default_rng(seed)
     lines, wrong, plain = anyhow(rng)
@@ -198,7 +199,7 @@ def sections(seed):
     return [*lines, "M2"], {line + (line >= 4): station for line, station in stations.items()}
 
 
-@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("seed", some(25))
 def test_switched_with_axes_turned(tmp_path, seed):
     """Where the axes stand after each block is worked out by the matrices of scipy."""
     lines, stations = sections(seed)

@@ -238,7 +238,7 @@ def test_a_process_of_a_pool_is_not_copied():
         assert one.end()
 
 
-SOME = [case for case in all_cases()[::15] if not case.xfail]
+SOME = [case for case in all_cases()[::40] if not case.xfail]
 
 
 @pytest.mark.parametrize("case", SOME, ids=lambda case: name(case.path))
