@@ -12,7 +12,7 @@ import pytest
 from oracles import rs274
 from oracles.canon import CanonMove, CanonProgram
 from oracles.toolpaths import HOMES, OFFSETS, START, difference, read
-from seeds_kit import DRAWN, shares
+from seeds_kit import DRAWN, shares, some
 
 import gcxform as gx
 from gcxform.machine.machine import Tool
@@ -113,7 +113,7 @@ REFUSED = (
 def test_what_linuxcnc_refuses_is_refused(block: str) -> None:
     """Wherever a program stands when the block comes."""
     sources = []
-    for seed in range(12):
+    for seed in some(12):
         *lines, end = drawn(seed, 12).decode("latin-1").rstrip("\r\n%").splitlines()
         sources.append("\n".join([*lines, "G90 G49", block, end, ""]).replace("%\n", "").encode())
     for source, canon in zip(sources, rs274.run_many(sources), strict=True):
