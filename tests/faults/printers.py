@@ -33,7 +33,7 @@ MUTATIONS = (
         "gcxform/emit/stated.py",
         "changes = moves & ((before != after) | alone)",
         "changes = moves & (before != after)",
-        CASE.format("extrusion-in-proportion"),
+        CASE.format("for-a-printer"),
     ),
     Mutation(
         "printers: a second command in a block is taken",
