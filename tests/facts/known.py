@@ -3,6 +3,8 @@
 KNOWN = {
     "haas_g28_alone": "it asks for a refusal for want of a source; the operator's manual (96-8000, "
     "G28) says that all axes go to machine zero at once",
+    "haas_g12_pocket": "it asks for a refusal, for other controls have no such pocket; in its own "
+    "it stays as it stands, and no place is known behind it",
     "siemens_mcall": "it names neither a motion code nor a feed, so settings of the control decide "
     "both (MD20150); with G0 and F before, tests/test_siemens.py reads it as the fact says",
 }
