@@ -7,4 +7,9 @@ KNOWN = {
     "it stays as it stands, and no place is known behind it",
     "siemens_mcall": "it names neither a motion code nor a feed, so settings of the control decide "
     "both (MD20150); with G0 and F before, tests/test_siemens.py reads it as the fact says",
+    "siemens_and_eq_precedence": "it asks for a refusal, for the manual's reading is rarely meant; "
+    "the jump stays as it stands, and both ways of it are carried",
+    "marlin_g61_returns": "G60 and G61, a place that firmware stores, are refused by name",
+    "marlin_g90_cancels_m83": "firmware differs in whether G90 makes E absolute: it is asked for",
+    "marlin_m200_volume": "M200, E as a volume, is refused by name",
 }
