@@ -120,10 +120,10 @@ class MacroB(MacroPrograms):
         return ((loop.first, loop.last) for loop in self.loops.values())
 
     def leaves(self, line: int, first: int, last: int) -> bool:
-        """Whether a line jumps, returns, or ends the program."""
+        """Whether a line jumps, returns, or ends the program; IF THEN may do so by an alarm."""
         block = self.listing.block(line)
         statement = statement_of(block)
-        jumps = statement is not None and statement.kind in ("goto", "if_goto")
+        jumps = statement is not None and statement.kind in ("goto", "if_goto", "if_then")
         returns = any(w.address == "M" and whole_number(w) == 99 for w in block.words)
         return jumps or returns or super().leaves(line, first, last)
 

@@ -187,6 +187,27 @@ MUTATIONS = (
         "flow/fanuc-alarm-behind-end",
     ),
     _macro(
+        "no alarm of IF THEN leaves a loop",
+        "gcxform/flow/macros.py",
+        'in ("goto", "if_goto", "if_then")',
+        'in ("goto", "if_goto")',
+        "flow/fanuc-alarm-in-loop",
+    ),
+    _macro(
+        "the program goes on behind what called an alarm",
+        "gcxform/flow/line_account.py",
+        "if program.ended else []",
+        "if not program.ended else []",
+        "flow/fanuc-alarm-called",
+    ),
+    _macro(
+        "what stands behind an alarm is executed where all is written out",
+        "gcxform/proof/structure.py",
+        "and _is_alarm(wanted[-1], dialect):",
+        "and not wanted:",
+        "flow/fanuc-alarm-written-out",
+    ),
+    _macro(
         "the text of an alarm is left out",
         "gcxform/flow/macro_words.py",
         "for item in block.items if self.arithmetic.acts(key) else ():",
