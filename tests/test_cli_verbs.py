@@ -79,7 +79,7 @@ def test_check_finds_where_compensation_stops_the_control(
 
 def test_check_finds_what_is_wrong_in_later_windows(here: Path) -> None:
     line = b"G1 F100 X1 (as long as a comment can be, so that a window is soon full)\n"
-    text = b"G91.5\n" + line * (2 * WINDOW // len(line)) + b"G70 X1\n"
+    text = b"G91.5\n" + line * (2 * WINDOW // len(line)) + b"G17.1\n"
     (here / "long.nc").write_bytes(text)
     found = call("check", "-f", "linuxcnc", "long.nc")
     assert found.exit_code == 1

@@ -240,6 +240,9 @@ def test_dialect_and_pass_of_the_manual_work():
 
 
 def test_toml_snippets_are_right(folder, tmp_path):
+    for page in SHOWN:
+        for name, content in SAVED.findall(page.read_text("utf-8")):
+            (folder / name).write_text(content, "utf-8")
     for snippet in blocks("toml"):
         tomllib.loads(snippet)
         if "tool-table" in snippet:
@@ -251,7 +254,10 @@ def test_toml_snippets_are_right(folder, tmp_path):
             (tmp_path / "kinds.toml").write_text(f"format = 1\n{snippet}", "utf-8")
             machine = load_machine(tmp_path / "kinds.toml", REGISTRY.machines)
             assert chain_of(machine).letters == ("A", "C")
-        elif snippet.startswith("format"):
+        elif "[axis." in snippet:
+            (tmp_path / "axes.toml").write_text(snippet, "utf-8")
+            load_machine(tmp_path / "axes.toml", REGISTRY.machines)
+        elif snippet.startswith("format") and "[X]" not in snippet and "[Y]" not in snippet:
             (folder / "snippet.toml").write_text(snippet, "utf-8")
             gx.Pipeline.load(folder / "snippet.toml")
 

@@ -93,7 +93,7 @@ def test_again_it_adds_what_is_new_and_keeps_the_rest(shop: Path) -> None:
     assert call(*NEW).exit_code == 0
     assert [file.read_text() for file in files] == before
     (shop / "more.nc").write_text(
-        "%\nO0004\nG91 G21 G94 G54 G0 X1. Z2.\n/M8\nG81 Z-3. R-1. F9.\nG80\n"
+        "%\nO0004\nG91 G21 G94 G54 G0 X1. Z2.\n/X2.\nG81 Z-3. R-1. F9.\nG80\n"
         "G90 G43 H3 Z5.\nG43 H12 Z5.\nM30\n%\n"
     )
     call(*NEW)
@@ -102,7 +102,7 @@ def test_again_it_adds_what_is_new_and_keeps_the_rest(shop: Path) -> None:
     assert machine.endswith('# used by 1 of 4 programs, e.g. more.nc:8\nlength = "?"\n')
     assert 'start = { X = 1.0, Y = 1.0, Z = "?" }' in pipeline
     assert 'block-delete = "?"\n\n[machine]' in pipeline
-    (shop / "evenmore.nc").write_text("%\nO0004\n/M8\nM30\n%\n")
+    (shop / "evenmore.nc").write_text("%\nO0004\n/X2.\nM30\n%\n")
     call(*NEW)
     assert "# needed by 2 of 5 programs, e.g. evenmore.nc:3\nblock" in files[1].read_text()
 

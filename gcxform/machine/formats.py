@@ -13,7 +13,10 @@ from gcxform.machine.machine import Machine, Tool
 from gcxform.machine.presets import Presets
 from gcxform.system import inputs
 
-TAKEN = frozenset({"file", "output", "limit", "allow_outside", "debug", "show_traceback", "help"})
+TAKEN = frozenset(
+    {"file", "output", "limit", "allow_outside", "debug", "show_traceback", "help"}
+    | {"json", "as_json"}
+)
 """What every command of `gcxform machine import` has, so no field of a control has such a name."""
 
 

@@ -118,6 +118,9 @@ class Siemens(gx.Dialect):
         17: gx.MCode("stop", after=True, ends=True),
         9000: gx.MCode("kept", loses_position=True, takes="P"),
     }
+    differs: ClassVar[Mapping[str, str]] = {
+        "M17": "returns from a subprogram, and ends a program as M30 does (PM p. 45)"
+    }
     chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
         "ABC", "rotary axes go where they are told, whichever way is shorter (MD30455)"
     )
