@@ -94,7 +94,8 @@ class Depending:
     def _refuse_other_values(self) -> None:
         """Refuse what only the machine can compute if it would compute something else.
 
-        That is so where it reads positions and they are others, or is a length in another unit.
+        That is so where it reads positions and they are others, or are said in coordinates that are
+        folded away, or is a length in another unit.
         """
         for each in self.task.read.unknown:
             if self._has_other_value(each):
@@ -111,6 +112,9 @@ class Depending:
         if each.hangs_on and now.inch[line] != old.inch[line]:
             return True
         if each.hangs_on and now.feed_mode[line] != old.feed_mode[line]:
+            return True
+        said = self._probes() if each.hangs_on == "units" else each.hangs_on == "place"
+        if said and self._shifts_go():
             return True
         if each.hangs_on != "place":
             return False
@@ -142,12 +146,21 @@ class Depending:
         stays = EXACT + manner.promised + manner.rounding(bool(now.inch[line]))
         if not manner.compensates and self._stands_elsewhere(line, stays):
             return "other places of the axes"
-        frames = self.original.frames
-        if self.path.folded and any(any(each.shift) or each.matrix for each in frames):
+        if self._shifts_go():
             return "coordinates that are not shifted"
         if not self.same.modes()[line] or now.feed_mode[line] != old.feed_mode[line]:
             return "other modes (G20 or G21, G90 or G91, G93 or G94)"
         return "another dialect" if manner.crossing else ""
+
+    def _probes(self) -> bool:
+        """Whether the program has probed, or may have: what it measures is said in coordinates."""
+        shapes = np.arange(len(self.task.table.meanings))
+        return any(self.task.table.flag(name, shapes).any() for name in ("probes", "calls"))
+
+    def _shifts_go(self) -> bool:
+        """Whether coordinates are folded away in which places would be read and words be taken."""
+        frames = self.original.frames
+        return self.path.folded and any(any(each.shift) or each.matrix for each in frames)
 
     def _cuts(self, line: int) -> bool:
         """Whether a line has a code that cuts in a way of its own."""

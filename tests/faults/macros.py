@@ -187,6 +187,20 @@ MUTATIONS = (
         "flow/fanuc-alarm-behind-end",
     ),
     _macro(
+        "a place is read where its coordinates are folded away",
+        "gcxform/emit/depending.py",
+        'else each.hangs_on == "place"',
+        "else False",
+        "offsets/place-read",
+    ),
+    _macro(
+        "a touch is read where its coordinates are folded away",
+        "gcxform/emit/depending.py",
+        "said = self._probes() if",
+        "said = False if",
+        "offsets/touch-read",
+    ),
+    _macro(
         "no alarm of IF THEN leaves a loop",
         "gcxform/flow/macros.py",
         'in ("goto", "if_goto", "if_then")',
