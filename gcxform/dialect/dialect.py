@@ -115,7 +115,7 @@ class Dialect:
     differs: ClassVar[Mapping[str, str]] = {}
     """What is otherwise here than on controls that agree, on purpose: a code, the name of one of
     these attributes or a fact of a rule (`arc_rule.turns`), and from where that is known. The
-    conformance kit asks for it."""
+    conformance kit asks for it. It excuses nothing by which two things would become one."""
 
     def __init_subclass__(cls) -> None:
         """Let machine files have the settings that the dialect asks for.
