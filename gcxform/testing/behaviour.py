@@ -228,6 +228,7 @@ BASE = {
     "length-vector": {"Z": "1."},
 }
 THEN = "G1 X15. Y15. Z15. F100."
+TWO_TOOLS = [f"T{n} M6\n{THEN}" for n in (1, 2)]
 
 
 def _said(words: dict[str, str]) -> str:
@@ -276,13 +277,9 @@ def _frame(dialect: type[Dialect], block: str) -> str | None:
 
 def _tools(dialect: type[Dialect]) -> Findings:
     """Change to two tools."""
-    if 6 in dialect.m_codes and "T" in dialect.block_rule.words and not _barred(dialect, 6):
-        if not _differ(dialect, [f"T{n} M6\n{THEN}" for n in (1, 2)], "M6"):
-            yield "'T1 M6' and 'T2 M6' are read as one and the same"
-
-
-def _barred(dialect: type[Dialect], number: int) -> bool:
-    return bool(dialect.m_codes[number].barrier)
+    has = "T" in dialect.block_rule.words and 6 in dialect.m_codes
+    if has and not dialect.m_codes[6].barrier and not _differ(dialect, TWO_TOOLS, "M6"):
+        yield "'T1 M6' and 'T2 M6' are read as one and the same"
 
 
 def _dwells(dialect: type[Dialect]) -> Findings:

@@ -18,6 +18,7 @@ from gcxform.modal.meaning.meaning import ACT_ORDER
 from gcxform.modal.meaning.tables import FAMILIES as OF_GROUP
 from gcxform.modal.meaning.tables import GROUPS, NUMBER
 from gcxform.testing import canon
+from gcxform.testing.merging import merged
 
 SECONDS, MILLISECONDS = 1.0, 0.001
 NO_CYCLE = Cycle()
@@ -33,7 +34,7 @@ def check_declared(dialect: type[Dialect]) -> None:
         known = key in dialect.codes or has or key[1:].isdigit()
         assert known, f"{dialect.name}: differs names {key}, which the dialect does not have"
         assert reason.strip(), f"{dialect.name}: differs[{key!r}] does not say why"
-    for message in _merged(dialect):
+    for message in merged(dialect):
         raise AssertionError(f"{dialect.name}: {message}")
     for check in CHECKS:
         for key, message in check(dialect):
@@ -41,30 +42,6 @@ def check_declared(dialect: type[Dialect]) -> None:
                 f"{dialect.name}: {message}; if the control does so, say in differs[{key!r}] "
                 f"from where that is known"
             )
-
-
-def _merged(dialect: type[Dialect]) -> Iterator[str]:
-    """Yield what would make two things one; that a control differs excuses none of it."""
-    known = {*canon.WORK, *canon.MORE_WORK, *dialect.offset_rule.names}
-    for name, code in dialect.codes.items():
-        if code.effect is Effect.INERT and code.group in GROUPS:
-            yield f"{name} is inert and would replace the codes of the group {code.group!r}"
-        if code.act == "work" and not code.takes and name not in known:
-            yield (
-                f"{name} takes no word that says which work offset it is, and "
-                f"offset_rule.names does not say it either"
-            )
-        numbers = set(code.takes) - set(dialect.axes)
-        if code.effect is Effect.INERT and numbers and _frames_elsewhere(name):
-            yield (
-                f"{name} changes frames on other controls; where it is inert, no two values of "
-                f"{sorted(numbers)} are told apart: make it an act, or a barrier"
-            )
-
-
-def _frames_elsewhere(name: str) -> bool:
-    """Whether a code changes frames on all controls on which it is known."""
-    return all(one.startswith("act ") for one in canon.MEANINGS.get(name, ("",)))
 
 
 def _meanings(dialect: type[Dialect]) -> Complaints:

@@ -1,0 +1,187 @@
+"""Write every real program in each other dialect, and say which are, and why each other is not.
+
+    python benchmarks/translation.py [CORPUS] [--from NAME] [--to NAME] [--every N] [--list]
+                                     [--cause TEXT] [--keep FOLDER]
+
+The programs are those of `corpus.py`, with the machines that it gives them. What counts is a
+program that goes through `absolute` in its own dialect, is no file of a subprogram (which goes with
+the program that calls it) and moves no axis that the target lacks.
+*Verified* is one whose result is proved in the target, which `check` finds nothing new in, and of
+which LinuxCNC's interpreter, where that is the target, reads every line to the end; what is proved
+and is not so is a cause of its own, `CHECK` or `RS274`, for it is worth more than a refusal.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+import gcxform as gx
+from corpus import BESIDE, NUMBERS, OURS, Job, Outcome, counted, filled_in
+from corpus import run as run_in_own
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.plugin.registry import default_registry
+
+TARGETS = ("linuxcnc", "fanuc", "haas", "grbl")
+SECONDS = 60
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A program of the corpus, and the dialect that it is to be written in."""
+
+    job: Job
+    target: str
+
+
+@cache
+def into(job: Job, target: str) -> Pipeline:
+    """Return the pipeline of a program with another target, and no pass."""
+    made = filled_in(job.dialect, job.path, "absolute", job.corpus)
+    kind = default_registry().dialect(target)
+    return replace(made, target=kind, passes=(), numbers=NUMBERS if target != "fanuc" else None)
+
+
+def translate(pair: Pair, keep: Path | None = None) -> Outcome:
+    """Write a program in another dialect, and look at what comes out."""
+    job = pair.job
+    try:
+        result = into(job, pair.target).run(job.corpus / job.path)
+    except gx.GcxformError as error:
+        first = error.diagnostics[0]
+        return Outcome(job, first.code, first.message, first.where.line if first.where else 0)
+    except Exception as error:
+        return Outcome(job, "CRASH", repr(error))
+    if keep is not None:
+        file = keep / f"{job.dialect}-{pair.target}" / job.path.replace("/", "__")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(result.text)
+    if not result.certificate.verified:
+        return Outcome(job, "NOT VERIFIED")
+    return judged(pair, result.text) or Outcome(job)
+
+
+def judged(pair: Pair, text: bytes) -> Outcome | None:
+    """Return what is wrong with a program that is proved, if anything."""
+    job, kind = pair.job, default_registry().dialect(pair.target)
+    same = replace(into(job, pair.target), source=kind)
+    try:
+        same.run(text)
+    except gx.GcxformError as error:
+        first = error.diagnostics[0]
+        return Outcome(
+            job, "CHECK", f"{first.code} {first.message}", first.where.line if first.where else 0
+        )
+    said = said_by_rs274(text, job.corpus) if pair.target == "linuxcnc" else ""
+    return Outcome(job, "RS274", said) if said else None
+
+
+def said_by_rs274(text: bytes, corpus: Path) -> str:
+    """Return what LinuxCNC's interpreter says against a program; nothing if it reads to its end."""
+    if shutil.which("rs274") is None:
+        return ""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "program.ngc")
+        file.write_bytes(text)
+        command = ["rs274", "-g", "-t", str(corpus / "rs274" / "tool.tbl"), str(file), "out"]
+        found = subprocess.run(
+            command, cwd=folder, capture_output=True, timeout=SECONDS, check=False
+        )
+        lines = found.stderr.decode("latin-1").splitlines()
+        noise = ("executing", "link (updating")
+        said = [line for line in lines if line.strip() and not line.startswith(noise)]
+        return " ".join(said[:2]) if found.returncode else ""
+
+
+def cause_of(one: Outcome) -> str:
+    """Return the cause of an outcome, with the names of codes and without numbers."""
+    says = re.sub(r"(?<![GM.\d])\d[-.\d]*", "..", one.says)
+    return f"{one.code} {says[:75]}"
+
+
+# --- which pairs there are ---
+
+
+def pairs(jobs: Iterable[Job], targets: Iterable[str]) -> Iterator[Pair]:
+    """Yield the programs that go through in their own dialect, with each other target."""
+    for job in jobs:
+        yield from (Pair(job, target) for target in targets if target != job.dialect)
+
+
+def own(job: Job) -> bool:
+    """Whether a program goes through in its own dialect."""
+    return run_in_own(job).code in ("", "LOST")
+
+
+def apart(pair: Pair, found: Outcome) -> bool:
+    """Whether a pair does not count: the target lacks an axis, or the file is a subprogram."""
+    if found.code == "GX226":
+        return True
+    return found.says.startswith(tuple(f"{pair.target} has no axis {a}" for a in "ABCUVW"))
+
+
+# --- what is printed ---
+
+
+def print_tables(
+    found: list[tuple[Pair, Outcome]], sources: Iterable[str], targets: Iterable[str]
+) -> None:
+    """Print how many are verified of how many, and the causes of the others."""
+    counts = Counter((p.job.dialect, p.target) for p, _ in found)
+    good = Counter((p.job.dialect, p.target) for p, one in found if not one.code)
+    targets = list(targets)
+    print(f"\n| from | {' | '.join(targets)} |\n|---|{'--:|' * len(targets)}")
+    for source in sources:
+        cells = [
+            f"{good[source, t]} of {counts[source, t]}" if counts[source, t] else ""
+            for t in targets
+        ]
+        print(f"| {source} | {' | '.join(cells)} |")
+    causes = Counter((p.job.dialect, p.target, cause_of(one)) for p, one in found if one.code)
+    print("\n| programs | from | to | cause |\n|--:|---|---|---|")
+    for (source, target, cause), count in causes.most_common():
+        print(f"| {count} | {source} | {target} | {cause} |")
+    print(f"\n{sum(good.values())} of {sum(counts.values())} verified")
+
+
+def main() -> int:
+    """Print the tables; return 1 if a program crashed, or a result is not what was promised."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("corpus", nargs="?", type=Path, default=BESIDE)
+    parser.add_argument("--from", dest="source", choices=OURS, help="these programs alone")
+    parser.add_argument("--to", choices=TARGETS, help="this target alone")
+    parser.add_argument("--every", type=int, default=1, help="each so manieth program")
+    parser.add_argument("--list", action="store_true", help="one line per program")
+    parser.add_argument("--cause", help="list those alone whose cause has this text")
+    parser.add_argument("--keep", type=Path, help="write the results into a folder")
+    options = parser.parse_args()
+    sources = (options.source,) if options.source else TARGETS
+    targets = (options.to,) if options.to else TARGETS
+    jobs = [job for job in counted(options.corpus, sources) if job.chain == "absolute"]
+    jobs = jobs[:: options.every]
+    with ProcessPoolExecutor(2) as pool:
+        goes = list(pool.map(own, jobs, chunksize=4))
+        todo = list(pairs((j for j, good in zip(jobs, goes, strict=True) if good), targets))
+        outcomes = pool.map(translate, todo, [options.keep] * len(todo), chunksize=8)
+        found = list(zip(todo, outcomes, strict=True))
+    found = [(pair, one) for pair, one in found if not apart(pair, one)]
+    for pair, one in found:
+        why = f"{one.code} {one.line}: {one.says}" if one.code else "verified"
+        if options.list or (options.cause and options.cause in why):
+            print(f"{pair.job.dialect} to {pair.target} {pair.job.path}: {why}")
+    print_tables(found, sources, targets)
+    return 1 if {"CRASH", "NOT VERIFIED", "CHECK", "RS274"} & {one.code for _, one in found} else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
