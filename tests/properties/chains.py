@@ -7,14 +7,14 @@ import random
 import re
 import tempfile
 import traceback
-from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from oracles import rs274, ways
 from oracles.canon import CanonProgram
 from oracles.toolpaths import OFFSETS as CODES
+from properties.figures import Figures
 
 import gcxform as gx
 from gcxform.machine.machine import Machine, Tool
@@ -31,7 +31,6 @@ from gcxform.testing.linuxcnc_programs import Drawn, Wishes, everything
 INCH = 25.4
 PRINTED = 6e-4  # units: five numbers with four decimals are added up, in three axes
 SPAN = 1200.0  # mm, of the tables of errors
-WRONG = ("disagrees", "exit 4", "exit 70")
 PATH_MODES = ("SET_MOTION_CONTROL_MODE", "SET_NAIVECAM")
 OF_THE_MACHINE = re.compile(r"G0*(28|30|53)(?![0-9.])")
 WINDOWS = (60, 200, 1 << 20)
@@ -293,38 +292,6 @@ def done(job: Job, folder: Path) -> Job:
     return job
 
 
-OPEN: dict[str, Callable[[Job, str], object]] = {}
-"""Defects that are known and not mended yet: what they spoil is counted, and not called wrong."""
-
-
-def known(job: Job) -> str:
-    """Return by which of the known defects a job went wrong; nothing if by none."""
-    text = re.sub(r"\s", "", job.source.text.decode("latin-1").upper())
-    return next((name for name, found in OPEN.items() if found(job, text)), "")
-
-
-@dataclass
-class Figures:
-    """What came of many jobs; `wrong` are those that must not be."""
-
-    counts: Counter[str] = field(default_factory=Counter)
-    refused: Counter[str] = field(default_factory=Counter)
-    wrong: list[Job] = field(default_factory=list)
-
-    def __iadd__(self, other: Figures) -> Figures:
-        self.counts += other.counts
-        self.refused += other.refused
-        self.wrong += other.wrong
-        return self
-
-    def __str__(self) -> str:
-        lines = [f"{self.counts[what]:7} {what}" for what in WRONG]
-        rest = [pair for pair in self.counts.most_common() if pair[0] not in WRONG]
-        lines += [f"{count:7} {what}" for what, count in rest]
-        lines += [f"{count:7} refused {code}" for code, count in self.refused.most_common()]
-        return "\n".join(lines)
-
-
 def judged(jobs: Sequence[Job]) -> Figures:
     """Ask LinuxCNC about the jobs that passed, and count."""
     figures = Figures()
@@ -334,14 +301,7 @@ def judged(jobs: Sequence[Job]) -> Figures:
     for job, old, new in zip(passed, before, after, strict=True):
         compare(job, old, new)
     for job in jobs:
-        if job.kind in WRONG:
-            job.kind = known(job) or job.kind
-        figures.counts["programs"] += 1
-        figures.counts[job.kind] += 1
-        if job.kind == "refused":
-            figures.refused[job.code] += 1
-        if job.kind in WRONG:
-            figures.wrong.append(job)
+        figures.count(job)
     return figures
 
 

@@ -18,6 +18,7 @@ from hypothesis import settings
 from oracles import rs274, ways
 from oracles.canon import CanonProgram
 from properties import chains
+from properties.figures import Figures
 from seeds_kit import DRAWN, shares
 
 import gcxform as gx
@@ -35,7 +36,7 @@ judged = pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is n
 @judged
 @shares(COUNT, 50)
 def test_a_chain_that_is_accepted_is_proved_and_right_or_refuses(seeds: range) -> None:
-    total = chains.Figures()
+    total = Figures()
     for figures in chains.campaign(seeds):
         total += figures
     assert not total.wrong, f"{len(total.wrong)} of {len(seeds)}, the first:\n{total.wrong[0]}"

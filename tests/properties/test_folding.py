@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from oracles import flows, macro_flows, rs274, toolpaths
 from oracles.canon import CanonProgram
+from properties import executed
 from seeds_kit import DRAWN, shares
 
 import gcxform as gx
@@ -23,23 +23,12 @@ start = {{ X = 0.0, Y = 0.0, Z = 0.0 }}
 [[pass]]
 use = "absolute"
 """
-PIPELINE = gx.Pipeline.parse("absolute", "linuxcnc")
-ABSOLUTE = replace(
-    PIPELINE,
-    reading=replace(
-        PIPELINE.reading,
-        start=toolpaths.START,
-        work_offsets=toolpaths.OFFSETS,
-        homes=toolpaths.HOMES,
-    ),
-)
-
 pytestmark = pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
 
 
 def folded(program: bytes) -> gx.Result | None:
     try:
-        return ABSOLUTE.run(program)
+        return executed.ABSOLUTE.run(program)
     except gx.InputError:
         return None
 
