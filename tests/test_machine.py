@@ -10,8 +10,9 @@ import pytest
 from gcxform.catalogue import CATALOGUE
 from gcxform.config.quantities import ANGLE, LENGTH
 from gcxform.diagnostics import Diagnostic, FileError, UsageError
-from gcxform.machine.file import load_machine, schema
+from gcxform.machine.file import load_machine
 from gcxform.machine.machine import Axis, Machine, Tool
+from gcxform.machine.schema import schema
 from gcxform.plugin.registry import default_registry
 
 TRUNNION = """format = 1
@@ -204,9 +205,10 @@ def test_units_are_exact() -> None:
 def test_the_schema_lets_strings_with_units_in() -> None:
     parts = schema()["$defs"]
     assert parts["Tool"]["properties"]["length"]["type"] == ["number", "string"]
-    low, _high = parts["Axis"]["properties"]["limits"]["anyOf"][0]["prefixItems"]
-    assert low["type"] == ["number", "string"]
-    assert parts["Axis"]["properties"]["max-speed"]["anyOf"][0] == {"type": "number"}
+    limits = parts["Axis"]["properties"]["limits"]
+    assert limits["items"]["type"] == ["number", "string"]
+    assert limits["minItems"] == limits["maxItems"] == 2
+    assert parts["Axis"]["properties"]["max-speed"]["type"] == "number"
     assert parts["MachineFile"]["additionalProperties"] is False
 
 

@@ -11,6 +11,8 @@ import pytest
 
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
+from gcxform.config.quantities import LENGTH
+from gcxform.config.schemas import quantity_schema
 from gcxform.contract.options import Length, ModelFile, Option, Vector
 from gcxform.contract.passes import Pass, TextPass
 from gcxform.diagnostics import UsageError
@@ -353,7 +355,8 @@ def test_the_schema_of_pipelines() -> None:
     assert steps["bend"]["required"] == ["use", "model"]
     cut = steps["cut"]["properties"]
     assert cut["chord-error"] == {
-        "type": ["number", "string"],
+        **quantity_schema(LENGTH),
+        "exclusiveMinimum": 0.0,
         "description": "largest distance; above 0 mm",
     }
     assert cut["arcs"] == {"enum": ["lines", "split"], "description": "default lines"}

@@ -10,7 +10,8 @@ from cli_kit import call, workplace
 
 import gcxform as gx
 from gcxform.config.quantities import LENGTH
-from gcxform.machine.file import load_machine, schema
+from gcxform.machine.file import load_machine
+from gcxform.machine.schema import schema
 from gcxform.plugin.registry import default_registry
 
 SAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs")

@@ -42,7 +42,7 @@ VERBS: Final = {
     "table": "Convert error tables from one format to another, or show one.",
     "list": "List what is installed, or the options of one thing.",
     "explain": "Explain a diagnostic code, or what a block does.",
-    "schema": "Print the JSON Schema of a kind of files.",
+    "schema": "Print the JSON Schema of a kind of files, or name schemas in files.",
     "completion": "Print what a shell needs to complete words of a command line.",
 }
 FILES: Final = {"list": "listing"}  # a module named `list` would hide the builtin in this one

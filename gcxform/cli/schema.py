@@ -4,24 +4,44 @@ from __future__ import annotations
 
 import json
 from importlib.resources import files
+from pathlib import Path
 from typing import Any, Final, get_args
 
 import click
 
 from gcxform.cli import VERBS
 from gcxform.cli.common.answer import answer
+from gcxform.cli.common.failures import say
+from gcxform.cli.program.named_schemas import write_schemas
 from gcxform.pipeline.schema import Kind, schema
 
 ANSWER: Final = "answer"
+KINDS: Final = (*get_args(Kind), ANSWER)
 FOLDER: Final = files("gcxform.cli") / "schemas"
 
 
 @click.command("schema", help=VERBS["schema"], short_help=VERBS["schema"])
-@click.argument("kind", type=click.Choice([*get_args(Kind), ANSWER]))
-def command(kind: Any) -> None:
-    """Print a schema: of a kind of files, or of what verbs answer with --json."""
+@click.option("--write", metavar="DIR", help="Write the schemas of all files into DIR instead.")
+@click.argument("words", metavar="KIND | FILE...", nargs=-1)
+def command(words: tuple[str, ...], write: str | None) -> None:
+    """Print a schema: of a kind of files, or of what verbs answer with --json.
+
+    KIND is pipeline (gcxform.toml is one), machine, model or answer. With --write, each FILE is
+    given a first line that names its schema in DIR, for editors.
+    """
+    if write is not None:
+        for path in write_schemas(Path(write), words):
+            say(f"wrote {path}")
+        return
+    kind = _kind(words)
     found = answers() if kind == ANSWER else schema(kind)
     answer({"kind": kind, "schema": found}, [json.dumps(found, indent=2)])
+
+
+def _kind(words: tuple[str, ...]) -> Any:
+    if len(words) != 1:
+        raise click.UsageError(f"give one of {', '.join(KINDS)}")
+    return click.Choice(KINDS).convert(words[0], None, click.get_current_context())
 
 
 def answers() -> dict[str, Any]:

@@ -16,7 +16,8 @@ LINEAR_AXES = tuple("XYZUVW")
 ROTARY_AXES = tuple("ABC")
 AXIS_LETTERS = LINEAR_AXES + ROTARY_AXES
 
-_QUANTITY = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*")
+_NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*")
 _DEGREES = Decimal("57.29577951308232087679815481410517033240547246656")  # of a radian
 
 
@@ -56,6 +57,11 @@ class Quantity:
             return self.parse(text, bare=True)
         except ValueError:
             return None
+
+    def pattern(self, bare: bool = False) -> str:
+        """Return the regular expression of what `parse` takes, as a JSON Schema has it."""
+        units = "|".join(self.worth)
+        return rf"\s*{_NUMBER}\s*({units}){'?' * bare}\s*"
 
     @property
     def article(self) -> str:

@@ -9,7 +9,7 @@ import hashlib
 import math
 import os
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -18,7 +18,17 @@ from typing import Annotated, Any, NamedTuple, TypeVar
 import msgspec
 
 from gcxform.config.quantities import ANGLE, AXIS_LETTERS, LENGTH, Quantity, quantity_of
+from gcxform.config.schemas import quantity_schema
 from gcxform.config.toml_text import did_you_mean
+from gcxform.contract.option_schemas import (
+    COORDINATES_SCHEMA,
+    FEED_INCREMENT_SCHEMA,
+    INCREMENT_SCHEMA,
+    LINES_SCHEMA,
+    PARAMETER,
+    PARAMETERS_SCHEMA,
+    VECTOR_SCHEMA,
+)
 from gcxform.diagnostics import FileError, Location, UsageError
 from gcxform.dialect.increments import CALCULATOR, SYSTEMS, Increments
 from gcxform.errormodel import model_file as modelfile
@@ -135,12 +145,16 @@ class Around(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Kind:
-    """A type of options: its words, how a raw value is read and written, its unit."""
+    """A type of options: its words, how a raw value is read and written, its unit.
+
+    `schema` is the JSON Schema of what a file may say.
+    """
 
     words: str
     read: Callable[[object, Around], Any]
     raw: Callable[[Any], object] = lambda value: value
     unit: str = ""
+    schema: Mapping[str, Any] = field(default_factory=lambda: {"type": "string"})
 
 
 def written(raw: object) -> str:
@@ -258,7 +272,7 @@ def _read_coordinates(raw: object, around: Around) -> dict[str, float]:
     return {key: _read_quantity(quantity_of(key), value, around) for key, value in raw.items()}
 
 
-_PARAMETER = re.compile(r"[0-9]+|<[^<>#()]+>")
+_PARAMETER = re.compile(PARAMETER)
 
 
 def _read_parameters(raw: object, around: Around) -> dict[str, float]:
@@ -293,27 +307,54 @@ def choice_kind(choices: tuple[Any, ...]) -> Kind:
             raise RefusedError("GX707", message, did_you_mean(str(raw), known))
         return choice
 
-    return Kind("choice", read, lambda choice: str(choice) if isinstance(choice, str) else choice)
+    def raw(choice: Any) -> object:
+        return str(choice) if isinstance(choice, str) else choice
+
+    return Kind("choice", read, raw, schema={"enum": [raw(choice) for choice in choices]})
 
 
-_LENGTH = Kind("length", partial(_read_quantity, LENGTH), unit=" mm")
-_ANGLE = Kind("angle", partial(_read_quantity, ANGLE), unit=" deg")
-_INCREMENT = Kind("increment system or length", _read_increment, unit=" mm")
-_FEED_INCREMENT = Kind("increment system or number", _read_feed_increment)
-_VECTOR = Kind("three lengths", _read_vector, list)
+def _quantity_kind(quantity: Quantity) -> Kind:
+    read = partial(_read_quantity, quantity)
+    return Kind(quantity.name, read, unit=f" {quantity.base}", schema=quantity_schema(quantity))
+
+
+def _plain_kind(kind: type, words: str, what: str, name: str) -> Kind:
+    return Kind(words, partial(_read_plain, kind, what), schema={"type": name})
+
+
+def _file_kind(words: str, read: Callable[[object, Around], Any]) -> Kind:
+    def raw(file: Any) -> str:
+        return str((file if isinstance(file, Path) else file.path).absolute())
+
+    return Kind(words, read, raw, schema={"type": "string", "minLength": 1})
+
+
+_LENGTH, _ANGLE = _quantity_kind(LENGTH), _quantity_kind(ANGLE)
+_INCREMENT = Kind(
+    "increment system or length", _read_increment, unit=" mm", schema=INCREMENT_SCHEMA
+)
+_FEED_INCREMENT = Kind(
+    "increment system or number", _read_feed_increment, schema=FEED_INCREMENT_SCHEMA
+)
+_VECTOR = Kind("three lengths", _read_vector, list, schema=VECTOR_SCHEMA)
 _PAIR = Kind("two lengths", _read_pair, list)
-_COORDINATES = Kind("coordinates by axis letter", _read_coordinates)
-_PARAMETERS = Kind("numbers by parameter", _read_parameters)
-_FOLDERS = Kind("list of folders", _read_folders, lambda paths: [str(p.absolute()) for p in paths])
+_COORDINATES = Kind("coordinates by axis letter", _read_coordinates, schema=COORDINATES_SCHEMA)
+_PARAMETERS = Kind("numbers by parameter", _read_parameters, schema=PARAMETERS_SCHEMA)
+_FOLDERS = Kind(
+    "list of folders",
+    _read_folders,
+    lambda paths: [str(p.absolute()) for p in paths],
+    schema={"type": "array", "items": {"type": "string", "minLength": 1}},
+)
 PLAIN: dict[type, Kind] = {
-    bool: Kind("true or false", partial(_read_plain, bool, "true or false")),
-    int: Kind("whole number", partial(_read_plain, int, "a whole number")),
-    float: Kind("number", partial(_read_plain, float, "a number")),
-    str: Kind("text", partial(_read_plain, str, "a text")),
-    Path: Kind("file name", _read_path, lambda path: str(path.absolute())),
-    ModelFile: Kind("error model", _read_model, lambda f: str(f.path.absolute())),
-    Lines: Kind("list of lines", _read_lines, lambda lines: list(lines.texts)),
-    KinematicsFile: Kind("machine file", _read_machine, lambda f: str(f.path.absolute())),
+    bool: _plain_kind(bool, "true or false", "true or false", "boolean"),
+    int: _plain_kind(int, "whole number", "a whole number", "integer"),
+    float: _plain_kind(float, "number", "a number", "number"),
+    str: _plain_kind(str, "text", "a text", "string"),
+    Path: _file_kind("file name", _read_path),
+    ModelFile: _file_kind("error model", _read_model),
+    Lines: Kind("list of lines", _read_lines, lambda lines: list(lines.texts), "", LINES_SCHEMA),
+    KinematicsFile: _file_kind("machine file", _read_machine),
 }
 """The types that are known by themselves; all others stand in an annotation."""
 LOADED: dict[Kind, type] = {PLAIN[kind]: kind for kind in (Path, ModelFile, Lines, KinematicsFile)}

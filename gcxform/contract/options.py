@@ -49,6 +49,7 @@ from gcxform.contract.option_kinds import ModelFile as ModelFile
 from gcxform.contract.option_kinds import Pair as Pair
 from gcxform.contract.option_kinds import ParameterValues as ParameterValues
 from gcxform.contract.option_kinds import Vector as Vector
+from gcxform.contract.option_schemas import by_letter, ranged
 from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.errormodel.formats import ErrorFormat
 from gcxform.machine.formats import NONE, Known
@@ -219,6 +220,27 @@ def describe(target: type) -> list[OptionDoc]:
         )
         for spec in _specs(target)
     ]
+
+
+def schema(target: type) -> dict[str, Any]:
+    """Return the JSON Schema of a table of options: no other keys, and those that it needs."""
+    specs = _specs(target)
+    return {
+        "type": "object",
+        "properties": {spec.key: _schema_of(spec) for spec in specs},
+        "required": [spec.key for spec in specs if spec.default is MISSING],
+        "additionalProperties": False,
+    }
+
+
+def _schema_of(spec: _Spec) -> dict[str, Any]:
+    """Return the JSON Schema of one option, with what it says, its range and its default."""
+    found = ranged(dict(spec.kind.schema), spec.option)
+    found = by_letter(found) if spec.by_letter else found
+    default = _default_text(spec)
+    range_ = spec.option.range_text(spec.kind.unit)
+    said = [part for part in (spec.option.help, range_, default and f"default {default}") if part]
+    return {**found, "description": "; ".join(said)} if said else found
 
 
 def _default_text(spec: _Spec) -> str:

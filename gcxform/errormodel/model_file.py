@@ -12,6 +12,7 @@ from typing import Any
 
 import msgspec
 
+from gcxform.config.schemas import format_schema, headed, of_toml
 from gcxform.config.toml_text import Codes, TomlText, convert, did_you_mean, read_toml
 from gcxform.diagnostics import Location, UsageError
 from gcxform.errormodel.formats import ErrorFormat, check_readable, chosen_format, unsaid
@@ -146,11 +147,14 @@ def check_version(document: TomlText, what: str) -> None:
 
 
 def schema() -> dict[str, Any]:
-    """Return the JSON Schema of error models."""
+    """Return the JSON Schema of error models: one of their kinds, whose key says which."""
     functions = [AxisFunctionsFile, PitchFile, ThermalScrewFile]
     files = [*functions, LatticeFile, HeightMapFile, SkewFile, SumFile]
-    kinds, parts = msgspec.json.schema_components(files, ref_template="#/$defs/{name}")
-    return {"anyOf": list(kinds), "$defs": parts}
+    found = msgspec.json.schema_components(files, ref_template="#/$defs/{name}")
+    kinds, parts = of_toml(list(found))
+    for file in files:
+        parts[file.__name__]["properties"]["format"] = format_schema(FORMAT)
+    return headed("model", {"type": "object", "anyOf": kinds, "$defs": parts})
 
 
 KINDS: dict[str, Callable[[TomlText], ErrorModel]] = {

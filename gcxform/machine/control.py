@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
 from gcxform.config.quantities import LENGTH
+from gcxform.config.schemas import quantity_schema, whole
 from gcxform.config.toml_text import TomlText, did_you_mean
 from gcxform.diagnostics import Diagnostic
 from gcxform.machine import macro_tables
@@ -54,8 +55,9 @@ class Setting:
 
     def schema(self) -> dict[str, Any]:
         """Return its JSON Schema."""
-        found: dict[str, Any] = {"enum": [*self.choices]} if self.choices else {}
-        return {**(found or {"type": ["number", "string"]}), "description": self.help}
+        length = quantity_schema(LENGTH) | {"minimum": 0}
+        taken = {"enum": [*self.choices]} if self.choices else length
+        return {**taken, "description": self.help}
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ class _Code(Setting):
 
     def schema(self) -> dict[str, Any]:
         """Return its JSON Schema."""
-        return {"type": "string", "pattern": _OWN_CODE.pattern, "description": self.help}
+        return {"type": "string", "pattern": whole(_OWN_CODE.pattern), "description": self.help}
 
 
 _KNOWN: dict[str, Setting] = {}
@@ -171,7 +173,12 @@ def schema() -> dict[str, Any]:
     known = {name: setting.schema() for name, setting in _KNOWN.items()}
     like = {"type": "string", "description": "a preset of a machine"}
     properties = {**known, INERT: codes, MACRO: macro_tables.schema(), LIKE: like}
-    return {"type": "object", "properties": properties, "additionalProperties": False}
+    return {
+        "type": "object",
+        "properties": properties,
+        "dependentRequired": {name: [n for n in SWITCHES if n != name] for name in SWITCHES},
+        "additionalProperties": False,
+    }
 
 
 def _length(raw: object) -> float:

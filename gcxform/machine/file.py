@@ -35,7 +35,6 @@ from gcxform.machine import control
 from gcxform.machine import kinds as presets
 from gcxform.machine.formats import NONE, Known
 from gcxform.machine.machine import (
-    WITH_UNIT,
     Axis,
     Machine,
     MachineFile,
@@ -49,8 +48,9 @@ FILLED_IN = ("control", "tool", "work-offset", "home")
 """The tables in which a value may be left to be filled in."""
 EXAMPLES = {"axis": "X", "work-offset": "G54", "home": "G28", "tool": "1"}
 Keys = tuple[str | int, ...]
-_HOME = re.compile(r"G28|G30( P[0-9]+)?")
-_WORK_OFFSET = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?|G154 P[0-9]+")
+HOME = re.compile(r"G28|G30( P[0-9]+)?")
+TOOL = re.compile("[0-9]{1,9}")
+WORK_OFFSET = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?|G154 P[0-9]+")
 
 
 def load_machine(path: Path, known: Known = NONE) -> Machine:
@@ -111,24 +111,6 @@ def _tools(document: TomlText, file: MachineFile, known: Known) -> dict[int, Too
 def _given(offset: Offset) -> dict[str, float]:
     """Return the coordinates of a work offset which are given."""
     return {k: float(v) for k, v in msgspec.structs.asdict(offset).items() if v is not None}
-
-
-def schema() -> dict[str, Any]:
-    """Return the JSON Schema of machine files."""
-    found: dict[str, Any] = msgspec.json.schema(MachineFile)
-    _admit_strings(found)
-    keys = found["$defs"]["MachineFile"]["properties"]
-    keys["control"] = {**control.schema(), "description": keys["control"]["description"]}
-    return found
-
-
-def _admit_strings(node: Any) -> None:
-    """Let strings in wherever a number may have a unit, in place."""
-    children = node.values() if isinstance(node, dict) else node if isinstance(node, list) else ()
-    if isinstance(node, dict) and node.pop(WITH_UNIT, False):
-        node["type"] = ["number", "string"]
-    for child in children:
-        _admit_strings(child)
 
 
 @dataclass(frozen=True)
@@ -280,7 +262,7 @@ def _chain_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnosti
 
 def _offset_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
     for code, offset in file.work_offset.items():
-        if not _WORK_OFFSET.fullmatch(code):
+        if not WORK_OFFSET.fullmatch(code):
             yield Diagnostic(
                 "GX436",
                 f"{code!r} is not a work offset",
@@ -289,7 +271,7 @@ def _offset_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnost
             )
         yield from _strange_axes(document, file, ("work-offset", code), offset)
     for code, place in file.home.items():
-        if not _HOME.fullmatch(code):
+        if not HOME.fullmatch(code):
             where = document.where("home", code)
             yield Diagnostic(
                 "GX436", f"{code!r} is not a home position", where, 'known: G28, G30, "G30 P2"'
@@ -330,7 +312,7 @@ def _tool_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic
     numbers: set[int] = set()
     for number, tool in file.tool.items():
         where = document.where("tool", number)
-        if not re.fullmatch("[0-9]{1,9}", number):
+        if not TOOL.fullmatch(number):
             yield Diagnostic("GX437", f"{number!r} is not a tool number", where)
         elif int(number) in numbers:
             yield Diagnostic("GX437", f"the tool {int(number)} stands twice", where)

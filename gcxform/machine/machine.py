@@ -8,15 +8,18 @@ from typing import Annotated, Literal
 import msgspec
 
 from gcxform.config.keys import says
+from gcxform.config.quantities import ANGLE, LENGTH
+from gcxform.config.schemas import with_unit
 from gcxform.diagnostics import Location
 
 SWITCHES = ("tip-on", "tip-off")
 TIP_AT_START = "tip-at-start"
 """Settings that name the M codes with which the control follows the tip of the tool, and stops."""
-WITH_UNIT = "with-unit"
-"""The mark, in a schema that is being made, of what may be written with a unit."""
-Value = Annotated[float, msgspec.Meta(extra_json_schema={WITH_UNIT: True})]
-Triple = tuple[Value, Value, Value]
+Length = Annotated[float, with_unit(LENGTH)]
+Angle = Annotated[float, with_unit(ANGLE)]
+Place = Annotated[float, with_unit(LENGTH, ANGLE)]
+"""What may be written with a unit: `gcxform.machine.file` makes numbers of it."""
+Triple = tuple[Length, Length, Length]
 
 
 class Axis(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="kebab", kw_only=True):
@@ -28,7 +31,7 @@ class Axis(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="keba
     be given either way round: read from a file, the largest component of its direction is positive.
     """
 
-    limits: Annotated[tuple[Value, Value] | None, says("its travel from to, mm or degrees")] = None
+    limits: Annotated[tuple[Place, Place] | None, says("its travel from to, mm or degrees")] = None
     max_speed: Annotated[float | None, says("its top speed, mm/min or degrees/min")] = None
     direction: Annotated[
         tuple[float, float, float] | None, says("the way it points, with all axes at 0: any length")
@@ -38,7 +41,7 @@ class Axis(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="keba
         int | None,
         says("1: a positive command turns right-handed about the direction, -1: left-handed"),
     ] = None
-    wrap: Annotated[Value | None, says("where the display begins anew, degrees")] = None
+    wrap: Annotated[Angle | None, says("where the display begins anew, degrees")] = None
 
 
 NOT_SAID = float("nan")
@@ -52,13 +55,13 @@ class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="keba
     loaded.
     """
 
-    length: Annotated[Value, says("from the gauge point to the tip, mm; else not known")] = NOT_SAID
-    radius: Annotated[Value, says("of the cutter, mm; else not known")] = NOT_SAID
+    length: Annotated[Length, says("from gauge point to the tip, mm; else not known")] = NOT_SAID
+    radius: Annotated[Length, says("of the cutter, mm; else not known")] = NOT_SAID
     d: Annotated[
-        Value, says("instead of the radius: what D calls, as the control shows it, mm; see `d-is`")
+        Length, says("instead of the radius: what D calls, as the control shows it, mm; see `d-is`")
     ] = NOT_SAID
-    x: Annotated[Value, says("offset of the tip in X, mm")] = 0.0
-    y: Annotated[Value, says("offset of the tip in Y, mm")] = 0.0
+    x: Annotated[Length, says("offset of the tip in X, mm")] = 0.0
+    y: Annotated[Length, says("offset of the tip in Y, mm")] = 0.0
 
     @property
     def vector(self) -> tuple[float, float, float]:
@@ -69,15 +72,15 @@ class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="keba
 class Offset(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A work offset: the position of its origin by axis, mm and degrees."""
 
-    X: Annotated[Value | None, says("where its zero is on X, mm")] = None
-    Y: Annotated[Value | None, says("where its zero is on Y, mm")] = None
-    Z: Annotated[Value | None, says("where its zero is on Z, mm")] = None
-    U: Annotated[Value | None, says("where its zero is on U, mm")] = None
-    V: Annotated[Value | None, says("where its zero is on V, mm")] = None
-    W: Annotated[Value | None, says("where its zero is on W, mm")] = None
-    A: Annotated[Value | None, says("where its zero is on A, degrees")] = None
-    B: Annotated[Value | None, says("where its zero is on B, degrees")] = None
-    C: Annotated[Value | None, says("where its zero is on C, degrees")] = None
+    X: Annotated[Length | None, says("where its zero is on X, mm")] = None
+    Y: Annotated[Length | None, says("where its zero is on Y, mm")] = None
+    Z: Annotated[Length | None, says("where its zero is on Z, mm")] = None
+    U: Annotated[Length | None, says("where its zero is on U, mm")] = None
+    V: Annotated[Length | None, says("where its zero is on V, mm")] = None
+    W: Annotated[Length | None, says("where its zero is on W, mm")] = None
+    A: Annotated[Angle | None, says("where its zero is on A, degrees")] = None
+    B: Annotated[Angle | None, says("where its zero is on B, degrees")] = None
+    C: Annotated[Angle | None, says("where its zero is on C, degrees")] = None
 
 
 class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="kebab"):
@@ -91,7 +94,7 @@ class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
             "a kind of machines, which names and places its rotary axes (`gcxform list kinematics`)"
         ),
     ] = None
-    inclination: Annotated[Value | None, says("by how much a nutating axis leans, degrees")] = None
+    inclination: Annotated[Angle | None, says("by how much a nutating axis leans, degrees")] = None
     table: Annotated[
         list[str],
         says("letters of the rotary axes that carry the workpiece, from the base outwards"),

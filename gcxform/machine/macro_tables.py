@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
+from gcxform.config.schemas import Schema, whole
 from gcxform.config.toml_text import TomlText
 from gcxform.diagnostics import Diagnostic
 
@@ -23,6 +24,7 @@ ENDS: Final = ("unchanged", "unknown", "at XYZ")
 _ENDS = re.compile("unchanged|unknown|at [XYZABCUVW]{1,9}")
 _CALLED = re.compile(r"P[1-9][0-9]{0,7}|[GM][0-9]{1,3}(?:\.[0-9])?")
 _CODE = "[GM][1-9][0-9]{0,2}"
+_ONLY_CALLED = r"P[1-9][0-9]{0,7}|[GM](?:0[0-9]{0,2}|[0-9]{1,3}\.[0-9])"  # no code, so no alias
 _ALIAS = re.compile(f"{_CODE}|T")
 _RANGE = re.compile(f"({_CODE})-({_CODE})")
 VARIABLES: Final = ("own", "shared")
@@ -97,16 +99,40 @@ def _calls_right(said: Mapping[str, object]) -> bool:
 
 
 def schema() -> dict[str, Any]:
-    """Return the JSON Schema of the table."""
-    properties = {
+    """Return the JSON Schema of the table: how a code is called decides what may be said of it."""
+    properties: Schema = {
         "ends": {
             "type": "string",
-            "pattern": f"^({_ENDS.pattern})$",
+            "pattern": whole(_ENDS.pattern),
             "description": "where the axes are behind the call",
         },
-        "program": {"type": "integer", "description": "the program that the code calls"},
+        "program": {
+            "type": "integer",
+            "exclusiveMinimum": 0,
+            "exclusiveMaximum": LARGEST,
+            "description": "the program that the code calls",
+        },
         "variables": {"enum": [*VARIABLES], "description": "whose #1 to #33 it has"},
     }
-    one = {"type": "object", "properties": properties, "additionalProperties": False}
+
+    def table(*keys: str) -> Schema:
+        of = {"variables": ["program"]} if "variables" in keys else {}
+        said = {key: properties[key] for key in keys}
+        found = {"type": "object", "properties": said, "dependentRequired": of}
+        return {**found, "additionalProperties": False}
+
+    calls = ("program", "variables")
+    either = {"not": {"required": ["ends", "program"]}}
+    named = {
+        whole(_CODE): table("ends", *calls) | either,
+        whole(_ONLY_CALLED): table("ends"),
+        whole(f"T|{_CODE}-{_CODE}"): table(*calls),
+    }
+    other = table("ends", *calls) | {"maxProperties": 0}
     said = "what macros and codes of the machine's own do, by name: P9832, G100, M50"
-    return {"type": "object", "additionalProperties": one, "description": said}
+    return {
+        "type": "object",
+        "patternProperties": named,
+        "additionalProperties": other,
+        "description": said,
+    }

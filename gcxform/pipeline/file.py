@@ -153,6 +153,8 @@ SECTIONS: Final[Mapping[str, type]] = {
     "output": OutputSpec,
     "limits": Limits,
 }
+FILLED_IN: Final = ("input",)
+"""The sections in which a value may be left to be filled in."""
 KEYS: Final = ("format", *SECTIONS, "pass")
 
 
@@ -161,7 +163,7 @@ def load(path: Path, registry: Registry) -> PipelineSpec:
 
     Raises UsageError, with places in the file, for all that is wrong with it.
     """
-    document, still_open = split_open(read_toml(path, CODES), ("input",))
+    document, still_open = split_open(read_toml(path, CODES), FILLED_IN)
     _check_version(document)
     reader = _Reader(document, path.parent, registry, _unknown_keys(document))
     limits = reader.section("limits", Limits)

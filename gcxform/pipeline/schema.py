@@ -3,80 +3,69 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping
 from typing import Any, Final, Literal
 
-from gcxform.contract.options import OptionDoc, describe
+from gcxform.config.schemas import format_schema, headed, opened
+from gcxform.contract import options
 from gcxform.errormodel import model_file
-from gcxform.machine import file as machine_file
-from gcxform.pipeline.file import FORMAT, SECTIONS
+from gcxform.machine import schema as machine_file
+from gcxform.pipeline.file import FILLED_IN, FORMAT, SECTIONS
 from gcxform.plugin.registry import Registry, default_registry
 
-FORM: Final = f"the form of this file; now {FORMAT}"
-_JSON_TYPES: Final[Mapping[str, str | list[str]]] = {
-    "length": ["number", "string"],
-    "increment system or length": ["number", "string"],
-    "increment system or number": ["number", "string"],
-    "angle": ["number", "string"],
-    "three lengths": ["array", "string", "object"],
-    "coordinates by axis letter": "object",
-    "list of lines": "array",
-    "list of folders": "array",
-    "numbers by parameter": "object",
-    "true or false": "boolean",
-    "whole number": "integer",
-    "number": "number",
-    "whole number or table by letter": ["integer", "object"],
-}
-
-
 Kind = Literal["pipeline", "machine", "model"]
+DIALECTS: Final = ("input", "output")
+"""The sections that name a dialect."""
 
 
 def schema(kind: Kind, registry: Registry | None = None) -> dict[str, Any]:
     """Return the JSON Schema of a kind of files; that of pipelines has the passes' options."""
-    if kind == "machine":
-        _ = registry or default_registry()  # dialects have settings of their own
-        return machine_file.schema()
     if kind == "model":
         return model_file.schema()
-    return _pipeline_schema((registry or default_registry()).passes)
+    installed = registry or default_registry()
+    if kind == "machine":
+        _ = installed.dialects  # they have settings of their own
+        return machine_file.schema(installed.machines)
+    return _pipeline_schema(installed)
 
 
-def _pipeline_schema(passes: Mapping[str, type]) -> dict[str, Any]:
-    steps = [_table(describe(each), use=name) for name, each in passes.items()]
-    properties: dict[str, Any] = {"format": {"const": FORMAT, "description": FORM}}
+def _pipeline_schema(registry: Registry) -> dict[str, Any]:
+    properties: dict[str, Any] = {"format": format_schema(FORMAT)}
     for name, section in SECTIONS.items():
-        said = (inspect.getdoc(section) or "").partition("\n\n")[0].rstrip(".")
-        properties[name] = {**_table(describe(section)), "description": " ".join(said.split())}
-    said = "a step of the chain, by its name; steps run in their order"
-    properties["pass"] = {"type": "array", "items": {"anyOf": steps}, "description": said}
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "gcxform pipeline",
-        "type": "object",
-        "properties": properties,
-        "required": ["format"],
-        "additionalProperties": False,
+        found = options.schema(section)
+        if name in DIALECTS:
+            found["properties"]["dialect"] |= {"enum": [*registry.dialects]}
+        keys = found["properties"]
+        found["properties"] = {k: opened(v) for k, v in keys.items()} if name in FILLED_IN else keys
+        properties[name] = {**found, "description": _said(section)}
+    properties["budget"]["minProperties"] = 1
+    steps = [_step(name, each) for name, each in registry.passes.items()]
+    properties["pass"] = {
+        "type": "array",
+        "items": {"anyOf": steps},
+        "description": "a step of the chain, by its name; steps run in their order",
+    }
+    return headed(
+        "pipeline",
+        {
+            "type": "object",
+            "properties": properties,
+            "required": ["format"],
+            "additionalProperties": False,
+        },
+    )
+
+
+def _step(name: str, step: type) -> dict[str, Any]:
+    """Return the schema of a step: the name of its pass, and its options."""
+    found = options.schema(step)
+    return found | {
+        "title": name,
+        "description": _said(step),
+        "properties": {"use": {"const": name, "description": _said(step)}} | found["properties"],
+        "required": ["use", *found["required"]],
     }
 
 
-def _table(options: list[OptionDoc], use: str = "") -> dict[str, Any]:
-    """Return the schema of a table of options, with the name of its pass."""
-    named: dict[str, Any] = {"use": {"const": use}} if use else {}
-    return {
-        "type": "object",
-        "properties": named | {option.name: _property(option) for option in options},
-        "required": [*named, *(option.name for option in options if option.mandatory)],
-        "additionalProperties": False,
-    }
-
-
-def _property(option: OptionDoc) -> dict[str, Any]:
-    found: dict[str, Any] = {"type": _JSON_TYPES.get(option.type, "string")}
-    if option.choices:
-        found = {"enum": list(option.choices)}
-    parts = (option.help, option.range, f"default {option.default}" if option.default else "")
-    if text := "; ".join(part for part in parts if part):
-        found["description"] = text
-    return found
+def _said(of: type) -> str:
+    """Return the first sentence of what something says of itself."""
+    return " ".join((inspect.getdoc(of) or "").partition("\n\n")[0].rstrip(".").split())

@@ -12,6 +12,7 @@ from faults import (
     computing,
     cutter,
     cycles,
+    editors,
     fagor,
     flow,
     folding,
@@ -55,6 +56,7 @@ from faults.mutation import Mutation
 
 MUTATIONS: tuple[Mutation, ...] = (
     *cycles.MUTATIONS,
+    *editors.MUTATIONS,
     *flow.MUTATIONS,
     *folding.MUTATIONS,
     *guarding.MUTATIONS,

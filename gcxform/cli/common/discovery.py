@@ -25,7 +25,7 @@ def pipeline_above(program: Path) -> Path | None:
     A link is not followed: the folder is the one in which the program is named. Raises UsageError
     for a file that somebody else may have put there.
     """
-    for folder in _upwards(Path(os.path.abspath(program)).parent):
+    for folder in upwards(Path(os.path.abspath(program)).parent):
         found = folder / NAME
         if found.is_file():
             _check_owner(found)
@@ -33,7 +33,7 @@ def pipeline_above(program: Path) -> Path | None:
     return None
 
 
-def _upwards(folder: Path) -> Iterator[Path]:
+def upwards(folder: Path) -> Iterator[Path]:
     """Yield a folder and those above it, until one that no folder above is a matter of."""
     home = os.path.realpath(os.path.expanduser("~"))
     for each in (folder, *folder.parents):

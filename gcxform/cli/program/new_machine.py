@@ -16,10 +16,12 @@ from gcxform.cli.common.programs import files_of, opened
 from gcxform.cli.common.request import Asked
 from gcxform.cli.program.asking import block
 from gcxform.cli.program.filled_files import with_questions
+from gcxform.cli.program.named_schemas import comment_for
 from gcxform.cli.program.survey import Programs, Survey, dialect_of
 from gcxform.machine.machine import Machine
 from gcxform.pipeline.chain_text import parse_chain
 from gcxform.pipeline.pipeline import Pipeline
+from gcxform.pipeline.schema import Kind
 from gcxform.plugin.registry import default_registry
 from gcxform.system.inputs import visit
 
@@ -86,10 +88,10 @@ def _write(read: Programs, found: Survey, chain: str | None, places: Places) -> 
     asked, notes = found.asked(), found.notes()
     of_pipeline = [question for question in asked if question[0] == PIPELINE]
     of_machine = [question for question in asked if question[0] != PIPELINE]
-    head = _text(places.machine, ["format = 1"])
+    head = _text("machine", places.machine, ["format = 1"])
     text = with_questions(head, of_machine, notes, read.dialect, places.machine)
     if places.pipeline:
-        head = _text(places.pipeline, _pipeline_head(read, chain, places))
+        head = _text("pipeline", places.pipeline, _pipeline_head(read, chain, places))
         other = with_questions(head, of_pipeline, notes, read.dialect, places.pipeline)
         with destination(places.pipeline) as put:
             put(other.encode())
@@ -102,12 +104,13 @@ def _write(read: Programs, found: Survey, chain: str | None, places: Places) -> 
         say("\n".join(block(of_pipeline, notes, read.dialect)))
 
 
-def _text(name: str, head: Iterable[str]) -> str:
+def _text(kind: Kind, name: str, head: Iterable[str]) -> str:
     """Return the text of a file that is there, which has been read as TOML, or of a new one."""
+    schema = [] if name == STDOUT else comment_for(kind, Path(name))
     if _is_there(name):
         return Path(name).read_bytes().decode()
     said = '# Fill in what is "?": until then it says nothing, and is refused where it is needed.'
-    return "\n".join([said, *head, ""])
+    return "\n".join([*schema, said, *head, ""])
 
 
 def _pipeline_head(read: Programs, chain: str | None, places: Places) -> Iterator[str]:
