@@ -8,12 +8,16 @@ then the exit code is 1. Which test noticed is printed; in the end all these run
 any fault, where they must pass. The faults are listed in `tests/faults/`. The seconds are those of
 a processor, and the twenty faults that took most are named in the end.
 
+A fault is tried first in a copy of a process that has loaded gcxform, in which the code of a few
+functions is replaced (`swapping.py`); commands that a test starts find it in the copied packages.
+Where that cannot be done, or nothing fails, the copied packages are loaded anew.
+
 `--remember` writes into `tests/faults/noticed.txt` which test noticed, where that took long. Next
 time it is run first; if it passes, or is no more, all tests of the fault are run. So this file
 changes how long a verdict takes, and nothing else.
 
-Tests run in copies of this process, which has imported what others wrote and nothing of gcxform: a
-new one starts in milliseconds. Nothing but the test that is named is drawn up.
+Tests run in copies of this process, which has imported what others wrote and nothing of gcxform, or
+of one that has: a new one starts in milliseconds. Nothing but the test that is named is drawn up.
 """
 
 from __future__ import annotations
@@ -29,11 +33,13 @@ import sys
 import tempfile
 import traceback
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from multiprocessing import Pipe
 from pathlib import Path
 
+import swapping
 from faults import MUTATIONS
 from faults.mutation import Mutation
 
@@ -47,6 +53,7 @@ IMPORTED = (
     *("pdb", "faulthandler", "readline", "unittest.mock", "_pytest.pytester_assertions"),
 )
 FAILED, BROKEN = 1, 99  # FAILED is pytest's exit code for tests that failed
+NOT_SWAPPED = 98
 TIMEOUT = 180  # seconds for one set of tests; a mutant that hangs is noticed too
 REMEMBERED = ROOT / "tests" / "faults" / "noticed.txt"
 LONG = 1.0  # seconds of a processor
@@ -91,8 +98,10 @@ def mended(mutation: Mutation, folder: Path) -> None:
 
 # --- processes ---
 
+Job = tuple[Mutation | None, list[str]]  # a fault, or none, and the tests to run
 
-def started(folder: Path, tests: Iterable[str]) -> int:
+
+def started(folder: Path, job: Job, loaded: swapping.Loaded | None) -> int:
     """Run tests on the packages in a folder, in a copy of this process; return its number."""
     (folder / NOTICED).write_text("", encoding="utf-8")
     sys.stdout.flush()
@@ -100,7 +109,7 @@ def started(folder: Path, tests: Iterable[str]) -> int:
     if number == 0:
         code = BROKEN
         try:
-            code = tested(folder, list(tests))
+            code = tested(folder, job, loaded)
         except BaseException:
             traceback.print_exc()
         finally:
@@ -109,27 +118,41 @@ def started(folder: Path, tests: Iterable[str]) -> int:
     return number
 
 
-def tested(folder: Path, tests: list[str]) -> int:
+def tested(folder: Path, job: Job, loaded: swapping.Loaded | None) -> int:
     """Make this process one for the packages in a folder; return pytest's exit code."""
+    mutation, tests = job
     os.setsid()  # what it starts can be ended with it
     signal.alarm(TIMEOUT * len(tests))
+    if loaded and mutation and not swapped(mutation, loaded):
+        return NOT_SWAPPED
     said = os.open(folder / SAID, os.O_CREAT | os.O_TRUNC | os.O_WRONLY)
     os.dup2(said, 1)
     os.dup2(said, 2)
     os.chdir(ROOT)
-    places = [str(folder), *(str((folder / package).parent) for package in PACKAGES[1:])]
-    sys.path[:0] = places
+    sys.path[:0] = places = homes(folder)
     sys.dont_write_bytecode = True
     os.environ["PYTHONPATH"] = os.pathsep.join(places)
     os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
     os.environ["HYPOTHESIS_PROFILE"] = "faults"
     package = importlib.import_module("gcxform")
-    assert str(package.__file__).startswith(str(folder)), package.__file__
+    assert Path(str(package.__file__)).is_relative_to(ROOT if loaded else folder), package.__file__
     pytest = importlib.import_module("pytest")
     options = ["-x", "-q", "-p", "no:cacheprovider", f"--basetemp={folder / 'tmp'}"]
     options += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]  # of what is imported already
     named = frozenset(test.partition("::")[2].partition("[")[0] for test in tests)
     return int(pytest.main([*options, *tests], plugins=[Noticed(folder / NOTICED, named)]))
+
+
+def homes(folder: Path) -> list[str]:
+    """Return where the packages are found that a folder has, or the repository."""
+    return [str((folder / package).parent) for package in PACKAGES]
+
+
+def swapped(mutation: Mutation, loaded: swapping.Loaded) -> bool:
+    """Put a fault into what is loaded; tell whether that could be done."""
+    text = (ROOT / mutation.file).read_text(encoding="utf-8")
+    wrong = text.replace(mutation.old, mutation.new)
+    return loaded.swapped(ROOT / mutation.file, text, wrong)
 
 
 @dataclass
@@ -162,8 +185,6 @@ def ended() -> tuple[int, int, float]:
 
 # --- verdicts ---
 
-Job = tuple[Mutation | None, list[str]]  # a fault, or none, and the tests to run
-
 
 @dataclass(frozen=True)
 class Verdict:
@@ -181,7 +202,9 @@ class Verdict:
         return {0: "SURVIVED", FAILED: "caught"}.get(self.code, f"BROKEN ({self.code})")
 
 
-def finished(jobs: list[Job], folders: list[Path]) -> Iterator[Verdict]:
+def finished(
+    jobs: list[Job], folders: list[Path], loaded: swapping.Loaded | None = None
+) -> Iterator[Verdict]:
     """Do jobs, as many at a time as there are copies; yield the verdicts as they come."""
     waiting, free = jobs[::-1], list(folders)
     running: dict[int, tuple[Job, Path]] = {}
@@ -190,7 +213,7 @@ def finished(jobs: list[Job], folders: list[Path]) -> Iterator[Verdict]:
             job, folder = waiting.pop(), free.pop()
             if job[0]:
                 broken(job[0], folder)
-            running[started(folder, job[1])] = job, folder
+            running[started(folder, job, loaded)] = job, folder
         number, code, seconds = ended()
         job, folder = running.pop(number)
         if job[0]:
@@ -200,19 +223,39 @@ def finished(jobs: list[Job], folders: list[Path]) -> Iterator[Verdict]:
         yield Verdict(job, code, test, said[-3000:], seconds)
 
 
+def finished_loaded(jobs: list[Job], folders: list[Path]) -> Iterator[Verdict]:
+    """Do jobs as copies of a process that has loaded gcxform; some may be left undone."""
+    receiver, sender = Pipe(duplex=False)
+    number = os.fork()
+    if number == 0:
+        try:
+            sys.path[:0] = homes(ROOT)
+            loaded = swapping.load()
+            gc.freeze()
+            for one in finished(jobs, folders, loaded):
+                sender.send(one)
+        except BaseException:
+            traceback.print_exc()
+        finally:
+            os._exit(0)
+    sender.close()
+    with suppress(EOFError):
+        while True:
+            yield receiver.recv()
+    os.waitpid(number, 0)
+
+
 def verdicts(chosen: list[Mutation], folders: list[Path]) -> Iterator[tuple[Mutation, Verdict]]:
     """Yield the verdicts on mutations; the test that noticed last time is asked before all."""
-    before, again = remembered(), []
-    for one in finished([(m, [before.get(m.name, m.tests)]) for m in chosen], folders):
-        mutation, tests = one.job
-        assert mutation is not None
-        if one.code != FAILED and tests != [mutation.tests]:
-            again.append(mutation)
-        else:
-            yield mutation, one
-    for one in finished([(m, [m.tests]) for m in again], folders):
-        assert one.job[0] is not None
-        yield one.job[0], one
+    before, left = remembered(), {m.name: m for m in chosen}
+    for finish, first in ((finished_loaded, before), (finished, before), (finished, None)):
+        jobs: list[Job] = [(m, [(first or {}).get(name, m.tests)]) for name, m in left.items()]
+        for one in finish(jobs, folders):
+            mutation = one.job[0]
+            assert mutation is not None
+            if one.code == FAILED or first is None:
+                del left[mutation.name]
+                yield mutation, one
 
 
 def remembered() -> dict[str, str]:
