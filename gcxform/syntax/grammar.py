@@ -7,7 +7,7 @@ iso (...)`.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 from lark import Lark, Token, Tree
@@ -26,6 +26,7 @@ from gcxform.syntax.tree import (
 )
 from gcxform.system.limits import how_to_raise, limits
 
+LATELY = 512  # blocks whose trees are kept
 ABOVE = 3  # levels of a tree above the first of an expression: start, word
 MARKS = frozenset(
     {
@@ -36,14 +37,23 @@ MARKS = frozenset(
 
 
 class Grammar:
-    """One dialect's grammar: `parse` turns the text of a block into its tree."""
+    """One dialect's grammar: `parse` turns the text of a block into its tree.
+
+    A line is read by the flow, the reader and the proof: its tree, which nobody changes, is kept
+    for a while.
+    """
 
     def __init__(self, package: str, name: str) -> None:
         self.name = name
         self._lark = kept.grammar(package, name)
+        self._lately = lru_cache(LATELY)(self._parsed)
 
     def parse(self, text: str) -> Block:
         """Return the tree of one block; what the grammar does not accept becomes `Block.error`."""
+        return self._lately(text, limits().nesting)
+
+    def _parsed(self, text: str, nesting: int) -> Block:
+        """Parse a block; the limit of levels, which is in force, decides as well."""
         try:
             tree = parsed(self._lark, text)
         except UnexpectedInput as error:
