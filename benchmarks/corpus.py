@@ -50,12 +50,12 @@ BESIDE = HERE.parents[1] / "shared" / "corpus"
 MODEL = HERE.parent / "examples" / "lddm" / "model.toml"
 CHAIN = f"absolute | segment chord-error=5um | volumetric model={MODEL} outside=clamp tolerance=1um"
 CHAINS = {"absolute": "absolute", "compensated": CHAIN}
-OURS = ("fanuc", "grbl", "haas", "linuxcnc", "siemens")
+OURS = ("fanuc", "grbl", "haas", "linuxcnc", "siemens", "heidenhain")
 NAMED = {"sinumerik": "siemens"}
 """The dialects of the corpus that have another name here."""
-WHOLE_LANGUAGES = ("siemens",)
+WHOLE_LANGUAGES = ("siemens", "heidenhain")
 """Those that are written in their own language: by passes that change no position."""
-BARS = {"fanuc": 32, "grbl": 38, "haas": 11, "linuxcnc": 129, "siemens": 42}
+BARS = {"fanuc": 32, "grbl": 38, "haas": 11, "linuxcnc": 129, "siemens": 42, "heidenhain": 17}
 """Programs that are to go through `absolute`; in the long chain a tenth fewer may."""
 SECONDS = 120
 START = Reading({"X": 0.0, "Y": 0.0, "Z": 0.0})
@@ -211,6 +211,14 @@ MOVES = re.compile(WORD, re.IGNORECASE)
 NAME = re.compile(rb"O[ \t]*(<[^<>]*>|[0-9]+)[ \t]*(?:SUB)?", re.IGNORECASE)
 SIEMENS = re.compile(rb"(?<![A-Z0-9_$])[XYZABCUVW][0-9]?[ \t]*(?:[-+.0-9]|=)", re.IGNORECASE)
 DEFINED = re.compile(rb"(?:N[0-9]+[ \t]+)?((?:DEF|PROC|EXTERN)\b.*)", re.IGNORECASE)
+KLARTEXT = re.compile(
+    rb"^[ \t]*(?:[0-9]+[ \t]+)?(?:L|LP|C|CP|CR|CT|CTP|RND|CHF|APPR|DEP|LN|F[LC]T?)"
+    rb"(?![A-Z])(?=[^;]*[0-9])",
+    re.IGNORECASE,
+)
+LABELS = re.compile(rb"[ \t]*(?:[0-9]+[ \t]+)?((?:LBL|CYCLE?[ \t]+DEF|TOOL[ \t]+DEF)\b.*)", re.I)
+LANGUAGES = {"siemens": (SIEMENS, DEFINED), "heidenhain": (KLARTEXT, LABELS)}
+"""Patterns of lines that move, and of definitions, where programs are not made of words alone."""
 FLOW = re.compile(rb"O[ \t]*(?:<[^<>]*>|[0-9]+)[ \t]*[A-Z]{2}", re.IGNORECASE)
 ASIDE = re.compile(rb"\([^()\n]*\)|;[^\n]*|^[/\s]*(?:N[0-9.]+)?\s+")
 
@@ -221,9 +229,10 @@ def held(text: bytes, dialect: str) -> tuple[int, Counter[bytes]]:
     Of a language with definitions these are what counts as names.
     """
     if dialect in WHOLE_LANGUAGES:
+        moves, definition = LANGUAGES[dialect]
         codes = [line.partition(b";")[0].strip() for line in text.splitlines()]
-        defined = Counter(m[1].lower() for m in map(DEFINED.fullmatch, codes) if m)
-        return sum(SIEMENS.search(line) is not None for line in codes), defined
+        defined = Counter(m[1].lower() for m in map(definition.fullmatch, codes) if m)
+        return sum(moves.search(line) is not None for line in codes), defined
     lines = [ASIDE.sub(b"", line).strip() for line in text.splitlines()]
     names = Counter(m[1].lower() for m in map(NAME.fullmatch, lines) if m)
     plain = [line for line in lines if FLOW.match(line) is None]

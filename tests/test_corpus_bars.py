@@ -21,6 +21,7 @@ LEAST = {
     "haas": (13, 9),
     "linuxcnc": (128, 59),
     "siemens": (53,),
+    "heidenhain": (17,),
 }
 """What goes through already, in each chain: it may not become less."""
 

@@ -432,16 +432,20 @@ READ = {
     "parts-2022/Dem-target1/11.h": 110,
     "parts-2022/Dem-target2/11.h": 527,
     "parts-2022/Interface-glue/11.h": 6421,
+    "WALLX20X20.h": 49,
+    "MEASTOK.h": 1,
+    "LP.nc": 10,
 }
 WHY = {
-    "DASHCEN.h": (9, "Q parameters"),
-    "WALLX20X20.h": (3, "Q parameters"),
-    "MEASTOK.h": (9, "Q parameters"),
-    "RECTIFI.h": (9, "Q parameters"),
-    "PRINTR1.h": (8, "Q parameters"),
-    "0TREF.h": (11, "Q parameters"),
+    "DASHCEN.h": (24, "Q1 has a value that only the control knows"),
+    "RECTIFI.h": (16, "IZ counts"),
+    "PRINTR1.h": (18, "Q12 has a value"),
+    "0TREF.h": (37, "Q12 has a value"),
+    "CALL_PGM.nc": (8, "CALL PGM100"),
+    "RND.nc": (11, "RND"),
+    "CYCL_DEF_10.nc": (3, "TOOL DEF1"),
     "Teflon-gasket/11.h": (53, "cycle 1 counts from where Z stands"),
-    ".nc": (1, "this is not a program for heidenhain"),
+    ".nc": (3, "TOOL DEF1"),
 }
 
 

@@ -38,7 +38,7 @@ def respelled(
         text: str | None = raw
         stepped = absolute and translator.counts(raw) and not any(map(is_kept, made))
         if made != whole[first:stop] or stepped:
-            text = translator.spelled(raw, [each.decode("latin-1") for each in made])
+            text = translator.spelled(line, [each.decode("latin-1") for each in made])
         if text != raw and line >= translator.own:
             raise _refusal(source, line, "this line would change, and stands in another file")
         if text is None:

@@ -147,8 +147,10 @@ class Translator(ABC):
         """Return the blocks behind the last line."""
         return ()
 
-    def spelled(self, line: str, blocks: Sequence[str]) -> str | None:
-        """Return a line that stands for new blocks, in its own manner; None where none is known.
+    def spelled(self, line: int, blocks: Sequence[str]) -> str | None:
+        """Return a line that stands for new blocks, in the manner of the one that is there.
+
+        `line` counts from 0; None where no such line is known.
 
         What is returned is read again, and has to stand for those blocks.
         """

@@ -12,10 +12,113 @@ SAID = "plugins/gcxform_plugins/dialects/heidenhain/positioning.py"
 WORDS = "plugins/gcxform_plugins/dialects/heidenhain/words.py"
 PROGRAM = "plugins/gcxform_plugins/dialects/heidenhain/klartext.py"
 TESTS = "tests/test_heidenhain.py"
+PARAMETERS = "plugins/gcxform_plugins/dialects/heidenhain/parameters.py"
+COMPUTES = "plugins/gcxform_plugins/dialects/heidenhain/arithmetic.py"
+BACK = "plugins/gcxform_plugins/dialects/heidenhain/programs.py"
+SPELLING = "plugins/gcxform_plugins/dialects/heidenhain/spelling.py"
+WRITTEN = "tests/test_klartext_written.py"
 READ = f"{TESTS}::test_it_is_read_as_by_a_reader_of_one_line_at_a_time"
 REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 
 MUTATIONS = (
+    Mutation(
+        "klartext: ANG has the opposite side last",
+        COMPUTES,
+        "math.atan2(a, b)",
+        "math.atan2(b, a)",
+        f"{WRITTEN}::test_functions_with_numbers",
+    ),
+    Mutation(
+        "klartext: INT goes down",
+        COMPUTES,
+        '"INT": lambda a: float(math.trunc(a))',
+        '"INT": lambda a: float(math.floor(a))',
+        f"{WRITTEN}::test_formulas_are_worth_what_the_manual_says",
+    ),
+    Mutation(
+        "klartext: values that are nearly equal are different",
+        COMPUTES,
+        "if a != b and abs(a - b) <= NEAR:",
+        "if a != b and abs(a - b) < 0:",
+        REFUSED,
+    ),
+    Mutation(
+        "klartext: a sign before a power is that of the power",
+        PARAMETERS,
+        'if rule == "power" and rule_of(node.children[0]) == "negated":',
+        "if False:",
+        REFUSED,
+    ),
+    Mutation(
+        "klartext: what the control reads leaves parameters as they were",
+        PARAMETERS,
+        "            self.q[key_of(name)] = None\n\n",
+        "            self.q.setdefault(key_of(name), None)\n\n",
+        f"{WRITTEN}::test_what_only_the_control_decides_is_kept_with_all_behind_it",
+    ),
+    Mutation(
+        "klartext: -Q1 is Q1",
+        PARAMETERS,
+        "return written(-value if sign else value)",
+        "return written(value)",
+        f"{WRITTEN}::test_a_loop_counts_by_jumps_and_a_subprogram_has_the_parameters",
+    ),
+    Mutation(
+        "klartext: QL parameters are those of all programs",
+        LABELS,
+        "self.q |= dict(call.local)",
+        "pass",
+        f"{WRITTEN}::test_a_program_beside_it_is_called",
+    ),
+    Mutation(
+        "klartext: a jump out of a repeat leaves it where it is",
+        LABELS,
+        "if key[1] == len(self.calls) and not self.repeated[key] <= line <= key[0]:",
+        "if False:",
+        REFUSED,
+    ),
+    Mutation(
+        "klartext: a step of a shift replaces it",
+        CYCLES,
+        "value = exact(Decimal(value) + Decimal(self.shift[axis]))",
+        "value = exact(Decimal(value))",
+        f"{WRITTEN}::test_a_shift_adds_and_leaves_other_axes",
+    ),
+    Mutation(
+        "klartext: places are known behind what is kept",
+        BACK,
+        "        self.lose()\n        self.pole, self.motion",
+        "        self.pole, self.motion",
+        f"{WRITTEN}::test_blocks_are_the_same_whatever_is_kept",
+    ),
+    Mutation(
+        "klartext: what hangs on the next line's direction is cut",
+        BACK,
+        'if ROUNDED.match(next(ahead, "")):',
+        "if False:",
+        f"{WRITTEN}::test_blocks_are_the_same_whatever_is_kept",
+    ),
+    Mutation(
+        "klartext: lines that may be executed again are changed",
+        BACK,
+        "return None if self.tied else spelled(",
+        "return spelled(",
+        f"{WRITTEN}::test_a_line_that_may_be_executed_again_is_not_changed",
+    ),
+    Mutation(
+        "klartext: a circle in a scale is cut as without",
+        BACK,
+        'if path.name not in ("L", "LP") and self.scaled:',
+        "if False:",
+        f"{WRITTEN}::test_a_circle_in_a_scale_is_kept",
+    ),
+    Mutation(
+        "klartext: M89 calls nothing",
+        BACK,
+        'self.modal = (self.modal or "89" in called) and "99" not in called',
+        "self.modal = False",
+        f"{WRITTEN}::test_cycles_that_call_themselves_keep_what_follows",
+    ),
     Mutation(
         "klartext: DR+ is clockwise",
         SAID,
@@ -96,7 +199,7 @@ MUTATIONS = (
     Mutation(
         "klartext: a shift is added to the one before",
         CYCLES,
-        "new = {axis: given.get(axis, old[axis]) for axis in LINEAR}",
+        "new = {axis: known[axis] for axis in LINEAR}",
         "new = {a: exact(Decimal(given.get(a, 0)) + Decimal(old[a])) for a in LINEAR}",
         READ,
     ),

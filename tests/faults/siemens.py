@@ -197,8 +197,8 @@ MUTATIONS = (
     Mutation(
         "siemens: lines that only the machine repeats are changed",
         PROGRAMS,
-        "return None if self.tied else spelled(line, blocks)",
-        "return spelled(line, blocks)",
+        "return None if self.tied else spelled(self.lines[line], blocks)",
+        "return spelled(self.lines[line], blocks)",
         f"{CASES}[dialects/siemens/kept-loop]",
     ),
     Mutation(

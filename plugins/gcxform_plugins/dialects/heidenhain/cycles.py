@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from decimal import Decimal
 from typing import Any
 
 import gcxform as gx
-from gcxform_plugins.dialects.heidenhain.labels import Labels
+from gcxform_plugins.dialects.heidenhain.parameters import Parameters
 from gcxform_plugins.dialects.heidenhain.words import LINEAR, exact, plain, written
 
 VALUE = r"[+-]?(?:\d{1,9}(?:[.,]\d{0,9})?|[.,]\d{1,9})"
 DEFINED = re.compile(r"CYCLE?\s+DEF\s*(\d{1,4})(?:\.(\d{1,2}))?(?![\d.])\s*(.*?)\s*~?\s*")
 SHIFT_LINE = re.compile(r"[\s\d/]*CYCLE?\s+DEF\s*7\.[1-9]", re.IGNORECASE)
-SHIFTED = re.compile(rf"([XYZABCUVW])\s*({VALUE})")
+SHIFTED = re.compile(rf"(I?)([XYZABCUVW])\s*(?:({VALUE})|([+-]?\s*Q[LR]?\d+))\s*")
 LAST_VALUE = re.compile(rf"(?:[A-Z][A-Z. -]*?)?\s*({VALUE})")
 PARAMETER = re.compile(rf"Q(\d{{1,4}})\s*=\s*({VALUE})(?![\w.,])")
 PARAMETER_LINE = re.compile(r"[\s\d]*Q[2-4]\d\d\s*=")
@@ -30,7 +31,7 @@ LEAVE = "if all of the program counts from it, leave this block out: G54 stands 
 ALONE = "let the CAM write the hole as plain moves"
 
 
-class Cycles(Labels):
+class Cycles(Parameters):
     """Reads cycles, and writes those that are called as moves."""
 
     def __init__(self, *program: Any) -> None:
@@ -57,6 +58,7 @@ class Cycles(Labels):
             return self._preset(item, self._parameters(text))
         if number == 200:
             self.hole, self.cycle = self._parameters(text), 200
+            self.given(self.hole.items())
             return []
         if number == 1:
             return self._peck(item, part, text)
@@ -66,6 +68,11 @@ class Cycles(Labels):
         if re.fullmatch(r"CYCL\s+CALL\s*", item.name):
             return self.called(item)
         self.refuse(f"{item.name.strip()[:40]} is not resolved", item)
+
+    def assigned(self, key: str) -> None:
+        """Forget a cycle of which a parameter is set: whether it then counts is not known."""
+        if self.cycle == 200 and key[1:].isdigit() and int(key[1:]) in HOLE:
+            self.cycle = 0
 
     def _value(self, item: gx.Item, text: str) -> str:
         match = LAST_VALUE.fullmatch(text)
@@ -84,31 +91,57 @@ class Cycles(Labels):
         if part == 0:
             self.new_shift = {}
             return []
-        match = SHIFTED.fullmatch(text)
-        if match is None:
-            self.refuse(f"a datum shift by {text}: a table, a parameter or steps", item)
-        self.new_shift[match[1]] = plain(match[2])
+        for axis, number in self._shifts(item, text):
+            if axis in self.new_shift:
+                raise self.refusal("GX203", f"{axis} stands in this shift twice", item)
+            self.new_shift[axis] = number
         ahead = next((text for text in self.lines[self.at :] if text.strip()), "")
         if SHIFT_LINE.match(ahead):
             return []
         return self._shifted(item, self.new_shift)
 
+    def _shifts(self, item: gx.Item, text: str) -> Iterator[tuple[str, str]]:
+        """Yield axes with their shifts; `IX` adds to the one in force."""
+        at = 0
+        while at < len(text):
+            match = SHIFTED.match(text, at)
+            if match is None:
+                self.refuse(f"a datum shift by {text}: a table", item)
+            step, axis, number, parameter = match.groups()
+            at = match.end()
+            value = plain(number) if number else self._parameter(parameter, item)
+            if step and axis not in self.shift:
+                self.refuse(f"a shift of {axis} by a step, and the one in force is not known", item)
+            if step:
+                value = exact(Decimal(value) + Decimal(self.shift[axis]))
+            yield axis, value
+
+    def _parameter(self, name: str, item: gx.Item) -> str:
+        self.computes = True
+        return self.value_of(name, item)
+
     def _shifted(self, item: gx.Item, given: dict[str, str]) -> list[str]:
-        """Return the block of a shift, if it is another one than that in force."""
+        """Return the block of a shift, if it is another one than that in force.
+
+        An axis that is not named keeps its shift (simulators of TNC 426 and 640).
+        """
         if any(float(n) for axis, n in given.items() if axis not in LINEAR):
             self.refuse("a datum shift of other axes than X, Y and Z", item)
-        old = self.shift
-        new = {axis: given.get(axis, old[axis]) for axis in LINEAR}
-        by = {axis: Decimal(new[axis]) - Decimal(old[axis]) for axis in LINEAR}
-        if not any(by.values()):
+        old, known = self.shift, {**self.shift, **given}
+        if not known.keys() >= set(LINEAR):
+            self.refuse("a datum shift that leaves out an axis whose shift is not known", item)
+        new = {axis: known[axis] for axis in LINEAR}
+        by = {a: Decimal(new[a]) - Decimal(old[a]) for a in LINEAR if a in old}
+        if len(by) == len(LINEAR) and not any(by.values()):
             return []
-        if any(float(old[axis]) and axis not in given for axis in LINEAR):
-            self.refuse("a datum shift that does not name an axis that is shifted", item)
         self.refuse_beside("a datum shift", item)
         if self.following:
             self.refuse("a datum shift while the control follows the tip", item)
-        for axis in self.place.keys() & by.keys():
-            self.place[axis] = exact(Decimal(self.place[axis]) - by[axis])
+        for axis in self.place.keys() & set(LINEAR):
+            if axis in by:
+                self.place[axis] = exact(Decimal(self.place[axis]) - by[axis])
+            else:
+                self.lose(axis)
         self.shift, self.pole, self.polar = new, {}, None
         return ["G52 " + " ".join(f"{axis}{number}" for axis, number in new.items())]
 

@@ -1,7 +1,8 @@
 """HEIDENHAIN TNC 640 and iTNC 530 in Klartext.
 
-Programs are turned into blocks of words: `gcxform_plugins/languages`. Where a page of a manual is
-named, that is where it is said; [K] is known from practice only.
+It is written from itself alone, by passes that keep positions: lines that are not changed keep
+their bytes, and what is refused below is then kept as it stands, with all that is lost behind it.
+Where a page of a manual is named, that is where it is said; [K] is known from practice only.
 
 | what | TNC | said |
 |---|---|---|
@@ -35,14 +36,27 @@ named, that is where it is said; [K] is known from practice only.
 | CALL LBL n REP k | k more runs; `REP 10/10` is how old programs count | [K] |
 | CALL LBL n | to LBL 0; 8 deep | TNC 370, p. 6-9 |
 | END PGM | ends the program, as M2 and M30 do | [K] |
-| cycle 7 | the zero is elsewhere; steps, tables, one of several axes: refused | [K] |
+| cycle 7 | the zero is elsewhere, by axes; `IX` adds to its shift; tables: refused | TNC 426, 640 |
 | cycle 9 | a dwell in seconds | 640, p. 631 |
 | cycle 32 | tolerance: changes no position that is programmed | |
 | PLANE RESET STAY, ROT+0, SCL 1 | cancel what is refused here | [K] |
 | cycle 247 | preset 0, before the first move; others are refused | [K] |
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |
 | cycle 200 | in one stroke; the feed behind a cycle must be programmed | [K] |
-| other cycles, Q parameters, FN, CALL PGM | refused | |
+| other cycles | refused | |
+| Q, QL, QR | known once the program has set them; Q100 to Q199 are the control's | 620, p. 285 |
+| formulas | brackets, signs, functions, `^` to the right, products, sums | TNC7 |
+| a function | takes the operand behind it: `SQ 10 - 3^3` is 73 | iTNC 530, p. 602 |
+| `-3^2`, SGN 0, `%` below zero | refused | |
+| FN 13, ANG | the angle from b to a, 0 to 360 | 640, p. 384 |
+| FN 9 to 12 | jumps; values nearly equal (1e-9), and out of a subprogram: refused | 640, p. 294 |
+| REP behind a jump out of it | refused | |
+| FN 15, 16, 38 | a comment | |
+| FN 18, 27, 28; texts, QS | what they set only the control knows | |
+| FN 14, 17, 19, 20, 29 and others | refused | |
+| Q200 to Q211 set behind cycle 200 | whether it then counts is not known: refused | |
+| CALL PGM, SEL PGM | `NAME.H` beside the program; Q are the same there, QL its own | 640, p. 102 |
+| lines in brackets before BEGIN PGM | are none of the program | |
 | a number of more than 20 characters | refused | |
 | a file without END PGM, M2 or M30 | refused: it breaks off | |
 """
@@ -54,15 +68,15 @@ from typing import ClassVar
 
 import gcxform as gx
 from gcxform import vocabulary as v
-from gcxform_plugins.dialects.heidenhain.klartext import Klartext
+from gcxform_plugins.dialects.heidenhain.programs import Programs
 
 
 class Heidenhain(gx.Dialect):
-    """HEIDENHAIN TNC 640 and iTNC 530, Klartext, mill: read only."""
+    """HEIDENHAIN TNC 640 and iTNC 530, Klartext, mill."""
 
     name = "heidenhain"
     axes = "XYZABCUVW"
-    translator = Klartext
+    translator = Programs
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
         **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
@@ -75,7 +89,9 @@ class Heidenhain(gx.Dialect):
         6: gx.MCode("tool", loses_position=True),
         128: gx.MCode("tip", barrier=v.FOLLOWING),
         129: gx.MCode("tip"),
+        9000: gx.MCode("kept", loses_position=True, takes="P"),
     }
+    flow_rule = gx.FlowRule(lookup=gx.LookupRule(names=("{name}",), endings=(".H",), any_case=True))
     arc_rule = gx.ArcRule(absolute=0.016, turns="P")
     tip_rule = gx.TipRule(
         switches={"tip-on": "M128", "tip-off": "M129"},

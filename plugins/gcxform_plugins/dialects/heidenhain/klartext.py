@@ -59,6 +59,10 @@ class Klartext(Cycles):
         if kind == "structure":
             words = self.lines[self.line][slice(*first.place)].lstrip("* -")
             return [f"({words.strip().translate(BRACKETS)})"]
+        if kind == "outside" and not self.begun:
+            return []
+        if kind == "outside":
+            raise self.refusal("GX101", "a bracket begins no block of the program", first)
         if not self.begun and not (kind == "text" and first.name.startswith("BEGIN")):
             raise self.refusal("GX101", "a program begins with BEGIN PGM", first)
         blocks = self.statements[first.name if kind == "path" else kind](items)
@@ -88,19 +92,23 @@ class Klartext(Cycles):
             "CYCL": self.define,
             "CYCLE": self.define,
             "LBL": self.label,
-            "CALL": self.call_label,
+            "CALL": self.call,
+            "SEL": self.select,
+            **dict.fromkeys(("FN", "Q", "QL", "QR", "QS"), self.computed),
             "FUNCTION": self._function_of,
         }.get(word[0])
         if read is not None:
             return read(item)
         if name.split() == ["PLANE", "RESET", "STAY"]:  # no plane is read that it could end
             return []
-        if word[0] in ("FN", "Q", "QL", "QR", "QS"):
-            self.refuse("Q parameters: nothing is computed here", item)
         self.refuse(f"{name.strip()[:40]} is not resolved", item)
 
     def _begin(self, item: gx.Item) -> list[str]:
         match = BEGIN.fullmatch(item.name)
+        if match is not None and self.calls and self.line == self.calls[-1].first:
+            if (match[1] == "INCH") != self.inch:
+                self.refuse("a program in another unit is called", item)
+            return []
         if match is None or self.begun:
             raise self.refusal("GX101", "BEGIN PGM stands once, and ends with MM or INCH", item)
         self.begun, self.inch = True, match[1] == "INCH"
@@ -113,6 +121,9 @@ class Klartext(Cycles):
         match = END.fullmatch(item.name)
         if match is None or (match[1] and (match[1] == "INCH") != self.inch):
             raise self.refusal("GX101", "this is not the END PGM of this program", item)
+        if self.calls and self.calls[-1].lines is not None:
+            self.go_back()
+            return []
         if self.calls:
             raise self.refusal("GX223", "a subprogram does not end with LBL 0", item)
         self.over = True
@@ -164,7 +175,7 @@ class Klartext(Cycles):
             self.tool_feed = self.feed
             return word
         elif kind == "delta":
-            if float(self.number_of(item)):
+            if float(self.number_of(item)) and not self.reading.stays:
                 self.refuse(f"{item.name} changes the tool by what no table has", item)
         else:
             raise self.refusal("GX101", f"{item.name[:20]!r} does not fit here", item)
@@ -177,15 +188,22 @@ class Klartext(Cycles):
         return str(int(text))
 
     def _changed(self, item: gx.Item) -> list[str]:
-        """Return the blocks of a tool change; tool 0 has no length."""
+        """Return the blocks of a tool change; tool 0 has no length.
+
+        For the same control lengths need not be known.
+        """
         self.refuse_beside("TOOL CALL", item)
         tool = self.in_spindle = self.tool
         self.lose()
+        if self.reading.stays:
+            return [f"T{tool} M6"]
         return [f"T{tool} M6", "G49" if tool == "0" else f"G43 H{tool}"]
 
     def _tool_def(self, item: gx.Item) -> list[str]:
         """TOOL DEF: prepares a tool; what it says of it must be what the machine file says."""
         match = TOOL.fullmatch(item.name)
+        if match is None and self.reading.stays:
+            return []
         if match is None:
             self.refuse(f"{item.name.strip()} is not resolved", item)
         known = self.reading.tools.get(int(match[1]))

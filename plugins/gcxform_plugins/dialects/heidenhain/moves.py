@@ -229,6 +229,10 @@ class Moves(Saying):
         words = "".join(f" {axis}{number}" for axis, number in ends.items())
         block = self._straight(said, ends, words)
         self.polar = radius, angle
+        if given.keys() & {"IPR", "IPA"}:
+            place = written(radius), written(angle)
+            known = self.polar_at.setdefault(self.line, place)
+            self.polar_at[self.line] = place if known == place else None
         return self._all(said, block)
 
     def polar_circle(self, items: Sequence[gx.Item]) -> list[str]:

@@ -42,9 +42,12 @@ class Words(gx.Translator):
     lost      the line, from 1, in which the program has lost axes last, by axis
     pole      X and Y of CC, as numbers of the program
     polar     PR and PA that were programmed last, None after other moves
+    polar_at  PR and PA that lines lead to by steps; None where they do to several places
     moved     axes that have moved to a place of the workpiece since the program began
     side      G41 or G42 where RL or RR is in force
     over      whether the program has ended
+    q         what parameters are worth, by their names; None where only the control knows
+    computes  something was computed, or decided: lines are no more what they say by themselves
     """
 
     grammar = ("gcxform_grammars", "heidenhain")
@@ -57,6 +60,7 @@ class Words(gx.Translator):
         self.lost: dict[str, int] = {}
         self.pole: dict[str, str] = {}
         self.polar: tuple[float, float] | None = None
+        self.polar_at: dict[int, tuple[str, str] | None] = {}
         self.moved: set[str] = set()
         self.motion = ""
         self.feed = ""
@@ -67,17 +71,27 @@ class Words(gx.Translator):
         self.shortest = False
         self.side = ""
         self.in_spindle = ""
-        self.over = False
+        self.over = self.computes = False
+        self.q: dict[str, float | None] = {
+            f"Q{number}": value
+            for number, value in self.reading.parameters.items()
+            if number.isdigit()
+        }
 
     # --- numbers ---
 
     def number_of(self, item: gx.Item) -> str:
-        """Return the number of an item. Raises InputError for a parameter."""
+        """Return the number of an item, or of its parameter. Raises InputError."""
         if not item.numbers:
-            self.refuse(f"{item.names[-1]} is a Q parameter", item)
+            self.computes = True
+            return self.value_of(item.names[-1], item)
         if len(item.numbers[0]) > LONGEST:
             raise self.refusal("GX219", "a number beyond what the control takes", item)
         return plain(item.numbers[0])
+
+    def value_of(self, name: str, item: gx.Item) -> str:
+        """Return the number that a parameter with its sign stands for. Raises InputError."""
+        raise NotImplementedError
 
     def stands_at(self, axis: str, item: gx.Item, what: str = "") -> Decimal:
         """Return where an axis stands. Raises InputError where that is not known."""

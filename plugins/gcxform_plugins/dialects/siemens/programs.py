@@ -166,9 +166,9 @@ class Programs(Calls):
         if opaque:
             self.lose_called(self.lines[self.line])
 
-    def spelled(self, line: str, blocks: Sequence[str]) -> str | None:
+    def spelled(self, line: int, blocks: Sequence[str]) -> str | None:
         """Return a line that stands for new blocks; None where only the machine decides on it."""
-        return None if self.tied else spelled(line, blocks)
+        return None if self.tied else spelled(self.lines[line], blocks)
 
     def counts(self, line: str) -> bool:
         """Whether a line has a word that counts from where its axis stands."""

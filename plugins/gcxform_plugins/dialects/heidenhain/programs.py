@@ -1,0 +1,168 @@
+"""Programs of a TNC that are written for a TNC again: what is not understood stays as it stands.
+
+A line that is kept is a block of its own, behind which no position is known, nor anything else that
+it may have set. Where only the control knows where a program goes on, all that follows is kept.
+"""
+
+from __future__ import annotations
+
+import re
+import zlib
+from collections.abc import Iterable, Iterator, Sequence
+from copy import copy
+
+import gcxform as gx
+from gcxform_plugins.dialects.heidenhain.klartext import Klartext
+from gcxform_plugins.dialects.heidenhain.spelling import STEPPED, code, spelled
+
+KEPT = "M9000"
+KEEPABLE = frozenset(
+    ("GX203", "GX204", "GX206", "GX207", "GX208", "GX210", "GX213", "GX215", "GX220", "GX221")
+)
+"""The refusals of what may stand as it is: it is not known, or not read."""
+KEEPS = (
+    "as they stand: {}; where the axes are behind them is not known, nor what they have set; "
+    "units, plane and feed mode are taken to be as before"
+)
+ROUNDED = re.compile(r"[\s\d/]*(?:RND|CHF|CTP?|FLT|FCT|DEP|AP+R)(?![A-Z])", re.IGNORECASE)
+"""Lines that hang on the direction of the move before them."""
+DECIDES = re.compile(r"FN\s*(?:9|10|11|12)\s*:|CALL\s+LBL", re.IGNORECASE)
+FROM_HERE = re.compile(r"SECTION|DECLARE|FUNCTION\s+MODE", re.IGNORECASE)
+QUIET = re.compile(r"(?:TOOL\s+DEF|BLK|TCH|CYCLE?\s+DEF|PATTERN|PLANE|TRANS|RND|CHF)(?![A-Z])")
+"""Statements that set no parameter but those they name, and no feed."""
+SCALES = re.compile(r"CYCLE?\s+DEF\s*(?:11|26)\.[1-9](?!\s*SCL\s*1(?:\.0*)?\s*$)|TRANS\s+SCALE")
+STATE = (
+    *("place", "lost", "pole", "polar", "moved", "motion", "feed", "tool_feed", "feed_lost"),
+    *("following", "shortest", "side", "in_spindle", "over", "begun", "axis", "tool", "q", "at"),
+    *("shift", "new_shift", "hole", "pecks", "cycle", "calls", "left", "repeated", "selected"),
+)
+
+
+class Programs(Klartext):
+    """Executes a program, and keeps what it does not understand where that may stay."""
+
+    writes = True
+    kept = KEPT
+
+    def __init__(self, *program: object) -> None:
+        super().__init__(*program)
+        self.kept_lines: list[tuple[int, str]] = []
+        self.rest_kept = self.tied = ""
+        self.aside = self.scaled = self.modal = False
+
+    def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
+        """Return the blocks of a line. Raises InputError."""
+        if not self.reading.stays:
+            return super().blocks(items)
+        if self.rest_kept:
+            return self._kept(items, self.rest_kept)
+        before = {name: copy(getattr(self, name)) for name in STATE}
+        try:
+            self._check_beside(items)
+            return [*super().blocks(items)]
+        except gx.InputError as error:
+            (found, *_) = error.diagnostics
+            if found.code not in KEEPABLE or not before["begun"]:
+                raise
+            vars(self).update(before)
+            text = code(self.lines[self.line])
+            if DECIDES.search(text) and "PGM" not in text.upper():
+                self._keep_rest(found.message)
+            return self._kept(items, found.message)
+
+    def _check_beside(self, items: Sequence[gx.Item]) -> None:
+        """Refuse to cut what the lines beside it hang on. Raises InputError."""
+        path = next((item for item in items if item.kind == "path"), None)
+        if path is None:
+            return
+        if self.modal:
+            self.refuse("a cycle is called behind this block (M89)", path)
+        if self.aside and not any(i.kind == "comp" or _is_off(i) for i in items):
+            self.refuse("on which side of the contour the tool is is not known", path)
+        if path.name not in ("L", "LP") and self.scaled:
+            self.refuse(f"{path.name} in a scale", path)
+        ahead = (text for text in self.lines[self.at :] if code(text).strip(" \t0123456789"))
+        if ROUNDED.match(next(ahead, "")):
+            self.refuse(f"the next line hangs on the direction of this {path.name}", path)
+
+    # --- what is kept ---
+
+    def _keep_rest(self, why: str) -> None:
+        """Keep all that follows; lines before may then be executed again."""
+        self.rest_kept = self.tied = why
+
+    def _kept(self, items: Sequence[gx.Item], why: str) -> list[str]:
+        """Return the block of a line that stays as it stands."""
+        items = [item for item in items if item.kind not in ("seq", "structure")]
+        if not items:
+            return []
+        text = code(self.lines[self.line]).strip()
+        words = text.lstrip("/0123456789 \t").upper()
+        self.kept_lines.append((self.line, why))
+        if FROM_HERE.match(words):
+            self._keep_rest(why)
+        self._lose(items, words)
+        return [f"{KEPT} P{zlib.crc32(text.encode('latin-1')) & 0xFFFFF}"]
+
+    def _lose(self, items: Sequence[gx.Item], words: str) -> None:
+        """Forget what a line may have changed."""
+        self.lose()
+        self.pole, self.motion, self.plainly = {}, "", False
+        said = {item.kind for item in items}
+        if "text" in said and not QUIET.match(words):
+            self.q, self.side, self.aside = dict.fromkeys(self.q), "", True
+            self.feed_lost, self.in_spindle, self.cycle = True, "", -1
+        elif said & {"feed", "per", "auto", "m"}:
+            self.feed_lost = True
+        if re.search(r"(?<![A-Z])(?:APPR|DEP|R[LR])(?![A-Z])|(?<![A-Z])R0?(?![\d.,A-Z])", words):
+            self.side, self.aside = "", True
+        called = {item.numbers[0] for item in items if item.kind == "m"}
+        self.modal = (self.modal or "89" in called) and "99" not in called
+        if words.startswith(("CYCL", "TRANS")):
+            self._lose_cycle(words)
+
+    def _lose_cycle(self, words: str) -> None:
+        """Forget what was defined before: another cycle, or another place of the zero."""
+        self.scaled |= SCALES.match(words) is not None
+        self.shift = {}
+        if words.startswith("CYCL") and "CALL" not in words:
+            self.cycle = -1
+
+    def _side(self, item: gx.Item, said: object) -> None:
+        self.aside = False
+        super()._side(item, said)  # type: ignore[arg-type]
+
+    # --- writing ---
+
+    def spelled(self, line: int, blocks: Sequence[str]) -> str | None:
+        """Return a line that stands for new blocks; None where only the machine decides on it."""
+        return None if self.tied else spelled(self.lines[line], blocks, self.polar_at.get(line))
+
+    def counts(self, line: str) -> bool:
+        """Whether a line has a word that counts from where its axis stands."""
+        return STEPPED.search(code(line)) is not None
+
+    def closing(self) -> Iterator[str]:
+        """Say which lines are kept. Raises InputError for a program that breaks off."""
+        if self.kept_lines:
+            self.assumed[self._told()] = None
+        if not self.rest_kept:
+            super().closing()
+        return iter(())
+
+    def _told(self) -> str:
+        lines = sorted({line for line, _ in self.kept_lines})
+        few = ", ".join(map(self._named, lines[:8])) + (" and more" if len(lines) > 8 else "")
+        line, why = min(self.kept_lines)
+        return f"lines {few} ({len(lines)}) are kept " + KEEPS.format(
+            f"line {self._named(line)}: {why}"
+        )
+
+    def _named(self, line: int) -> str:
+        """Return the number of a line, with its file where that is another one."""
+        file, number = self.place_of(line)
+        return str(number) if line < self.own else f"{number} of {file}"
+
+
+def _is_off(item: gx.Item) -> bool:
+    return item.kind == "radius" and bool(item.numbers) and not float(item.numbers[0])

@@ -1,0 +1,180 @@
+"""Klartext computes and jumps as its manuals say, and is written back with its bytes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from gcxform_plugins.passes.absolute import Absolute
+from heidenhain_kit import DIALECT, program, read
+
+import gcxform as gx
+from gcxform.flow.translated import translated
+from gcxform.modal.state import Reading
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.syntax.source import Source
+
+START = {"X": 0.0, "Y": 0.0, "Z": 50.0}
+
+
+def ends(*lines, letter="X"):
+    path = read(program(*lines), start=START)
+    return path.end[:, path.axes.index(letter)].tolist()
+
+
+def written(text, **told):
+    """Return what becomes of a program by a pass, and what was taken to be so."""
+    made = Pipeline(DIALECT, DIALECT, (Absolute(),), Reading(START, **told))
+    result = made.run(text.encode("latin-1"))
+    assert result.certificate.verified
+    return result.text.decode("latin-1"), result.certificate.assumed
+
+
+@pytest.mark.parametrize(
+    ("formula", "value"),
+    [
+        ("5*3+2*10", 35.0),
+        ("SQ 10 - 3^3", 73.0),
+        ("2^3^2", 512.0),
+        ("(-3)^2", 9.0),
+        ("2 * -3 - -1", -5.0),
+        ("SIN 30 + COS (2 * 30) * 4", 2.5),
+        ("SIN -30 ^ 2", 0.25),
+        ("ATAN TAN 45", 45.0),
+        ("INT -3,7 + FRAC 2.25", -2.75),
+        ("400 % 360", 40.0),
+        ("ABS NEG SGN -4", 1.0),
+        ("LOG 100 + LN EXP 1", 3.0),
+        ("PI / PI", 1.0),
+        ("12 - 2 - 3", 7.0),
+        ("ASIN 0.5 + ACOS 0.5", 90.0),
+    ],
+)
+def test_formulas_are_worth_what_the_manual_says(formula, value):
+    assert ends(f"Q1 = {formula}", "L X+Q1 FMAX") == pytest.approx([value], abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("said", "value"),
+    [
+        ("FN 0: Q1 = -5,5", -5.5),
+        ("FN1: Q1 = -Q2 + -5", -15.0),
+        ("FN 2 : Q1 = +Q2 - -5", 15.0),
+        ("FN 3: Q1 = +Q2 * +3", 30.0),
+        ("FN 4: Q1 = +Q2 DIV +4", 2.5),
+        ("FN 5: Q1 = SQRT 16", 4.0),
+        ("FN 6: Q1 = SIN -30", -0.5),
+        ("FN 7: Q1 = COS +60", 0.5),
+        ("FN 8: Q1 = +3 LEN +4", 5.0),
+        ("FN 13: Q1 = +25 ANG -50", 153.43494882),
+        ("QL7 = Q2 / 4", 10.0),
+    ],
+)
+def test_functions_with_numbers(said, value):
+    assert ends("Q2 = 10", "Q1 = Q2", said, "L X+Q1 FMAX") == pytest.approx([value], abs=1e-8)
+
+
+def test_a_loop_counts_by_jumps_and_a_subprogram_has_the_parameters():
+    found = ends(
+        *("Q1 = 0", "LBL 1", "CALL LBL 9", "Q1 = Q1 + 1", "FN 12: IF +Q1 LT +3 GOTO LBL 1"),
+        *("FN 9: IF +0 EQU +0 GOTO LBL 2", "L X+99 FMAX", "LBL 2", "L X-Q2 FMAX", "M30"),
+        *("LBL 9", "Q2 = Q1 * 2", "L X+Q2 FMAX", "LBL 0"),
+    )
+    assert found == [0.0, 2.0, 4.0, -4.0]
+
+
+def test_repeats_may_be_a_parameter_and_a_jump_inside_of_one_keeps_its_count():
+    found = ends(
+        *("Q3 = 2", "Q1 = 0", "LBL 1", "Q1 = Q1 + 1", "FN 9: IF +Q1 EQU +2 GOTO LBL 5"),
+        *("L X+Q1 FMAX", "LBL 5", "CALL LBL 1 REP Q3"),
+    )
+    assert found == [1.0, 3.0]
+
+
+def test_a_program_beside_it_is_called(tmp_path):
+    (tmp_path / "part.h").write_text(
+        program("LBL 1", "Q1 = Q1 + 1", "L X+Q1 FMAX", "CALL LBL 1 REP 1", "QL1 = 7")
+    )
+    main = program(
+        *("LBL 1", "Q1 = 5", "QL1 = 50", "CALL PGM TNC:\\parts\\PART.H", "L X+QL1 FMAX"),
+        *('SEL PGM "part"', "CALL SELECTED PGM", "L Y+1 FMAX"),
+    )
+    path = gx.read(main.encode(), DIALECT, start=START, subprograms=(tmp_path,)).path
+    assert path.end[:, 0].tolist() == [6.0, 7.0, 50.0, 8.0, 9.0, 9.0]
+
+
+def test_a_shift_adds_and_leaves_other_axes():
+    shift = ["CYCL DEF 7.0", "CYCL DEF 7.1 X+5 Y+1", "CYCL DEF 7.0", "CYCL DEF 7.1 IX+2"]
+    more = ["L X+1 Y+1 FMAX", "CYCL DEF 7.0", "CYCL DEF 7.1 Z+Q1", "L Z+0 FMAX"]
+    path = read(program("Q1 = 4", *shift, *more), start=START)
+    assert path.end[-1, :3].tolist() == [8.0, 2.0, 4.0]
+
+
+SOURCE = """; made by hand\r
+0  BEGIN PGM A MM\r
+1  TOOL CALL 5 Z S1000 F250 DL+0.1 ; a tool\r
+2  L  Z+50  R0 FMAX M91\r
+3  L X+10 Y-5,50 FMAX M3\r
+4  L IX+5 F500 ; a step\r
+5  L Z-2 IY-0.25\r
+6  CC X+15 Y+0\r
+7  C IX+0 Y+5.75 DR+\r
+8  LP PR+30 PA+0\r
+9  LP IPA+60 M8\r
+10 CP IPA-90 IZ+1 DR-\r
+11 RND R2\r
+12 L X+50\r
+13 PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY\r
+14 L IX+5\r
+15 FN 18: SYSREAD Q1 = ID270 NR1 IDX1\r
+16 L X+Q1 Y+1\r
+17 L IY+1\r
+18 END PGM A MM\r
+"""
+
+
+def test_it_is_written_back_with_positions_for_steps():
+    text, assumed = written(SOURCE)
+    before, after = SOURCE.splitlines(), text.splitlines()
+    changed = {a.split()[0]: b for a, b in zip(before, after, strict=True) if a != b}
+    assert changed == {
+        "4": "4  L X+15 F500 ; a step",
+        "5": "5  L Z-2 Y-5.75",
+        "7": "7  C X+15 Y+5.75 DR+",
+        "9": "9  LP PA+60 M8",
+    }
+    assert "\r\n" in text
+    assert assumed[0].startswith("lines 12, 13, 15, 16, 18, 19 (6) are kept as they stand: line 12")
+
+
+def test_what_only_the_control_decides_is_kept_with_all_behind_it():
+    lines = ["Q1 = 5", "FN 18: SYSREAD Q1 = ID20", "FN 9: IF +Q1 EQU +5 GOTO LBL 1"]
+    lines += ["L IX+5 FMAX", "LBL 1"]
+    assert written(program(*lines))[0] == program(*lines)
+
+
+def test_a_line_that_may_be_executed_again_is_not_changed():
+    lines = ["LBL 1", "L IX+5 FMAX", "FN 18: SYSREAD Q1 = ID20", "FN 9: IF +Q1 EQU +5 GOTO LBL 1"]
+    with pytest.raises(gx.InputError, match="cannot be said") as error:
+        written(program(*lines))
+    assert error.value.diagnostics[0].where.line == 3
+
+
+def test_cycles_that_call_themselves_keep_what_follows():
+    lines = ["CYCL DEF 202 BORING", "L X+5 Y+5 FMAX M89", "L IX+5", "L IY+5 M99"]
+    lines += ["L X+1 FMAX", "L IX+1 FMAX"]
+    changed = [*lines[:-1], "L X+2 FMAX"]
+    assert written(program(*lines))[0] == program(*changed)
+
+
+def test_a_circle_in_a_scale_is_kept():
+    scale = ["CYCL DEF 11.0 SCALING", "CYCL DEF 11.1 SCL 2"]
+    lines = ["L X+0 Y+0 F100", *scale, "L X+1 Y+1", "CC X+2 Y+1", "C IX+2 Y+1 DR+"]
+    assert written(program(*lines))[0] == program(*lines)
+
+
+def test_blocks_are_the_same_whatever_is_kept():
+    source = Source.of_bytes(SOURCE.encode("latin-1"), "a.h")
+    found = translated(source, DIALECT, Reading(START, stays=True))
+    kept = {found.line_of(k + 1) for k, b in enumerate(found.text.splitlines()) if b"M9000" in b}
+    assert kept == {12, 13, 15, 16, 18, 19}
+    assert np.all(np.diff(found.visits) >= 0)
