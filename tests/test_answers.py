@@ -33,6 +33,7 @@ ASKED: dict[str, tuple[str, ...]] = {
     "run": (*READ, "-x", "absolute", "--diff", "part.nc"),
     "post": (*READ, "-x", "absolute", "part.nc"),
     "watch": (*READ, "-x", "absolute", "--once", "--rest", "0", "hot"),
+    "batch": (*READ, "-x", "absolute", "-o", "out", "-j", "1", "part.nc"),
     "check": (*READ, "-x", "absolute", "part.nc"),
     "compare": (*READ, "part.nc", "other.nc"),
     "info": (*READ, "part.nc"),

@@ -19,7 +19,7 @@ import pytest
 from cli_kit import ABSOLUTE, MODEL, PART, PIPELINE, call
 
 from gcxform.cli import verbs
-from gcxform.cli.common.batch import Outcome
+from gcxform.cli.common.several import Outcome
 from gcxform.cli.common.transform import Job
 from gcxform.cli.watching.folders import Folders, beside, file_away, moved
 from gcxform.cli.watching.loop import waker

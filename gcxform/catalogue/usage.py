@@ -267,6 +267,12 @@ CODES: dict[str, tuple[str, str]] = {
         "Another watcher is at work in this folder, or its results would be dropped into it and be "
         "taken for programs again. End the other one, or name another folder with -o.",
     ),
+    "GX752": (
+        "Something is needed that is not installed",
+        "URLs are read and written by fsspec, a scheduler is asked by Dask, and Parquet is written "
+        "by pandas and pyarrow. None of them is needed for programs in folders of this computer. "
+        "Install gcxform[dask] or gcxform[batch]; a URL may need the package of its kind as well.",
+    ),
     "GX760": (
         "A file names another that lies elsewhere",
         "A pipeline, machine or model file may name files in its own folder and below, or below "

@@ -29,6 +29,7 @@ VERBS: Final = {
     "run": "Transform a program, prove the result, and write it.",
     "post": "Transform a file in place: for CAM systems and slicers.",
     "hosts": "Print what a CAM system, a slicer or a control needs to call gcxform.",
+    "batch": "Transform many programs for many machines, each once, on many processors.",
     "watch": "Transform what is dropped into a folder, each program once.",
     "check": "Show the chain of a pipeline, and what is wrong with a program.",
     "compare": "Say how far the paths of two programs are apart, and where.",

@@ -16,10 +16,10 @@ import click
 
 from gcxform.cli import VERBS
 from gcxform.cli.common import answer, options
-from gcxform.cli.common.batch import attempt
 from gcxform.cli.common.outputs import STDOUT, check_places
 from gcxform.cli.common.pipelines import Pipelines
 from gcxform.cli.common.request import Asked, excluding
+from gcxform.cli.common.several import attempt
 from gcxform.cli.common.transform import Job, edited_since
 from gcxform.diagnostics import GcxformError
 

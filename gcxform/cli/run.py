@@ -11,12 +11,12 @@ import click
 from gcxform.cli import VERBS
 from gcxform.cli.common import options
 from gcxform.cli.common.answer import asked
-from gcxform.cli.common.batch import Outcome, counted, each, exit_code
 from gcxform.cli.common.difference import described, on_terminal, unified
 from gcxform.cli.common.failures import say, warn
 from gcxform.cli.common.jobs import Places
 from gcxform.cli.common.pipelines import Pipelines
 from gcxform.cli.common.request import Asked
+from gcxform.cli.common.several import Outcome, counted, each, exit_code
 from gcxform.cli.common.transform import Done, Job, edited_since
 from gcxform.diagnostics import shown
 from gcxform.pipeline.certificate import Certificate

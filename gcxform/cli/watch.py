@@ -15,11 +15,11 @@ import click
 from gcxform.cli import VERBS
 from gcxform.cli.common import options
 from gcxform.cli.common.answer import answer, lines_of_documents
-from gcxform.cli.common.batch import Outcome, attempt
 from gcxform.cli.common.failures import WORDS, reported, say
 from gcxform.cli.common.pipelines import Pipelines
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked
+from gcxform.cli.common.several import Outcome, attempt
 from gcxform.cli.common.transform import Job
 from gcxform.cli.run import summary
 from gcxform.cli.watching.folders import Folders

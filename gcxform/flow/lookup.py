@@ -55,6 +55,7 @@ class Folders:
         endings = dict.fromkeys((*self.rule.endings, *([self.suffix] * self.rule.own_ending)))
         wanted = {self._spelt(f"{stem}{ending}") for stem in stems for ending in endings}
         for folder in self.folders:
+            inputs.note_search(folder, wanted)
             for name in self._listed(folder):
                 if self._spelt(name) in wanted:
                     yield _read(folder, name)

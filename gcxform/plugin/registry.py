@@ -219,6 +219,13 @@ def dialect_of(given: object) -> type[Dialect]:
     return given
 
 
+@cache
+def versions() -> str:
+    """Return which distributions programs are read and written by, with their versions."""
+    points = importlib.metadata.entry_points(group=hookspecs.GROUP)
+    return ", ".join(sorted({_origin(point) for point in points}))
+
+
 def _origin(point: EntryPoint) -> str:
     """Return the distribution of a plugin, with its version."""
     return f"{point.dist.name} {point.dist.version}" if point.dist else point.value

@@ -11,7 +11,7 @@ from __future__ import annotations
 import errno
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -36,19 +36,23 @@ class Visit:
     anywhere: bool = False
     read: set[tuple[int, int]] = field(default_factory=set)
     roots: set[str] = field(default_factory=set)  # folders that files may point into
+    digests: dict[str, str] = field(default_factory=dict)  # of what was read, if they are `kept`
+    searched: dict[str, set[str]] = field(default_factory=dict)  # folders: names looked for
+    kept: bool = False
 
 
 _VISIT: ContextVar[Visit | None] = ContextVar("visit", default=None)
 
 
 @contextmanager
-def visit() -> Iterator[Visit]:
+def visit(kept: bool = False) -> Iterator[Visit]:
     """Watch what is read until the block ends; outside of a visit files may name any others.
 
-    What was allowed for a visit is allowed for those within it.
+    What was allowed for a visit is allowed for those within it. `kept`: what was read is known
+    afterwards by its hashes (SHA-256).
     """
     around = _VISIT.get()
-    found = Visit(around is not None and around.anywhere)
+    found = Visit(around is not None and around.anywhere, kept=kept)
     folder = os.path.realpath(os.curdir)
     if folder != os.path.dirname(folder):  # everything is inside of the root of the file system
         found.roots.add(folder)
@@ -131,8 +135,9 @@ def read(path: Path) -> bytes:
                 raise too_large()
         if is_changed(before, os.fstat(handle), size):
             raise OSError(errno.EBUSY, CHANGED)
-    _note(path, before)
-    return b"".join(parts)
+    data = b"".join(parts)
+    _note(path, before, data)
+    return data
 
 
 def is_changed(before: os.stat_result, after: os.stat_result, size: int) -> bool:
@@ -143,10 +148,20 @@ def is_changed(before: os.stat_result, after: os.stat_result, size: int) -> bool
     return not same or size != after.st_size
 
 
-def _note(path: Path, found: os.stat_result) -> None:
+def note_search(folder: Path, names: Iterable[str]) -> None:
+    """Remember which names were looked for in a folder, whether they are there or not."""
+    if (now := _VISIT.get()) is not None and now.kept:
+        now.searched.setdefault(str(folder), set()).update(name.casefold() for name in names)
+
+
+def _note(path: Path, found: os.stat_result, data: bytes) -> None:
     """Remember what was read. What a file has named lies in a known folder; else the user has."""
     now = _VISIT.get()
     if now is None:
         return
+    if now.kept:
+        from hashlib import sha256
+
+        now.digests[str(path)] = sha256(data).hexdigest()
     now.read.add((found.st_dev, found.st_ino))
     now.roots.add(os.path.dirname(os.path.realpath(path)))

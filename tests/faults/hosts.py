@@ -9,7 +9,7 @@ HOSTS = "tests/test_hosts.py"
 MUTATIONS = (
     Mutation(
         "hosts: a filter prints nothing of what was done before",
-        "gcxform/cli/common/batch.py",
+        "gcxform/cli/common/several.py",
         "put(source.stream.read())",
         "put(source.stream.read(0))",
         HOSTS,

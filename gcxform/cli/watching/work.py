@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-from gcxform.cli.common.batch import Outcome
 from gcxform.cli.common.failures import reported
 from gcxform.cli.common.findings import described
+from gcxform.cli.common.several import Outcome
 from gcxform.cli.common.transform import Job
 from gcxform.cli.watching.folders import (
     TEXT,

@@ -1,0 +1,1 @@
+"""`gcxform batch`: many programs, pipelines and machines; what is done is not repeated."""
