@@ -129,3 +129,12 @@ class CycleRule:
     one_plane: bool = True
     repeats: str = "L"
     initial_level: bool = True
+
+    def place_is_open(self, control: Mapping[str, str | float]) -> bool:
+        """Tell whether a setting that is not given decides if a block without a place drills."""
+        return bool(self.alone) and control.get(self.alone) != "drills"
+
+    def hint_without_place(self, first: str, second: str) -> str:
+        """Return what to do about a block that names neither of two axes, if that is open."""
+        say = f'{self.alone} = "drills" in [control] of the machine file'
+        return f"give {first} or {second}, or say {say}"

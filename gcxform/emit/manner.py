@@ -29,6 +29,7 @@ class Manner:
     expands   whether canned cycles have become plain moves
     promised  mm; how far the passes may be off, which a tap may use up
     compensates  positions become commands for a machine with errors, or the other way round
+    open_place   whether a setting that is not known decides if a cycle drills that names no place
     """
 
     source: type[Dialect]
@@ -39,6 +40,7 @@ class Manner:
     expands: bool = False
     promised: float = 0.0
     compensates: bool = False
+    open_place: bool = False
 
     @property
     def crossing(self) -> bool:

@@ -203,6 +203,17 @@ class Taps:
             self._refuse(line, "a tap in turned, scaled or mirrored coordinates")
         if not _same(path.end[rows, 3:], original.end[was, 3:]):
             self._refuse(line, "a tap would have to turn rotary axes")
+        self._check_place(line)
+
+    def _check_place(self, line: int) -> None:
+        """Refuse a tap that may be none: words of its own would make it one."""
+        rule = self.task.manner.source.cycle_rule
+        first, second, _ = ("XYZ"[k] for k in Plane(int(self.task.read.modes.plane[line])).axes)
+        words = self.task.table.meanings[int(self.task.shape[line])].slots
+        if rule is None or not self.task.manner.open_place or first in words or second in words:
+            return
+        message = f"a tap without {first} and {second} that moves: a setting decides if it drills"
+        self._refuse(line, message, rule.hint_without_place(first, second))
 
     def _holes(self, rows: slice) -> Iterator[_Hole]:
         """Yield the taps of a block. Before the way in there is always a move down to R."""

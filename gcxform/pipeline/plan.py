@@ -219,7 +219,10 @@ class Plan:
         promised = self.promised()
         if not np.isfinite(promised):
             promised = max((self.budget or 0.0) - self._repeated * manner.rounding(False), 0.0)
-        return replace(manner, promised=promised, compensates=compensates(self.path_passes))
+        rule = self.source.cycle_rule
+        open_place = rule is not None and rule.place_is_open(self.machine_reading.control)
+        compensating = compensates(self.path_passes)
+        return replace(manner, promised=promised, compensates=compensating, open_place=open_place)
 
     @property
     def read_as(self) -> type[Dialect]:

@@ -8,8 +8,8 @@ the proof sees by where the machine is.
 Claimed of every rapid that some pass spares (`Demands.spares`), with p its row as read, w as it was
 written and undone by all passes but those that spare, and b the budget: in each axis
 
-    |end of w - end of p| <= b,  or both stand still there,  or, for a return to reference in G91,
-    |way of w - way of p| <= b.
+    |end of w - end of p| <= b,  or both stand still there,  or, in G91, for a return to reference
+    and for a block of which some axis goes nowhere known, |way of w - way of p| <= b.
 
 The certificate says in `not_checked` how many there are, and how far off the machine is there.
 `compare --model` and `simulate` go by the same undo; `compare` holds spared rapids against what the
@@ -51,7 +51,8 @@ def led_elsewhere(before: Toolpath, after: Toolpath, owner: Ints, rows: Flags, s
 
     `owner` (len(after),) are rows of the path as read, `rows` (n,) those that are spared. An axis
     has to end where the program says, or to stay where the program lets it stay; a return to
-    reference in G91 may go as far as the program says.
+    reference in G91 may go as far as the program says, and so may a move of which not all ends are
+    known.
     """
     mine = np.flatnonzero(rows[owner] & np.append(owner[1:] != owner[:-1], True)[: len(owner)])
     end, start = after.end[mine], after.start[mine]
@@ -59,7 +60,7 @@ def led_elsewhere(before: Toolpath, after: Toolpath, owner: Ints, rows: Flags, s
     with np.errstate(invalid="ignore"):
         good = (np.abs(end - goal) <= slack) | (np.isnan(end) & np.isnan(goal))
         good |= (np.abs(end - start) <= STILL) & (np.abs(goal - begin) <= STILL)
-        distances = before.form[owner[mine]] == Form.HOME
+        distances = np.isin(before.form[owner[mine]], (Form.HOME, Form.BLIND))
         distances &= before.blocks.incremental[before.block[owner[mine]]]
         good |= distances[:, None] & (np.abs((end - start) - (goal - begin)) <= slack)
     wrong = np.flatnonzero(~good.all(axis=1))

@@ -25,6 +25,13 @@ MUTATIONS = (
         PLANTED,
     ),
     Mutation(
+        "spared: what goes by distances ends where the program says",
+        COMPENSATION,
+        "distances |= path.form == gx.Form.BLIND",
+        "pass",
+        f"{CORPUS}[volumetric/distances-beside-the-unknown]",
+    ),
+    Mutation(
         "spared: feed moves behind rapids that are left are not looked at",
         COMPENSATION,
         "np.append(known, self.left[:-1])",

@@ -23,6 +23,12 @@ MUTATIONS = (
         "hole.bottom[place]",
         "tests/test_corpus.py::test_case[tied/tapping-moved]",
     ),
+    _tapping(
+        "a setting that is not known makes no tap of a block",
+        "not self.task.manner.open_place or first",
+        "True or first",
+        "tests/test_corpus.py::test_case[dialects/haas/tap-without-place-is-not-written-anew]",
+    ),
     _tapping("what leans is not measured", "if off <= self._allowed:", "if off < 1.0:"),
     _tapping("depths in G91 count from the level", "from_here[normal] = rest", "pass"),
     _tapping("G98 goes back to R", "max(self.level, rest) if retracts else rest", "rest"),

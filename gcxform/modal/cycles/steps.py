@@ -16,6 +16,7 @@ from gcxform.toolpath.path import Event, Kind
 
 CODES = 100  # canned cycles have numbers below
 SAME_DEPTH = 1e-9  # part of a peck
+SAME_LEVEL = 1e-9  # mm; closer levels differ by the noise of sums
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +97,7 @@ def rows_of(holes: Holes, rule: CycleRule) -> Rows:
     """Return the moves that drill holes, in their order."""
     table = _Table(rule)
     taps = np.isin(holes.code, list(TAPPING))
-    down = taps | (holes.level != holes.levels[:, Level.CLEARANCE])
+    down = taps | ~(np.abs(holes.level - holes.levels[:, Level.CLEARANCE]) <= SAME_LEVEL)
     approach = holes.rises + 1 + down
     pecking = table.between[holes.code] * (holes.pecks - 1)
     count = approach + pecking + table.count[holes.code]

@@ -234,14 +234,13 @@ class Drilling:
 
     def _refuse_without_place(self) -> None:
         """Refuse calls of which a setting decides if they drill, where that matters."""
-        if self._stays:
-            return
         rule = self.lines.dialect.cycle_rule
+        if self._stays or rule is None:
+            return
         for line in np.flatnonzero(self._placeless).tolist():
             first, second, _ = ("XYZ"[k] for k in Plane(int(self.modes.plane[line])).axes)
             message = f"a cycle without {first} and {second}: a setting decides if it drills"
-            say = f'{rule.alone if rule else ""} = "drills" in [control] of the machine file'
-            hint = f"give {first} or {second}, or say {say}"
+            hint = rule.hint_without_place(first, second)
             self.track.findings.add(line, "GX215", message, hint=hint)
 
     @property
@@ -254,7 +253,7 @@ class Drilling:
         """The calls that name no place in the plane, where a setting decides if they drill."""
         found = np.zeros(self.lines.live, np.bool_)
         rule, control = self.lines.dialect.cycle_rule, self.lines.reading.control
-        if rule is None or not rule.alone or control.get(rule.alone) == "drills":
+        if rule is None or not rule.place_is_open(control):
             return found
         drills = self.calls & (self.columns.word(self.columns.repeats, slice(None)) != 0)
         has = {letter: ~np.isnan(self.columns.word(letter, slice(None))) for letter in "XYZR"}

@@ -82,8 +82,10 @@ class Compensation(Window):
         rows = np.flatnonzero(~self.left)
         commands[rows] = self.command(self.end[rows], rows)
         path = self.path
-        distances = path.blocks.incremental[path.block] & (path.form == gx.Form.HOME)
+        distances = path.form == gx.Form.HOME
         distances &= np.append(path.nth[1:] > 0, False)[: len(path)]  # the way to G28's own point
+        distances |= path.form == gx.Form.BLIND
+        distances &= path.blocks.incremental[path.block]
         named = (path.blocks.named[path.block][:, None] >> np.arange(3) & 1).astype(np.bool_)
         for row in np.flatnonzero(self.left).tolist():
             before = self._written(commands, row - 1) if row else entry
