@@ -57,3 +57,12 @@ def test_nothing_of_a_shift_is_left() -> None:
         pipeline.run(source)
     text = pipeline.run(source.replace(b"/", b""), "full").text
     assert text == b"G21 G90\nG0 X0 Y0 Z5\nN5 (one)\nG0 X2. ;two\nG54 X5.\nM2\n"
+
+
+@pytest.mark.parametrize(("block", "count"), [("G10 L2 P2 X30.", 1), ("G92 X1.", 1), ("G55", 0)])
+def test_the_certificate_says_what_stays_unset_in_the_control(block: str, count: int) -> None:
+    """G10 and G92 outlive a program of GRBL: what runs next finds other zeros."""
+    program = f"G21 G90 G54\nG0 X0 Y0 Z0\n{block}\nM30\n".encode()
+    said = gx.Pipeline.parse("offsets", "grbl").run(program).certificate.not_checked
+    found = [int(line.rpartition(" ")[2]) for line in said if line.startswith("zeros that codes")]
+    assert found == [count][: bool(count)]

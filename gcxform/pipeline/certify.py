@@ -17,7 +17,7 @@ from gcxform.pipeline.certificate import Certificate
 from gcxform.pipeline.output import Output
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.run import Run
-from gcxform.proof.verify import Findings
+from gcxform.proof.findings import Findings
 from gcxform.stamps.chain import described
 from gcxform.syntax.source import Source, lines_in
 from gcxform.version import VERSION
@@ -139,6 +139,7 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
             found.contour_only,
             "where the control takes the centre under cutter compensation: only the contour, moves",
         ),
+        (found.unset, "zeros that codes leave in the control for what runs next: not set, codes"),
         (found.lines_after_end, "lines after the end of the program: copied, not read"),
     ):
         if count:

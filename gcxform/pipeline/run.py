@@ -30,8 +30,9 @@ from gcxform.pipeline.structure import Structure
 from gcxform.pipeline.text_passes import TextRun
 from gcxform.pipeline.whole_cuts import whole_cuts, whole_sections
 from gcxform.pipeline.written_back import WrittenBack, structure_of
+from gcxform.proof.findings import Findings
 from gcxform.proof.inventory import Books, Others
-from gcxform.proof.verify import Findings, Verifier
+from gcxform.proof.verify import Verifier
 from gcxform.stamps.chain import check_stamps
 from gcxform.stamps.comment import StampReader
 from gcxform.stamps.writing import Heads, Seal, comment_line

@@ -16,8 +16,8 @@ from gcxform.modal.inventory import Account
 from gcxform.modal.state import Reading
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.text_passes import TextRun
+from gcxform.proof.findings import Findings
 from gcxform.proof.structure import check_executed, check_kept, held_by
-from gcxform.proof.verify import Findings
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Ints
 

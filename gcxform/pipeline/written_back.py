@@ -13,8 +13,8 @@ from gcxform.modal.state import Reading
 from gcxform.pipeline.chain import facts_after
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.structure import Structure
+from gcxform.proof.findings import Findings
 from gcxform.proof.respelled import check_kept, check_respelled
-from gcxform.proof.verify import Findings
 from gcxform.syntax.source import Source
 from gcxform.toolpath.facts import ABSOLUTE
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from gcxform.contract.passes import PassContext
 from gcxform.dialect.codes import Effect
 from gcxform.modal.interpreter import Interpreted
-from gcxform.modal.meaning.meaning import FRAMING
+from gcxform.modal.meaning.meaning import FRAMING, PRESETS
 from gcxform.modal.meaning.sorting import only_for_cycles
 from gcxform.modal.moves.blind_moves import BY
 from gcxform.proof.feeds import Wrong
@@ -57,6 +57,12 @@ class EventProof:
             return events
         codes = self.context.source.codes
         return tuple(e for e in events if e.what not in codes or codes[e.what].act not in FRAMING)
+
+    def unset(self, path: Toolpath) -> int:
+        """Return how many codes of a source leave a zero in the control, and are folded away."""
+        codes = self.context.source.codes
+        acts = (codes[event.what].act for event in path.events if event.what in codes)
+        return sum(act in PRESETS & FRAMING for act in acts) if self.folded else 0
 
     def wrong_zeros(self, read: Interpreted, back: Interpreted, trace: Trace) -> Iterator[Wrong]:
         """Yield where a zero would be elsewhere; another control may know others of them."""

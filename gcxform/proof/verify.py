@@ -24,7 +24,6 @@ rapids that passes spare (`gcxform/proof/spared_rapids.py`). No pass is believed
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -44,7 +43,8 @@ from gcxform.modal.state import Reading
 from gcxform.proof.centre_path import CentreProof
 from gcxform.proof.events import EventProof
 from gcxform.proof.feeds import FeedProof, speeds_of
-from gcxform.proof.inventory import Whole, Written, assignments_differ, not_taken
+from gcxform.proof.findings import Findings
+from gcxform.proof.inventory import Whole, assignments_differ, not_taken
 from gcxform.proof.known_positions import as_known, lost_in_target
 from gcxform.proof.lost_words import elsewhere
 from gcxform.proof.path_modes import PathModes
@@ -56,45 +56,6 @@ from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.facts import IN_AIR, between_taps
 from gcxform.toolpath.path import WHOLE, Kind, Toolpath
 from gcxform.toolpath.travel import ways
-
-
-@dataclass(slots=True)
-class Findings:
-    """What the verification has found so far: counts, and the worst places.
-
-    deviation   mm; `source_line` and `output_line` count from 1
-    angle       degrees, of rotary axes
-    inch        whether a block in inches has been written
-    file        what the output is as a file
-    arcs        whether there was any arc or spline, on either side
-    contours    stretches under cutter compensation of which centre paths were compared
-    contour_only   moves under it of which only the contour was
-    between_taps, aside   moves between taps that are off by more than the budget, and how far (mm)
-    spared      rapids left to go where the machine does, of which `spared_unknown` are off by what
-                nobody knows, and the others by up to `spared_by` (mm)
-    path_modes  blocks with a path mode that stand around cycles which are written out
-    """
-
-    moves: int = 0
-    events: int = 0
-    deviation: float = 0.0
-    angle: float = 0.0
-    source_line: int = 0
-    output_line: int = 0
-    rapids: int = 0
-    unknown_starts: int = 0
-    between_taps: int = 0
-    aside: float = 0.0
-    lines_after_end: int = 0
-    contours: int = 0
-    contour_only: int = 0
-    spared: int = 0
-    spared_unknown: int = 0
-    spared_by: float = 0.0
-    path_modes: int = 0
-    inch: bool = False
-    file: Written = field(default_factory=Written)
-    arcs: bool = False
 
 
 class Verifier:
@@ -174,6 +135,7 @@ class Verifier:
             self._raise(*moded)
         self.findings.path_modes = self.path_modes.added
         self.findings.events += len(old)
+        self.findings.unset += self.events.unset(read.path)
         lost = assignments_differ(read.assigned, back.assigned, trace, self.context)
         wrongs = *self.events.wrong(old, new, trace, self.budget), lost
         wrongs = *wrongs, *self.events.wrong_zeros(read, back, trace)

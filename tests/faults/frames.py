@@ -229,4 +229,11 @@ MUTATIONS = (
         "return np.nan",
         "tests/test_corpus.py::test_case[dialects/fanuc/length-alone-moves]",
     ),
+    Mutation(
+        "frames: nobody says which zeros are not left in the control",
+        "gcxform/proof/events.py",
+        "if self.folded else 0",
+        "if False else 0",
+        "tests/test_offsets.py::test_the_certificate_says_what_stays_unset_in_the_control",
+    ),
 )

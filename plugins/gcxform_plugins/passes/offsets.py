@@ -19,7 +19,8 @@ class Offsets(gx.Pass):
     """Fold G52, G92, G10, G68, G51.1, G16, G7 and other work offsets into the words of moves.
 
     The program then stays in the work offset in which it starts, and the codes that shifted or
-    turned its coordinates are not written. What they would leave behind in the control is lost.
+    turned its coordinates are not written. What they would leave behind in the control is lost,
+    and the certificate says of how many.
     Tool lengths, G28 and G53 stay as they are. How far two work offsets are apart has to be known,
     from the machine file or from the program.
     """
