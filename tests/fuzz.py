@@ -3,9 +3,9 @@
     python tests/fuzz.py 20000 [--flow] [--from SEED] [--show]
 
 draws programs under random chains; with --flow programs with calls, macros, loops and lost values,
-read, and written by `absolute`. It prints figures every 500 programs, and at the end how many were
-drawn, compared and refused, by code, and what must not be: disagreements, refusals without need,
-verifications that failed and bugs, each with its seed. Exit code 1 if there is any.
+read, and written by `absolute`. It says every 500 programs what must not be: disagreements, refusals
+without need, verifications that failed and bugs, each with its seed; and at the end how many were
+drawn, compared and refused, by code. Exit code 1 if there is any.
 """
 
 from __future__ import annotations
@@ -18,7 +18,11 @@ os.environ.setdefault("HYPOTHESIS_PROFILE", "long")  # what is asked once is not
 
 from oracles import rs274
 from properties import chains, executed
-from properties.figures import Figures
+from properties.figures import Figures, Judged
+
+
+def _line(job: Judged) -> str:
+    return f"seed {job.seed}: {job.kind}: {job.chain}: {job.said[:200]}"
 
 
 def main() -> int:
@@ -35,9 +39,9 @@ def main() -> int:
     for figures in campaign(range(chosen.first, chosen.first + chosen.count)):
         total += figures
         print(f"{total.counts['programs']:7} tried, {len(total.wrong)} wrong", flush=True)
+        for job in figures.wrong:
+            print(job if chosen.show else _line(job), flush=True)
     print(total)
-    for job in total.wrong:
-        print(job if chosen.show else f"seed {job.seed}: {job.kind}: {job.chain}: {job.said[:200]}")
     return int(bool(total.wrong))
 
 
