@@ -3,9 +3,9 @@
     python tests/fuzz.py 20000 [--flow] [--from SEED] [--show]
 
 draws programs under random chains; with --flow programs with calls, macros, loops and lost values,
-read, and written by `absolute`. It says every 500 programs what must not be: disagreements, refusals
-without need, verifications that failed and bugs, each with its seed; and at the end how many were
-drawn, compared and refused, by code. Exit code 1 if there is any.
+read, and written by `absolute`. It says every 500 programs what must not be: disagreements,
+refusals without need, failed verifications and bugs, each with its seed; and at the end how many
+were drawn, compared and refused, by code. Exit code 1 if there is any.
 """
 
 from __future__ import annotations

@@ -276,16 +276,15 @@ class Run:
 
     def _check_whole(self) -> None:
         """Check that nothing is lost, and that the target takes the file if the source's did."""
-        self.account, wrong = self.books.close(
-            self.findings.file, self.executed, self.findings.path_modes
-        )
+        found = self.findings
+        self.account, wrong = self.books.close(found.file, self.executed, found.path_modes)
         if wrong:
             where = Location(self.source.name, max(self.reader.lines, 1))
             raise VerificationError.one("GX601", wrong, where)
         faulty = self.dialect.name == self.plan.target.name and self.ending.wrong
-        if self.findings.file.no_end and not faulty:
+        if found.file.no_end and not faulty:
             where = Location(self.source.name, max(self.reader.lines, 1))
-            raise VerificationError.one("GX601", self.findings.file.no_end, where)
+            raise VerificationError.one("GX601", found.file.no_end, where)
 
     def _emitted(self, one: Transformed, first: bool, last: bool) -> Emitted:
         """Return the text of a window, with the stamps if they are due."""
