@@ -31,7 +31,7 @@ MUTATIONS = (
     ),
     _proof(
         "the end is ignored",
-        "if self.findings.file.no_end and not faulty:",
+        "if found.file.no_end and not faulty:",
         file="gcxform/pipeline/run.py",
     ),
     _proof(
