@@ -57,6 +57,11 @@ WHOLE_LANGUAGES = ("siemens", "heidenhain")
 """Those that are written in their own language: by passes that change no position."""
 BARS = {"fanuc": 32, "grbl": 38, "haas": 11, "linuxcnc": 129, "siemens": 42, "heidenhain": 17}
 """Programs that are to go through `absolute`; in the long chain a tenth fewer may."""
+KEPT = re.compile(r"lines .* \((\d+)\) are kept as they stand")
+STANDING = re.compile(r"lines .* \((\d+)\) stand as they do")
+"""What a certificate says of lines that are not understood, and of others that stay as they do."""
+MOST_KEPT = {"siemens": 140}
+"""Lines of programs that may be kept as not understood."""
 SECONDS = 120
 START = Reading({"X": 0.0, "Y": 0.0, "Z": 0.0})
 """Many programs leave an axis where it is: the machine is taken to stand at its origin."""
@@ -80,12 +85,18 @@ class Job:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a program: nothing in `code` if it went through."""
+    """What became of a program: nothing in `code` if it went through.
+
+    `kept`: how many of its lines stay because they are not understood; `standing`: how many others
+    do, because only the control knows their values, or whether they are executed.
+    """
 
     job: Job
     code: str = ""
     says: str = ""
     line: int = 0
+    kept: int = 0
+    standing: int = 0
 
     @property
     def cause(self) -> str:
@@ -191,7 +202,9 @@ def run(job: Job) -> Outcome:
     if not result.certificate.verified:
         return Outcome(job, "NOT VERIFIED")
     lost = what_is_lost(job.text, result.text, job.dialect)
-    return Outcome(job, "LOST", lost) if lost else Outcome(job)
+    said = result.certificate.assumed
+    kept, standing = (sum(int(m[1]) for m in map(w.search, said) if m) for w in (KEPT, STANDING))
+    return Outcome(job, "LOST", lost) if lost else Outcome(job, kept=kept, standing=standing)
 
 
 def _too_long(number: int, frame: FrameType | None) -> None:
@@ -266,6 +279,21 @@ def prints_back(text: bytes, dialect: str) -> bool:
 # --- what is printed ---
 
 
+def kept_lines(found: Iterable[Outcome]) -> dict[str, tuple[int, int, int, int]]:
+    """Return of whole languages how many lines are not understood, stand, and have code.
+
+    Then in how many programs all are understood. Programs that do not go through do not count.
+    """
+    table: dict[str, tuple[int, int, int, int]] = {}
+    for one in found:
+        if one.job.dialect in WHOLE_LANGUAGES and not one.code:
+            codes = [line.partition(b";")[0].strip() for line in one.job.text.splitlines()]
+            mine = one.kept, one.standing, len([*filter(None, codes)]), int(not one.kept)
+            so_far = table.get(one.job.dialect, (0, 0, 0, 0))
+            table[one.job.dialect] = tuple(map(sum, zip(so_far, mine, strict=True)))  # type: ignore[assignment]
+    return table
+
+
 def through(found: Iterable[Outcome]) -> dict[tuple[str, str], tuple[int, int]]:
     """Return how many programs went through, and how many there are, by dialect and chain."""
     kinds = [(one.job.dialect, one.job.chain, not one.code) for one in found]
@@ -281,6 +309,9 @@ def print_tables(found: list[Outcome]) -> None:
         counts = [table[dialect, chain][0] if (dialect, chain) in table else "" for chain in CHAINS]
         cells = [dialect, *counts, table[dialect, "absolute"][1], BARS[dialect]]
         print(f"| {' | '.join(map(str, cells))} |")
+    for dialect, (kept, standing, lines, whole) in kept_lines(found).items():
+        print(f"\n{dialect}: of {lines} lines {kept} are not understood (bar {MOST_KEPT[dialect]})")
+        print(f"and {standing} stand as they do; in {whole} programs all are understood")
     causes = Counter((o.job.chain, o.job.dialect, o.cause, o.judgement) for o in found if o.code)
     print("\n| chain | dialect | cause | programs | judgement |\n|---|---|---|--:|---|")
     for (chain, dialect, cause, judgement), count in sorted(causes.items()):
@@ -303,7 +334,8 @@ def main() -> int:
         write_anew(jobs)
     found = outcomes(jobs)
     for one in found:
-        why = f"{one.code} {one.line}: {one.says}" if one.code else "through"
+        kept = f", {one.kept} lines not understood" if one.kept else ""
+        why = f"{one.code} {one.line}: {one.says}" if one.code else f"through{kept}"
         if options.list or (options.cause and options.cause in why):
             print(f"{one.job.dialect} {one.job.chain} {one.job.path}: {why}")
     print_tables(found)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from gcxform.flow.executed import WrittenOut
 from gcxform.flow.translation import Translator, translator_of
 from gcxform.modal.state import Reading
 from gcxform.syntax.source import Source
+from gcxform.syntax.undecided import Undecided
 from gcxform.system.arrays import Ints
 
 
@@ -23,10 +25,17 @@ class Translated(WrittenOut):
     """
 
     def __init__(
-        self, source: Source, translator: Translator, text: bytes, origin: list[int], visits: Ints
+        self,
+        source: Source,
+        translator: Translator,
+        text: bytes,
+        origin: list[int],
+        visits: Ints,
+        lost: Mapping[int, str],
     ) -> None:
         files = tuple(translator.annexed.files) if translator.annexed is not None else ()
-        super().__init__(source, text, np.array(origin, np.int64), translator.assumed, files)
+        lines, undecided = np.array(origin, np.int64), Undecided(lost=lost)
+        super().__init__(source, text, lines, translator.assumed, files, undecided)
         self.lines = translator.lines
         self.translator = translator
         self.text = text
@@ -56,18 +65,37 @@ def translated_so_far(
     lines = lines_of(b"".join(source.windows()))
     if lines and not lines[-1]:
         lines.pop()
-    kind = translator_of(dialect)
-    blocks, origin, visits, refused = [], [], [], None
     beside = () if source.folder is None else (source.folder,)
     reading = replace(reading, subprograms=(*beside, *reading.subprograms))
-    translator = kind(lines, source.name, dialect, reading)
+    kind, stay = translator_of(dialect), frozenset[int]()
+    while True:
+        translator = kind([*lines], source.name, dialect, reading)
+        translator.stay = stay
+        blocks, origin, visits, lost, refused = _run(translator)
+        if translator.tied <= stay:
+            break
+        stay |= translator.tied
+    joined = "".join(f"{block}\n" for block in blocks).encode("latin-1")
+    made = Translated(source, translator, joined, origin, np.array(visits, np.int64), lost)
+    return made, refused
+
+
+def _run(
+    translator: Translator,
+) -> tuple[list[str], list[int], list[int], dict[int, str], InputError | None]:
+    """Return blocks, their lines and executions, what is lost before them, and a refusal."""
+    blocks: list[str] = []
+    origin: list[int] = []
+    visits: list[int] = []
+    lost: dict[int, str] = {}
     try:
         for line, block in translator.run():
+            if translator.loses:
+                lost[len(blocks)] = "".join(sorted(translator.loses))
+                translator.loses.clear()
             blocks.append(block)
             origin.append(line)
             visits.append(translator.visit)
     except InputError as error:
-        refused = error
-    joined = "".join(f"{block}\n" for block in blocks).encode("latin-1")
-    made = Translated(source, translator, joined, origin, np.array(visits, np.int64))
-    return made, refused
+        return blocks, origin, visits, lost, error
+    return blocks, origin, visits, lost, None

@@ -32,7 +32,7 @@ class Undecided:
     perhaps: frozenset[int] = frozenset()
 
     def __bool__(self) -> bool:
-        return bool(self.lines or self.labels or self.forgets or self.perhaps)
+        return bool(self.lines or self.labels or self.lost or self.forgets or self.perhaps)
 
     def within(self, first: int, count: int) -> Undecided:
         """Return what of it is in so many lines from the first on."""

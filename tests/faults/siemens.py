@@ -11,6 +11,8 @@ BLOCKS = "plugins/gcxform_plugins/dialects/siemens/blocks.py"
 READING = "plugins/gcxform_plugins/dialects/siemens/reading.py"
 CYCLES = "plugins/gcxform_plugins/dialects/siemens/cycles.py"
 DECIDING = "plugins/gcxform_plugins/dialects/siemens/deciding.py"
+STRUCTURE = "plugins/gcxform_plugins/dialects/siemens/structure.py"
+EFFECTS = "plugins/gcxform_plugins/dialects/siemens/effects.py"
 PROGRAMS = "plugins/gcxform_plugins/dialects/siemens/programs.py"
 EXPRESSIONS = "plugins/gcxform_plugins/dialects/siemens/expressions.py"
 ARITHMETIC = "plugins/gcxform_plugins/dialects/siemens/arithmetic.py"
@@ -190,22 +192,22 @@ MUTATIONS = (
     Mutation(
         "siemens: what a kept line has set is known behind it",
         PROGRAMS,
-        "        self.lose_set(self.line, self.line)\n",
-        "",
+        "        self.lose_set(self.line, self.line)\n        if opaque",
+        "        if opaque",
         f"{CASES}[dialects/siemens/kept-value]",
     ),
     Mutation(
         "siemens: lines that only the machine repeats are changed",
         PROGRAMS,
-        "return None if self.tied else spelled(self.lines[line], blocks)",
-        "return spelled(self.lines[line], blocks)",
+        "if self.line in self.stay and",
+        "if not self.stay and self.stay and",
         f"{CASES}[dialects/siemens/kept-loop]",
     ),
     Mutation(
         "siemens: a call that is not here leaves G90 in force",
         PROGRAMS,
-        'self.motion, self.unsaid, self.fed = "", {"distance"}, False',
-        'self.motion, self.fed = "", False',
+        'if opaque or (self.perhaps and "distance" in line.groups):',
+        'if self.perhaps and "distance" in line.groups:',
         f"{CASES}[dialects/siemens/kept-modes]",
     ),
     Mutation(
@@ -256,5 +258,61 @@ MUTATIONS = (
         "        if text != raw and line >= translator.own:\n",
         "        if text is None and line >= translator.own:\n",
         f"{CASES}[dialects/siemens/call-kept]",
+    ),
+    Mutation(
+        "siemens: where an axis is behind a line that stays is taken as before",
+        PROGRAMS,
+        '        self.place.lose([axis for axis in axes if axis != "F"])',
+        "        self.place.lose([])",
+        f"{CASES}[dialects/siemens/stands-by-its-words]",
+    ),
+    Mutation(
+        "siemens: what a jump leads over is executed",
+        STRUCTURE,
+        "low, high = min(low, target), max(high, target - 1)",
+        "low, high = min(low, target), max(high, line)",
+        f"{CASES}[dialects/siemens/perhaps-jumped-over]",
+    ),
+    Mutation(
+        "siemens: lines that may be executed again become positions",
+        DECIDING,
+        "            self.tied |= {*where}\n",
+        "",
+        f"{CASES}[dialects/siemens/perhaps-back]",
+    ),
+    Mutation(
+        "siemens: a mode that may have been set is in force",
+        PROGRAMS,
+        'if opaque or (self.perhaps and "distance" in line.groups):',
+        "if opaque:",
+        f"{CASES}[dialects/siemens/perhaps-a-mode]",
+    ),
+    Mutation(
+        "siemens: G90 that may be executed is in force for the lines that stay",
+        PROGRAMS,
+        'if self.perhaps and "distance" in line.groups:  # it may',
+        'if False and "distance" in line.groups:  # it may',
+        f"{CASES}[dialects/siemens/perhaps-in-steps]",
+    ),
+    Mutation(
+        "siemens: data of tools lose no axis",
+        EFFECTS,
+        "return LINEAR if OF_TOOLS.fullmatch(name)",
+        'return "" if OF_TOOLS.fullmatch(name)',
+        f"{CASES}[dialects/siemens/stands-a-variable]",
+    ),
+    Mutation(
+        "siemens: words of a spline are those of a line",
+        PROGRAMS,
+        "                line.motion = OTHER\n",
+        "                pass\n",
+        f"{CASES}[dialects/siemens/stands-a-path]",
+    ),
+    Mutation(
+        "siemens: a hole leaves the axis of the tool where it was",
+        PROGRAMS,
+        "return axes + LINEAR if DRILLING.search",
+        "return axes if DRILLING.search",
+        f"{CASES}[dialects/siemens/stands-a-hole]",
     ),
 )

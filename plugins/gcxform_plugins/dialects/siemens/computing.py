@@ -26,17 +26,21 @@ AS_THEY_STAND = frozenset(("word", "bare", "label", "sequence", "call", "text_ca
 class Computing(Deciding):
     """Executes lines that compute.
 
+    kept_lines     those that are not understood, and why;  standing: those that stay all the same
     unsaid         modal groups of which it is not known what is in force
     unknown_cycle  the line of MCALL with a cycle that is not read
-    fed            a feed is known to be in force, in `feed_mode`
+    fed            a feed may be in force, in `feed_mode`: none is behind another feed mode
     """
 
     def __init__(self, lines: list[str], file: str, dialect: Any, reading: Any) -> None:
         super().__init__(lines, file, dialect, reading)
         self.kept_lines: list[tuple[int, str]] = []
+        self.standing: list[tuple[int, str]] = []
         self.unsaid: set[str] = set()
         self.unknown_cycle = ""
-        self.fed, self.feed_mode = reading.feed is not None, "94"
+        self.fed, self.feed_mode = True, "94"
+        if reading.stays and reading.feed is None:
+            self.loses.add("F")
 
     # --- lines ---
 

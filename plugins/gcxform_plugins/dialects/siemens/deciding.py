@@ -23,7 +23,7 @@ class Deciding(Variables):
     """Executes what decides.
 
     kept_until   lines up to this one are kept: only the machine decides on them, `kept_why`
-    tied         why lines that were read may be executed again, by what only the machine knows
+    perhaps      those that are kept may be executed, and nothing else is done among them
     decides      something has decided where to go on;  loops_on: a loop may go on at its end
     """
 
@@ -31,8 +31,8 @@ class Deciding(Variables):
         super().__init__(lines, file, dialect, reading)
         self.counting: dict[int, float] = {}
         self._trees: dict[str, Node] = {}
-        self.kept_until, self.kept_why, self.tied = 0, "", ""
-        self.decides = self.loops_on = False
+        self.kept_until, self.kept_why = 0, ""
+        self.decides = self.loops_on = self.perhaps = False
         self.flow: Mapping[str, Callable[[Node], None]] = {
             "if": self._if,
             "loop": lambda _: self._check(self._part()),
@@ -166,8 +166,8 @@ class Deciding(Variables):
     def _until(self, node: Node) -> None:
         part, holds = self._part(), self._decided(node.children[1])
         if holds is None:
-            self.tied = f"only the control knows how often lines from {part.first + 1} are executed"
-            self.lose_set(part.first, part.last)
+            self.tied |= {*range(part.first, part.last + 1)}
+            self.forget(range(part.first, part.last + 1))
             self.loops_on = True
             raise lost("whether this loop is over")
         if not holds:
@@ -222,11 +222,33 @@ class Deciding(Variables):
     # --- what only the machine decides ---
 
     def _undecided(self, part: Part | None) -> None:
-        """Keep what only the control decides on: a structure, or all that follows."""
-        if part is None or self.structure.leaves(part.first, part.last):
-            self._elsewhere("only the control knows where this goes on")
+        """Keep what only the control decides on: a structure, what is jumped over, or the rest."""
+        first, last = (self.line, self.line) if part is None else (part.first, part.last)
+        self.keep_perhaps(first, last)
+        self.refuse(self.kept_why)
+
+    def keep_perhaps(self, first: int, last: int) -> None:
+        """Keep lines that may be executed, and all that a jump among them leads over.
+
+        Where they lead back, what was read already may be executed again: it stays, too.
+        """
+        where = self.structure.reach(first, last, bool(self.calls), self._is_text)
+        if where is None:
+            self.keep_rest("only the control knows where this goes on")
             return
-        self._keep(part.last + 1, "only the control knows whether this is executed")
+        self.keep_on(where.stop, "only the control knows whether this is executed")
+        self.perhaps = True
+        if where.start < first:
+            self.tied |= {*where}
+            self.forget(range(where.start, first))
+
+    def _is_text(self, name: str) -> bool:
+        """Whether a jump to a name leads to what a variable says."""
+        return self._cell(name) is not None
+
+    def forget(self, lines: range) -> None:
+        """Forget what lines may change that are executed again."""
+        raise NotImplementedError
 
     def _elsewhere(self, why: str) -> None:
         """Keep all that follows, and all lines that may be executed once more."""
@@ -246,12 +268,8 @@ class Deciding(Variables):
         except StructureError:
             back = True
         if back and not self.calls:
-            self.tied = why
-
-    def _keep(self, until: int, why: str) -> None:
-        self.keep_on(until, why)
-        self.refuse(why)
+            self.tied |= {*range(self.line)}
 
     def keep_on(self, until: int, why: str) -> None:
         """Keep lines from this one up to another."""
-        self.kept_until, self.kept_why = until, why
+        self.kept_until, self.kept_why, self.perhaps = until, why, False

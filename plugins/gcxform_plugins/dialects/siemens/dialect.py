@@ -69,6 +69,9 @@ their bytes, and what is refused below is then kept as it stands, with all that 
 | GOTOS, REPEAT of a label, RET with a label, REP() | refused | [K] |
 | `$AA_IW[X]`, `$P_EP[X]` | where X stands; the first only behind STOPRE | [K] |
 | other `$` variables, names that nothing defines | only the control knows them | |
+| these set, in a line that does nothing else | it stays; none of X Y Z A B C moves | [K] |
+| `$TC_...=`, `$P_UIFR[...]=` | data of tools lose X, Y, Z; zeros lose all axes | W1 13, K2 741 |
+| SETAL, SETMS, FGROUP, ACC[], FA[] | tell, or say how fast: they move nothing | PM |
 | PROC, what nobody calls | its parameters are not known | |
 | `NAME(...)`, `L10 P2` | `NAME.SPF`, `.MPF` beside the program; VAR is the caller's own | PM |
 | what is left out of a call | its default in PROC, or 0 | PM |
@@ -84,6 +87,20 @@ Manuals of Siemens: JA and JP Job planning 03/2006 and 07/2010, PM NC programmin
 01/2017, K2 Frames and 828D Basic functions 09/2011, ISO Milling 04/2007, W1 Tool offset 11/2006, TR
 Transformations 06/2019 (A5E47435470B), R2 Axes and spindles 06/2019 (A5E47437747B), SW Swivelling
 03/2013; C81 helmancnc.com on CYCLE81. [K]: not looked up.
+
+To the same control, by passes that keep positions, a line stays that cannot be said in blocks:
+
+| what stays | what is lost behind it |
+|---|---|
+| a line of words, with values that only the control knows | the axes that it names, and its F |
+| CT, ASPLINE, BSPLINE, CSPLINE, POLY, INVCW, INVCCW | those that words name until another motion |
+| RND, RNDM, CHF, CHR, TURN, AP, RP, ANG in a line | those that it names; by polar words X Y Z |
+| TRANS, ROT ... ATRANS, AROT ..., G53, SUPA, G500, TRAORI, CYCLE800 | all axes |
+| DIAMON, DIAM90 | all axes, and all that follows stays: steps may be radii |
+| CYCLE81 to 89, 84, 840, HOLES1, HOLES2, CYCLE801 as they are not read | X, Y, Z |
+| what may not be executed: IF, WHILE, CASE, what a jump leads over | what it sets, and moves |
+| what may be executed again | as well; its lines stay |
+| other calls, M codes of the machine, synchronous actions, SETINT | all, modes too |
 """
 
 from __future__ import annotations
@@ -116,7 +133,7 @@ class Siemens(gx.Dialect):
         128: gx.MCode("tip", barrier=v.FOLLOWING),
         129: gx.MCode("tip"),
         17: gx.MCode("stop", after=True, ends=True),
-        9000: gx.MCode("kept", loses_position=True, takes="P"),
+        9000: gx.MCode("kept", takes="P"),
     }
     differs: ClassVar[Mapping[str, str]] = {
         "M17": "returns from a subprogram, and ends a program as M30 does (PM p. 45)"

@@ -186,6 +186,9 @@ class Moves(Statements):
             return self._through(line, ends)
         if line.middles:
             self.refuse("I1, J1 and K1 belong to CIP", self.first_of(line))
+        if not line.centres and not line.named.keys() & {"CR", "AR"}:
+            message = "an arc without I, J, K, CR= or AR="
+            raise self.refusal("GX210", message, self.any_of(line), "write its centre or radius")
         words = [arcs.turns(line, place, plane, ends)] if "TURN" in line.named else []
         if "AR" in line.named:
             self._alone_in(line, "AR")

@@ -88,7 +88,7 @@ class Place:
         """How many rotary axes the program has named."""
         return len(self.named & set(ROTARY))
 
-    def lose(self, axes: str, shifted: bool = True) -> None:
+    def lose(self, axes: Iterable[str], shifted: bool = True) -> None:
         """Forget where axes stand; those that are unwound stay so."""
         for axis in axes:
             self.at[axis] = self.line, None

@@ -10,13 +10,17 @@ from __future__ import annotations
 
 import re
 import zlib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 import gcxform as gx
+from gcxform import vocabulary as v
 from gcxform_plugins.dialects.siemens.calls import Calls
+from gcxform_plugins.dialects.siemens.effects import effect_of
 from gcxform_plugins.dialects.siemens.line import FRAMES, Line
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
+from gcxform_plugins.dialects.siemens.reading import QUIET
 from gcxform_plugins.dialects.siemens.spelling import spelled
+from gcxform_plugins.dialects.siemens.standing import ALL, DRILLING, OTHER, PATHS, axes_of
 from gcxform_plugins.dialects.siemens.structure import code
 
 KEPT = "M9000"
@@ -30,8 +34,14 @@ FROM_HERE = re.compile(
 )
 """What may act on all that follows: synchronous actions, interrupts, macros, another language,
 another unit, and diameters, of which steps may be radii (DIAM90)."""
-FRAMING = re.compile(r"A?(?:TRANS|ROTS?|SCALE|MIRROR)|SUPA|TRAORI|TRAFOOF")
-"""Commands that may stay as they stand, and change no mode: positions alone are lost."""
+STANDS = (
+    "lines {} stand as they do: what they say only the control knows, or no block of words; the "
+    "axes that they name are somewhere behind them"
+)
+UNDEFINED = (
+    "names that nothing defines, where a line only sets them, are variables of the control, or "
+    "axes beside X, Y, Z, A, B and C"
+)
 KEEPABLE = frozenset(
     ("GX203", "GX206", "GX207", "GX208", "GX209", "GX210", "GX213", "GX220", "GX221")
 )
@@ -45,7 +55,10 @@ KEEPS = (
     "as they stand: {}; where the axes are behind them is not known, nor what they have set; "
     "units, plane, feed mode and compensation are taken to be as before"
 )
+MODAL_CALL = re.compile(r"(?<![A-Z0-9_])MCALL(?![A-Z0-9_])", re.IGNORECASE)
 STEPPED = re.compile(r"=[ \t]*IC[ \t]*\(|(?<![A-Z0-9_])G[ \t]*0*91(?![0-9.])", re.IGNORECASE)
+KNOWN = QUIET, frozenset(n for n in v.ISO_M if n not in (128, 129)) | {17}
+"""Commands and M codes that move nothing."""
 FEED_MODES = frozenset(("93", "94", "95"))
 STATE = (
     *("motion", "said", "plane", "work", "unit", "steps", "said_steps", "said_centres"),
@@ -66,13 +79,15 @@ class Programs(Calls):
             return self.executed(items)
         self._arrive()
         if self.line < self.kept_until:
-            return self._kept(items, self.kept_why, True)
-        self.kept_until = 0
+            return self._perhaps(items) if self.perhaps else self._kept(items, self.kept_why, True)
+        self.kept_until, self.perhaps = 0, False
         before = {name: getattr(self, name) for name in STATE}
         orientation = [*self.orientation]
         try:
             if self.unknown_cycle and any(i.name in LINEAR for i in items if i.names):
                 self.refuse(f"{self.unknown_cycle} is called behind this block")
+            if self.line in self.stay and any(i.names and i.name in ALL for i in items):
+                self.refuse("only the control knows how often this is executed")
             return [*self.executed(items)]
         except gx.InputError as error:
             (found, *_) = error.diagnostics
@@ -81,60 +96,117 @@ class Programs(Calls):
             vars(self).update(before)
             self.orientation = orientation
             if any(i.kind == "flow" and DECIDES.match(i.name) for i in items):
-                self._decides_elsewhere(found.message)
-            return self._kept(items, found.message, False)
+                self._decides_elsewhere()
+            return self._perhaps(items, found.message)
 
-    def _decides_elsewhere(self, why: str) -> None:
-        """Keep all that follows a decision that is not made here, where nothing less is kept."""
+    def _decides_elsewhere(self) -> None:
+        """Keep what follows a decision that is not made here, where that is not yet said."""
         if self.kept_until > self.line or self.loops_on:
             self.loops_on = False
-        else:
-            self.keep_rest(why)
+            return
+        part = self.structure.at.get(self.line)
+        self.keep_perhaps(*((self.line, self.line) if part is None else (part.first, part.last)))
+
+    def _perhaps(self, items: Sequence[gx.Item], why: str = "") -> list[str]:
+        """Return the blocks of a line that is not executed here: none where it moves nothing."""
+        effect = self.effect(self.lines[self.line])
+        if effect is None:
+            return self._kept(items, why or self.kept_why, False)
+        self.lose_set(self.line, self.line)
+        self.lose_axes(effect)
+        if any(item.kind in ("named", "expression", "array") for item in items):
+            self.assumed[UNDEFINED] = None
+        return []
+
+    def effect(self, text: str) -> str | None:
+        """Return the axes that are lost behind a line that stays; None where it may do anything."""
+        return effect_of(self.tree_of, text, lambda name: self._cell(name) is not None)
+
+    def forget(self, lines: range) -> None:
+        """Forget what lines may change that are executed again, each of them as before."""
+        self.lose_set(lines.start, lines.stop - 1)
+        for line in lines:
+            text, effect = self.lines[line], self.effect(self.lines[line])
+            if effect is None:
+                effect = axes_of([i for i in self.items(line) if i.kind != "comment"], *KNOWN)
+            self.lose_axes(ALL + "F" if effect is None else effect.replace("T", ""))
+            self.place.moved = True
+            if effect is None:
+                self.motion, self.unsaid, self.plainly, self.work = "", {"distance"}, False, ""
+                self.lose_called(text)
+            if effect is None or "T" in effect:
+                self.tool = self.waiting = self.edge = None
+            if MODAL_CALL.search(code(text)):
+                self.unknown_cycle, self.drilling = text.strip(), None
+
+    def lose_axes(self, axes: str) -> None:
+        """Forget where axes are; F is the feed that is in force."""
+        self.place.lose([axis for axis in axes if axis != "F"])
+        self.loses |= {*axes}
 
     def _kept(self, items: Sequence[gx.Item], why: str, opaque: bool) -> list[str]:
         """Return the block of a line that stays as it stands."""
-        text = self.lines[self.line]
         if not items:
             return []
-        self.kept_lines.append((self.line, why))
+        text = self.lines[self.line]
         if FROM_HERE.search(code(text).upper()):
             self.keep_rest(why)
-        opaque |= self._calls(text, items)
         line = self._codes_of(items)
-        if line.motion.isdigit():
-            self.motion = line.motion
-        self._lose(items, opaque)
-        motion = self.motion_code(line, self.motion) if self.motion.isdigit() else []
-        if "G91" in line.codes:  # it says so itself, and stays
-            line.codes.remove("G91")
-            self.unsaid.add("distance")
-            self.steps = self.said_steps
-        codes = [
-            *line.codes,
-            *motion,
-            *([f"F{line.feed}"] if line.feed and line.dwell is None else []),
-        ]
-        if "distance" not in self.unsaid:
-            codes += self.distance_code(line, self.steps)
-        self.said_steps = self.steps
+        axes = None if opaque else self._moved_by(items, line)
+        read = axes is not None or (opaque and self._is_read(text, items))
+        (self.standing if read else self.kept_lines).append((self.line, why))
+        if axes is None:
+            opaque |= self._calls(text, items)
+            axes = ALL
+        if any(item.name == "MCALL" for item in items):
+            self.unknown_cycle, self.drilling = text.strip(), None
+        self._lose(items, opaque, axes)
+        codes = self._modes_of(line, opaque)
         number = zlib.crc32(text.strip().encode("latin-1")) & 0xFFFFF
-        if opaque:
-            self.motion, self.unsaid, self.fed = "", {"distance"}, False
+        if opaque or (self.perhaps and line.motion):
+            self.motion = ""
+        if opaque or (self.perhaps and "distance" in line.groups):
+            self.unsaid = {"distance"}
         self.plainly = False
         return [f"{line.number}{' '.join([*codes, f'{KEPT} P{number}'])}"]
 
+    def _is_read(self, text: str, items: Sequence[gx.Item]) -> bool:
+        """Whether a line is understood, although what it is executed in is not known."""
+        return self.effect(text) is not None or axes_of(items, *KNOWN) is not None
+
+    def _moved_by(self, items: Sequence[gx.Item], line: Line) -> str | None:
+        """Return the axes that a line moves, by its words; None where it may do more."""
+        axes = axes_of(items, *KNOWN)
+        if axes is None or (self.perhaps and (line.groups - {"motion", "distance"} or line.work)):
+            return None
+        if self.unknown_cycle and {*axes} & {*LINEAR}:
+            return axes + LINEAR if DRILLING.search(self.unknown_cycle) else None
+        return axes + (self.drilling.axis if self.drilling is not None and axes else "")
+
+    def _modes_of(self, line: Line, opaque: bool) -> list[str]:
+        """Return the codes of a line that stays, and its feed."""
+        if line.motion:
+            self.motion = line.motion
+        motion = self.motion_code(line, self.motion) if self.motion.isdigit() else []
+        itself = "G91" in line.codes  # it says so, and stays
+        if itself:
+            line.codes.remove("G91")
+            self.unsaid.add("distance")
+            self.steps = self.said_steps
+        codes = [*line.codes, *motion]
+        if line.feed and line.dwell is None and "F" not in self.loses:
+            codes.append(f"F{line.feed}")
+        if not itself:  # where it may be another, it is the one that blocks before have said
+            codes += self.distance_code(line, self.steps)
+        self.said_steps = self.steps
+        return codes
+
     def _calls(self, text: str, items: Sequence[gx.Item]) -> bool:
         """Whether a line may call what sets modes: all but words, assignments and known cycles."""
-        modal = any(item.name == "MCALL" for item in items)
-        if modal:
-            self.unknown_cycle, self.drilling = text.strip(), None
         if STANDARD.search(text):
             return False
         kinds = ("call", "command", "flow", "array")
-        return any(
-            (item.kind in kinds and not FRAMING.fullmatch(item.name)) or self._is_own(item)
-            for item in items
-        )
+        return any(item.kind in kinds or self._is_own(item) for item in items)
 
     def _is_own(self, item: gx.Item) -> bool:
         """Whether a word calls, or is an M code of the machine's own, which may be a program."""
@@ -144,7 +216,7 @@ class Programs(Calls):
 
     def _codes_of(self, items: Sequence[gx.Item]) -> Line:
         """Return the modes and the number of a line that stays as it stands."""
-        line = Line()
+        line, before = Line(), self.steps
         for item in items:
             if item.kind in ("word", "value") and item.name in ("G", "N", "F"):
                 try:
@@ -152,23 +224,31 @@ class Programs(Calls):
                 except gx.InputError:
                     self.unsaid.add("distance")
                     self.motion = ""
+            elif item.kind == "command" and item.name in PATHS:
+                line.motion = OTHER
+        if self.perhaps and "distance" in line.groups:  # it may be executed: what was is in force
+            self.steps = before
+            line.codes[:] = [code for code in line.codes if code not in ("G90", "G91")]
         return line
 
-    def _lose(self, items: Sequence[gx.Item], opaque: bool) -> None:
+    def _lose(self, items: Sequence[gx.Item], opaque: bool, axes: str) -> None:
         """Forget what a line may have changed."""
-        self.place.lose(LINEAR + ROTARY)
-        self.place.moved, self.work = True, ""
+        self.lose_axes(axes.replace("T", ""))
+        self.place.moved = True
+        if axes.startswith(ALL):
+            self.work = ""
         self.lose_set(self.line, self.line)
-        self.fed &= not any(item.kind == "expression" and item.name == "F" for item in items)
+        if opaque or self.perhaps or any(i.kind == "expression" and i.name == "F" for i in items):
+            self.loses.add("F")
         words = {item.name for item in items}
-        if opaque or words & {"T", "M", "D"}:
+        if opaque or "T" in axes or words & {"T", "M", "D"}:
             self.tool = self.waiting = self.edge = None
         if opaque:
             self.lose_called(self.lines[self.line])
 
     def spelled(self, line: int, blocks: Sequence[str]) -> str | None:
-        """Return a line that stands for new blocks; None where only the machine decides on it."""
-        return None if self.tied else spelled(self.lines[line], blocks)
+        """Return a line that stands for new blocks; None where that is not known."""
+        return spelled(self.lines[line], blocks)
 
     def counts(self, line: str) -> bool:
         """Whether a line has a word that counts from where its axis stands."""
@@ -178,14 +258,21 @@ class Programs(Calls):
         """Say which lines are kept."""
         if self.kept_lines:
             self.assumed[self._told()] = None
+        if self.standing:
+            self.assumed[STANDS.format(self._few({line for line, _ in self.standing}))] = None
         return iter(())
 
     def _told(self) -> str:
-        lines = sorted({line for line, _ in self.kept_lines})
-        few = ", ".join(map(self._line_named, lines[:8])) + (" and more" if len(lines) > 8 else "")
+        few = self._few({line for line, _ in self.kept_lines})
         line, why = min(self.kept_lines)
         why = f"line {self._line_named(line)}: {why}"
-        return f"lines {few} ({len(lines)}) are kept " + KEEPS.format(why)
+        return f"lines {few} are kept " + KEEPS.format(why)
+
+    def _few(self, lines: Collection[int]) -> str:
+        """Return the first of some lines, and how many there are."""
+        first = sorted(lines)[:8]
+        more = " and more" if len(lines) > len(first) else ""
+        return f"{', '.join(map(self._line_named, first))}{more} ({len(lines)})"
 
     def _line_named(self, line: int) -> str:
         """Return the number of a line, with its file where that is another one."""
@@ -201,6 +288,8 @@ class Programs(Calls):
             message = f"{turning[0]} goes by a step: which way it goes to a number is a setting"
             self.refuse(f"{message} (MD30455)", self.any_of(line))
         motion = line.motion or self.motion
+        if motion == OTHER:
+            self.refuse("this path is no line and no arc", self.any_of(line))
         if self.reading.stays and motion != "0" and not (line.feed or self.fed):
             message = "no feed is known to be in force here"
             self.refuse(message, self.any_of(line), "write F in this block")
@@ -258,7 +347,7 @@ class Programs(Calls):
             yield f"{KEPT} P{line.edge_number}"
         self.tool = self.edge = None
         self.changed |= line.changes is not None
-        self.place.lose(LINEAR if line.changes is None else LINEAR + ROTARY)
+        self.lose_axes(LINEAR if line.changes is None else LINEAR + ROTARY)
 
     def _arc(self, line: Line) -> tuple[str, dict[str, float], list[str]]:
         if self.reading.stays and any(self.place.known(axis) is None for axis in self.plane):

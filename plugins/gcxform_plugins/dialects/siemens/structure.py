@@ -7,7 +7,7 @@ as text, the nearest first, in its direction; none leads into a structure.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 HEAD = re.compile(
@@ -17,10 +17,16 @@ HEAD = re.compile(
 )
 STRING = re.compile(r'"[^"]*"')
 JUMP = re.compile(r"(?<![A-Z0-9_])GOTO[BFCS]?(?![A-Z0-9_])", re.IGNORECASE)
-LEAVES = re.compile(
-    r"(?<![A-Z0-9_])(?:GOTO[BFCS]?|RET|M0*(?:2|17|30|99)|PROC|REPEATB?[ \t]+[A-Z_])(?![A-Z0-9_])",
+JUMPS = re.compile(
+    r"(?<![A-Z0-9_])(GOTO[BFC]?)[ \t]*([A-Z0-9_]+)(?![ \t]*(?:<<|\[))", re.IGNORECASE
+)
+BEYOND = re.compile(
+    r"(?<![A-Z0-9_])(?:GOTOS|RET[ \t]*\(|PROC|REPEATB?[ \t]+[A-Z_]|CALL[ \t]+BLOCK"
+    r"|GOTO[BFC]?(?![A-Z0-9_])[ \t]*(?![ \t]*[A-Z0-9_]+(?![A-Z0-9_])(?![ \t]*(?:<<|\[))))",
     re.IGNORECASE,
 )
+"""What goes on where nobody knows, or repeats lines: jumps to what is computed among them."""
+ENDS_HERE = re.compile(r"(?<![A-Z0-9_])(?:RET|M0*(?:2|17|30))(?![A-Z0-9_])", re.IGNORECASE)
 BACK = re.compile(
     r"(?<![A-Z0-9_])(?:GOTO|GOTO[BCS]|REPEATB?|RET|UNTIL|WHILE|FOR|LOOP)(?![A-Z0-9_])",
     re.IGNORECASE,
@@ -116,9 +122,37 @@ class Structure:
             return found["number"] is not None and int(found["number"]) == int(number)
         return found["label"] is not None and found["label"].upper() == name.upper()
 
-    def leaves(self, first: int, last: int) -> bool:
-        """Whether lines, first to last, may go on elsewhere than behind them."""
-        return any(LEAVES.search(code(self.lines[line])) for line in range(first, last + 1))
+    def reach(
+        self, first: int, last: int, called: bool, is_text: Callable[[str], bool]
+    ) -> range | None:
+        """Return the lines that may be executed, or not, where only the machine decides in some.
+
+        Behind them it goes on in any case, but for where the program ends among them, which of one
+        that is `called` is not known: then, and where nobody knows how far, None. Where jumps lead
+        back it begins before `first`. `is_text`: whether a name is that of a variable.
+        """
+        low, high, line = first, last, first
+        while line <= high:
+            text, part = code(self.lines[line]), self.at.get(line)
+            if BEYOND.search(text) or (called and ENDS_HERE.search(text)):
+                return None
+            if part is not None and line == part.last and part.kind != "IF":
+                low = min(low, part.first)
+            elif part is not None:
+                high = max(high, part.last)
+            for way, name in JUMPS.findall(text):
+                target = None if is_text(name) else self._found(way.upper(), name, line)
+                if target is None:
+                    return None
+                low, high = min(low, target), max(high, target - 1)
+            first, line = (low, low) if low < first else (first, line + 1)
+        return range(low, high + 1)
+
+    def _found(self, way: str, name: str, line: int) -> int | None:
+        try:
+            return self.target(way, name, line)
+        except StructureError:
+            return None
 
     def may_go_back(self, line: int) -> bool:
         """Whether a line or one behind it may lead back to lines before it."""
