@@ -310,7 +310,8 @@ def print_tables(found: list[Outcome]) -> None:
         cells = [dialect, *counts, table[dialect, "absolute"][1], BARS[dialect]]
         print(f"| {' | '.join(map(str, cells))} |")
     for dialect, (kept, standing, lines, whole) in kept_lines(found).items():
-        print(f"\n{dialect}: of {lines} lines {kept} are not understood (bar {MOST_KEPT[dialect]})")
+        bar = f" (bar {MOST_KEPT[dialect]})" if dialect in MOST_KEPT else ""
+        print(f"\n{dialect}: of {lines} lines {kept} are not understood{bar}")
         print(f"and {standing} stand as they do; in {whole} programs all are understood")
     causes = Counter((o.job.chain, o.job.dialect, o.cause, o.judgement) for o in found if o.code)
     print("\n| chain | dialect | cause | programs | judgement |\n|---|---|---|--:|---|")

@@ -72,9 +72,9 @@ def translated_so_far(
         translator = kind([*lines], source.name, dialect, reading)
         translator.stay = stay
         blocks, origin, visits, lost, refused = _run(translator)
-        if translator.tied <= stay:
+        if translator.again <= stay:
             break
-        stay |= translator.tied
+        stay |= translator.again
     joined = "".join(f"{block}\n" for block in blocks).encode("latin-1")
     made = Translated(source, translator, joined, origin, np.array(visits, np.int64), lost)
     return made, refused

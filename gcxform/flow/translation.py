@@ -127,10 +127,10 @@ class Translator(ABC):
         self.loses: set[str] = set()
         """Axes, and F for the feed, that are lost before the next block: it is then not known where
         they are, or what is in force."""
-        self.tied: set[int] = set()
+        self.again: set[int] = set()
         """Lines that may be executed again, as only the machine knows: they have to stay."""
         self.stay: frozenset[int] = frozenset()
-        """Those that were found to be `tied` when the program was read before."""
+        """Those that were found to be executed `again` when the program was read before."""
         self.plainly = True
         """Whether plain lines are translated as such, and not by `blocks`."""
         self._lark: Lark = kept.grammar(*self.grammar)

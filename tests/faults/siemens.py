@@ -276,7 +276,7 @@ MUTATIONS = (
     Mutation(
         "siemens: lines that may be executed again become positions",
         DECIDING,
-        "            self.tied |= {*where}\n",
+        "            self.again |= {*where}\n",
         "",
         f"{CASES}[dialects/siemens/perhaps-back]",
     ),

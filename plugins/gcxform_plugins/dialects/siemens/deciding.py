@@ -166,7 +166,7 @@ class Deciding(Variables):
     def _until(self, node: Node) -> None:
         part, holds = self._part(), self._decided(node.children[1])
         if holds is None:
-            self.tied |= {*range(part.first, part.last + 1)}
+            self.again |= {*range(part.first, part.last + 1)}
             self.forget(range(part.first, part.last + 1))
             self.loops_on = True
             raise lost("whether this loop is over")
@@ -239,7 +239,7 @@ class Deciding(Variables):
         self.keep_on(where.stop, "only the control knows whether this is executed")
         self.perhaps = True
         if where.start < first:
-            self.tied |= {*where}
+            self.again |= {*where}
             self.forget(range(where.start, first))
 
     def _is_text(self, name: str) -> bool:
@@ -268,7 +268,7 @@ class Deciding(Variables):
         except StructureError:
             back = True
         if back and not self.calls:
-            self.tied |= {*range(self.line)}
+            self.again |= {*range(self.line)}
 
     def keep_on(self, until: int, why: str) -> None:
         """Keep lines from this one up to another."""
