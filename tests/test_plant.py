@@ -12,10 +12,11 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from cli_kit import ABSOLUTE, PART, PIPELINE, call
+from cli_kit import ABSOLUTE, MODEL, PART, PIPELINE, call
 from plant_kit import LETHAL, ONCE, dying
 
 from gcxform.cli.common.request import Asked
@@ -24,6 +25,7 @@ from gcxform.cli.plant.rows import Row
 from gcxform.cli.plant.stores import LocalStore, Store, store_of
 from gcxform.cli.plant.tasks import Task
 from gcxform.cli.plant.work import RECEIPTS, STAGED, done, finished
+from gcxform.system.limits import Limits
 
 LONG = os.environ.get("HYPOTHESIS_PROFILE") == "long"
 BAD = b"G21 G90\nG1 G2 X1 F100\nM2\n"
@@ -183,6 +185,23 @@ def test_what_cannot_be_is_said_before_anything_is_done(
     found = call("batch", *words)
     assert code in found.stderr
     assert not files(plant / "out")
+
+
+def test_what_the_command_line_allows_holds_for_processes(plant: Path) -> None:
+    few = task("programs/a.nc", plant / "out")
+    assert done(replace(few, limits=Limits(line=10))).codes == "GX761"
+    assert done(few).state == "written"
+    (plant / "far").mkdir()
+    (plant / "far" / "model.toml").write_text(MODEL)
+    (plant / "pipes").mkdir()
+    text = PIPELINE.replace("absolute", "volumetric").replace("[input]", "[input]\nstart = {X = 0}")
+    text += 'model = "../far/model.toml"\npart-origin = [1, 1, 1]\noutside = "extrapolate"\n'
+    (plant / "pipes" / "job.toml").write_text(text)
+    found = Task("programs/a.nc", "c.nc", "out", Asked(pipeline="pipes/job.toml"))
+    os.chdir(plant / "pipes")
+    found = replace(found, program="../programs/a.nc", asked=Asked(pipeline="job.toml"))
+    assert done(found).codes == "GX760"
+    assert done(replace(found, anywhere=True)).codes != "GX760"
 
 
 # --- tables and pages ---

@@ -45,14 +45,14 @@ _VISIT: ContextVar[Visit | None] = ContextVar("visit", default=None)
 
 
 @contextmanager
-def visit(kept: bool = False) -> Iterator[Visit]:
+def visit(kept: bool = False, anywhere: bool = False) -> Iterator[Visit]:
     """Watch what is read until the block ends; outside of a visit files may name any others.
 
-    What was allowed for a visit is allowed for those within it. `kept`: what was read is known
-    afterwards by its hashes (SHA-256).
+    What was allowed for a visit is allowed for those within it; `anywhere` allows it. `kept`: what
+    was read is known afterwards by its hashes (SHA-256).
     """
     around = _VISIT.get()
-    found = Visit(around is not None and around.anywhere, kept=kept)
+    found = Visit(anywhere or (around is not None and around.anywhere), kept=kept)
     folder = os.path.realpath(os.curdir)
     if folder != os.path.dirname(folder):  # everything is inside of the root of the file system
         found.roots.add(folder)
@@ -67,6 +67,11 @@ def allow_outside() -> None:
     """Let the files of this visit name others anywhere."""
     if (now := _VISIT.get()) is not None:
         now.anywhere = True
+
+
+def is_anywhere() -> bool:
+    """Whether the files of this visit may name others anywhere."""
+    return (now := _VISIT.get()) is not None and now.anywhere
 
 
 def is_read(path: Path) -> bool:

@@ -53,6 +53,11 @@ def limits() -> Limits:
     return _IN_FORCE.get() or DEFAULT
 
 
+def said() -> Limits | None:
+    """Return the limits that were said, None if none were."""
+    return _IN_FORCE.get()
+
+
 @contextmanager
 def in_force(chosen: Limits | None) -> Iterator[None]:
     """Let limits hold until the block ends, unless some were said before: on the command line."""

@@ -31,6 +31,9 @@ from gcxform.cli.plant.stores import is_url, programs_below
 from gcxform.config.keys import says
 from gcxform.config.toml_text import Codes, TomlText, convert, read_toml
 from gcxform.diagnostics import FileError, UsageError
+from gcxform.system import limits
+from gcxform.system.inputs import is_anywhere
+from gcxform.system.limits import Limits
 
 CODES: Final = Codes("GX709", "GX710", "GX701", "GX705", "GX702")
 Names = list[Annotated[str, msgspec.Meta(min_length=1)]]
@@ -38,13 +41,18 @@ Names = list[Annotated[str, msgspec.Meta(min_length=1)]]
 
 @dataclass(frozen=True)
 class Task:
-    """One program by one pipeline for one machine; `below` is where its result lies in `root`."""
+    """One program by one pipeline for one machine; `below` is where its result lies in `root`.
+
+    `limits` and `anywhere` are what the command line says for all: processes do not inherit it.
+    """
 
     program: str
     below: str
     root: str
     asked: Asked
     verify: str = "on"
+    limits: Limits | None = None
+    anywhere: bool = False
 
     @cached_property
     def key(self) -> str:
@@ -56,7 +64,9 @@ class Task:
     def options(self) -> str:
         """What was said of it, as text."""
         said = {key: value for key, value in asdict(self.asked).items() if value}
-        return json.dumps({**said, "verify": self.verify}, sort_keys=True)
+        limits = None if self.limits is None else asdict(self.limits)
+        said |= {"verify": self.verify, "limits": limits, "anywhere": self.anywhere}
+        return json.dumps(said, sort_keys=True)
 
     @property
     def pipeline(self) -> str:
@@ -87,7 +97,7 @@ class Entry(msgspec.Struct, forbid_unknown_fields=True, rename="kebab"):
                 for program, place in programs_below(_from(folder, name)):
                     found = asked if is_url(program) else asked.beside(program)
                     path = "/".join([*filter(None, (self.name, *below)), place])
-                    yield Task(program, path, root, found, verify)
+                    yield Task(program, path, root, found, verify, limits.said(), is_anywhere())
 
     def _ways(self, folder: str) -> Iterator[tuple[Asked, tuple[str, ...]]]:
         """Yield the pipelines for the machines, with the folders of their results."""

@@ -14,7 +14,7 @@ from __future__ import annotations
 import json
 import os
 import threading
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Final
@@ -32,6 +32,7 @@ from gcxform.diagnostics import Diagnostic, FileError
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import versions
 from gcxform.system.inputs import visit
+from gcxform.system.limits import Limits, in_force, said
 
 HIDDEN: Final = ".gcxform"
 STAGED, RECEIPTS = f"{HIDDEN}/staged", f"{HIDDEN}/receipts"
@@ -89,10 +90,13 @@ def _published(store: Store, task: Task) -> Row:
 
 def _attempted(task: Task, place: str) -> Row:
     """Run a program into a file; return its row."""
-    with at_hand(task.program) as (file, called), visit(kept=True) as seen:
+    with ExitStack() as stack:
+        file, called = stack.enter_context(at_hand(task.program))
+        stack.enter_context(in_force(task.limits))
+        seen = stack.enter_context(visit(True, task.anywhere))
         rests = Rests()
         try:
-            pipeline, rests = _built(task.asked)
+            pipeline, rests = _built(task.asked, task.anywhere)
             rests |= Rests({task.program: Present().digest(file)})
             job = Job(file, place, verify=task.verify, quiet=True, name=task.program)
             outcome = attempt(lambda _: pipeline, job)
@@ -111,21 +115,21 @@ class _Built:
     looks: tuple[tuple[str, int, int], ...]
 
 
-def _built(asked: Asked) -> tuple[Pipeline, Rests]:
+def _built(asked: Asked, anywhere: bool) -> tuple[Pipeline, Rests]:
     """Return a pipeline, and what it rests on; built anew if a file of it has changed.
 
     Raises UsageError.
     """
-    found = _known(asked)
+    found = _known(asked, anywhere, said())
     if found.looks != _looks(found.rests):
         _known.cache_clear()
-        found = _known(asked)
+        found = _known(asked, anywhere, said())
     return found.pipeline, found.rests
 
 
 @lru_cache(maxsize=64)
-def _known(asked: Asked) -> _Built:
-    with visit(kept=True) as seen:
+def _known(asked: Asked, anywhere: bool, limits: Limits | None) -> _Built:
+    with visit(True, anywhere) as seen:
         pipeline = asked.build()
     rests = Rests.of(seen)
     return _Built(pipeline, rests, _looks(rests))
