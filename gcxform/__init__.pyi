@@ -114,6 +114,7 @@ from gcxform.toolpath.circles import radius_and_angle as radius_and_angle
 from gcxform.toolpath.circles import swept_anew as swept_anew
 from gcxform.toolpath.columns import column_major as column_major
 from gcxform.toolpath.crossings import line_crossings as line_crossings
+from gcxform.toolpath.cycles_as_moves import cycles_as_moves as cycles_as_moves
 from gcxform.toolpath.facts import ABSOLUTE as ABSOLUTE
 from gcxform.toolpath.facts import AXIS_POSITIONS as AXIS_POSITIONS
 from gcxform.toolpath.facts import COMPENSATED as COMPENSATED
@@ -127,7 +128,6 @@ from gcxform.toolpath.facts import TIP_POSITIONS as TIP_POSITIONS
 from gcxform.toolpath.facts import WORKPIECE_FRAME as WORKPIECE_FRAME
 from gcxform.toolpath.facts import XY_ARCS as XY_ARCS
 from gcxform.toolpath.facts import Fact as Fact
-from gcxform.toolpath.facts import inseparable_cycles as inseparable_cycles
 from gcxform.toolpath.frames import Frame as Frame
 from gcxform.toolpath.path import FREE as FREE
 from gcxform.toolpath.path import OWN_DISTANCES as OWN_DISTANCES

@@ -89,7 +89,8 @@ CODES: dict[str, tuple[str, str]] = {
         "The target cannot say this",
         "The control that is written for has no such code, word, comment or plane of arcs, and "
         'there is no other way to say the same in its language. For arcs the pass "plane" or '
-        '"segment" makes lines of them; otherwise the source program has to do without.',
+        '"segment" makes lines of them. `drop` and `m-codes` in [output] say of M codes what may '
+        "go, and what takes the place of what; otherwise the source program has to do without.",
     ),
     "GX502": (
         "The block would be too long",

@@ -27,6 +27,8 @@ from typing import Annotated, Any, NamedTuple, TypeVar
 
 from gcxform.config import arguments
 from gcxform.config.toml_text import did_you_mean
+from gcxform.contract.code_kinds import CodeList as CodeList
+from gcxform.contract.code_kinds import CodeTable as CodeTable
 from gcxform.contract.option_kinds import (
     LOADED,
     PLAIN,

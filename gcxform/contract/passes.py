@@ -25,6 +25,7 @@ from gcxform.contract.demands import Demands
 from gcxform.contract.tip_codes import switches_of
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import Dialect, NumberFormat
+from gcxform.dialect.saying import Saying
 from gcxform.syntax.tree import Block
 from gcxform.toolpath.facts import Fact
 from gcxform.toolpath.path import Toolpath
@@ -37,7 +38,8 @@ if TYPE_CHECKING:
 class PassContext:
     """What surrounds a pass: the dialects it works between, the output's numbers, the machine.
 
-    `decimals` are those of addresses that differ from the number format.
+    `decimals` are those of addresses that differ from the number format; `said` is what the user
+    says of codes of the source.
     """
 
     source: type[Dialect]
@@ -45,6 +47,12 @@ class PassContext:
     numbers: NumberFormat
     machine: Machine | None = None
     decimals: Mapping[str, int] = field(default_factory=dict)
+    said: Saying | None = None
+
+    @property
+    def saying(self) -> Saying:
+        """How the target says what codes of the source do."""
+        return self.said or Saying(self.source, self.target)
 
     @property
     def switches(self) -> Mapping[str, str]:

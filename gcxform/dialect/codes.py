@@ -26,8 +26,9 @@ class Effect(Enum):
 class Code:
     """One G code. `takes` are the address letters of the words that are parameters to it.
 
-    `act` names what a code with Effect.FRAME does (`gcxform/modal/frames/acts.py`), and of one with
-    Effect.CALL where it ends, as a machine file would say it. `lengths` are
+    `act` names what a code with Effect.FRAME does (`gcxform/modal/frames/acts.py`), what one with
+    Effect.INERT does that other controls spell otherwise (`gcxform/dialect/saying.py`), and of one
+    with Effect.CALL where it ends, as a machine file would say it. `lengths` are
     those of the words it takes that are in the unit of the program; of a code with an act, all axis
     words.
     `after`: it acts at the end of its block, which is that of the last piece where the block is
@@ -83,9 +84,9 @@ class CutterComp:
     after: frozenset[str] = frozenset()
 
 
-def inert(group: str, takes: str = "", lengths: str = "") -> Code:
-    """Return a code that changes no position."""
-    return Code(group, Effect.INERT, takes, lengths=lengths)
+def inert(group: str, takes: str = "", lengths: str = "", act: str = "") -> Code:
+    """Return a code that changes no position; `act` is what other controls may spell otherwise."""
+    return Code(group, Effect.INERT, takes, act=act, lengths=lengths)
 
 
 def at_end(group: str) -> Code:

@@ -46,6 +46,7 @@ class TextRule:
     largest_number        the largest sequence number the control takes; 0: no limit
     comments              how a comment may begin: any of "(" and ";"
     active_comments       how comments begin that the control executes, in capitals
+    telling_comments      which of these only show or log something
     acts_anywhere         characters on which it acts as they come in, also in a comment
     """
 
@@ -56,11 +57,16 @@ class TextRule:
     largest_number: int = 0
     comments: str = "("
     active_comments: tuple[str, ...] = ()
+    telling_comments: tuple[str, ...] = ()
     acts_anywhere: str = ""
 
     def executes(self, comment: str) -> bool:
         """Whether the control does something when it reads a comment."""
         return comment.lstrip("(; \t").upper().startswith(self.active_comments)
+
+    def tells(self, comment: str) -> bool:
+        """Whether all that the control does with a comment is to show or to log it."""
+        return comment.lstrip("(; \t").upper().startswith(self.telling_comments)
 
 
 @dataclass(frozen=True, slots=True)

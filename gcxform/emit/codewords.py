@@ -11,16 +11,23 @@ from __future__ import annotations
 from typing import Final, NoReturn
 
 from gcxform.catalogue.offers import put_before
+from gcxform.dialect.codes import Code, MCode
+from gcxform.dialect.saying import HOME
 from gcxform.emit.draft import Draft
 from gcxform.emit.expressible import STATED, TAPPING, like, other_in, same_m
 from gcxform.emit.fields import Key, Role
 from gcxform.emit.manner import Manner
+from gcxform.emit.own_blocks import apart, m_codes_of
 from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.meaning.sorting import only_for_cycles
 from gcxform.modal.meaning.tables import CYCLES
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import Number, Word
 
+WAY_HOME: Final = (
+    "G91 G28 Z0 and the like can be said by G53: give the machine file where home and the zero of "
+    "the work offset are, [home.G28] and [work-offset.G54]"
+)
 EXPANDED: Final = frozenset(f"G{number}" for number in CYCLES) - frozenset(TAPPING)
 """Cycles whose moves can be written one by one."""
 
@@ -36,6 +43,7 @@ class CodeWords:
         self.shape = shape
         self.meaning = meaning
         self.source, self.target = manner.source, manner.target
+        self.manner, self.saying = manner, manner.saying
         self.stated: set[str] = set()
         self.repairs_wait = True
 
@@ -45,7 +53,6 @@ class CodeWords:
         name = f"G{round(word.value.value, 6):g}"
         code = self.source.codes.get(name)
         group = code.group if code is not None else ""
-        text = self.draft.said(word.start, word.end)
         if self.key.role in (Role.MIDDLE, Role.LAST):
             lead = self.draft.gap_before(lead)
         if group == "cycle" and self.key.expanded:
@@ -59,7 +66,19 @@ class CodeWords:
             return
         if only_for_cycles(name, self.source, self.target):
             return
-        if self.source is not self.target and code is not None:
+        self._say(word, name, code, lead)
+
+    def _say(self, word: Word, name: str, code: Code | None, lead: bytes) -> None:
+        """Write a code that sets no mode that is stated, or the one that stands for it."""
+        text, said = self.draft.said(word.start, word.end), self.saying.instead(name)
+        if code is not None and code.act == HOME and said != name:
+            if not self.key.homed:
+                what = f"{name}: it goes to a point of another kind there"
+                self.draft.refuse(word, what, WAY_HOME)
+            return  # G53 stands before the axis words
+        if said != name:
+            text = like(text, said)
+        elif self.source is not self.target and code and not self.saying.agrees(name):
             what = other_in(self.source, self.target, name, code, self.meaning)
             if what:
                 self._refuse(word, name, what)
@@ -96,17 +115,33 @@ class CodeWords:
         assert isinstance(word.value, Number)
         number = int(word.value.value)
         code = self.source.m_codes.get(number, self.source.block_rule.unknown_m)
-        if self.source is not self.target:
-            other = self.target.m_codes.get(number, self.target.block_rule.unknown_m)
-            words = {word.address for word in self.shape.block.words}
-            if other is None or code is None or not same_m(code, other, words):
-                self.draft.refuse(word, f"M{number}")
-            if code.after != other.after and self.key.role is not Role.NONE:
-                self.draft.refuse(word, f"M{number}")
+        text = self.draft.said(word.start, word.end)
+        if self.source is not self.target or f"M{number}" in self.saying.m_codes:
+            self._check_m(word, number, code)
+            text = like(text, self.saying.instead(f"M{number}"))
+            if apart(self.manner, number) and self.key.role is not Role.NONE:
+                return  # it has a block of its own
         after = code is not None and code.after
         whole = self.key.role is Role.ONLY or self.key.as_it_stands
         if whole or self.key.role is (Role.LAST if after else Role.FIRST):
-            self.draft.literal(self.draft.gap_before(lead), self.draft.said(word.start, word.end))
+            self.draft.literal(self.draft.gap_before(lead), text)
+
+    def _check_m(self, word: Word, number: int, code: MCode | None) -> None:
+        """Refuse an M code that the target has not, or takes otherwise."""
+        name = f"M{number}"
+        _, other = m_codes_of(self.manner, number)
+        words = {word.address for word in self.shape.block.words}
+        said = self.saying.instead(name) != name
+        if other is None or code is None or not (said or same_m(code, other, words)):
+            self.draft.refuse(word, name, self._way_out(name, code))
+
+    def _way_out(self, name: str, code: MCode | None) -> str:
+        """Return how the user says what takes the place of an M code."""
+        if code is None or code.group in ("spindle", "stop") or code.ends:
+            return ""
+        if code.group == "tool":
+            return f'm-codes = {{ {name} = "M0" }} in [output], where the operator changes it'
+        return f'drop = ["{name}"] in [output] leaves it out'
 
     # --- what has to be stated ---
 

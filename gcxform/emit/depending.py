@@ -108,7 +108,7 @@ class Depending:
         if each.hangs_on == BY_WAY:
             return False  # its block stays, or is refused as a move
         if self.task.manner.crossing:
-            return True
+            return bool(self.task.manner.saying.instead(each.text))
         if each.hangs_on and now.inch[line] != old.inch[line]:
             return True
         if each.hangs_on and now.feed_mode[line] != old.feed_mode[line]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from gcxform.dialect.codes import Code, MCode
 from gcxform.dialect.dialect import Dialect
+from gcxform.dialect.saying import Saying
 from gcxform.emit.manner import Manner
 from gcxform.machine.machine import SWITCHES
 from gcxform.modal.expressions.value import key_set, sets_number, written
@@ -46,17 +47,22 @@ def code_of(word: Word) -> str:
     return f"{word.address}{round(word.value.value, 6):g}"
 
 
-def unsaid_words(meaning: Meaning, work: str) -> frozenset[str]:
+def unsaid_words(meaning: Meaning, work: str, saying: Saying) -> frozenset[str]:
     """Return codes and addresses that are not written.
 
     They are codes of what a pass does instead of the control; and where frames are folded into the
     words (`work`, if it is not "", is where the program then stays) those that set frames. The code
-    of the work offset in which the program stays is written as it was.
+    of the work offset in which the program stays is written as it was. And they are codes that the
+    target does without, and words that it does not take.
     """
     gone = {act.code for act in meaning.acts if act.name in SWITCHES}
     for act in meaning.acts if work else ():
         if act.name in FRAMING and act.code != work:
             gone |= {act.code, *(address for address, _ in act.slots)}
+    for event in meaning.events if saying.crosses or saying.drop else ():
+        taken = "".join(address for address, _ in event.slots)
+        gone |= set() if saying.instead(event.what) else {event.what}
+        gone |= set(taken) - set(saying.words_of(event.what, taken))
     return frozenset(gone)
 
 
@@ -120,15 +126,20 @@ def event_text(event: Event, target: type[Dialect], gap: bytes) -> bytes | None:
     if event.what != "DWELL":
         known = event.what[0] == "M" and int(event.what[1:]) in target.m_codes
         return event.what.encode() if known else None
-    seconds = event.values[0][1]
+    word = dwell_word(event.values[0][1], target)
+    return b"G4" + gap + word.encode() if word else None
+
+
+def dwell_word(seconds: float, target: type[Dialect]) -> str:
+    """Return the word by which a control waits for a time, "" if none can say it."""
     for address, unit in target.point_rule.dwell.items():
         count = seconds / unit
         whole = abs(count - round(count)) < 1e-9
         if unit != 1.0 and not whole:
             continue
         number = f"{round(count)}" if unit != 1.0 else f"{seconds:.6f}".rstrip("0")
-        return b"G4" + gap + f"{address}{number}".encode()
-    return None
+        return address + number
+    return ""
 
 
 def nothing_left(items: tuple[Item, ...], meaning: Meaning, manner: Manner, work: str) -> bool:
@@ -137,7 +148,7 @@ def nothing_left(items: tuple[Item, ...], meaning: Meaning, manner: Manner, work
     That is so for parts of the program frame that the target has not, and for codes that are not
     written (`unsaid_words`).
     """
-    unsaid = unsaid_words(meaning, work)
+    unsaid = unsaid_words(meaning, work, manner.saying)
 
     def goes(item: Item) -> bool:
         if isinstance(item, Word):
@@ -190,22 +201,27 @@ def other_in(
         return f"{name} without H"
     if name in TAPPING:
         return f"{name} with the spindle tied to the feed in the same way"
-    if code.act == "home" and stores_home(source) != stores_home(target):
-        return f"{name}: it goes to a point of another kind there"
     if code.act == "local" and source.offset_rule.g52_is_g92 != target.offset_rule.g52_is_g92:
         return f"{name} without changing what G92 has set"
-    if (
-        meaning.dwell
-        and code.group == "non-modal"
-        and not source.point_rule.waits_as(target.point_rule)
-    ):
-        return "this dwell"
     return ""
 
 
-def stores_home(dialect: type[Dialect]) -> bool:
-    """Whether a program can choose the point to which G28 goes."""
-    return any(code.act == "store-home" for code in dialect.codes.values())
+def foreign_cycles(source: type[Dialect], target: type[Dialect]) -> frozenset[int]:
+    """Return the canned cycles of a control, by number, that another has not, or as others.
+
+    Of those that wait the same number may be another time; where that hangs on a point in it,
+    who writes refuses the number.
+    """
+    rule = source.cycle_rule
+    if rule is None or source is target:
+        return frozenset()
+    waits = source.point_rule.dwell.get("P") == target.point_rule.dwell.get("P")
+    return frozenset(
+        number
+        for number, cycle in rule.cycles.items()
+        if source.codes.get(f"G{number}") != target.codes.get(f"G{number}")
+        or ("P" in cycle.needs and not waits)
+    )
 
 
 def same_m(code: MCode, other: MCode, words: set[str]) -> bool:

@@ -42,8 +42,8 @@ class Key:
     `expanded`: the block called a canned cycle, of which this is a move. `thread`: it is one whose
     code and K stay. `tap`: it is a canned cycle whose ends have moved; `apart`: one of its repeats,
     which become blocks of their own. `converted`: its words stay, in the other unit. `preset`: it
-    sets a zero, for axes that stand elsewhere. `arc`: whether centre words are written, in `plane`;
-    `turns`: full turns beyond the arc.
+    sets a zero, for axes that stand elsewhere. `homed`: it goes home by G53. `arc`: whether centre
+    words are written, in `plane`; `turns`: full turns beyond the arc.
     """
 
     role: Role
@@ -60,6 +60,7 @@ class Key:
     apart: bool
     converted: bool
     preset: bool
+    homed: bool
     arc: bool
     plane: int
     turns: int
@@ -120,6 +121,13 @@ class Preset:
 
 
 @dataclass(frozen=True, slots=True)
+class Wait:
+    """The word by which the target waits for as long as the word in a slot of the source."""
+
+    slot: int
+
+
+@dataclass(frozen=True, slots=True)
 class Axis:
     """An axis word: left out where it need not be written, its gap where nothing is before it."""
 
@@ -151,7 +159,7 @@ class FeedWord:
     gap: bytes
 
 
-Number = Copied | Computed | Converted | Preset
+Number = Copied | Computed | Converted | Preset | Wait
 Field = Literal | Number | CopiedText | Axis | CycleWord | Centre | FeedWord
 
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NoReturn
 
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import INCH, LINEAR, Dialect, NumberFormat
+from gcxform.dialect.saying import Saying
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.meaning.meaning import PRESETS
 from gcxform.modal.meaning.tables import NUMBER, MeaningTable
@@ -20,16 +22,18 @@ from gcxform.toolpath.path import Toolpath
 WORDS = ("changed", "programmed", "all")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Manner:
     """Dialects, numbers, and which axis words a changed block gets.
 
     words     "changed": what changes or was programmed; "programmed": only that; "all": every axis
     decimals  by address, where they differ from the number format
     expands   whether canned cycles have become plain moves
+    foreign_cycles  the numbers of those that have because the target has not the same
     promised  mm; how far the passes may be off, which a tap may use up
     compensates  positions become commands for a machine with errors, or the other way round
     open_place   whether a setting that is not known decides if a cycle drills that names no place
+    said      what the user says of codes of the source
     """
 
     source: type[Dialect]
@@ -41,6 +45,13 @@ class Manner:
     promised: float = 0.0
     compensates: bool = False
     open_place: bool = False
+    said: Saying | None = None
+    foreign_cycles: frozenset[int] = frozenset()
+
+    @cached_property
+    def saying(self) -> Saying:
+        """How the target says what codes of the source do."""
+        return self.said or Saying(self.source, self.target)
 
     @property
     def crossing(self) -> bool:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gcxform.dialect.saying import BLEND
 from gcxform.emit.manner import Task
 from gcxform.system.arrays import Flags, Ints
 from gcxform.system.distinct import distinct
@@ -119,6 +120,8 @@ class Exactness:
         """Refuse cycles whose ends would be rounded; return whether their exactness is assumed."""
         manner = self.task.manner
         rounds = manner.target.motion_rule.rounds_corners
+        if not any(code.act == BLEND for code in manner.target.codes.values()):
+            return False  # nothing there rounds corners
         if not (manner.source.motion_rule.cycles_stop or rounds) or not expanded.any():
             return False
         lines, first, _ = self._calls(expanded)

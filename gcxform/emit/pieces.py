@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from gcxform.emit.fields import Role
 from gcxform.emit.manner import Task
+from gcxform.emit.own_blocks import own_blocks
 from gcxform.emit.tapping import Taps
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Flags, Ints, Small
@@ -44,6 +45,7 @@ class Pieces:
     role      (pieces,) `Role`
     special   (pieces,) whether it stands for all moves of a block that is written as it stands
     converted (pieces,) whether such a block, to a place of the machine, is written in another unit
+    homed     (pieces,) whether it goes to a point of the machine by other words than those it has
     tap       (pieces,) whether it is a canned cycle whose ends have moved; `apart`: one of several
               into which its repeats are taken apart
     """
@@ -60,6 +62,7 @@ class Pieces:
     role: Small
     special: Flags
     converted: Flags
+    homed: Flags
     tap: Flags
     apart: Flags
 
@@ -73,9 +76,10 @@ def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
     path, cycle = task.path, task.read.modes.cycle != CYCLE_OFF
     count = np.bincount(path.block, minlength=task.read.live)
     special = _special(task, taps)
-    expanded = cycle & ~special & ~taps.lines & task.manner.expands
+    expanded = cycle & ~special & ~taps.lines & _in_moves(task)
     opens, closes = around(expanded)
-    between = [*opens, *_between_moves(task, expanded), *closes]
+    before, behind = own_blocks(task, count)
+    between = [*opens, *before, *_between_moves(task, expanded), *closes, *behind]
     moves = [given for given in path.given if given.moves]
     events = {_said(each): each for each in reversed([*between, *moves])}
     number = {said: n for n, said in enumerate(events)}
@@ -84,8 +88,8 @@ def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
     for given in moves:
         event[has_row & (row == given.row)] = number[_said(given)]
     first, ends = _first_of(line), _first_of(line[::-1])[::-1]
-    opening = first & np.isin(event, [number[_said(each)] for each in opens[:1]])
-    closing = ends & np.isin(event, list({number[_said(each)] for each in closes}))
+    opening = first & _is_one_of(event, [*opens, *before], number)
+    closing = ends & _is_one_of(event, [*closes, *behind], number)
     leads = (first & ~opening) | np.roll(opening, 1)
     last = (ends & ~closing) | np.roll(closing, -1)
     role = _roles(has_row, leads, last)
@@ -109,9 +113,26 @@ def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
         role=role,
         special=special[line],
         converted=places & other_unit[line],
+        homed=_goes_home(task)[line] & has_row,
         tap=tap,
         apart=tap & (taps.count > 1)[line],
     )
+
+
+def _goes_home(task: Task) -> Flags:
+    """Return the lines (live,) that go home, and have become moves in the machine."""
+    lines = np.zeros(task.read.live, np.bool_)
+    lines[[line for line in task.read.homed]] = True
+    lines[task.path.block[task.path.form != Form.PLAIN]] = False
+    return lines if task.manner.crossing else np.zeros_like(lines)
+
+
+def _in_moves(task: Task) -> Flags | bool:
+    """Whether the cycles that lines (live,) call, if they do, have become plain moves."""
+    foreign = task.manner.foreign_cycles
+    if task.manner.expands or not foreign:
+        return task.manner.expands
+    return np.isin(task.read.modes.cycle, list(foreign))
 
 
 def _special(task: Task, taps: Taps) -> Flags:
@@ -186,6 +207,11 @@ def _at_pieces(values: NDArray[Any], absent: object, row: Ints, has_row: Flags) 
     column = np.full(len(row), absent, values.dtype)
     column[has_row] = values[row[has_row]]
     return column
+
+
+def _is_one_of(event: Ints, some: list[Event | Given], number: Mapping[Said, int]) -> Flags:
+    """Return which pieces (pieces,) are one of the given things between moves."""
+    return np.isin(event, list({number[_said(each)] for each in some}))
 
 
 def _said(each: Event | Given) -> Said:

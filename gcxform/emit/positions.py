@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from gcxform.dialect.dialect import LINEAR
@@ -100,8 +102,15 @@ class Positions:
             self.write[:, column] = known & ~self.stays[:, column] & ~beside
         else:
             moved = ~(np.abs(held - self.before[:, column]) < 0.5 * self.step[column])
-            said = programmed & self.last & (self.task.path.nth == 0)
+            said = programmed & self.last & ((self.task.path.nth == 0) | self._homed)
             self.write[:, column] = (moved | said) & known & ~self.stays[:, column]
+
+    @cached_property
+    def _homed(self) -> Flags:
+        """Rows that go home as moves in the machine, where the axes may stand already."""
+        path = self.task.path
+        lines = np.isin(path.block, list(self.task.read.homed))
+        return np.asarray(lines & (path.form == Form.PLAIN))
 
     def _off_grid(self) -> bool:
         """Whether the control stands at a place that cannot be written in the present unit."""

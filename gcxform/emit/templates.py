@@ -37,6 +37,7 @@ from gcxform.emit.fields import (
     Literal,
     Preset,
     Role,
+    Wait,
 )
 from gcxform.emit.manner import Manner
 from gcxform.modal.meaning.meaning import DRILL_WORDS, Meaning
@@ -45,6 +46,7 @@ from gcxform.modal.meaning.sorting import program_number_fits
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import CODES, Comment, Expression, Item, Mark, Number, Statement, Word
 
+WAITS = "DWELL"
 PLANE_AXES = ("XY", "ZX", "YZ")
 OFFSETS = {"X": "I", "Y": "J", "Z": "K"}
 
@@ -70,7 +72,7 @@ class TemplateWriter:
         self.source = manner.source
         self.target = manner.target
         self.axes = axes
-        self.unsaid = unsaid_words(meaning, folded_to)
+        self.unsaid = unsaid_words(meaning, folded_to, manner.saying)
         self.gap = own_gap(shape, gap)
         self.uncompensated = uncompensated
         self.draft = Draft(self.text, self.target, self.gap)
@@ -182,7 +184,8 @@ class TemplateWriter:
     def _comment_text(self, item: Comment) -> str:
         text = self.text[item.start : item.end]
         executed = self.source.text_rule.executes(text) and self.source is not self.target
-        if executed and not self.target.text_rule.executes(text):
+        said = self.manner.saying.instead(text)
+        if executed and said and not self.target.text_rule.executes(text):
             self.draft.raise_at(item, f"{self.target.name} does not execute this comment")
         return comment_for(self.source, self.target, text)
 
@@ -225,12 +228,21 @@ class TemplateWriter:
         elif self.key.role not in (Role.MIDDLE, Role.LAST):
             self._copy(word, lead, slot)
 
-    def _other_number(self, address: str, slot: int) -> Converted | Preset | None:
+    def _other_number(self, address: str, slot: int) -> Converted | Preset | Wait | None:
         """Return what is written for a word of a code whose number is another one here."""
         if self.key.converted and address in self.meaning.axes and address in LINEAR:
             return Converted(address, slot)
+        if self._waits(address):
+            return Wait(slot)
         taken = address in self.source.axes and address not in self.meaning.slots
         return Preset(address, slot) if self.key.preset and taken else None
+
+    def _waits(self, address: str) -> bool:
+        """Whether a word is the time of a dwell, and would be another in the target."""
+        rules = self.source.point_rule, self.target.point_rule
+        if not self.meaning.dwell or rules[0].waits_as(rules[1]):
+            return False
+        return any(address == a for e in self.meaning.events if e.what == WAITS for a, _ in e.slots)
 
     def _motion(self, word: Word, lead: bytes) -> bool:
         """Write what a word of the motion stands for; return whether it is one."""
@@ -293,6 +305,9 @@ class TemplateWriter:
             self.draft.fields.append(Literal(lead))
             lead = b""
         self._check_axes(named)
+        if self.key.homed:
+            self.draft.literal(self.draft.gap_before(lead), self.manner.saying.machine)
+            lead = b""
         order = [address for address in order if address in self.target.axes]
         for nth, address in enumerate(order):
             gap = lead if lead else (self.gap if nth or self.draft.ends_in_word() else b"")

@@ -19,6 +19,7 @@ from gcxform.dialect.dialect import INCH
 from gcxform.emit.expressible import (
     CannotSayError,
     comment_for,
+    dwell_word,
     event_text,
     gaps_between,
     slash_of,
@@ -37,6 +38,7 @@ from gcxform.emit.fields import (
     Literal,
     Preset,
     Role,
+    Wait,
 )
 from gcxform.emit.manner import Task
 from gcxform.emit.numbers import MOST_DECIMALS, decimals_for, decimals_of, quantise
@@ -125,6 +127,7 @@ class Writing:
             (pieces.tap, 2),
             (pieces.apart, 2),
             (pieces.converted, 2),
+            (pieces.homed, 2),
             (self.presets.lines[pieces.line], 2),
             (stated.feed.word, 3),
             (inch, 2),
@@ -174,6 +177,7 @@ class Writing:
             bool(pieces.apart[piece]),
             bool(pieces.converted[piece]),
             bool(self.presets.lines[line]),
+            bool(pieces.homed[piece]),
             arc,
             int(self.task.path.plane[row]) if arc else 0,
             int(self._turns()[row]) if arc else 0,
@@ -218,7 +222,7 @@ class Writing:
             renderer.copied(self.pieces.line[members], field.slot)
         elif isinstance(field, CopiedText):
             self._copied_text(field, self.pieces.line[members], renderer)
-        elif isinstance(field, Computed):
+        elif isinstance(field, Computed | Wait):
             self._computed(field, self.pieces.line[members], renderer)
         elif isinstance(field, Converted | Preset):
             self._other_number(field, self.pieces.line[members], inch, renderer)
@@ -258,8 +262,25 @@ class Writing:
         texts = [comment_for(source, target, text) for text in renderer.texts(lines, field.slot)]
         renderer.said([text.encode("latin-1") for text in texts])
 
-    def _computed(self, field: Computed, lines: Ints, renderer: Renderer) -> None:
-        """Write what expressions are worth as plain numbers, to the last bit."""
+    def _wait(self, lines: Ints, renderer: Renderer) -> None:
+        """Write for how long a dwell waits, by a word of the target."""
+        first, target = self.task.path.blocks.first, self.task.manner.target
+        times = {
+            event.line - first: dict(event.values).get("seconds", np.nan)
+            for event in self.task.read.path.events
+            if event.what.endswith("DWELL") and not event.within
+        }
+        words = [dwell_word(seconds, target) for seconds in map(times.__getitem__, lines.tolist())]
+        if "" in words:
+            message = f"{target.name} has no dwell that lasts as long"
+            raise InputError.one("GX501", message, self.task.location(int(lines[words.index("")])))
+        renderer.said([word.encode() for word in words])
+
+    def _computed(self, field: Computed | Wait, lines: Ints, renderer: Renderer) -> None:
+        """Write what expressions are worth as plain numbers, to the last bit; and times."""
+        if isinstance(field, Wait):
+            self._wait(lines, renderer)
+            return
         value = self.task.read.value[self.task.window.first_number[lines] + field.slot]
         decimals = decimals_of(value)
         whole = quantise(value, decimals)

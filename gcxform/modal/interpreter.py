@@ -32,6 +32,7 @@ from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, Stat
 from gcxform.syntax.scan import Window
 from gcxform.syntax.undecided import DECIDED
 from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Toolpath
 
 
@@ -44,7 +45,8 @@ class Interpreted:
     that the lines set, in order, and `unknown` what of them only the machine can compute. `perhaps`
     (live,) are lines that move something and may not be executed; None: there are none. `loses`
     (live,) are lines behind which no position is known. `zeroed` are the lines of the program, from
-    0, that set where something counts from, and the state of the frames behind each.
+    0, that set where something counts from, and the state of the frames behind each. `homed` are
+    lines that only go to a point of the machine which is known, with the frame of the machine.
     """
 
     path: Toolpath
@@ -58,6 +60,7 @@ class Interpreted:
     perhaps: Flags | None = None
     loses: Flags = field(default_factory=lambda: np.zeros(0, np.bool_))
     zeroed: tuple[tuple[int, FrameState], ...] = ()
+    homed: Mapping[int, Frame] = field(default_factory=dict)
 
 
 PECKS = ("peck-return", "peck-clearance")
@@ -162,6 +165,7 @@ class Interpreter:
             lines.perhaps,
             lines.loses_position(),
             tuple(moves.track.zeroed),
+            moves.track.homed,
         )
 
     def _carry(self, lines: Lines, modes: Modes) -> None:

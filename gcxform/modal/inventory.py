@@ -94,6 +94,20 @@ def _held(block: Block, meaning: Meaning, dialect: type[Dialect]) -> list[int]:
     return [int(moves), int(defines(block)), sets, told, stops, ends, others, modes]
 
 
+def kind_of(name: str, dialect: type[Dialect]) -> str:
+    """Return as what of `KINDS` an event is counted, by its name; "" if as none."""
+    name = name.removeprefix("/")
+    if name.startswith(("(", ";")):
+        return "messages"
+    if name in dialect.codes:
+        return "path_modes" if dialect.codes[name].group == "path" else ""
+    if not name.startswith("M"):
+        return ""
+    number = int(name[1:])
+    ends = number in dialect.m_codes and dialect.m_codes[number].ends
+    return "ends" if ends else "stops" if number in STOPS else "m_codes"
+
+
 def _code(word: Word) -> int:
     """Return the number of an M code; -1 for one that is computed."""
     return int(word.value.value) if isinstance(word.value, Number) else -1

@@ -21,6 +21,8 @@ from typing import Annotated, Any, Final, Literal, TypeVar
 from gcxform.config.to_fill_in import Open, split_open
 from gcxform.config.toml_text import Codes, TomlText, read_toml
 from gcxform.contract.options import (
+    CodeList,
+    CodeTable,
     Coordinates,
     FeedIncrement,
     FolderList,
@@ -103,6 +105,10 @@ class OutputSpec:
     structure: Annotated[
         Literal["keep", "written-out"], Option("what becomes of subprograms and loops")
     ] = "keep"
+    m_codes: Annotated[
+        CodeTable, Option("M codes of the source, and what takes the place of each")
+    ] = field(default_factory=dict)
+    drop: Annotated[CodeList, Option("codes of the source that are left out")] = ()
 
 
 @dataclass(frozen=True)

@@ -129,6 +129,8 @@ class Pipeline(Plan):
             spec.limits,
             spec.open,
             spec.output.structure,
+            m_codes=spec.output.m_codes,
+            drop=frozenset(spec.output.drop),
         )
 
     # --- runs ---

@@ -35,6 +35,8 @@ from gcxform.contract.passes import Pass, PassContext, TextPass, resolved
 from gcxform.contract.tip_codes import with_refusal, with_switches, with_vectors, without_tip_codes
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.dialect.dialect import LINEAR, MOST_DECIMALS, ROTARY, Dialect, NumberFormat
+from gcxform.dialect.saying import Saying
+from gcxform.emit.expressible import foreign_cycles
 from gcxform.emit.manner import Manner
 from gcxform.machine.machine import Machine
 from gcxform.modal.meaning.tables import GROUPS
@@ -77,6 +79,8 @@ class Plan:
     open     the places of values that the pipeline file leaves to be filled in
     structure  "keep": calls and loops stay where each line is written the same every time it is
              executed; "written-out": they are written as the blocks that are executed
+    m_codes  M codes of the source, and what takes the place of each in the output
+    drop     codes of the source that are left out
     told     takes what each step changes, for who asks why lines differ; None: nobody does
     """
 
@@ -97,12 +101,15 @@ class Plan:
     open: Open = field(default_factory=dict, compare=False)
     structure: str = "keep"
     told: Told | None = field(default=None, compare=False)
+    m_codes: Mapping[str, str] = field(default_factory=dict)
+    drop: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         for name, value in self._taken().items():
             object.__setattr__(self, name, value)
         self._check_target()
         self._check_entry()
+        self.saying.check()
         check_chain(self.path_passes)
         for step in self.path_passes:
             step.begin(self.context)
@@ -215,7 +222,16 @@ class Plan:
         """How the program is written."""
         numbers = self.numbers or self.target.numbers
         expands = any(NO_CYCLES in step.ensures for step in self.path_passes)
-        manner = Manner(self.source, self.target, numbers, self.words, self.decimals, expands)
+        manner = Manner(
+            self.source,
+            self.target,
+            numbers,
+            self.words,
+            self.decimals,
+            expands,
+            said=self.saying,
+            foreign_cycles=foreign_cycles(self.source, self.target),
+        )
         promised = self.promised()
         if not np.isfinite(promised):
             promised = max((self.budget or 0.0) - self._repeated * manner.rounding(False), 0.0)
@@ -289,7 +305,13 @@ class Plan:
             self.numbers or self.target.numbers,
             self.machine,
             self.decimals,
+            self.saying,
         )
+
+    @cached_property
+    def saying(self) -> Saying:
+        """How the target says what codes of the source do."""
+        return Saying(self.source, self.target, self.m_codes, self.drop)
 
     @property
     def copies(self) -> bool:

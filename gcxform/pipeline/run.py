@@ -26,6 +26,7 @@ from gcxform.pipeline.output import Output
 from gcxform.pipeline.placing import placing
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.reasons import changed_lines
+from gcxform.pipeline.said_in_moves import said_in_moves
 from gcxform.pipeline.structure import Structure
 from gcxform.pipeline.text_passes import TextRun
 from gcxform.pipeline.whole_cuts import whole_cuts, whole_sections
@@ -278,12 +279,11 @@ class Run:
         """Check that nothing is lost, and that the target takes the file if the source's did."""
         found = self.findings
         self.account, wrong = self.books.close(found.file, self.executed, found.path_modes)
+        where = Location(self.source.name, max(self.reader.lines, 1))
         if wrong:
-            where = Location(self.source.name, max(self.reader.lines, 1))
             raise VerificationError.one("GX601", wrong, where)
         faulty = self.dialect.name == self.plan.target.name and self.ending.wrong
         if found.file.no_end and not faulty:
-            where = Location(self.source.name, max(self.reader.lines, 1))
             raise VerificationError.one("GX601", found.file.no_end, where)
 
     def _emitted(self, one: Transformed, first: bool, last: bool) -> Emitted:
@@ -344,7 +344,8 @@ class Run:
         window = self.reader.take_over(apart)
         table = self.reader.table
         read = self.stages.interpreter.interpret(window, table)
-        path = meant = read.path
+        meant = read.path
+        path = said_in_moves(self.plan, read, window, self.source.name)
         for number, step in enumerate(self.steps):
             path = self._apply(step, self._held(number, path), window)
             if len(path):
@@ -354,8 +355,7 @@ class Run:
                 meant = path
         with placing(window, self.source.name):
             check_mixed(read.path, path, self.plan.context)
-        path = in_words_of(self.plan.target, path)
-        return Transformed(window, table, read, meant, path)
+        return Transformed(window, table, read, meant, in_words_of(self.plan.target, path))
 
     def _held(self, number: int, path: Toolpath) -> Toolpath:
         """Return a path that knows where what a step has written before has left the axes."""

@@ -11,7 +11,7 @@ rows no longer together than the budget may lie between.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gcxform.contract.passes import PassContext
 from gcxform.dialect.codes import Effect
@@ -42,7 +42,19 @@ class EventProof:
 
     def of_source(self, path: Toolpath) -> tuple[Event, ...]:
         """Return the events of the source without those that a pass has taken over."""
-        return tuple(event for event in self.told(path) if event.what not in self.switches)
+        told = tuple(event for event in self.told(path) if event.what not in self.switches)
+        saying = self.context.saying
+        if not (saying.crosses or saying.drop or saying.m_codes):
+            return told
+        return tuple(self._as_there(event) for event in told if saying.instead(event.what))
+
+    def _as_there(self, event: Event) -> Event:
+        """Return an event of the source as the target names it."""
+        saying = self.context.saying
+        words = saying.words_of(event.what, "".join(address for address, _ in event.values))
+        said = saying.instead(event.what)
+        values = tuple((a, value) for a, value in event.values if a in words)
+        return replace(event, what=said, values=values)
 
     def told(self, path: Toolpath) -> tuple[Event, ...]:
         """Return the events of a path that the control is told: not those that are folded away."""
@@ -75,6 +87,8 @@ class EventProof:
         Where a zero is set from where the axes stand the words of axes are others, if they stand
         elsewhere: the proof of zeros compares what they set, and here it is which axes there are.
         """
+        if event.what.endswith("DWELL"):
+            return tuple((a, round(value, 9)) for a, value in event.values)
         code = self.context.source.codes.get(event.what)
         here = code is not None and code.effect is Effect.FRAME and self._counts(code.act, event)
         if not here or self.context.source is not self.context.target:

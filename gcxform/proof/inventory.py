@@ -9,6 +9,8 @@ is the same text.
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from hashlib import sha256
 from math import isnan
@@ -22,7 +24,7 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.flow.executed import Executed
 from gcxform.modal.expressions.value import written
 from gcxform.modal.interpreter import Interpreted
-from gcxform.modal.inventory import KINDS, Account, Tally, nothing_held
+from gcxform.modal.inventory import KINDS, Account, Tally, kind_of, nothing_held
 from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.modal.noted import Assigned
 from gcxform.modal.program_end import Ending
@@ -30,7 +32,9 @@ from gcxform.proof.trace import Trace
 from gcxform.stamps.comment import without_lines
 from gcxform.syntax.scan import Window
 from gcxform.system.arrays import Ints
+from gcxform.toolpath.path import Event
 
+MESSAGE = "(...)"
 Wrong = tuple[str, int, int]
 """What is wrong, the line of the source and the line of the output, both from 0."""
 
@@ -85,6 +89,10 @@ def _lasts(key: Key, context: PassContext) -> bool:
     acts = own is not None and own.acts(key)
     said = known is not None and known.can_say(key) and (own is None or own.owns(key))
     return context.source is context.target or acts or said
+
+
+def _gone(what: str) -> str:
+    return "a comment that is not executed" if what == MESSAGE else "left out"
 
 
 def _said(one: Assigned) -> str:
@@ -193,6 +201,7 @@ class Books:
         self.set_aside = self.done = self.inner = self.given = 0
         self.assigned: list[tuple[Key, float]] = []
         self.text_behind = sha256()
+        self.said: Counter[tuple[str, str]] = Counter()
 
     def add(self, window: Window, table: MeaningTable, read: Interpreted, given: int) -> None:
         """Take a window of the source into account; `given` are blocks that the user adds."""
@@ -203,10 +212,51 @@ class Books:
             self.set_aside += sum(not _lasts(each.key, self.context) for each in read.assigned)
         self.text_behind.update(behind_end(window, read.live))
         events = read.path.events
+        self._say(events, [each.text for each in read.unknown])
         self.done += sum(event.what in self.switches for event in events)
         self.given += given
         self.inner += given + sum(event.within for event in events)
         self.assigned += [(each.key, each.value) for each in read.assigned]
+
+    def _say(self, events: Sequence[Event], unknown: Sequence[str]) -> None:
+        """Take note of what the target says otherwise, or not at all.
+
+        What only the machine can compute, `unknown`, is an event besides that of its block.
+        """
+        saying = self.context.saying
+        if saying.crosses or saying.drop or saying.m_codes:
+            self.said += Counter(each for each in map(self._named, events) if each[0] != each[1])
+            told = [text for text in unknown if text[0] in "(;" and not saying.instead(text)]
+            self.said -= Counter({(MESSAGE, ""): len(told)})
+
+    @property
+    def sentences(self) -> list[str]:
+        """What the target says otherwise, or not at all, and how often."""
+        target = self.context.target.name
+        return [
+            f"{what} is {f'said as {said}' if said else _gone(what)} for {target}: {count}"
+            for (what, said), count in self.said.items()
+        ]
+
+    def _named(self, event: Event) -> tuple[str, str]:
+        """Return an event of the source with its words, and what stands for it."""
+        saying = self.context.saying
+        if event.what[0] in "(;":
+            return MESSAGE, saying.instead(event.what) and MESSAGE
+        taken = "".join(address for address, _ in event.values)
+        said = " ".join(
+            filter(None, (saying.instead(event.what), saying.words_of(event.what, taken)))
+        )
+        return " ".join(filter(None, (event.what, taken))), said
+
+    def _account_said(self, account: Account) -> None:
+        """Let the account have what is said otherwise, or left out, by its name."""
+        dialects = self.context.source, self.context.target
+        for (what, said), count in self.said.items():
+            rule = f"{what} is {said or 'left out'} in {self.context.target.name}"
+            for name, dialect, sign in ((what, dialects[0], -1), (said, dialects[1], 1)):
+                if kind := kind_of(name.split(" ")[0], dialect):
+                    account.rule_of(rule, kind, sign * count)
 
     def close(
         self, output: Written, executed: Executed | None, path_modes: int
@@ -226,6 +276,7 @@ class Books:
             if not self.context.target.program_rule.has_program_number:
                 named = -self.live.total
                 account.rule(f"no name of programs in {target}", named, ("definitions",))
+        self._account_said(account)
         account.rule_of("done by a step instead of the control", "m_codes", -self.done)
         account.rule("moves cut, joined or written out by steps", account.rest, ("motions",))
         account.rule_of("G61 and G64 around cycles written out", "path_modes", path_modes)

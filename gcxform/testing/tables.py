@@ -13,6 +13,7 @@ from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.cycle_rule import Cycle
 from gcxform.dialect.dialect import EXTRUDER, LINEAR, ROTARY, Dialect
 from gcxform.dialect.program_rules import ProgramRule
+from gcxform.dialect.saying import SPOKEN
 from gcxform.modal.frames.acts import WORDS
 from gcxform.modal.meaning.meaning import ACT_ORDER
 from gcxform.modal.meaning.tables import FAMILIES as OF_GROUP
@@ -87,7 +88,8 @@ def _done(code: Code) -> bool:
 def _acts(dialect: type[Dialect]) -> Complaints:
     for name, code in dialect.codes.items():
         if code.effect is not Effect.FRAME:
-            if code.act and code.effect is not Effect.CALL:
+            spoken = code.effect is Effect.INERT and code.act in SPOKEN
+            if code.act and code.effect is not Effect.CALL and not spoken:
                 yield name, f"{name} has the act {code.act!r} and does not change frames"
             continue
         if code.act not in ACT_ORDER:

@@ -34,6 +34,7 @@ from faults import (
     rotary,
     rtcp,
     running,
+    saying,
     several,
     shops,
     siemens,
@@ -58,6 +59,7 @@ from faults.mutation import Mutation
 MUTATIONS: tuple[Mutation, ...] = (
     *cycles.MUTATIONS,
     *editors.MUTATIONS,
+    *saying.MUTATIONS,
     *flow.MUTATIONS,
     *folding.MUTATIONS,
     *guarding.MUTATIONS,

@@ -42,8 +42,7 @@ LENGTHENED = frozenset(
     }
 )
 
-LENGTH_STEP = "tool-length-alone"
-"""The setting that says what another tool length does to Z before Z is programmed."""
+LENGTH_STEP = "tool-length-alone"  # what another tool length does to Z before Z is programmed
 UNFOLLOWED, SWITCHED = frozenset({"plane", "tip"}), frozenset({"tip-on", "tip-off"})
 SPATIAL = 0b111  # X, Y and Z as bits
 WHOLE_TURN = 360.0  # degrees
@@ -67,8 +66,8 @@ class Break:
 class Track:
     """Follows position and frame; `state.position` and `state.frames` are left up to date.
 
-    `may_step` (lines,) are the moves that may go by distances from where it is not known. `zeroed`
-    are the lines that set where something counts from, and the state behind them.
+    `may_step` (lines,) are the moves that may go by distances from where it is not known; `zeroed`
+    and `homed` are as in `Interpreted`.
     """
 
     def __init__(self, lines: Lines, modes: Modes, axes: str) -> None:
@@ -84,6 +83,7 @@ class Track:
             self.frames.insert(0, self.state.row_frame)
         self.breaks: list[Break] = []
         self.zeroed: list[tuple[int, FrameState]] = []
+        self.homed: dict[int, Frame] = {}
         self._columns: dict[str, tuple[Floats, Flags] | None] = {}
         self.may_step = np.zeros(lines.live, np.bool_)
 

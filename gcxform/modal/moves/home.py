@@ -17,6 +17,7 @@ from gcxform.modal.moves.rows import Rows
 from gcxform.modal.moves.spindle_and_probe import probe
 from gcxform.modal.noted import AT
 from gcxform.system.arrays import Floats
+from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Form, Kind, Plane
 
 TOOL_BACK = "draw the tool back, write G49 before, which may move it, and G43 after"
@@ -91,10 +92,24 @@ def _home(track: Track, line: int, code: str) -> Rows:
         if axis in words or (not words and axis != EXTRUDER):
             home[k] = _in_frame(track, k, place.get(axis, np.nan))
             track.note_lost(int(np.isnan(home[k])) << k)
+    _note_machine(track, line, words, home)
     rows = _rows(track, line, Form.HOME, [*moves, (Kind.RAPID, home)])
     if track.dialect.motion_rule.g28_ends_length:
         _let_go_of_length(track, line, code)
     return rows
+
+
+def _note_machine(track: Track, line: int, words: dict[str, float], home: Floats) -> None:
+    """Note the frame of the machine, if the block goes nowhere but home, and home is known."""
+    frames = track.state.frames
+    named = [track.axes.index(axis) for axis in words] or [
+        k for k, axis in enumerate(track.axes) if axis in frames.homes.get("G28", {})
+    ]
+    still = track.modes.incremental[line] and not any(words.values())
+    if not (still or not words) or not np.isfinite(home[named]).all():
+        return
+    shift = tuple(np.nan_to_num(frames.machine).tolist())
+    track.homed[line] = Frame(frames.work, shift, (frames.first,) * len(track.axes))
 
 
 def _let_go_of_length(track: Track, line: int, code: str) -> None:

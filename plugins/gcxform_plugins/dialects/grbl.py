@@ -37,7 +37,7 @@ class Grbl(gx.Dialect):
     axes = "XYZ"
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
-        "G61": v.inert("path"),
+        "G61": v.inert("path", act="exact-path"),
         "G91.1": gx.Code("arc-distance"),
         "G10": v.frame("non-modal", "set-work", "XYZLP"),
         "G92": v.frame("non-modal", "preset", "XYZ"),

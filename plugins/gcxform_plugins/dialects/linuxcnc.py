@@ -112,6 +112,7 @@ ACTIVE = (
     "PROBECLOSE", "ABORT,", "PY,",
 )
 # fmt: on
+TELLING = ("MSG,", "DEBUG,", "PRINT,", "LOG,", "LOGOPEN,", "LOGAPPEND,", "LOGCLOSE")
 
 
 class LinuxCNC(gx.Dialect):
@@ -125,11 +126,13 @@ class LinuxCNC(gx.Dialect):
         "G95": gx.Code("feed-mode"),
         **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
         **{code: v.frame("frame", "work") for code in ("G59.1", "G59.2", "G59.3")},
-        **{code: v.inert("path", "PQ", "PQ") for code in ("G61", "G61.1", "G64")},
+        "G61": v.inert("path", "PQ", "PQ", act="exact-path"),
+        "G61.1": v.inert("path", "PQ", "PQ", act="exact-stop"),
+        "G64": v.inert("path", "PQ", "PQ", act="blend"),
         **{code: v.inert("retract") for code in ("G98", "G99")},
         "G7": v.frame("diameter", "diameter"),
         "G8": v.frame("diameter", "diameter"),
-        "G97": v.inert("spindle-mode", "S"),
+        "G97": v.inert("spindle-mode", "S", act="rpm"),
         "G96": v.inert("spindle-mode", "DS"),
         "G10": v.frame("non-modal", "set-work", v.AXES + "LPRIJQ"),
         "G52": v.frame("non-modal", "local", v.AXES),
@@ -178,7 +181,11 @@ class LinuxCNC(gx.Dialect):
     }
     program_rule = gx.ProgramRule(spindle_stands=True, needs_end=True)
     text_rule = gx.TextRule(
-        lone_cr_is_blank=True, line_length=252, comments="(;", active_comments=ACTIVE
+        lone_cr_is_blank=True,
+        line_length=252,
+        comments="(;",
+        active_comments=ACTIVE,
+        telling_comments=TELLING,
     )
     block_rule = gx.BlockRule(
         words="DEFHIJKLNPQRST@^$",

@@ -1,0 +1,161 @@
+"""How one control says what a code of another does: by the same name, by another, or not at all.
+
+A code is one spelling of an *act*. Controls that agree on an act may spell it differently; where a
+control has no code for one, a stronger act may stand for it, or the code is left out because the
+control does so by itself, or because nothing on it could be different. All else is refused by who
+writes, unless the user has said what takes its place (`m_codes`) or that it may go (`drop`).
+
+What is left out of events is what the proof does not look for, so a rule here is a claim:
+
+| act of the source | what stands for it where the target has no such code |
+|---|---|
+| exact-path (G61 of LinuxCNC, of GRBL) | exact-stop: the path is the same, and slower |
+| blend (G64) | nothing: corners stay nearer to the program |
+| blend, without the tolerance that it has there | nothing: without one it would have no bound |
+| look-ahead, rpm, cancel | nothing: no position, no feed hangs on it there |
+| no-rotate, no-scale, no-mirror, no-polar | nothing, where nothing there begins what they end |
+| G28, to a point of another kind there | G53 to the point, where that is known |
+| a comment that shows or logs something | a comment |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from gcxform.diagnostics import UsageError
+from gcxform.dialect.codes import Effect
+from gcxform.dialect.dialect import Dialect
+
+EXACT_STOP, EXACT_PATH, BLEND = "exact-stop", "exact-path", "blend"
+LOOK_AHEAD, RPM, CANCEL = "look-ahead", "rpm", "cancel"
+SPOKEN = frozenset({EXACT_STOP, EXACT_PATH, BLEND, LOOK_AHEAD, RPM, CANCEL})
+"""Acts of codes that change no position."""
+HOME, MACHINE = "home", "machine"
+STRONGER: Mapping[str, str] = {EXACT_PATH: EXACT_STOP}
+NEEDLESS = frozenset({BLEND, LOOK_AHEAD, RPM, CANCEL})
+ENDS = "no-"
+SWITCHED = "/"
+
+
+def stores_home(dialect: type[Dialect]) -> bool:
+    """Whether a program can choose the point to which G28 goes."""
+    return any(code.act == "store-home" for code in dialect.codes.values())
+
+
+@dataclass(frozen=True)
+class Saying:
+    """From one control to another; `m_codes` and `drop` are what the user says of codes."""
+
+    source: type[Dialect]
+    target: type[Dialect]
+    m_codes: Mapping[str, str] = field(default_factory=dict)
+    drop: frozenset[str] = frozenset()
+    _known: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def crosses(self) -> bool:
+        """Whether the program changes its control."""
+        return self.source is not self.target
+
+    def check(self) -> None:
+        """Refuse what the user says of codes that cannot go. Raises UsageError."""
+        for name in (*self.drop, *self.m_codes):
+            if not self._may_go(name):
+                message = f"{name} of {self.source.name} cannot be left out or replaced"
+                hint = "what waits, moves, sets frames or modes of moves, or ends a program, stays"
+                raise UsageError.one("GX707", message, hint=hint)
+        known = self.target.m_codes
+        for name in self.m_codes.values():
+            if int(name[1:]) not in known and self.target.block_rule.unknown_m is None:
+                raise UsageError.one("GX707", f"{self.target.name} has no code {name}")
+
+    def _may_go(self, name: str) -> bool:
+        if name in self.source.codes:
+            return self.source.codes[name].effect is Effect.INERT
+        if name[0] != "M" or "." in name:
+            return False
+        code = self.source.m_codes.get(int(name[1:]), self.source.block_rule.unknown_m)
+        return code is not None and not (code.ends or code.barrier or code.act == "tip-on")
+
+    def instead(self, what: str) -> str:
+        """Return the name that a code or an event has in the target, "" where it is left out.
+
+        One for which there is no other name keeps its own: whether it is one there is not asked.
+        """
+        if what not in self._known:
+            bare = what.removeprefix(SWITCHED)
+            said = self._instead(bare)
+            self._known[what] = said and what.replace(bare, said)
+        return self._known[what]
+
+    def words_of(self, what: str, taken: str) -> str:
+        """Return which of the words that a code takes stand beside the one that stands for it."""
+        what = what.removeprefix(SWITCHED)
+        said = self.instead(what)
+        if not said or (said == what and not self.agrees(what)):
+            return taken if said else ""
+        code = self.target.codes.get(said)
+        return "".join(a for a in taken if code is not None and a in code.takes)
+
+    @property
+    def machine(self) -> str:
+        """The code of the target for a move in coordinates of the machine."""
+        return self._named(MACHINE)
+
+    def agrees(self, what: str) -> bool:
+        """Whether the act of a code says that the code in its place does the same, or more."""
+        code, other = self.source.codes.get(what), self.target.codes.get(self.instead(what))
+        if code is None or other is None or not self.crosses:
+            return False
+        inert = code.effect is other.effect is Effect.INERT and code.act in SPOKEN
+        return inert and other.act in (code.act, STRONGER.get(code.act))
+
+    def _instead(self, what: str) -> str:
+        if what in self.drop:
+            return ""
+        if what in self.m_codes:
+            return self.m_codes[what]
+        if not self.crosses:
+            return what
+        if what.startswith(("(", ";")):
+            tells = self.source.text_rule.tells(what)
+            return "" if tells and not self.target.text_rule.executes(what) else what
+        code = self.source.codes.get(what)
+        if code is not None and code.act == HOME:
+            return what if self._same_home(what) else self._named(MACHINE) or what
+        if code is None or not code.act or code.effect not in (Effect.INERT, Effect.FRAME):
+            return what
+        return self._spelled(what, code.act)
+
+    def _same_home(self, what: str) -> bool:
+        """Whether a code goes to the same point of the machine in the target."""
+        other = self.target.codes.get(what)
+        same = stores_home(self.source) == stores_home(self.target)
+        return other is not None and other.act == HOME and same
+
+    def _named(self, act: str) -> str:
+        """Return the one code of the target that does an act, "" if there is none."""
+        found = [name for name, code in self.target.codes.items() if code.act == act]
+        return found[0] if len(found) == 1 else ""
+
+    def _spelled(self, what: str, act: str) -> str:
+        """Return the code of the target that does an act, or a stronger one."""
+        there = {name: code.act for name, code in self.target.codes.items()}
+        if there.get(what) == act:
+            return "" if act == BLEND and self._unbounded(what) else what
+        for wanted in filter(None, (act, STRONGER.get(act))):
+            found = [name for name, other in there.items() if other == wanted]
+            if len(found) == 1 and self._takes_alike(what, found[0], wanted):
+                return found[0]
+        ends_nothing = act.startswith(ENDS) and act.removeprefix(ENDS) not in there.values()
+        return "" if act in NEEDLESS or ends_nothing else what
+
+    def _unbounded(self, what: str) -> bool:
+        """Whether a code that rounds corners has a tolerance in the target, which is not said."""
+        return "P" in self.target.codes[what].takes and "P" not in self.source.codes[what].takes
+
+    def _takes_alike(self, what: str, other: str, act: str) -> bool:
+        """Whether a code may stand for another: one that changes frames takes the same words."""
+        codes = self.source.codes[what], self.target.codes[other]
+        return act in SPOKEN or set(codes[0].takes) == set(codes[1].takes)

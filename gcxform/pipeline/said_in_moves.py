@@ -1,0 +1,51 @@
+"""Moves that the control of the output makes by other words, without being asked.
+
+Canned cycles that it has not become their moves, and ways home to another kind of point become
+moves in the machine, where it is known where home is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from gcxform.dialect.saying import HOME
+from gcxform.modal.interpreter import Interpreted
+from gcxform.pipeline.placing import placing
+from gcxform.pipeline.plan import Plan
+from gcxform.syntax.scan import Window
+from gcxform.toolpath.cycles_as_moves import cycles_as_moves
+from gcxform.toolpath.path import Form, Toolpath
+
+
+def said_in_moves(plan: Plan, read: Interpreted, window: Window, file: str) -> Toolpath:
+    """Return the path of a window, in which such blocks are plain moves. Raises InputError."""
+    path, foreign = _homed(plan, read), plan.manner.foreign_cycles
+    if not foreign or not (path.form == Form.CYCLE).any():
+        return path
+    with placing(window, file):
+        return cycles_as_moves(path, np.isin(read.modes.cycle[path.block], list(foreign)))
+
+
+def _homed(plan: Plan, read: Interpreted) -> Toolpath:
+    """Return a path in which ways home are moves in the machine, by absolute words."""
+    path = read.path
+    codes = {act for act, code in plan.source.codes.items() if code.act == HOME}
+    if not read.homed or all(plan.saying.instead(code) == code for code in codes):
+        return path
+    lines = np.array(list(read.homed))
+    home = np.isin(path.block, lines) & (path.form == Form.HOME)
+    last = np.append(path.block[1:] != path.block[:-1], True)
+    frames = (*path.frames, *(read.homed[line] for line in lines.tolist()))
+    number = np.zeros(len(path.blocks.inch), np.int64)
+    number[lines] = len(path.frames) + np.arange(len(lines))
+    incremental = path.blocks.incremental.copy()
+    incremental[lines] = False
+    path = path.replace(
+        form=np.where(home, Form.PLAIN, path.form).astype(np.int8),
+        frame=np.where(home, number[path.block], path.frame),
+        frames=frames,
+        blocks=replace(path.blocks, incremental=incremental),
+    )
+    return path.with_rows((~home | last).astype(np.int64))

@@ -1,0 +1,95 @@
+"""Faults of translation: what one control says otherwise than another."""
+
+from __future__ import annotations
+
+from faults.mutation import Mutation
+
+SAYING, OWN = "gcxform/dialect/saying.py", "gcxform/emit/own_blocks.py"
+HERE = "tests/test_said_otherwise.py"
+
+MUTATIONS = (
+    Mutation(
+        "saying: an exact path stands for an exact stop",
+        SAYING,
+        "{EXACT_PATH: EXACT_STOP}",
+        "{EXACT_STOP: EXACT_PATH, EXACT_PATH: EXACT_STOP}",
+        HERE,
+    ),
+    Mutation(
+        "saying: an exact stop is needless",
+        SAYING,
+        "frozenset({BLEND, LOOK_AHEAD, RPM, CANCEL})\nENDS",
+        "frozenset({BLEND, EXACT_STOP, LOOK_AHEAD, RPM, CANCEL})\nENDS",
+        HERE,
+    ),
+    Mutation(
+        "saying: G64 is written without its tolerance",
+        SAYING,
+        'return "" if act == BLEND and self._unbounded(what) else what',
+        "return what",
+        HERE,
+    ),
+    Mutation(
+        "saying: comments that act are left out",
+        SAYING,
+        "tells = self.source.text_rule.tells(what)",
+        "tells = self.source.text_rule.executes(what)",
+        HERE,
+    ),
+    Mutation(
+        "saying: the end of a program may be dropped",
+        SAYING,
+        'return code is not None and not (code.ends or code.barrier or code.act == "tip-on")',
+        "return code is not None",
+        HERE,
+    ),
+    Mutation(
+        "saying: M codes stand on the other side of the move",
+        OWN,
+        "texts[code.after].append",
+        "texts[not code.after].append",
+        HERE,
+    ),
+    Mutation(
+        "saying: a dwell keeps its number",
+        "gcxform/emit/writing.py",
+        "words = [dwell_word(seconds, target)",
+        "words = [dwell_word(1000 * seconds, target)",
+        HERE,
+    ),
+    Mutation(
+        "saying: a cycle that is another one stays",
+        "gcxform/emit/expressible.py",
+        'if source.codes.get(f"G{number}") != target.codes.get(f"G{number}")',
+        'if f"G{number}" not in target.codes',
+        HERE,
+    ),
+    Mutation(
+        "saying: cycles are rounded under G64",
+        "gcxform/emit/path_modes.py",
+        "if not any(code.act == BLEND for code in manner.target.codes.values()):",
+        "if manner.crossing:",
+        HERE,
+    ),
+    Mutation(
+        "saying: a way home by way of a point is one by G53",
+        "gcxform/modal/moves/home.py",
+        "if not (still or not words) or not np.isfinite(home[named]).all():",
+        "if not np.isfinite(home[named]).all():",
+        HERE,
+    ),
+    Mutation(
+        "saying: a way home is said in distances",
+        "gcxform/pipeline/said_in_moves.py",
+        "incremental[lines] = False",
+        "incremental[lines] = incremental[lines]",
+        HERE,
+    ),
+    Mutation(
+        "saying: home counts from the work offset",
+        "gcxform/modal/moves/home.py",
+        "shift = tuple(np.nan_to_num(frames.machine).tolist())",
+        "shift = tuple(0.0 * np.nan_to_num(frames.machine))",
+        HERE,
+    ),
+)
