@@ -34,6 +34,10 @@ from gcxform.plugin.registry import default_registry
 
 TARGETS = ("linuxcnc", "fanuc", "haas", "grbl")
 SECONDS = 60
+M_CODES = {"grbl": {"M6": "M0"}}
+"""What a user of each target says: a GRBL without a changer stops, and the operator changes."""
+DROPPED = ("M31", "M33")
+"""What has no equal elsewhere and nobody misses: a Haas starts and stops its chip conveyor."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +53,15 @@ def into(job: Job, target: str) -> Pipeline:
     """Return the pipeline of a program with another target, and no pass."""
     made = filled_in(job.dialect, job.path, "absolute", job.corpus)
     kind = default_registry().dialect(target)
-    return replace(made, target=kind, passes=(), numbers=NUMBERS if target != "fanuc" else None)
+    source, m_codes = made.source, M_CODES.get(target, {})
+    return replace(
+        made,
+        target=kind,
+        passes=(),
+        numbers=NUMBERS if target != "fanuc" else None,
+        m_codes={code: said for code, said in m_codes.items() if int(code[1:]) in source.m_codes},
+        drop=frozenset(code for code in DROPPED if int(code[1:]) in source.m_codes),
+    )
 
 
 def translate(pair: Pair, keep: Path | None = None) -> Outcome:
@@ -74,7 +86,7 @@ def translate(pair: Pair, keep: Path | None = None) -> Outcome:
 def judged(pair: Pair, text: bytes) -> Outcome | None:
     """Return what is wrong with a program that is proved, if anything."""
     job, kind = pair.job, default_registry().dialect(pair.target)
-    same = replace(into(job, pair.target), source=kind)
+    same = replace(into(job, pair.target), source=kind, m_codes={}, drop=frozenset())
     try:
         same.run(text)
     except gx.GcxformError as error:

@@ -185,6 +185,7 @@ WAYS_HOME = [
     ("fanuc", "linuxcnc", "G0\nG28 G91 X0. Y0. M5", ["G0", "G90 G53 X10. Y20.", "M5"]),
     ("fanuc", "linuxcnc", "G43 H1 G0 Z5.\nG91 G28 Z0.", ["G43 H1 G0 Z5.", "G90 G53 Z450."]),
     ("fanuc", "linuxcnc", "G91 G30 P3 Z0.", ["G0 G90 G53 Z400."]),
+    ("fanuc", "haas", "G91 G28 Z0.", ["G91 G28 Z0."]),
     ("haas", "linuxcnc", "G28", ["G0 G53 X10. Y20. Z450."]),
     ("haas", "grbl", "G91 G28 Z0.\nG90 G1 Z0. F100.", ["G90 G53 Z450.", "G90 G1 Z0. F100."]),
     ("grbl", "fanuc", "G91 G28 Z0.\nG0 X1.", ["G90 G53 Z450.", "G91 G0 X1."]),

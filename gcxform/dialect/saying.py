@@ -128,6 +128,10 @@ class Saying:
             return what
         return self._spelled(what, code.act)
 
+    def moves_home(self, what: str) -> bool:
+        """Whether a way home of the source is a move in the machine in the target."""
+        return self.instead(what) not in (what, "")
+
     def _same_home(self, what: str) -> bool:
         """Whether a code goes to the same point of the machine in the target."""
         other = self.target.codes.get(what)

@@ -46,7 +46,7 @@ class Interpreted:
     (live,) are lines that move something and may not be executed; None: there are none. `loses`
     (live,) are lines behind which no position is known. `zeroed` are the lines of the program, from
     0, that set where something counts from, and the state of the frames behind each. `homed` are
-    lines that only go to a point of the machine which is known, with the frame of the machine.
+    lines that only go to a point of the machine which is known: its code, and the machine's frame.
     """
 
     path: Toolpath
@@ -60,7 +60,7 @@ class Interpreted:
     perhaps: Flags | None = None
     loses: Flags = field(default_factory=lambda: np.zeros(0, np.bool_))
     zeroed: tuple[tuple[int, FrameState], ...] = ()
-    homed: Mapping[int, Frame] = field(default_factory=dict)
+    homed: Mapping[int, tuple[str, Frame]] = field(default_factory=dict)
 
 
 PECKS = ("peck-return", "peck-clearance")

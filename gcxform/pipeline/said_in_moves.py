@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from gcxform.dialect.saying import HOME
 from gcxform.modal.interpreter import Interpreted
 from gcxform.pipeline.placing import placing
 from gcxform.pipeline.plan import Plan
@@ -31,13 +30,12 @@ def said_in_moves(plan: Plan, read: Interpreted, window: Window, file: str) -> T
 def _homed(plan: Plan, read: Interpreted) -> Toolpath:
     """Return a path in which ways home are moves in the machine, by absolute words."""
     path = read.path
-    codes = {act for act, code in plan.source.codes.items() if code.act == HOME}
-    if not read.homed or all(plan.saying.instead(code) == code for code in codes):
+    frames = {n: frame for n, (code, frame) in read.homed.items() if plan.saying.moves_home(code)}
+    if not frames:
         return path
-    lines = np.array(list(read.homed))
+    lines = np.array(list(frames))
     home = np.isin(path.block, lines) & (path.form == Form.HOME)
     last = np.append(path.block[1:] != path.block[:-1], True)
-    frames = (*path.frames, *(read.homed[line] for line in lines.tolist()))
     number = np.zeros(len(path.blocks.inch), np.int64)
     number[lines] = len(path.frames) + np.arange(len(lines))
     incremental = path.blocks.incremental.copy()
@@ -45,7 +43,7 @@ def _homed(plan: Plan, read: Interpreted) -> Toolpath:
     path = path.replace(
         form=np.where(home, Form.PLAIN, path.form).astype(np.int8),
         frame=np.where(home, number[path.block], path.frame),
-        frames=frames,
+        frames=(*path.frames, *frames.values()),
         blocks=replace(path.blocks, incremental=incremental),
     )
     return path.with_rows((~home | last).astype(np.int64))

@@ -92,14 +92,16 @@ def _home(track: Track, line: int, code: str) -> Rows:
         if axis in words or (not words and axis != EXTRUDER):
             home[k] = _in_frame(track, k, place.get(axis, np.nan))
             track.note_lost(int(np.isnan(home[k])) << k)
-    _note_machine(track, line, words, home)
+    _note_machine(track, line, code, words, home)
     rows = _rows(track, line, Form.HOME, [*moves, (Kind.RAPID, home)])
     if track.dialect.motion_rule.g28_ends_length:
         _let_go_of_length(track, line, code)
     return rows
 
 
-def _note_machine(track: Track, line: int, words: dict[str, float], home: Floats) -> None:
+def _note_machine(
+    track: Track, line: int, code: str, words: dict[str, float], home: Floats
+) -> None:
     """Note the frame of the machine, if the block goes nowhere but home, and home is known."""
     frames = track.state.frames
     named = [track.axes.index(axis) for axis in words] or [
@@ -109,7 +111,8 @@ def _note_machine(track: Track, line: int, words: dict[str, float], home: Floats
     if not (still or not words) or not np.isfinite(home[named]).all():
         return
     shift = tuple(np.nan_to_num(frames.machine).tolist())
-    track.homed[line] = Frame(frames.work, shift, (frames.first,) * len(track.axes))
+    frame = Frame(frames.work, shift, (frames.first,) * len(track.axes))
+    track.homed[line] = code.split()[0], frame
 
 
 def _let_go_of_length(track: Track, line: int, code: str) -> None:
