@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import re
 import subprocess
 import sys
+import tarfile
+import tomllib
+import venv
 import zipfile
 from pathlib import Path
 
@@ -16,6 +21,10 @@ PACKAGES = {
     "gcxform_grammars": ROOT / "grammars" / "gcxform_grammars",
 }
 JUNK = {"__pycache__"}
+LONG = pytest.mark.skipif(
+    os.environ.get("HYPOTHESIS_PROFILE") != "long",
+    reason="sdist and image are built with HYPOTHESIS_PROFILE=long",
+)
 PIP = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet"]
 
 
@@ -98,3 +107,58 @@ def test_its_command_works(installed):
     done = isolated(installed, code, "--version")
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("gcxform ")
+
+
+@LONG
+def test_the_sdist_makes_the_same_wheel(wheel, tmp_path):
+    """Who builds from it gets every file, and needs no repository for that."""
+    words = ["-m", "build", "--sdist", "--no-isolation", "--outdir", str(tmp_path), str(ROOT)]
+    subprocess.run([sys.executable, *words], check=True, capture_output=True)
+    (packed,) = tmp_path.glob("*.tar.gz")
+    with tarfile.open(packed) as archive:
+        archive.extractall(tmp_path, filter="data")
+    options = ["--no-deps", "--no-index", "--no-build-isolation", "--wheel-dir", str(tmp_path)]
+    subprocess.run([*PIP, "wheel", *options, str(tmp_path / packed.name[:-7])], check=True)
+    (built,) = tmp_path.glob("*.whl")
+    assert built.name == wheel.name
+    one, other = (zipfile.ZipFile(each) for each in (built, wheel))
+    assert sorted(one.namelist()) == sorted(other.namelist())
+    assert all(one.read(name) == other.read(name) for name in one.namelist())
+
+
+def test_all_is_everything_for_users():
+    """An extra for users is one of `all`; what is for developers is not."""
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"][
+        "optional-dependencies"
+    ]
+    (named,) = extras["all"]
+    inside = re.fullmatch(r"gcxform\[(.*)\]", named)[1].split(",")
+    assert set(inside) == set(extras) - {"all", "docs", "dev"}
+
+
+def lines_of_the_image() -> list[str]:
+    """Return what the Containerfile runs, in order."""
+    text = (ROOT / "Containerfile").read_text()
+    return re.findall(r"^RUN (.*)$", text, re.MULTILINE)
+
+
+def test_the_image_copies_what_it_uses():
+    text = (ROOT / "Containerfile").read_text()
+    assert text.count("FROM ") == 2
+    assert re.search(r"^USER [1-9]", text, re.MULTILINE), "not the superuser"
+    assert text.rstrip().endswith('ENTRYPOINT ["gcxform"]')
+    assert len(lines_of_the_image()) == 4
+
+
+@LONG
+def test_the_lines_of_the_image_run(tmp_path):
+    """In a new environment in the place of an image; pip needs an index for the first of them."""
+    venv.create(tmp_path / "image", with_pip=True)
+    path = {**os.environ, "PATH": f"{tmp_path / 'image' / 'bin'}:{os.environ['PATH']}"}
+    for line in lines_of_the_image():
+        there = line.replace("/src", str(ROOT)).replace("/wheels", str(tmp_path / "wheels"))
+        done = subprocess.run(
+            ["sh", "-ec", there], cwd=tmp_path, env=path, capture_output=True, text=True
+        )
+        assert done.returncode == 0, f"{line}\n{done.stderr}"
+    assert done.stdout == ""

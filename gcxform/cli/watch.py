@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -29,7 +28,7 @@ from gcxform.cli.watching.settling import Settling
 from gcxform.cli.watching.work import Told, Work, document
 from gcxform.diagnostics import GcxformError, UsageError
 from gcxform.pipeline.pipeline import Pipeline
-from gcxform.system.alone import alone
+from gcxform.system.alone import alone, ignore_leases
 from gcxform.system.inputs import visit
 
 SECONDS = click.FloatRange(0.0, 3600.0)
@@ -95,7 +94,7 @@ def command(
             message = f"another watcher is at work in {folder}"
             raise UsageError.one("GX751", message, hint="end that one first")
         wait = stack.enter_context(waker(folders.folder))
-        _ignore_leases()
+        ignore_leases()
         shop = Shop(what, folders.folder, stack.enter_context(lines_of_documents()))
         work = Work(
             folders, shop.run, shop.check, shop.line, shop.tell, Job("", None, None, None, verify)
@@ -166,9 +165,3 @@ def _words() -> list[str]:
         elif word != "--json" and not word.startswith("--service="):
             words.append(word)
     return words
-
-
-def _ignore_leases() -> None:
-    """Let nobody who opens a file while it is asked about end the process."""
-    if hasattr(signal, "SIGIO"):
-        signal.signal(signal.SIGIO, signal.SIG_IGN)

@@ -22,6 +22,7 @@ import msgspec
 from gcxform.catalogue.offers import write_instead
 from gcxform.diagnostics import Location, UsageError
 from gcxform.system import inputs
+from gcxform.system.inputs import UTF16, UTF16_MARKS
 
 Keys = tuple[str | int, ...]
 Config = TypeVar("Config", bound=msgspec.Struct)
@@ -32,6 +33,7 @@ _STRING = re.compile(
     r'"""(?:\\.|[^\\])*?"{3,5}(?!")|' + r"'''.*?'{3,5}(?!')|" + r'"(?:\\.|[^"\\])*"|' + r"'[^']*'",
     re.DOTALL,
 )
+BACKSLASH = "a path of Windows stands in single quotes, or has / in the place of \\"
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _BARE_VALUE = re.compile(r"[^,\]}#\n]*")
 
@@ -250,7 +252,8 @@ def _not_toml(path: Path, text: str, code: str, message: str) -> UsageError:
     elif found:
         line, column = _line_and_column(text, len(text.rstrip()))
     where = _location(str(path), text if _OURS.search(text) else "", line, column)
-    return UsageError.one(code, f"this is not TOML: {reason}", where)
+    hint = BACKSLASH if line and "\\" in text.splitlines()[line - 1] else ""
+    return UsageError.one(code, f"this is not TOML: {reason}", where, hint)
 
 
 def read_text(path: Path, unreadable: str, not_utf8: str) -> str:
@@ -268,7 +271,8 @@ def read_text(path: Path, unreadable: str, not_utf8: str) -> str:
         line = data.count(b"\n", 0, error.start) + 1
         column = error.start - data.rfind(b"\n", 0, error.start)
         where = Location(str(path), line, column)
-        raise UsageError.one(not_utf8, "the file is not UTF-8 text", where) from None
+        hint = UTF16 if data.startswith(UTF16_MARKS) else "save it as UTF-8"
+        raise UsageError.one(not_utf8, "the file is not UTF-8 text", where, hint) from None
 
 
 _UNKNOWN = re.compile(r"Object contains unknown field `(.*?)`")

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from gcxform.dialect.program_rules import LookupRule
 from gcxform.system import inputs
+from gcxform.system.places import lies_in
 
 SHOWN = 3  # files that a message names
 
@@ -76,8 +77,8 @@ class Folders:
 def _read(folder: Path, name: str) -> Found:
     """Return a file of a folder. Raises LookupFailedError for what is none, or leads out."""
     path = folder / name
-    real, root = os.path.realpath(path), os.path.realpath(folder)
-    if os.path.commonpath([real, root]) != root:
+    real = os.path.realpath(path)
+    if not lies_in(real, folder):
         raise LookupFailedError(f"{path} is a link to a place outside of its folder")
     try:
         return Found(str(path), inputs.read(Path(real)))

@@ -6,6 +6,7 @@ the compensated program belongs to which move of the program says its source map
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -55,7 +56,7 @@ class Heat:
         if self.worst is None:
             return self
         file, line = program.place_of(int(self.line[self.worst]))
-        beside = "" if file == program.name else f" of {file.rpartition('/')[2]}"
+        beside = "" if file == program.name else f" of {os.path.basename(file)}"
         return replace(self, worst_at=f"line {line}{beside}")
 
     @property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -69,3 +70,9 @@ def is_being_written(path: Path) -> bool:
     finally:
         os.close(handle)
     return False
+
+
+def ignore_leases() -> None:
+    """Let nobody who opens a file while it is asked about end the process."""
+    if hasattr(signal, "SIGIO"):
+        signal.signal(signal.SIGIO, signal.SIG_IGN)

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import errno
 import os
+import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.system.inputs import is_read
+from gcxform.system.places import why_no_name
 
 WRITABLE = 0o222  # nobody is to write it without one of these, not even the superuser by mistake
 NAME_KEPT = 40  # characters of the name of a file that are in that of its temporary one
+PAUSES = (0.05, 0.1, 0.2, 0.4)  # s; what looks at new files on Windows keeps them open so long
 
 
 @contextmanager
@@ -39,12 +43,23 @@ def write_atomically(path: Path) -> Iterator[Callable[[bytes], object]]:
                 stream.flush()
                 os.fsync(stream.fileno())
             _take_mode(path, temporary)
-            os.replace(temporary, path)
+            _replace(temporary, path)
         except OSError as error:
             raise _cannot(path, error) from None
     finally:
         with suppress(OSError):
             temporary.unlink()
+
+
+def _replace(temporary: Path, path: Path) -> None:
+    """Give a file its name; on Windows that is refused while anybody has the other one open."""
+    for pause in PAUSES if sys.platform == "win32" else ():
+        try:
+            os.replace(temporary, path)
+            return
+        except PermissionError:
+            time.sleep(pause)
+    os.replace(temporary, path)
 
 
 def sync_folder(path: Path) -> None:
@@ -62,6 +77,8 @@ def _check_replaceable(path: Path) -> None:
     if is_read(path):
         message = f"{path} would be overwritten, and it was read for this run"
         raise UsageError.one("GX727", message, hint="write elsewhere")
+    if why_no := why_no_name(path):
+        raise _cannot(path, OSError(errno.EINVAL, why_no))
     with suppress(FileNotFoundError):
         if not path.stat().st_mode & WRITABLE or not os.access(path, os.W_OK):
             why = OSError(errno.EACCES, "it is there, and may not be written to")

@@ -19,12 +19,15 @@ from typing import TYPE_CHECKING
 
 from gcxform.diagnostics import Location, UsageError
 from gcxform.system.limits import how_to_raise, limits
+from gcxform.system.places import lies_in
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-STDIN = "/dev/stdin"
+STDIN = "/dev/stdin"  # a name for it, also where there is no such file
 CHUNK = 1 << 20
+UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
+UTF16 = "it is UTF-16, which > of PowerShell writes: -o FILE in the place of > FILE keeps bytes"
 CHANGED = "it changed while it was read"
 ALLOW = "copy it there, or say --allow-outside"
 
@@ -95,8 +98,7 @@ def referred(folder: Path, name: str, where: Location | None) -> Path:
     now = _VISIT.get()
     if now is None or now.anywhere:
         return path
-    real = os.path.realpath(path)
-    if not any(os.path.commonpath([real, root]) == root for root in now.roots):
+    if not any(lies_in(path, root) for root in now.roots):
         message = f"{name!r} lies outside of the folder of the file that names it"
         raise UsageError.one("GX760", message, where, ALLOW)
     return path
@@ -104,14 +106,18 @@ def referred(folder: Path, name: str, where: Location | None) -> Path:
 
 def check_kind(path: Path) -> os.stat_result:
     """Raise OSError for what is no regular file, before anybody opens it: a pipe would wait."""
-    found = os.stat(path)
+    found = os.fstat(0) if _is_stdin(path) else os.stat(path)
     if stat.S_ISDIR(found.st_mode):
         raise OSError(errno.EISDIR, os.strerror(errno.EISDIR))
-    if not stat.S_ISREG(found.st_mode) and str(path) != STDIN:
+    if not stat.S_ISREG(found.st_mode) and not _is_stdin(path):
         raise OSError(errno.EINVAL, f"it is {kind_of(found.st_mode)}, not a regular file")
     if found.st_size > limits().file_size:
         raise too_large()
     return found
+
+
+def _is_stdin(path: Path) -> bool:
+    return path.as_posix() == STDIN
 
 
 def kind_of(mode: int) -> str:
@@ -129,8 +135,9 @@ def too_large() -> OSError:
 def read(path: Path) -> bytes:
     """Return the bytes of a file. Raises OSError, also for what is none, or changes meanwhile."""
     check_kind(path)
-    handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) * (str(path) != STDIN))
-    with open(handle, "rb", buffering=0) as stream:
+    waits = _is_stdin(path)
+    handle = 0 if waits else os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
+    with open(handle, "rb", buffering=0, closefd=not waits) as stream:
         before = os.fstat(handle)
         parts, size = [], 0
         while chunk := stream.read(CHUNK):

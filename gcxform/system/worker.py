@@ -86,10 +86,11 @@ def worker(work: Work[Result], long: bool) -> Worker[Result]:
 
 def _may_copy() -> bool:
     """Whether this process may be copied: one of a pool has no processes of its own."""
+    if not LINUX or not hasattr(os, "memfd_create"):  # Python built for an old system lacks it
+        return False
     from multiprocessing import parent_process
 
-    able = LINUX and hasattr(os, "memfd_create")  # Python built for an old system lacks it
-    return able and threading.active_count() == 1 and parent_process() is None
+    return threading.active_count() == 1 and parent_process() is None
 
 
 def ahead(reader: Worker[Result], items: Iterable[object]) -> Iterator[Result]:

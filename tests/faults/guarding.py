@@ -20,8 +20,8 @@ MUTATIONS = (
     _door("what is read is not known", "    now.read.add(", "    set().add(", BESIDE),
     _door(
         "links are not seen through",
-        "real = os.path.realpath(path)\n    if not",
-        "real = os.path.abspath(path)\n    if not",
+        "if not any(lies_in(path, root) for root in now.roots):",
+        "if not any(root in os.path.abspath(path) for root in now.roots):",
         HOSTILE,
     ),
     _door(

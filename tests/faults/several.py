@@ -31,7 +31,7 @@ MUTATIONS = (
     Mutation(
         "several: links of a folder are followed out of it",
         "gcxform/cli/common/programs.py",
-        "if path.is_file() and inside:",
+        "if path.is_file() and lies_in(path, folder):",
         "if path.is_file():",
         SEVERAL,
     ),
@@ -45,7 +45,7 @@ MUTATIONS = (
     Mutation(
         "several: whose pipeline it is does not matter",
         "gcxform/cli/common/discovery.py",
-        "if owner not in (0, os.getuid()):",
+        "if not is_trusted(found):",
         "if False:",
         SEVERAL,
     ),

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Final
 
 from gcxform.diagnostics import Location, UsageError
+from gcxform.system.places import is_trusted
 
 NAME: Final = "gcxform.toml"
 ROOTS: Final = (".git", ".hg", ".svn")
@@ -44,10 +45,7 @@ def upwards(folder: Path) -> Iterator[Path]:
 
 def _check_owner(found: Path) -> None:
     """Refuse a file of somebody who is neither this user nor the system."""
-    if not hasattr(os, "getuid"):  # Windows: who may write there is a matter of its lists
-        return
-    owner = found.stat().st_uid
-    if owner not in (0, os.getuid()):
+    if not is_trusted(found):
         message = f"{found} was found above the program, and belongs to somebody else"
         raise UsageError.one("GX750", message, Location(str(found)), f"-p {found} if it is meant")
 

@@ -12,6 +12,7 @@ from gcxform.cli.common.programs import files_of
 from gcxform.cli.common.request import excluding
 from gcxform.cli.common.transform import Job
 from gcxform.diagnostics import FileError, UsageError
+from gcxform.system.places import lies_in
 
 SEVERAL = "-o DIR, --in-place, --check or --diff"
 
@@ -62,7 +63,7 @@ class Places:
                 raise excluding("--in-place and stdin")
             return replace(beside, file=file, out=file)
         out = self.output or STDOUT
-        if file != STDOUT and (os.path.isdir(out) or out.endswith(os.sep)):
+        if file != STDOUT and (os.path.isdir(out) or out.endswith((os.sep, "/"))):
             out = os.path.join(out, os.path.basename(file))
             beside = replace(beside, makes_folders=True)
         return replace(beside, file=file, out=out)
@@ -107,9 +108,7 @@ def _named(files: Sequence[str]) -> Iterator[tuple[Path, Path]]:
 
 def _lies_in(file: Path, folders: Iterable[str]) -> bool:
     """Whether a file lies in a folder of results, of an earlier run for example."""
-    real = os.path.realpath(file)
-    roots = [os.path.realpath(folder) for folder in folders]
-    return any(os.path.commonpath([real, root]) == root for root in roots)
+    return any(lies_in(file, folder) for folder in folders)
 
 
 def _in(folder: str | None, below: Path, ending: str = "") -> str | None:

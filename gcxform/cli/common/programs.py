@@ -12,6 +12,7 @@ from typing import Final
 
 from gcxform.diagnostics import FileError
 from gcxform.syntax.source import Source
+from gcxform.system.places import lies_in
 
 NO_PROGRAMS: Final = re.compile(
     r".*(\.(toml|json|csv|md|pdf|docx?|xlsx?|png|jpe?g|gif|bmp|svg|html?|zip|stl|ste?p|ig[es]+|dxf|dwg"
@@ -44,13 +45,11 @@ def files_of(paths: Iterable[str]) -> list[Path]:
 
 def _inside(folder: Path) -> Iterator[Path]:
     """Yield the programs of a folder and of those in it, by name; no links that lead out of it."""
-    root = os.path.realpath(folder)
     for place, folders, files in os.walk(folder):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         for name in sorted(filter(is_program, files)):
             path = Path(place, name)
-            inside = os.path.commonpath([root, os.path.realpath(path)]) == root
-            if path.is_file() and inside:
+            if path.is_file() and lies_in(path, folder):
                 yield path
 
 

@@ -14,7 +14,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 ENDING = tuple(
-    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+    getattr(signal, name)
+    for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")  # the last of Windows: Ctrl-Break
+    if hasattr(signal, name)
 )
 
 
@@ -22,8 +24,8 @@ class Ended(KeyboardInterrupt):
     """A run was ended by a signal; `exit_code` is what a shell shows for it."""
 
     def __init__(self, number: int) -> None:
-        words = {"SIGINT": "interrupted", "SIGTERM": "terminated", "SIGHUP": "hung up"}
-        super().__init__(words[signal.Signals(number).name])
+        words = {"SIGTERM": "terminated", "SIGHUP": "hung up"}
+        super().__init__(words.get(signal.Signals(number).name, "interrupted"))
         self.exit_code = 128 + number
 
 

@@ -1,8 +1,10 @@
 """A post processor of FreeCAD that runs another one and then gcxform: gcxform_post.py.
 
 `gcxform hosts freecad` prints this file with its own place and a pipeline in it. FreeCAD 0.20 and
-1.0 call `export`; its Python need not have gcxform, which is started as a program of its own. A
-program that is refused is not written: its reason is what FreeCAD shows as the error.
+1.0 call `export`, the latter with the name `-` once for each file that it writes itself
+(`WrapperPost` in `Path/Post/Processor.py`). Its Python need not have gcxform, which is started as a
+program of its own. A program that is refused is not written: its reason is what FreeCAD shows as
+the error.
 """
 
 from __future__ import annotations
@@ -64,23 +66,35 @@ def _posted(base: str, objectslist: Any, words: list[str], name: str) -> bytes:
                 return stream.read()
     if not isinstance(text, str) or not text.strip():
         raise RuntimeError(f"the post processor {base} has written nothing")
+    text = text.removeprefix("\n\n")  # FreeCAD's mark that line ends are to stay as they are
     return text.encode("utf-8", "surrogateescape")
 
 
 def _module(base: str) -> Any:
-    """Return the module of another post, from where FreeCAD looks for them."""
-    for folder in _folders():
-        place = os.path.join(folder, base + "_post.py")
-        if base != "gcxform" and os.path.exists(place):
-            spec = importlib.util.spec_from_file_location(base + "_post", place)
-            assert spec is not None
-            assert spec.loader is not None
-            module = importlib.util.module_from_spec(spec)
-            spec.loader.exec_module(module)
-            if not hasattr(module, "export"):
-                raise RuntimeError(f"{place} has no function export, and cannot be a base")
-            return module
-    raise RuntimeError(f"FreeCAD has no post processor {base} to be a base")
+    """Return the module of another post, from where FreeCAD looks for them.
+
+    A post that is a class in later versions posts whole jobs and has no `export`; the script that
+    it was before stands beside it as `NAME_legacy_post.py`.
+    """
+    without = ""
+    for name in (base, f"{base}_legacy"):
+        for folder in _folders():
+            place = os.path.join(folder, f"{name}_post.py")
+            if name != "gcxform" and os.path.exists(place):
+                module = _loaded(f"{name}_post", place)
+                if hasattr(module, "export"):
+                    return module
+                without = f": {place} has no function export"
+    raise RuntimeError(f"FreeCAD has no post processor {base} to be a base{without}")
+
+
+def _loaded(name: str, place: str) -> Any:
+    spec = importlib.util.spec_from_file_location(name, place)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def _folders() -> list[str]:

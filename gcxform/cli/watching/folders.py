@@ -16,7 +16,6 @@ published again; what is claimed and has no note is done anew, for nobody has se
 
 from __future__ import annotations
 
-import errno
 import hashlib
 import json
 import os
@@ -183,17 +182,17 @@ class Folders:
 def moved(source: Path, target: Path) -> bool:
     """Move a file to a name that nobody has; return whether it was free. Raises OSError.
 
-    A name that the file has already, since somebody was stopped halfway, is free.
+    A name that the file has already, since somebody was stopped halfway, is free. Where a file has
+    one name only it is renamed: systems have many numbers for that, and what else may be wrong
+    keeps it from being renamed as well.
     """
     try:
         os.link(source, target)
     except FileExistsError:
         if not same_file(source, target):
             return False
-    except OSError as error:
-        if error.errno not in (errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK):
-            raise
-        if os.path.lexists(target):  # a file system without links
+    except OSError:
+        if os.path.lexists(target):
             return False
         os.rename(source, target)
         return True
