@@ -182,6 +182,24 @@ def test_a_folder_is_the_same_however_it_is_spelt(tmp_path: Path) -> None:
         assert listed == ("O7.NC",)
 
 
+@pytest.mark.usefixtures("any_case")
+def test_a_share_that_numbers_files_by_their_spelling(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The program is not replaced by a result that has its name in other letters."""
+    folder = workplace(tmp_path, monkeypatch)
+    monkeypatch.setattr(os.path, "samefile", lambda one, other: one == other)
+    monkeypatch.setattr(os.path, "isfile", lambda path: True)
+    monkeypatch.setattr(os.path, "exists", lambda path: True)
+    for name in ("PART.nc", str(folder / "Part.NC")):
+        done = call("run", "-q", "-x", "absolute", "-f", "linuxcnc", "part.nc", "-o", name)
+        assert (done.exit_code, "would overwrite part.nc" in done.stderr) == (2, True)
+    (folder / "PART.nc").write_bytes(b"another")
+    done = call("run", "-q", "-x", "absolute", "-f", "linuxcnc", "part.nc", "-o", "PART.nc")
+    assert (folder / "PART.nc").read_bytes() == ABSOLUTE
+    assert (folder / "part.nc").read_bytes() == PART
+
+
 def test_a_folder_may_be_on_another_drive(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Paths of two drives have nothing in common, which `os.path` says by an error."""
 

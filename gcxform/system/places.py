@@ -34,6 +34,20 @@ def _same_folder(one: str, other: str) -> bool:
     return bool(wanted.st_ino) and os.path.samestat(found, wanted)  # 0: a share that has no numbers
 
 
+def is_one_file(one: str, other: str) -> bool:
+    """Whether two names of files that are there are of one file. Raises OSError.
+
+    Some shares number a file by how its name is spelt: of two names that differ in their letters
+    alone both are there, and their folder lists one of them.
+    """
+    if os.path.samefile(one, other):
+        return True
+    (folder, name), (beside, again) = os.path.split(one), os.path.split(other)
+    if name == again or name.casefold() != again.casefold() or not lies_in(folder or ".", beside):
+        return False
+    return not {name, again} <= {*os.listdir(folder or ".")}
+
+
 def why_no_name(path: Path) -> str:
     """Return why a file cannot have its name on this system, nothing if it can.
 

@@ -30,6 +30,20 @@ MUTATIONS = (
         TESTS,
     ),
     Mutation(
+        "systems: a program is replaced by a result whose name is spelt otherwise",
+        PLACES,
+        '    return not {name, again} <= {*os.listdir(folder or ".")}',
+        "    return False",
+        TESTS,
+    ),
+    Mutation(
+        "systems: a post that is a class is a base",
+        "gcxform/cli/host/freecad_post.py",
+        '                if hasattr(module, "export"):\n',
+        "                if True:\n",
+        "tests/test_freecad_later.py",
+    ),
+    Mutation(
         "systems: what has one name only is moved over another file",
         "gcxform/cli/watching/folders.py",
         "    except OSError:\n        if os.path.lexists(target):",

@@ -16,6 +16,7 @@ from gcxform.cli.common.request import excluding
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.syntax.source import IN_MEMORY
 from gcxform.system.files import write_atomically
+from gcxform.system.places import is_one_file
 from gcxform.system.stages import stage
 
 STDOUT = "-"
@@ -85,5 +86,5 @@ def check_places(written: Mapping[str, str | None], read: Iterable[str | None]) 
 def same(name: str, other: str) -> bool:
     """Return whether two names are of one file that can be replaced, be it there or not."""
     if os.path.isfile(name) and os.path.exists(other):
-        return os.path.samefile(name, other)
+        return is_one_file(name, other)
     return not os.path.exists(name) and os.path.realpath(name) == os.path.realpath(other)
