@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from gcxform_plugins.dialects.heidenhain.lines import Lines
 from gcxform_plugins.passes.absolute import Absolute
+from gcxform_plugins.passes.segment import Segment
 from heidenhain_kit import DIALECT, program, read
 
 import gcxform as gx
 from gcxform.flow.translated import translated
 from gcxform.modal.state import Reading
 from gcxform.pipeline.pipeline import Pipeline
+from gcxform.plugin.registry import default_registry
 from gcxform.syntax.source import Source
 
 START = {"X": 0.0, "Y": 0.0, "Z": 50.0}
@@ -21,9 +24,9 @@ def ends(*lines, letter="X"):
     return path.end[:, path.axes.index(letter)].tolist()
 
 
-def written(text, **told):
+def written(text, step=None, **told):
     """Return what becomes of a program by a pass, and what was taken to be so."""
-    made = Pipeline(DIALECT, DIALECT, (Absolute(),), Reading(START, **told))
+    made = Pipeline(DIALECT, DIALECT, (step or Absolute(),), Reading(START, **told))
     result = made.run(text.encode("latin-1"))
     assert result.certificate.verified
     return result.text.decode("latin-1"), result.certificate.assumed
@@ -164,6 +167,130 @@ def test_cycles_that_call_themselves_keep_what_follows():
     lines += ["L X+1 FMAX", "L IX+1 FMAX"]
     changed = [*lines[:-1], "L X+2 FMAX"]
     assert written(program(*lines))[0] == program(*changed)
+
+
+ARCS = """0 BEGIN PGM A MM
+1 L X+0 Y+0 Z+5 R0 FMAX M3
+2 CC X+5 Y+0
+3 C X+5 Y+5 DR- F200 M8 ; arc
+4 CYCL DEF 200 DRILLING ~
+Q200=2
+5 C X+5,100 Y+4,999 DR-
+6 CR X+20 Y+5 R+20 DR+
+7 RND R2
+8 END PGM A MM
+"""
+
+
+def test_a_circle_becomes_lines_and_block_numbers_are_renewed():
+    text, _ = written(ARCS, Segment(chord_error=0.2))
+    assert (
+        text
+        == """0 BEGIN PGM A MM
+1 L X+0 Y+0 Z+5 R0 FMAX M3
+2 CC X+5 Y+0
+3 M8 ; arc
+4 L X+0.67 Y+2.5 F200
+5 L X+2.5 Y+4.33
+6 L X+5 Y+5
+7 CYCL DEF 200 DRILLING ~
+Q200=2
+8 L X+5.1 Y+4.999
+9 CR X+20 Y+5 R+20 DR+
+10 RND R2
+11 END PGM A MM
+"""
+    )
+
+
+ISO = b"""%
+O1 (PART)
+G21 G17 G90 G94
+T3 M6 (drill)
+g0 g43 h3 x10. y5.5 z50.
+M3 S1000 F80.
+G1 Z-1. F100.
+G91 X10.5
+G90 G2 X30.5 Y5.5 I5. J0. F250.
+G3 X30.5 Y5.5 I5. J0.
+G2 X20.5 Y5.5 Z-2. I-5. P2
+G2 X25.5 Y10.5 R5.
+G4 P1.5
+G53 G0 Z0.
+M0
+G0 A30.
+M5
+M30
+%
+"""
+TNC = """0 BEGIN PGM A MM
+1 ; PART
+2 TOOL CALL 3 Z ; drill
+3 L X+10 Y+5.5 Z+50 R0 FMAX
+4 TOOL CALL Z S1000
+5 M3
+6 L F80
+7 L Z-1 F100
+8 L IX+10.5
+9 CC X+25.5 Y+5.5
+10 C X+30.5 Y+5.5 DR- F250
+11 CC X+35.5 Y+5.5
+12 C X+30.5 Y+5.5 DR+
+13 CC X+25.5 Y+5.5
+14 CP IPA-540 Z-2 DR-
+15 CC X+25.5 Y+5.5
+16 C X+25.5 Y+10.5 DR-
+17 CYCL DEF 9.0 DWELL TIME
+18 CYCL DEF 9.1 DWELL 1.5
+19 L Z+0 R0 FMAX M91
+20 STOP
+21 L A+30 FMAX
+22 M5
+23 M30
+24 END PGM A MM
+"""
+
+
+def test_words_become_klartext_in_its_idiom_and_words_again():
+    linuxcnc = default_registry().dialect("linuxcnc")
+    made = Pipeline(linuxcnc, DIALECT, (), Reading(START)).run(ISO)
+    assert made.certificate.verified
+    assert made.text.decode() == TNC
+    one = gx.read(ISO, linuxcnc, start=START)
+    two = gx.read(made.text, DIALECT, start=START)
+    assert gx.compare(one, two).deviation < 1e-4
+    back = Pipeline(DIALECT, linuxcnc, (Absolute(),), Reading(START)).run(made.text)
+    assert gx.compare(two, gx.read(back.text, linuxcnc, start=START)).same
+
+
+@pytest.mark.parametrize(
+    ("block", "why"),
+    [
+        ("G18 G2 X5. Z5. I5. K0.", "out of XY"),
+        ("G20 G0 X5.", "one unit"),
+        ("G43 H2 Z5.", "another tool"),
+        ("G93 G1 X5. F2.", "G93"),
+        ("G92 X5.", "G92"),
+        ("G55 G0 X5.", "G55"),
+    ],
+)
+def test_what_klartext_has_no_words_for_is_refused(block, why):
+    linuxcnc = default_registry().dialect("linuxcnc")
+    text = f"G21 G17 G90 G94\nG0 X0. Y0. Z0.\nF100.\n{block}\nM2\n".encode()
+    with pytest.raises(gx.GcxformError, match=why):
+        Pipeline(linuxcnc, DIALECT, (), Reading(START)).run(text)
+
+
+def test_what_is_written_for_a_tnc_is_read_and_compared(monkeypatch):
+    linuxcnc = default_registry().dialect("linuxcnc")
+    said = Lines.lines
+    monkeypatch.setattr(
+        Lines, "lines", lambda self, block: [t.replace("X+2", "X+3") for t in said(self, block)]
+    )
+    text = b"G21 G17 G90 G94\nG0 X1. Y0. Z0.\nX2.\nM2\n"
+    with pytest.raises(gx.VerificationError, match="another program: an end") as error:
+        Pipeline(linuxcnc, DIALECT, (), Reading(START)).run(text)
+    assert error.value.diagnostics[0].where.text == "2 L X+3 R0 FMAX"
 
 
 def test_a_circle_in_a_scale_is_kept():

@@ -110,6 +110,15 @@ def _facts(thing: type[Pass]) -> list[str]:
     return [f"{name:8} {' '.join(facts)}" for name, facts in sets.items() if facts]
 
 
+def _written(translator: type) -> str:
+    """Return from which dialects programs in a language of its own are written."""
+    if getattr(translator, "speller", None) is not None:
+        return "from itself and from others, by passes that put no stamp into programs"
+    if getattr(translator, "writes", False):
+        return "from itself, by passes that keep positions"
+    return "no: name another dialect in [output]"
+
+
 def _dialect(thing: type[Dialect]) -> list[str]:
     """Return what a dialect can do, in a few lines."""
     codes = sorted(thing.codes, key=lambda code: float(code[1:]))
@@ -120,7 +129,7 @@ def _dialect(thing: type[Dialect]) -> list[str]:
         return [
             f"axes      {' '.join(thing.axes)}",
             f"tip       {', '.join(switches)}",
-            "written   no: name another dialect in [output]",
+            f"written   {_written(thing.translator)}",
         ]
     return [
         f"axes      {' '.join(thing.axes)}",

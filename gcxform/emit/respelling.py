@@ -12,8 +12,11 @@ from collections.abc import Iterator
 from itertools import groupby
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.emit.spelled_out import inch_first
 from gcxform.flow.annexed import BYTE_ORDER_MARK, LINE_END
+from gcxform.flow.speller import UnspeakableError
 from gcxform.flow.translated import Translated
+from gcxform.flow.translation import Translator
 
 HINT = "let the CAM write plain moves in its place, or write for another dialect"
 
@@ -28,6 +31,7 @@ def respelled(
     """
     new: dict[int, str] = {}
     whole, translator = source.text.splitlines(), source.translator
+    speller = _Spelling(translator, whole)
 
     def is_kept(block: bytes) -> bool:
         return translator.kept.encode() in block.split()
@@ -36,16 +40,42 @@ def respelled(
         made = [b.rstrip(b"\r\n") for block in blocks[first:stop] for b in block]
         raw = source.lines[line]
         text: str | None = raw
+        said = speller.said(made)
         stepped = absolute and translator.counts(raw) and not any(map(is_kept, made))
         if made != whole[first:stop] or stepped:
             text = translator.spelled(line, [each.decode("latin-1") for each in made])
+            text = translator.replaced(line, said) if text is None and said else text
         if text != raw and line >= translator.own:
             raise _refusal(source, line, "this line would change, and stands in another file")
         if text is None:
             raise _refusal(source, line, "what this line became cannot be said in its language")
         if new.setdefault(line, text) != text:
             raise _refusal(source, line, "this line becomes another each time it is executed")
-    return _joined(given, new)
+    several = any("\n" in text for text in new.values())
+    made_of = _joined(given, new)
+    if not several:
+        return made_of
+    return translator.renumbered(made_of.decode("latin-1")).encode("latin-1")
+
+
+class _Spelling:
+    """What the speller of a language says to the blocks of its programs, one after the other."""
+
+    def __init__(self, translator: Translator, blocks: list[bytes]) -> None:
+        kind = translator.speller
+        self.speller = None if kind is None else kind("", inch_first(blocks, False))
+
+    def said(self, blocks: list[bytes]) -> list[str]:
+        """Return lines for blocks; nothing where the language has no words for them."""
+        if self.speller is None:
+            return []
+        try:
+            return [
+                line for block in blocks for line in self.speller.lines(block.decode("latin-1"))
+            ]
+        except UnspeakableError:
+            self.speller.lose()
+            return []
 
 
 def _runs(source: Translated) -> Iterator[tuple[int, int, int]]:
@@ -60,10 +90,12 @@ def _joined(given: bytes, new: dict[int, str]) -> bytes:
     head = BYTE_ORDER_MARK if given.startswith(BYTE_ORDER_MARK) else b""
     body = given[len(head) :]
     found, at, line = [head], 0, 0
+    ends = LINE_END.search(body)
+    between = ends[0] if ends else b"\n"
     for end in (*LINE_END.finditer(body), None):
         stop, behind = (len(body), len(body)) if end is None else end.span()
         old = body[at:stop]
-        text = new.get(line, "").encode("latin-1")
+        text = new.get(line, "").encode("latin-1").replace(b"\n", between)
         found += [text if line in new and text.strip() != old.strip() else old, body[stop:behind]]
         at, line = behind, line + 1
     return b"".join(found)

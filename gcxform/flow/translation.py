@@ -27,6 +27,7 @@ from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.annexed import Annexed, lines_of
 from gcxform.flow.lookup import Folders, LookupFailedError
+from gcxform.flow.speller import Speller
 from gcxform.modal.state import Reading
 from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.grammar import parsed, refusal_of, rule_of, span_of
@@ -110,6 +111,8 @@ class Translator(ABC):
     """What programs in this language have, and those of other controls have not."""
     writes: ClassVar[bool] = False
     """Whether programs in this language can be written as such again: see `spelled`."""
+    speller: ClassVar[type[Speller] | None] = None
+    """What writes programs for another control in this language; None: they are only read."""
     kept: ClassVar[str] = ""
     """The code of blocks that stand for a line that is kept as it stands, whatever it does."""
 
@@ -163,6 +166,18 @@ class Translator(ABC):
         """
         del line, blocks
         return None
+
+    def replaced(self, line: int, said: Sequence[str]) -> str | None:
+        """Return lines for what a line became, joined by line feeds; None where there are none.
+
+        `said` are those of the speller, where nothing like the line can say it.
+        """
+        del line, said
+        return None
+
+    def renumbered(self, text: str) -> str:
+        """Return a program in which a line became several, with its numbers anew."""
+        return text
 
     def counts(self, line: str) -> bool:
         """Return whether a line has words that count from where an axis stands."""

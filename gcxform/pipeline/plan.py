@@ -154,8 +154,17 @@ class Plan:
 
     def _check_target(self) -> None:
         """Refuse to write, or to change the text of, programs that are only read."""
-        if (not self.copies or self.passes) and not self._writes_back():
+        if (not self.copies or self.passes) and not (self._writes_back() or self._spells_out()):
             check_written(self.target)
+
+    def _spells_out(self) -> bool:
+        """Whether a program of another control is written in the language of its target.
+
+        Stamps and what changes text are for programs of words.
+        """
+        plain = not self.text_passes and stamp_of(self.passes, self.context, self.words) is None
+        speller = getattr(self.target.translator, "speller", None)
+        return plain and speller is not None and self.source is not self.target
 
     def _writes_back(self) -> bool:
         """Whether a program in a language of its own is written in that language again.

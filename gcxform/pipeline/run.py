@@ -30,7 +30,7 @@ from gcxform.pipeline.said_in_moves import said_in_moves
 from gcxform.pipeline.structure import Structure
 from gcxform.pipeline.text_passes import TextRun
 from gcxform.pipeline.whole_cuts import whole_cuts, whole_sections
-from gcxform.pipeline.written_back import WrittenBack, structure_of
+from gcxform.pipeline.written_back import SpelledOut, WrittenBack, structure_of
 from gcxform.proof.findings import Findings
 from gcxform.proof.inventory import Books, Others
 from gcxform.proof.verify import Verifier
@@ -211,7 +211,7 @@ class Run:
             windows = ahead(reader, self._counted(texts, out))
             self._write_all(windows, proof, out, progress)
 
-    def _fold(self, structure: Structure | WrittenBack, out: Output) -> None:
+    def _fold(self, structure: Structure | WrittenBack | SpelledOut, out: Output) -> None:
         """Hand the program on with its calls and loops, or written out where that cannot be."""
         folded = structure.fold()
         if folded is None:

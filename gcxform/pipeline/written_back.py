@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from gcxform.emit.emitter import Emitted
 from gcxform.emit.folding import Folded
 from gcxform.emit.respelling import respelled
+from gcxform.emit.spelled_out import spelled_out
+from gcxform.flow.speller import Speller
 from gcxform.flow.translated import Translated
 from gcxform.modal.inventory import Account
 from gcxform.modal.state import Reading
@@ -15,7 +17,8 @@ from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.structure import Structure
 from gcxform.proof.findings import Findings
 from gcxform.proof.respelled import check_kept, check_respelled
-from gcxform.syntax.source import Source
+from gcxform.proof.spelled_out import check_spelled_out
+from gcxform.syntax.source import Source, lines_in
 from gcxform.toolpath.facts import ABSOLUTE
 
 
@@ -66,9 +69,51 @@ class WrittenBack:
             findings.output_line = self.source.line_of(of[findings.output_line - 1] + 1)
 
 
+@dataclass
+class SpelledOut:
+    """Gathers what is written for a control with a language of its own, and says it in that."""
+
+    plan: Plan
+    given: Source
+    source: Source
+    kind: type[Speller]
+    parts: list[Emitted] = field(default_factory=list)
+    why: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, plan: Plan, given: Source, source: Source) -> SpelledOut | None:
+        """Return what writes a program in another language; None where that is one of words."""
+        kind = getattr(plan.target.translator, "speller", None)
+        return None if kind is None or plan.copies else cls(plan, given, source, kind)
+
+    @property
+    def lines_read(self) -> int:
+        """How many lines the program has."""
+        return lines_in(b"".join(self.given.windows()))
+
+    def fold(self) -> Folded:
+        """Return the program. Raises InputError for a block that cannot be said."""
+        blocks = [line for part in self.parts for line in part.text.splitlines()]
+        lines = [line for part in self.parts for line in part.source.tolist()]
+        inch = self.plan.first_units == "in"
+        text, of = spelled_out(blocks, lines, self.kind, self.given.name, inch)
+        return Folded(text, tuple(self.source.line_of(line + 1) - 1 for line in of), (), ())
+
+    def prove(self, folded: Folded, reading: Reading, account: Account, findings: Findings) -> None:
+        """Check that a program is the one that has been proved. Raises VerificationError."""
+        del account
+        written = Source.of_bytes(folded.text, self.given.name)
+        blocks = b"".join(part.text for part in self.parts)
+        check_spelled_out(written, blocks, self.plan.target, replace(reading, crosses=True))
+        if findings.output_line:
+            of = [line for part in self.parts for line in part.source.tolist()]
+            line = self.source.line_of(of[findings.output_line - 1] + 1) - 1
+            findings.output_line = next((k + 1 for k, n in enumerate(folded.lines) if n == line), 1)
+
+
 def structure_of(
     plan: Plan, given: Source, source: Source, takes_stamps: bool
-) -> Structure | WrittenBack | None:
+) -> Structure | WrittenBack | SpelledOut | None:
     """Return what hands a program on as it was programmed; None where its blocks are written."""
-    back = WrittenBack.of(plan, given, source)
+    back = WrittenBack.of(plan, given, source) or SpelledOut.of(plan, given, source)
     return Structure.of(plan, given, source, takes_stamps) if back is None else back

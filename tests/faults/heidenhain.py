@@ -16,11 +16,49 @@ PARAMETERS = "plugins/gcxform_plugins/dialects/heidenhain/parameters.py"
 COMPUTES = "plugins/gcxform_plugins/dialects/heidenhain/arithmetic.py"
 BACK = "plugins/gcxform_plugins/dialects/heidenhain/programs.py"
 SPELLING = "plugins/gcxform_plugins/dialects/heidenhain/spelling.py"
+LINES = "plugins/gcxform_plugins/dialects/heidenhain/lines.py"
+SPELLED = "gcxform/proof/spelled_out.py"
+IDIOM = "tests/test_klartext_written.py::test_words_become_klartext_in_its_idiom_and_words_again"
 WRITTEN = "tests/test_klartext_written.py"
 READ = f"{TESTS}::test_it_is_read_as_by_a_reader_of_one_line_at_a_time"
 REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 
 MUTATIONS = (
+    Mutation(
+        "klartext: arcs are written the other way round",
+        LINES,
+        'sense = " DR+" if self.motion == "G3" else " DR-"',
+        'sense = " DR-" if self.motion == "G3" else " DR+"',
+        IDIOM,
+    ),
+    Mutation(
+        "klartext: CC is written from the start of an arc",
+        LINES,
+        'pole = {axis: self.place[axis] + by[axis] for axis in "XY"}',
+        'pole = {axis: by[axis] for axis in "XY"}',
+        IDIOM,
+    ),
+    Mutation(
+        "klartext: what is written for a TNC is not compared",
+        SPELLED,
+        'yield from _first(~_same(a.end, b.end, near[:, None]).all(axis=1), "an end")',
+        "pass",
+        f"{WRITTEN}::test_what_is_written_for_a_tnc_is_read_and_compared",
+    ),
+    Mutation(
+        "klartext: the length of another tool is said by TOOL CALL",
+        LINES,
+        'if "G43" in codes and _plain(values.pop("H", self.in_spindle)) != self.in_spindle:',
+        "if False:",
+        f"{WRITTEN}::test_what_klartext_has_no_words_for_is_refused",
+    ),
+    Mutation(
+        "klartext: a circle that became one line stays a circle",
+        SPELLING,
+        'if path[1].upper() in ("C", "CR", "CP") and not',
+        "if False and not",
+        f"{WRITTEN}::test_a_circle_becomes_lines_and_block_numbers_are_renewed",
+    ),
     Mutation(
         "klartext: ANG has the opposite side last",
         COMPUTES,

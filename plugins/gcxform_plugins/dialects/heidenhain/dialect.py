@@ -83,6 +83,7 @@ class Heidenhain(gx.Dialect):
         "G43": v.frame("tool-length", "length", "H"),
         "G52": v.frame("non-modal", "local", v.AXES),
         "G53": v.frame("non-modal", "machine"),
+        "G64": v.inert("path"),
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
         **v.ISO_M,

@@ -13,6 +13,7 @@ from copy import copy
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.klartext import Klartext
+from gcxform_plugins.dialects.heidenhain.lines import Lines
 from gcxform_plugins.dialects.heidenhain.spelling import STEPPED, code, spelled
 
 KEPT = "M9000"
@@ -31,6 +32,10 @@ FROM_HERE = re.compile(r"SECTION|DECLARE|FUNCTION\s+MODE", re.IGNORECASE)
 QUIET = re.compile(r"(?:TOOL\s+DEF|BLK|TCH|CYCLE?\s+DEF|PATTERN|PLANE|TRANS|RND|CHF)(?![A-Z])")
 """Statements that set no parameter but those they name, and no feed."""
 SCALES = re.compile(r"CYCLE?\s+DEF\s*(?:11|26)\.[1-9](?!\s*SCL\s*1(?:\.0*)?\s*$)|TRANS\s+SCALE")
+HEAD = re.compile(r"[ \t]*(?:[0-9]+[ \t]+)?")
+NUMBERED = re.compile(r"[ \t]*([0-9]+)[ \t]+BEGIN", re.IGNORECASE)
+NUMBER = re.compile(r"^([ \t]*)(?:[0-9]+[ \t]*)?")
+FREE = re.compile(r"^[ \t]*[0-9]+[ \t]+F[LC]T?(?![A-Z])", re.IGNORECASE | re.MULTILINE)
 STATE = (
     *("place", "lost", "pole", "polar", "moved", "motion", "feed", "tool_feed", "feed_lost"),
     *("following", "shortest", "side", "in_spindle", "over", "begun", "axis", "tool", "q", "at"),
@@ -42,6 +47,7 @@ class Programs(Klartext):
     """Executes a program, and keeps what it does not understand where that may stay."""
 
     writes = True
+    speller = Lines
     kept = KEPT
 
     def __init__(self, *program: object) -> None:
@@ -96,13 +102,14 @@ class Programs(Klartext):
         items = [item for item in items if item.kind not in ("seq", "structure")]
         if not items:
             return []
-        text = code(self.lines[self.line]).strip()
-        words = text.lstrip("/0123456789 \t").upper()
+        text = code(self.lines[self.line]).lstrip("/0123456789 \t").rstrip()
+        words = text.upper()
         self.kept_lines.append((self.line, why))
         if FROM_HERE.match(words):
             self._keep_rest(why)
         self._lose(items, words)
-        return [f"{KEPT} P{zlib.crc32(text.encode('latin-1')) & 0xFFFFF}"]
+        number = zlib.crc32(text.encode("latin-1")) & 0xFFFFF
+        return [f"{self.moving('G1')} {KEPT} P{number}".lstrip()]
 
     def _lose(self, items: Sequence[gx.Item], words: str) -> None:
         """Forget what a line may have changed."""
@@ -137,6 +144,30 @@ class Programs(Klartext):
     def spelled(self, line: int, blocks: Sequence[str]) -> str | None:
         """Return a line that stands for new blocks; None where only the machine decides on it."""
         return None if self.tied else spelled(self.lines[line], blocks, self.polar_at.get(line))
+
+    def replaced(self, line: int, said: Sequence[str]) -> str | None:
+        """Return the lines that stand for what a line became, with its head and its comment."""
+        if self.tied:
+            return None
+        text = self.lines[line]
+        head = HEAD.match(text)
+        first, *more = [bare for each in said if (bare := each.partition(";")[0].rstrip())]
+        comment = text[len(code(text)) :]
+        return "\n".join([f"{head[0] if head else ''}{first} {comment}".rstrip(), *more])
+
+    def renumbered(self, text: str) -> str:
+        """Return a program with its block numbers anew; those of free contours may name others."""
+        if FREE.search(text) or not NUMBERED.match(text.lstrip("\r\n")):
+            return text
+        count = iter(range(int(NUMBERED.match(text.lstrip("\r\n"))[1]), 10**9))  # type: ignore[index]
+        parts = re.split(r"(\r\n|\n|\r)", text)
+        continued = False
+        for k in range(0, len(parts), 2):
+            line = parts[k]
+            if line.strip() and not continued:
+                parts[k] = NUMBER.sub(lambda m: f"{m[1]}{next(count)} ", line, count=1)
+            continued = line.rstrip().endswith("~")
+        return "".join(parts)
 
     def counts(self, line: str) -> bool:
         """Whether a line has a word that counts from where its axis stands."""

@@ -1,0 +1,49 @@
+"""Writes blocks of words as a program in a language of its own, line after line.
+
+`gcxform/proof/spelled_out.py` reads what comes out of here.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import PurePath
+
+from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.flow.speller import Speller, UnspeakableError
+
+INCHES = re.compile(rb"(?<![A-Z0-9.])G[ \t]*0*20(?![0-9.])", re.IGNORECASE)
+MILLIMETRES = re.compile(rb"(?<![A-Z0-9.])G[ \t]*0*21(?![0-9.])", re.IGNORECASE)
+HINT = "let a pass write it in another way, or write for another dialect"
+
+
+def spelled_out(
+    blocks: Sequence[bytes], source: Sequence[int], kind: type[Speller], file: str, inch: bool
+) -> tuple[bytes, list[int]]:
+    """Return a program for blocks, and for each of its lines the line that it is for.
+
+    `source` are lines of the program, from 0, of which the blocks are. Raises InputError for a
+    block that cannot be said.
+    """
+    speller = kind(PurePath(file).stem, inch_first(blocks, inch))
+    lines, of = speller.opening(), [source[0] if source else 0]
+    of *= len(lines)
+    for block, line in zip(blocks, source, strict=True):
+        text = block.decode("latin-1").rstrip("\r\n")
+        try:
+            said = speller.lines(text)
+        except UnspeakableError as why:
+            where = Location(file, line + 1, 1, text, max(1, len(text)))
+            raise InputError((Diagnostic("GX501", str(why), where, HINT),)) from None
+        lines += said
+        of += [line] * len(said)
+    ends = speller.closing()
+    lines, of = speller.numbered([*lines, *ends]), [*of, *[of[-1] if of else 0] * len(ends)]
+    return "".join(f"{line}\n" for line in lines).encode("latin-1"), of
+
+
+def inch_first(blocks: Sequence[bytes], inch: bool) -> bool:
+    """Whether blocks begin in inches; `inch`: it is so where none says it."""
+    units = (block for block in blocks if INCHES.search(block) or MILLIMETRES.search(block))
+    first = next(units, None)
+    return inch if first is None else INCHES.search(first) is not None

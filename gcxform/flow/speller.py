@@ -1,0 +1,39 @@
+"""Languages of controls that are written: blocks of words become lines of the language."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+
+
+class UnspeakableError(Exception):
+    """A block for which a language has no words; the sentence says why."""
+
+
+class Speller(ABC):
+    """Says the blocks of one program in another language, one after the other.
+
+    Whatever comes out is read again by the grammar of the language, and has to be the same program.
+    """
+
+    def __init__(self, name: str, inch: bool) -> None:
+        self.name = name
+        self.inch = inch
+
+    @abstractmethod
+    def lines(self, block: str) -> list[str]:
+        """Return the lines that stand for a block. Raises UnspeakableError."""
+
+    def lose(self) -> None:  # noqa: B027
+        """Forget where the axes stand: something was executed that is not said here."""
+
+    def opening(self) -> list[str]:
+        """Return the lines before the first block."""
+        return []
+
+    def closing(self) -> list[str]:
+        """Return the lines behind the last block."""
+        return []
+
+    def numbered(self, lines: list[str]) -> list[str]:
+        """Return all lines with the numbers that they have in the language."""
+        return lines

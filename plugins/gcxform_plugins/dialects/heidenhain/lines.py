@@ -1,0 +1,258 @@
+"""Blocks of words as lines of Klartext: `L X+10 Y+5 R0 FMAX`, CC and C, TOOL CALL.
+
+One block after the other; what Klartext has no words for is refused by its name. What comes out is
+read again, and has to be the program that was written: so nothing here needs to be believed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from decimal import Decimal
+from math import atan2, degrees
+
+import gcxform as gx
+from gcxform_plugins.dialects.heidenhain.words import exact
+
+COMMENT = re.compile(r"\(([^()]*)\)")
+WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
+BLANKS = str.maketrans("", "", " \t")
+AXES = "XYZABCUVW"
+LINEAR = "XYZ"
+MODES = frozenset(("G80", "G90.1", "G91.1", "G94", "G64", "G61", "G97", "G54", "G98", "G99"))
+"""Codes that say what a TNC does anyway, as far as the reading of it shows."""
+LAST = 88  # M functions above are those of the control
+TIP = (128, 129)
+BEFORE = frozenset((3, 4, 7, 8))
+SIDES = {"G40": " R0", "G41": " RL", "G42": " RR"}
+TURN = 360.0
+LEAST = 1e-4  # degrees
+
+
+class Lines(gx.Speller):
+    """Writes blocks as lines of Klartext.
+
+    place   where the axes stand, in numbers of the program; an axis that is not here is lost
+    steps   G91 is in force;  said: the unit has been written;  tool: that of the last T word
+    """
+
+    def __init__(self, name: str, inch: bool) -> None:
+        super().__init__(re.sub(r"[^A-Z0-9_]", "", name.upper())[:16] or "A", inch)
+        self.unit = "INCH" if inch else "MM"
+        self.place: dict[str, Decimal] = {}
+        self.motion, self.plane = "G0", "G17"
+        self.steps = self.over = False
+        self.tool = self.in_spindle = self.speed = ""
+        self.side = " R0"
+
+    # --- programs ---
+
+    def opening(self) -> list[str]:
+        """Return the first line."""
+        return [f"BEGIN PGM {self.name} {self.unit}"]
+
+    def closing(self) -> list[str]:
+        """Return the last line."""
+        return [f"END PGM {self.name} {self.unit}"]
+
+    def numbered(self, lines: list[str]) -> list[str]:
+        """Return lines with their block numbers."""
+        return [f"{number} {line}" for number, line in enumerate(lines)]
+
+    def lose(self) -> None:
+        """Forget where the axes stand."""
+        self.place = {}
+
+    # --- blocks ---
+
+    def lines(self, block: str) -> list[str]:
+        """Return the lines for a block. Raises UnspeakableError."""
+        comments = [each.strip() for each in COMMENT.findall(block)]
+        bare = COMMENT.sub("", block).partition(";")[0]
+        words = WORD.findall(bare.translate(BLANKS).upper())
+        codes = [_code(*each) for each in words if each[0] in "GM"]
+        values = {letter: text for letter, text in words if letter not in "GMNO"}
+        found = [*self._said(codes, values)] if codes or values else []
+        if comments and found:
+            found[0] += " ; " + " ".join(comments)
+        elif comments:
+            found = [f"; {' '.join(comments)}"]
+        return found
+
+    def _said(self, codes: list[str], values: dict[str, str]) -> Iterator[str]:
+        if self.over:
+            raise gx.UnspeakableError("something stands behind the end of the program")
+        self._modes(codes)
+        functions = [c for c in codes if c[0] == "M" and c != "M6"]
+        if own := [c for c in functions if int(c[1:]) > LAST or int(c[1:]) in TIP]:
+            raise gx.UnspeakableError(f"{own[0]} has no words in Klartext")
+        ahead = [c for c in functions if int(c[1:]) in BEFORE]
+        if "G4" in codes:
+            yield "CYCL DEF 9.0 DWELL TIME"
+            yield f"CYCL DEF 9.1 DWELL {_plain(values.pop('P', '0'))}"
+        yield from self._tools(codes, values)
+        yield from (f"M{int(c[1:])}" for c in ahead)
+        yield from self._moves(codes, values)
+        for each in functions:
+            if each not in ahead:
+                yield from self._ends(each)
+
+    def _modes(self, codes: list[str]) -> None:
+        """Take codes that stay in force. Raises UnspeakableError for those of no TNC."""
+        for code in codes:
+            if code in ("G0", "G1", "G2", "G3"):
+                self.motion = code
+            elif code in ("G17", "G18", "G19"):
+                self.plane = code
+            elif code in ("G90", "G91"):
+                self.steps = code == "G91"
+            elif code in ("G20", "G21"):
+                if (code == "G20") != self.inch:
+                    raise gx.UnspeakableError("a TNC has one unit in a program")
+            elif code[0] == "G" and code not in MODES and code not in ACTS:
+                raise gx.UnspeakableError(f"{code} has no words in Klartext")
+
+    def _tools(self, codes: list[str], values: dict[str, str]) -> Iterator[str]:
+        """Yield TOOL CALL for T, M6 and S."""
+        self.tool = _plain(values.pop("T")) if "T" in values else self.tool
+        number, speed = "", f" S{_plain(values.pop('S'))}" if "S" in values else ""
+        if "M6" in codes:
+            number, self.in_spindle = f" {self.tool}", self.tool
+            for axis in LINEAR + "ABC":
+                self.place.pop(axis, None)
+        if "G43" in codes and _plain(values.pop("H", self.in_spindle)) != self.in_spindle:
+            raise gx.UnspeakableError("the length of another tool than the one in the spindle")
+        if number or speed:
+            yield f"TOOL CALL{number} Z{speed}"
+
+    def _ends(self, code: str) -> Iterator[str]:
+        if code in ("M2", "M30"):
+            self.over = True
+        if code == "M0":
+            yield "STOP"
+        elif code != "M2":
+            yield code
+
+    # --- moves ---
+
+    def _moves(self, codes: list[str], values: dict[str, str]) -> Iterator[str]:
+        side = self._side(codes, values)
+        feed = self._feed(values)
+        if feed and self.motion == "G0" and "G53" not in codes:
+            yield f"L{feed}"
+            feed = ""
+        ends = {axis: Decimal(values.pop(axis)) for axis in AXES if axis in values}
+        if "G52" in codes:
+            yield from self._shifted(ends)
+        elif "G53" in codes:
+            yield f"L{_words(ends)} R0{self._rapid(feed)} M91"
+            for axis in ends:
+                self.place.pop(axis, None)
+        elif self.motion in ("G2", "G3") and (ends or values):
+            yield from self._arc(ends, values, feed)
+        elif ends:
+            yield f"L{self._line(ends)}{side or self._idle(ends)}{self._rapid(feed)}"
+        elif feed or (side and side != self.side):
+            yield f"L{side}{feed}"
+        self.side = side or self.side
+        if left := [letter for letter in values if letter not in "DH"]:
+            raise gx.UnspeakableError(f"{left[0]} has no words in Klartext")
+
+    def _side(self, codes: list[str], values: dict[str, str]) -> str:
+        """Return R0, RL or RR where a block says it. Raises UnspeakableError."""
+        side = next((SIDES[code] for code in codes if code in SIDES), "")
+        radius = _plain(values.pop("D", self.in_spindle or "0")) if side else ""
+        if side not in ("", " R0") and radius != self.in_spindle:
+            raise gx.UnspeakableError("the radius of another tool than the one in the spindle")
+        return side
+
+    def _idle(self, ends: dict[str, Decimal]) -> str:
+        idle = self.motion == "G0" and self.side == " R0" and not ends.keys().isdisjoint("XY")
+        return " R0" if idle else ""
+
+    def _feed(self, values: dict[str, str]) -> str:
+        if "F" not in values:
+            return ""
+        number = Decimal(values.pop("F"))
+        return f" F{exact(number * 10 if self.inch else number)}"
+
+    def _rapid(self, feed: str) -> str:
+        """Return the feed of a line; F beside a rapid would be one of a cut."""
+        if self.motion != "G0":
+            return feed
+        if feed:
+            raise gx.UnspeakableError("F beside a move in the machine has no words in Klartext")
+        return " FMAX"
+
+    def _line(self, ends: dict[str, Decimal]) -> str:
+        words = _words(ends, "I" if self.steps else "")
+        self._stand(ends)
+        return words
+
+    def _stand(self, ends: dict[str, Decimal]) -> None:
+        for axis, value in ends.items():
+            if not self.steps:
+                self.place[axis] = value
+            elif axis in self.place:
+                self.place[axis] += value
+
+    def _arc(self, ends: dict[str, Decimal], values: dict[str, str], feed: str) -> Iterator[str]:
+        """Yield CC with C or CP, or CR for an arc by its radius. Raises UnspeakableError."""
+        sense = " DR+" if self.motion == "G3" else " DR-"
+        turns, radius = int(values.pop("P", "1")), values.pop("R", None)
+        if self.plane != "G17" or "K" in values or not {"X", "Y"} <= self.place.keys():
+            raise gx.UnspeakableError("an arc out of XY, or from where it is not known")
+        if radius is not None:
+            if set(ends) - {"X", "Y"} or turns > 1:
+                raise gx.UnspeakableError("a helix by its radius has no words in Klartext")
+            yield f"CR{self._line(ends)} R{_signed(Decimal(radius))}{sense}{feed}"
+            return
+        by = {axis: Decimal(values.pop(letter, "0")) for axis, letter in (("X", "I"), ("Y", "J"))}
+        pole = {axis: self.place[axis] + by[axis] for axis in "XY"}
+        yield f"CC{_words(pole)}"
+        if set(ends) <= {"X", "Y"} and turns == 1:
+            yield f"C{self._line(ends)}{sense}{feed}"
+            return
+        angle = self._angle(ends, pole, turns)
+        rest = {axis: value for axis, value in ends.items() if axis not in "XY"}
+        words = _words(rest, "I" if self.steps else "")
+        self._stand(ends)
+        yield f"CP IPA{_signed(angle)}{words}{sense}{feed}"
+
+    def _angle(self, ends: dict[str, Decimal], pole: dict[str, Decimal], turns: int) -> Decimal:
+        """Return the angle of a helix, with its sign."""
+        begin = self._polar_angle(self.place, pole)
+        added = {a: ends.get(a, Decimal(0)) + self.place[a] for a in "XY"}
+        target = added if self.steps else {**self.place, **ends}
+        turn = (self._polar_angle(target, pole) - begin) * (1 if self.motion == "G3" else -1) % TURN
+        turn = turn if LEAST < turn < TURN - LEAST else TURN
+        whole = Decimal(f"{turn + TURN * (turns - 1):.4f}")
+        return whole if self.motion == "G3" else -whole
+
+    def _polar_angle(self, place: dict[str, Decimal], pole: dict[str, Decimal]) -> float:
+        return degrees(atan2(place["Y"] - pole["Y"], place["X"] - pole["X"]))
+
+    def _shifted(self, ends: dict[str, Decimal]) -> Iterator[str]:
+        yield "CYCL DEF 7.0 DATUM SHIFT"
+        for number, (axis, value) in enumerate(ends.items(), 1):
+            yield f"CYCL DEF 7.{number} {axis}{_signed(value)}"
+            self.place.pop(axis, None)
+
+
+ACTS = frozenset(("G4", "G43", "G49", "G52", "G53", *SIDES))
+
+
+def _code(letter: str, text: str) -> str:
+    return f"{letter}{_plain(text)}"
+
+
+def _plain(text: str) -> str:
+    return exact(Decimal(text))
+
+
+def _signed(value: Decimal) -> str:
+    return f"{'+' if value >= 0 else '-'}{exact(abs(value))}"
+
+
+def _words(ends: dict[str, Decimal], step: str = "") -> str:
+    return "".join(f" {step}{axis}{_signed(value)}" for axis, value in ends.items())
