@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from gcxform.dialect.dialect import EXTRUDER, LINEAR, Dialect
-from gcxform.flow.translation import foreign_lines, has_signs
+from gcxform.flow.signs import foreign_lines, has_signs
 from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.reader import WindowReader
 from gcxform.plugin.registry import default_registry

@@ -18,6 +18,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, ClassVar, NamedTuple, NoReturn
 
 from lark import Lark, Token, Tree
@@ -25,7 +26,7 @@ from lark.exceptions import UnexpectedInput
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
-from gcxform.flow.annexed import Annexed, lines_of
+from gcxform.flow.annexed import Annexed
 from gcxform.flow.lookup import Folders, LookupFailedError
 from gcxform.flow.speller import Speller
 from gcxform.modal.state import Reading
@@ -136,7 +137,7 @@ class Translator(ABC):
         """Those that were found to be executed `again` when the program was read before."""
         self.plainly = True
         """Whether plain lines are translated as such, and not by `blocks`."""
-        self._lark: Lark = kept.grammar(*self.grammar)
+        self._lark = _grammar(*self.grammar)
         self._split = re.compile(f"({self.number.pattern})", self.number.flags).split
         self._shapes: dict[str, _Shape] = {}
         self._items: tuple[Item, ...] = ()
@@ -231,7 +232,7 @@ class Translator(ABC):
 
     def grammar_named(self, package: str, name: str) -> Lark:
         """Return another grammar of the language, as `grammar` names one."""
-        return kept.grammar(package, name)
+        return _grammar(package, name)
 
     def _parsed(self, line: int, text: str | None = None) -> tuple[list[str], tuple[_Part, ...]]:
         """Return the numbers of a line, and its parts; or of another text for it."""
@@ -350,33 +351,18 @@ class Translator(ABC):
         return InputError((Diagnostic(code, message, where, hint),))
 
 
+@cache
+def _grammar(package: str, name: str) -> Lark:
+    """Return a grammar, which is loaded once: that takes longer than a short program does."""
+    return kept.grammar(package, name)
+
+
 def translator_of(dialect: type[Dialect]) -> type[Translator]:
     """Return what reads the language of a dialect that has one of its own."""
     kind = dialect.translator
     assert kind is not None
     assert issubclass(kind, Translator), f"{kind.__name__} is no Translator"
     return kind
-
-
-def has_signs(text: bytes, dialect: type[Dialect]) -> bool:
-    """Whether a text may be a program of a dialect: always, where that is one of words."""
-    return dialect.translator is None or dialect.translator.signs.search(text) is not None
-
-
-def foreign_lines(text: bytes, dialect: type[Dialect]) -> tuple[int, int]:
-    """Return how many lines a text has, empty ones left out, and how many the grammar refuses."""
-    kind = translator_of(dialect)
-    lines = [line for line in lines_of(text) if line.strip()]
-    reader = kind(lines, "", dialect, Reading())
-    return len(lines), sum(not _accepted(reader, line) for line in range(len(lines)))
-
-
-def _accepted(reader: Translator, line: int) -> bool:
-    try:
-        reader.items(line)
-    except InputError:
-        return False
-    return True
 
 
 def _comment(text: str) -> str:

@@ -25,6 +25,13 @@ REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 
 MUTATIONS = (
     Mutation(
+        "klartext: powers bind to the left",
+        "grammars/gcxform_grammars/heidenhain_computed.lark",
+        "?power: applied | applied POWER power",
+        "?power: applied | power POWER applied",
+        "tests/test_klartext_computed.py::test_it_is_computed_as_by_a_reader_of_one_line_at_a_time",
+    ),
+    Mutation(
         "klartext: arcs are written the other way round",
         LINES,
         'sense = " DR+" if self.motion == "G3" else " DR-"',
