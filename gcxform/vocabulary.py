@@ -43,10 +43,11 @@ from gcxform.dialect.cycle_rule import (
     tap,
 )
 from gcxform.dialect.logic import with_logic
-from gcxform.machine.formats import control_lines
+from gcxform.machine.formats import ProgramSettings, control_lines
 from gcxform.machine.machine import Axis, Machine, Tool
 from gcxform.modal.expressions.value import Evaluator, LocatedError
 from gcxform.system.arrays import Bytes, Flags, Floats, Ints, Small
+from gcxform.system.inputs import referred
 
 __all__ = [
     "AXES",
@@ -88,6 +89,7 @@ __all__ = [
     "Machine",
     "NoValueError",
     "Operator",
+    "ProgramSettings",
     "Small",
     "Step",
     "Tool",
@@ -101,6 +103,7 @@ __all__ = [
     "inert",
     "measures",
     "rapid",
+    "referred",
     "tap",
     "with_logic",
 ]

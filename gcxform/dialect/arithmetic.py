@@ -88,6 +88,10 @@ class Arithmetic:
             return any(key in numbers for numbers in self.own)
         return self.named and key.split("[")[0] not in self.system
 
+    def may_be_given(self, key: Key) -> bool:
+        """Return whether a value of a parameter may be told that the program does not set."""
+        return self.owns(key) or (isinstance(key, str) and key.startswith(self.machine.given))
+
     def sets(self, key: Key) -> bool:
         """Return whether a program may set a parameter, and what changes by it is followed."""
         return self.owns(key) or among(key, self.machine.outputs) or self.writes_table(key)
@@ -290,6 +294,7 @@ RS274 = Arithmetic(
         signals=(range(5070, 5071), range(5399, 5401), range(5599, 5600)),
         names=SIGNAL_NAMES,
         measured=(range(5061, 5070), range(5161, 5400), range(5401, 5411)),
+        given=("_ini[", "_hal["),
         hidden=frozenset({"_line", "_call_level", "_remap_level"}),
         highest=5601,
     ),

@@ -18,6 +18,7 @@ class MachineParameters:
     signals    those that mean the same in any unit, mode and place: inputs, clocks, counters
     names      names of such
     measured   those that do in any mode and place, in one unit: offsets, results of probes
+    given      how the names begin of those that do not change, or of which a user may say so
     hidden     names that have another value where calls and loops are written out
     highest    the highest number; a higher one is an error
     null       the parameter without a value (`gcxform/dialect/null.py`); None: there is none
@@ -32,6 +33,7 @@ class MachineParameters:
     signals: tuple[range, ...] = ()
     names: frozenset[str] = frozenset()
     measured: tuple[range, ...] = ()
+    given: tuple[str, ...] = ()
     hidden: frozenset[str] = frozenset()
     highest: int = 2**31
     null: int | None = None

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import re
 from abc import abstractmethod
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -20,15 +21,16 @@ from lark import Token
 
 from gcxform.dialect.arithmetic import Key
 from gcxform.flow.execution import Execution
-from gcxform.flow.run_state import UNKNOWN, Again, differs
-from gcxform.flow.skipped_stretches import Effect, Join, effect_of, is_still, other_modes
+from gcxform.flow.forks import HINT, Arrival, Forks
+from gcxform.flow.residual import Edit
+from gcxform.flow.run_state import UNKNOWN
+from gcxform.flow.settled import Again
+from gcxform.flow.skipped_stretches import is_still
 from gcxform.modal.expressions.value import Evaluator, settable
 from gcxform.modal.meaning.printed import prints_values
 from gcxform.syntax.tree import Block, Comment, Expression, Statement, Word
-from gcxform.syntax.undecided import Undecided
 
 SEQUENCE = re.compile(rb"(?:\([^()]*\))*(?:/[1-9]?)?(?:\([^()]*\))*[Nn]([0-9]+)")
-HINT = "set what it reads with parameters in [input], or use passes that keep positions"
 
 
 class Jumping(Execution):
@@ -47,38 +49,18 @@ class Jumping(Execution):
         """Refuse a jump to a line inside a loop that is not running."""
 
 
-@dataclass(frozen=True, slots=True)
-class Arrival:
-    """A jump that may be made: what is known there, and the executed line that it stands in."""
-
-    parameters: dict[Key, float]
-    line: int
-    depth: int
-
-
-class Branches:
+class Branches(Forks):
     """Those of one run. `open` are the lines that jumps may lead to, with what is known there.
 
     `over`: the run is behind a jump that is always made, so that nothing is executed here.
     """
 
-    def __init__(self, run: Jumping) -> None:
-        self.run = run
-        self.open: dict[int, list[Arrival]] = {}
-        self.over = False
-        self.lines: set[int] = set()
-        self.labels: dict[int, int] = {}
-        self.lost: dict[int, str] = {}
-        self.forgets: dict[int, frozenset[Key]] = {}
-        self.perhaps: set[int] = set()
-        self.tail: set[int] = set()
-        self.joins: list[Join] = []
+    run: Jumping
 
-    @property
-    def undecided(self) -> Undecided:
-        """What of the executed blocks only the machine decides."""
-        lines, labels, perhaps = (frozenset(n) for n in (self.lines, self.labels, self.perhaps))
-        return Undecided(lines, labels, self.lost, self.forgets, perhaps)
+    def __init__(self, run: Jumping) -> None:
+        super().__init__(run)
+        self.open: dict[int, list[Arrival]] = {}
+        self.tail: set[int] = set()
 
     # --- the walk ---
 
@@ -142,8 +124,7 @@ class Branches:
     def jump(self, block: Block, statement: Statement, line: int, always: bool = False) -> None:
         """Keep a jump to a line ahead."""
         self.keep(block, statement)
-        arrival = Arrival(dict(self.run.parameters), self.run.blocks - 1, len(self.run.calls))
-        self.open.setdefault(line, []).append(arrival)
+        self.open.setdefault(line, []).append(self.here())
         self.over = always
         self.run.changes += 1
 
@@ -164,56 +145,20 @@ class Branches:
         run.lasting.account(key, UNKNOWN, block.text[statement.start : statement.end])
         run.set(run.arithmetic.behind(key, UNKNOWN))
 
-    def keep(self, block: Block, statement: Statement) -> None:
-        """Write a block with a flow word as it stands, but for what is known."""
-        run = self.run
-        run.acted = True
-        evaluator = Evaluator(run.conditions, run.parameters)
-        text = run.remains(statement, evaluator)
-        self.lines.add(run.blocks)
-        self._write(block, [(statement, text)])
-
-    def _write(self, block: Block, pieces: list[tuple[Statement | Expression, str]]) -> None:
-        text = block.text
-        for item, new in sorted(pieces, key=lambda piece: -piece[0].start):
-            text = text[: item.start] + new + text[item.end :]
-        if text == block.text:
-            self.run.copy_line()
-        else:
-            self.run.write_line(text.rstrip())
-
     def _join(self, line: int) -> None:
-        run, arrivals = self.run, self.open.pop(line)
-        if any(each.depth != len(run.calls) for each in arrivals):
-            raise run.refusal("GX220", "a jump that only the machine decides leads here", HINT)
-        states = [each.parameters for each in arrivals] + [run.parameters] * (not self.over)
-        keys = {key for state in states for key in state}
-        first = states[0]
-        lost = {k for k in keys if any(_differ(first.get(k), s.get(k)) for s in states)}
-        run.parameters = {**first, **dict.fromkeys(lost, UNKNOWN)}
-        self.over = False
-        run.lasting.outputs.stands.clear()
-        run.changes += 1
-        here, since = run.blocks, min(each.line for each in arrivals)
+        here = self.run.blocks
         self.labels[here] = line
-        if self._only_ends(line):
-            return  # who comes here ends here: nothing hangs on what was jumped over
-        self.forgets[here] = frozenset(lost)
-        self.joins.append(Join(tuple(each.line for each in arrivals), here, line))
-        found = self._effect(since, here)
-        if found.letters:
-            self.lost[here] = found.letters
-        self.perhaps.update(range(since + 1, here) if found.moves else ())
+        self.meet(self.open.pop(line), line)
+
+    def carry(self, arrivals: Sequence[Arrival], line: int, stale: frozenset[Key]) -> None:
+        """Note what is not known where ways meet: nothing hangs on it if the program ends there."""
+        if not self._only_ends(line):
+            super().carry(arrivals, line, stale)
 
     def _only_ends(self, line: int) -> bool:
         """Whether a line ends the program, or stops it with an alarm, and moves nothing."""
         meaning, block = self.run.listing.meaning(line), self.run.listing.block(line)
         return self.run.is_over(block) and not (meaning.axes or meaning.acts)
-
-    def _effect(self, since: int, here: int) -> Effect:
-        """Return what executed lines change that may be jumped over."""
-        run = self.run
-        return effect_of(run, np.concatenate(run.origin)[since + 1 : here])
 
     # --- loops ---
 
@@ -250,21 +195,22 @@ class Branches:
         if not flow and not is_still(run.listing.meaning(run.line), block):
             message = "this may be repeated: only the machine knows how often"
             raise run.refusal("GX220", message, HINT)
-        pieces: list[tuple[Statement | Expression, str]] = []
+        pieces: list[Edit] = []
         known = Evaluator(run.conditions, run.parameters)
         for item in block.items:
             if isinstance(item, Statement):
-                pieces.append((item, run.remains(item, known)))
-                linear = self._account(item, linear, pieces[-1][1])
+                pieces.append((item.start, item.end, run.remains(item, known)))
+                linear = self._account(item, linear, pieces[-1][2])
             elif isinstance(item, Word) and isinstance(item.value, Expression):
-                pieces.append((item.value, run.remains(item.value, known)))
+                value = item.value
+                pieces.append((value.start, value.end, run.remains(value, known)))
             elif isinstance(item, Comment) and prints_values(block.text[item.start : item.end]):
                 raise run.refusal("GX220", "this message may be repeated", HINT)
         if flow:
             self.lines.add(run.blocks)
         elif self._label_of(run.line) is not None:
             self.labels.setdefault(run.blocks, run.line)
-        self._write(block, pieces)
+        self.write(block, pieces)
         for item in flow:
             self._leads(item, first, last)
         return linear
@@ -290,22 +236,16 @@ class Branches:
         if to < first:
             loops = run.settled.loops | {(to, last)}
             raise Again(replace(run.settled, loops=loops))
-        arrival = Arrival(dict(run.parameters), run.blocks - 1, len(run.calls))
-        self.open.setdefault(to, []).append(arrival)
+        self.open.setdefault(to, []).append(self.here())
 
     # --- behind the end ---
 
     def close(self) -> None:
         """Write what jumps lead to behind the end of the program, and check all of it."""
-        run = self.run
         for line in sorted(self.open):
             self._behind(line)
         self._check_labels()
-        origin = np.concatenate([np.empty(0, np.int64), *run.origin])
-        if (other := other_modes(run, origin, self.joins)) is not None:
-            run.line, code = other
-            message = f"only the machine knows whether {code} is in force here"
-            raise run.refusal("GX220", message, f"program it behind the branch, or {HINT}")
+        self.refuse_modes()
 
     def _behind(self, line: int) -> None:
         """Write lines behind the end, to which a jump leads."""
@@ -364,10 +304,6 @@ class Branches:
         blocks = [(self.run.listing.meaning(n), self.run.listing.block(n)) for n in lines]
         flows = [any(isinstance(i, Statement) for i in block.items) for _, block in blocks]
         return all(f or is_still(*each) for f, each in zip(flows, blocks, strict=True))
-
-
-def _differ(one: float | None, other: float | None) -> bool:
-    return other is None if one is None else other is None or differs(one, other)
 
 
 def number_of(text: bytes) -> int | None:

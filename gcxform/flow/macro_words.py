@@ -14,7 +14,7 @@ from gcxform.flow.listing import Listing
 from gcxform.flow.relations import COMPARES, relations
 from gcxform.flow.round_body import Repeated
 from gcxform.flow.rounds import Rounds
-from gcxform.modal.expressions.value import Evaluator, LocatedError, key_set
+from gcxform.modal.expressions.value import key_set
 from gcxform.modal.state import Reading
 from gcxform.syntax.grammar import span_of
 from gcxform.syntax.tree import BLANKS, Block, Comment, Statement
@@ -153,14 +153,8 @@ class MacroWords(Jumping):
 
     def _holds(self, statement: Statement) -> bool | None:
         """Return whether a condition holds; None if only the machine knows it."""
-        try:
-            condition = statement.tree.children[CONDITION]
-            found = Evaluator(self.conditions, self.parameters).value(condition)
-        except LocatedError as why:
-            if why.lost:
-                return None
-            raise self.refusal(why.code, why.message, why.hint, (why.start, why.end)) from None
-        return found != 0
+        found = self.value_or_lost(statement.tree.children[CONDITION])
+        return None if found is None else found != 0
 
     def _if_goto(self, statement: Statement) -> None:
         holds = self._holds(statement)

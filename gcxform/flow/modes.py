@@ -16,6 +16,8 @@ from dataclasses import dataclass
 from gcxform.flow.run_state import RunState
 from gcxform.syntax.tree import Block, Number
 
+STORING = re.compile(rb"[Mm][ \t0]*7[ \t]*[0-3]|#[ \t]*<[ \t]*_rpm", re.IGNORECASE)
+"""What all lines have that store modes or read the speed."""
 UNITS, FEED, SPEED, SPINDLE, MIST, FLOOD = "units", "F", "S", "spindle", "M7", "M8"
 DECIMALS = {FEED: 1, SPEED: 0}
 """With how many decimals the control writes what it restores."""
@@ -91,6 +93,30 @@ class StoredModes:
         else:
             self._restore(stored)
         return True
+
+    # --- what only the machine knows ---
+
+    def touched_by(self, text: bytes) -> frozenset[str]:
+        """Return of which groups codes stand in a text; nothing where no modes come back."""
+        if STORING.search(self.program.listing.window.text) is None:
+            return frozenset()
+        self._in_force()
+        mine, self.now = self.now, dict.fromkeys(self.now, "")
+        for line in re.split(r"[\r\n]+", text.decode("latin-1")):
+            if line.strip():
+                self._look(self.program.dialect.load_grammar().parse(line))
+        found = frozenset(group for group, code in self.now.items() if code)
+        if any(code in text.upper() for code in (b"M9", b"M09")):
+            found |= {MIST, FLOOD}
+        self.now = mine
+        return found
+
+    def open_up(self, groups: frozenset[str]) -> None:
+        """Take codes of groups for not known any more."""
+        for group in sorted(groups):
+            self._in_force()
+            self.open += 1
+            self.now[group] = f"{OPEN}{self.open}"
 
     # --- what is in force ---
 

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from typing import Any
 
 from gcxform.flow.constructs import Construct, OWord
-from gcxform.flow.execution import Execution
+from gcxform.flow.kept_owords import KeptOWords, Structured
 from gcxform.flow.listing import Listing
 from gcxform.flow.round_body import Repeated
 from gcxform.flow.rounds import MOST, Rounds
 from gcxform.modal.state import Reading
 
 
-class OWordLoops(Execution):
-    """A run of loops.
-
-    counters  the rounds that are left of each `repeat` loop that runs, by its first line
-    left      those that a jump has left
-    """
+class OWordLoops(Structured):
+    """A run of loops."""
 
     def __init__(self, listing: Listing, reading: Reading, keeps: bool = False) -> None:
         super().__init__(listing, reading, keeps)
@@ -26,35 +21,50 @@ class OWordLoops(Execution):
         self.counters: dict[int, int] = {}
         self.left: set[int] = set()
         self.many = Rounds(self)
+        self.kept_words = KeptOWords(self)
 
-    @property
-    @abstractmethod
-    def words(self) -> dict[int, OWord]:
-        """The O-word of each line that has one."""
+    def quirks(self) -> frozenset[int | str]:
+        """Return what the control notes of loops that were left, and counts wrong by."""
+        noted = {"broken": self.broken, "continued": self.continued}
+        return frozenset(self.left) | {name for name, is_so in noted.items() if is_so}
 
-    @property
-    @abstractmethod
-    def construct(self) -> dict[int, Construct]:
-        """What each of these lines belongs to."""
+    def take_quirks(self, noted: frozenset[int | str]) -> None:
+        """Take for noted what may have been."""
+        self.broken |= "broken" in noted
+        self.continued |= "continued" in noted
+        self.left |= {each for each in noted if isinstance(each, int)}
 
-    def truth(self, word: OWord) -> bool:
-        """Whether a condition holds. Raises InputError."""
+    def truth(self, word: OWord) -> bool | None:
+        """Return whether a condition holds; None if only the machine knows. Raises InputError."""
         if len(word.values) != 1:
             raise self.refusal("GX221", f"{word.keyword} takes one condition in brackets")
-        return self.value(word.values[0]) != 0
+        value = self.value_or_lost(word.values[0])
+        return None if value is None else value != 0
 
     def _while(self, word: OWord) -> None:
         construct = self.construct[self.line]
-        again = self.truth(word)
         if construct.kind == "do":
             self._refuse_after_break()
-            if again:
-                self.back_to(construct.lines[0] + 1)
-                self._many(construct, word.values[0])
+            self._while_of_do(construct, word)
             return
         self.broken |= self._has(construct, "break")
-        if not again:
+        again = None if self.kept_words.is_kept() else self.truth(word)
+        if again is None:
+            self.kept_words.open_loop(construct)
+        elif not again:
             self.at = construct.last + 1
+
+    def _while_of_do(self, construct: Construct, word: OWord) -> None:
+        """Go back to `do`, or on; a loop that turns out to be the machine's is run anew."""
+        if self.kept_words.has(construct):
+            self.kept_words.close_loop()
+            return
+        again = self.truth(word)
+        if again is None:
+            self.kept_words.run_again(construct)
+        elif again:
+            self.back_to(construct.lines[0] + 1)
+            self._many(construct, word.values[0])
 
     def _has(self, construct: Construct, keyword: str) -> bool:
         """Whether a keyword stands in a construct behind the line that is executed."""
@@ -81,13 +91,18 @@ class OWordLoops(Execution):
 
     def _endwhile(self, word: OWord) -> None:
         construct = self.construct[self.line]
+        if self.kept_words.has(construct):
+            self.kept_words.close_loop()
+            return
         self.back_to(construct.lines[0])
         opening = self.words[construct.lines[0]]
         if len(opening.values) == 1:
             self._many(construct, opening.values[0])
 
     def _do(self, word: OWord) -> None:
-        """Go on."""
+        """Go on; keep a loop that the machine ends."""
+        if self.kept_words.is_kept():
+            self.kept_words.open_loop(self.construct[self.line])
 
     def _repeat(self, word: OWord) -> None:
         self._refuse_after_continue()
@@ -96,13 +111,20 @@ class OWordLoops(Execution):
         if self.line in self.left:
             message = "this loop was left by a jump before: the control goes on counting from there"
             raise self.refusal("GX223", message, "leave it at its end")
-        times = round(self.value(word.values[0]))
+        count = None if self.kept_words.is_kept() else self.value_or_lost(word.values[0])
+        if count is None:
+            self.kept_words.open_loop(self.construct[self.line])
+            return
+        times = round(count)
         self.counters[self.line] = times
         if times <= 0:
             self._leave(self.construct[self.line])
 
     def _endrepeat(self, word: OWord) -> None:
         self._refuse_after_continue()
+        if self.kept_words.has(self.construct[self.line]):
+            self.kept_words.close_loop()
+            return
         first = self.construct[self.line].lines[0]
         self.counters[first] -= 1
         if self.counters[first] > 0:
@@ -124,8 +146,9 @@ class OWordLoops(Execution):
         self._refuse_after_continue("may go on with this loop")
         construct = self.construct[self.line]
         self.continued |= construct.kind == "do" and self._has(construct, "continue")
-        self._note_left(construct)
-        self._leave(construct)
+        if not self.kept_words.leave(construct, "break"):
+            self._note_left(construct)
+            self._leave(construct)
 
     def _note_left(self, construct: Construct) -> None:
         """Note the `repeat` loops inside a construct that a jump leaves."""
@@ -138,8 +161,9 @@ class OWordLoops(Execution):
         construct = self.construct[self.line]
         self.continued |= construct.kind == "do"
         self.broken |= self._has(construct, "break")
-        self._note_left(construct)
-        self.at = construct.last
+        if not self.kept_words.leave(construct, "continue"):
+            self._note_left(construct)
+            self.at = construct.last
 
     def _leave(self, construct: Construct) -> None:
         self.counters.pop(construct.lines[0], None)

@@ -25,7 +25,9 @@ from gcxform.flow.run_state import Call, whole_number
 from gcxform.modal.state import Reading
 from gcxform.syntax.grammar import span_of
 from gcxform.syntax.tree import Block, Statement, Word
+from gcxform.syntax.undecided import Undecided
 
+STORING = frozenset({70, 71, 72, 73})
 LEAVES = frozenset({"break", "continue"})
 POSITIONS = range(FIRST, FIRST + 9)
 NAMES_POSITION = re.compile(
@@ -51,15 +53,25 @@ class OWords(OWordLoops):
         """Find which lines belong together."""
         self.subprograms.arrange()
 
-    @property
-    def words(self) -> dict[int, OWord]:
-        """The O-word of each line that has one."""
-        return self.subprograms.arranged.words
+    def begins(self) -> bool:
+        """Go on where a way comes in, behind what only the machine comes to."""
+        self.kept_words.begins()
+        return self.ended
 
-    @property
-    def construct(self) -> dict[int, Construct]:
-        """What each of these lines belongs to."""
-        return self.subprograms.arranged.construct
+    def stop(self, block: Block) -> None:
+        """End the program, or note that it ends here if the machine comes here."""
+        if self.kept_words.inside and self._ends(block):
+            self.kept_words.ends_here()
+        else:
+            super().stop(block)
+
+    def close_branches(self) -> None:
+        """Check what only the machine decides."""
+        self.kept_words.close()
+
+    def undecided(self) -> Undecided:
+        """Return what of the executed lines only the machine decides."""
+        return self.kept_words.undecided
 
     # --- what lines do ---
 
@@ -108,6 +120,8 @@ class OWords(OWordLoops):
         if codes & {98, 99}:
             self._call_by_number(block, items, 98 in codes)
             return True
+        if codes & STORING and self.kept_words.returns():
+            self.kept_words.refuse("modes are stored or restored")
         if self.modes.act(block, codes):
             self.tied = "modes are stored (M70 to M73)"
             return True
@@ -240,15 +254,28 @@ class OWords(OWordLoops):
         if not self.calls or not self.calls[-1].name.startswith("O"):
             message = "no subprogram that was called by name is running here"
             raise self.refusal("GX223", message)
+        if self.kept_words.returns():
+            self.kept_words.refuse("a subprogram returns")
         value = self.value(word.values[0]) if word.values else None
-        call = self.calls.pop()
         self.modes.leave()
-        self.parameters = {k: v for k, v in self.parameters.items() if not is_local(k)}
+        self.at = self._left_call().back
+        self.returned(value)
+
+    def _left_call(self) -> Call:
+        """Leave the call that runs: its caller has its parameters again."""
+        call = self.calls.pop()
+        own = is_local if call.name.startswith("O") else is_named_local
+        self.parameters = {k: v for k, v in self.parameters.items() if not own(k)}
         self.parameters.update(call.locals)
         self.left |= set(self.counters)
         self.counters = call.counters
-        self.returned(value)
-        self.at = call.back
+        return call
+
+    def unwind(self, depth: int) -> None:
+        """Leave the calls in which the program may have ended, down to so many."""
+        while len(self.calls) > depth:
+            self.at = self._left_call().back
+            self.modes.levels.pop()
 
     def returned(self, value: float | None = None) -> None:
         """Set what the program can read about the last return."""
@@ -290,20 +317,18 @@ class OWords(OWordLoops):
 
     def _repeat_or_return(self) -> None:
         call = self.calls[-1]
+        if self.kept_words.returns():
+            self.kept_words.refuse("a subprogram returns")
         call.times -= 1
         self.modes.leave()
         self.returned()
-        self.left |= set(self.counters)
         if call.times:
+            self.left |= set(self.counters)
             self.modes.enter()
             self.counters = {}
             self.at = call.first
             return
-        self.calls.pop()
-        self.parameters = {k: v for k, v in self.parameters.items() if not is_named_local(k)}
-        self.parameters.update(call.locals)
-        self.counters = call.counters
-        self.at = call.back
+        self.at = self._left_call().back
 
     # --- branches ---
 
@@ -312,18 +337,26 @@ class OWords(OWordLoops):
         for line in construct.lines:
             self.line = line
             other = self.words[line]
-            if other.keyword in ("else", "endif") or self.truth(other):
+            holds = True if other.keyword in ("else", "endif") else self.truth(other)
+            if holds is None:
+                self.kept_words.open_if(construct)
+            if holds is not False:
                 self.at = line + 1
                 return
 
     def _elseif(self, word: OWord) -> None:
-        """Reached from the branch before, which was taken."""
-        self.at = self.construct[self.line].last + 1
+        """Reached from the branch before, which was taken, or may have been."""
+        if self.kept_words.has(self.construct[self.line]):
+            self.kept_words.clause()
+        else:
+            self.at = self.construct[self.line].last + 1
 
     _else = _elseif
 
     def _endif(self, word: OWord) -> None:
         """Go on."""
+        if self.kept_words.has(self.construct[self.line]):
+            self.kept_words.end_if()
 
 
 def _returns(block: Block) -> bool:

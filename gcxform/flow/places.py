@@ -12,8 +12,8 @@ import numpy as np
 
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import INCH, LINEAR
+from gcxform.flow.execution import Execution
 from gcxform.flow.residual import Edit
-from gcxform.flow.run_state import RunState
 from gcxform.flow.text import decimal
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.meaning.tables import NUMBER
@@ -32,7 +32,7 @@ AXES_OF_PLANE = frozenset("XY")
 class Places:
     """Reads the executed blocks as they come."""
 
-    def __init__(self, program: RunState) -> None:
+    def __init__(self, program: Execution) -> None:
         self.program = program
         self.reader = WindowReader(program.dialect)
         self.interpreter = Interpreter(program.dialect, program.reading, file=program.listing.file)
@@ -40,6 +40,7 @@ class Places:
 
     def now(self) -> State:
         """Return the state after the executed blocks. Raises InputError."""
+        self.interpreter.undecided = self.program.undecided()
         text = b"".join(self.program.text[self.seen :])
         self.seen = len(self.program.text)
         if text:
@@ -85,7 +86,7 @@ class Places:
             "_absolute": not incremental,
             **{name: state.groups["feed-mode"] == NUMBER[code] for name, code in FEEDS.items()},
         }
-        open_ = math.nan if state.lost_modes else 1.0
+        open_ = math.nan if state.lost_modes or self.interpreter.undecided else 1.0
         timed = state.groups["feed-mode"] == NUMBER["G93"]  # F is what it comes to in G94 there
         feed = math.nan if state.feed_lost or timed else state.feed
         return {name: on * open_ for name, on in modes.items()} | {"_feed": feed}

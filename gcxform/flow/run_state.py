@@ -20,7 +20,8 @@ from gcxform.dialect.arithmetic import Arithmetic, Key, NoValueError, whole
 from gcxform.dialect.increments import coarse
 from gcxform.dialect.null import NULL, Null
 from gcxform.flow.listing import CODES_OF_CALLS, STORED_MODES, Listing
-from gcxform.flow.residual import edited, residual
+from gcxform.flow.residual import Edit, edited, residual
+from gcxform.flow.settled import Again, Settled
 from gcxform.flow.text import DECIMALS, decimal
 from gcxform.flow.walk import Steps
 from gcxform.modal.expressions.compiled import NO_VALUE, Compiled, Compiler
@@ -29,8 +30,8 @@ from gcxform.modal.expressions.value import (
     DOUBTFUL,
     Evaluator,
     LocatedError,
+    given_to,
     has_computed,
-    parameter_key,
     parameters_in,
     settable,
 )
@@ -64,26 +65,6 @@ class Call:
     modal: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class Settled:
-    """What a run has found out too late, so that the next one has to know it before.
-
-    needed  parameters that end with the run, and whose assignments stay all the same
-    loops   first and last lines that the machine repeats until it is content
-    """
-
-    needed: frozenset[Key] = frozenset()
-    loops: frozenset[tuple[int, int]] = frozenset()
-
-
-class Again(Exception):  # noqa: N818 - it is no error
-    """The program has to be run from its start once more, and this is known now."""
-
-    def __init__(self, settled: Settled) -> None:
-        super().__init__("again")
-        self.settled = settled
-
-
 class RunState:
     """Where a run is; `text` and `origin` are the executed blocks and their lines.
 
@@ -100,8 +81,7 @@ class RunState:
         self.arithmetic: Arithmetic = listing.dialect.flow_rule.arithmetic
         self.reading = reading
         self.keeps = keeps
-        given = {parameter_key(name): v for name, v in reading.parameters.items()}
-        self.parameters = {k: v for k, v in given.items() if self.arithmetic.owns(k)}
+        self.parameters = given_to(self.arithmetic, reading)
         self.settled = Settled()
         self.dropped: set[Key] = set()
         self.calls: list[Call] = []
@@ -146,6 +126,15 @@ class RunState:
         try:
             return self._worth(arithmetic, node)
         except LocatedError as why:
+            raise self.refusal(why.code, why.message, why.hint, (why.start, why.end)) from None
+
+    def value_or_lost(self, node: Any) -> float | None:
+        """Return the value of a condition of the line; None if only the machine knows it."""
+        try:
+            return self._worth(self.conditions, node)
+        except LocatedError as why:
+            if why.lost:
+                return None
             raise self.refusal(why.code, why.message, why.hint, (why.start, why.end)) from None
 
     def _worth(self, arithmetic: Arithmetic, node: Any, in_word: bool = False) -> float:
@@ -306,12 +295,17 @@ class RunState:
 
         Raises Again if what it reads was left out before.
         """
+        text = self.listing.block(self.line).text
+        return edited(text, item.start, item.end, self.left_of(item, evaluator))
+
+    def left_of(self, item: Expression | Statement, evaluator: Evaluator) -> list[Edit]:
+        """Return the edits of what stays; see `remains`."""
         try:
             left = residual(item.tree, evaluator)
         except LocatedError as why:
             raise self.refusal(why.code, why.message, why.hint, (why.start, why.end)) from None
         self.needs(self.dropped if left.anywhere else left.reads)
-        return edited(self.listing.block(self.line).text, item.start, item.end, left.edits)
+        return left.edits
 
     def needs(self, keys: AbstractSet[Key]) -> None:
         """See to it that assignments to parameters stay. Raises Again if one was left out."""

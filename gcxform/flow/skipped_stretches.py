@@ -12,7 +12,7 @@ import numpy as np
 
 from gcxform.flow.run_state import RunState
 from gcxform.modal.meaning.meaning import OWN_MOVES, Meaning
-from gcxform.modal.meaning.tables import COLUMNS, CYCLES, NUMBER
+from gcxform.modal.meaning.tables import COLUMNS, CYCLES, NUMBER, MeaningTable
 from gcxform.syntax.tree import Block
 from gcxform.system.arrays import Flags, Ints, Small
 
@@ -38,14 +38,17 @@ def is_still(meaning: Meaning, block: Block) -> bool:
     return block.error is None and meaning.is_still and not meaning.deleted
 
 
-def effect_of(run: RunState, lines: Ints) -> Effect:
-    """Return what executed lines of the program, from 0, change. Raises InputError."""
+def effect_of(run: RunState, table: MeaningTable, shapes: Ints, lines: Ints) -> Effect:
+    """Return what written blocks change, by their shapes. Raises InputError.
+
+    `lines` (n,) are those of the program that they stand for.
+    """
     letters: set[str] = set()
     axes = run.dialect.axes
-    for shape in np.unique(run.listing.window.shape[lines]).tolist():
-        meaning = run.listing.table.meanings[shape]
+    for shape in np.unique(shapes).tolist():
+        meaning = table.meanings[shape]
         if why := _not_carried(meaning):
-            run.line = int(lines[np.argmax(run.listing.window.shape[lines] == shape)])
+            run.line = int(lines[np.argmax(shapes == shape)])
             message = f"{why} in a block of which only the machine knows whether it is executed"
             raise run.refusal("GX220", message)
         letters |= {*meaning.axes} | ({"F"} if "F" in meaning.slots else set())
@@ -70,57 +73,84 @@ def _not_carried(meaning: Meaning) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Join:
-    """Where jumps lead to: the executed lines they stand in, that of the join, and its block."""
+    """Where ways meet: the executed lines that they come from, its block, and its line."""
 
     jumps: tuple[int, ...]
     here: int
     line: int
 
 
-def other_modes(run: RunState, origin: Ints, joins: list[Join]) -> tuple[int, str] | None:
+def other_modes(
+    run: RunState, table: MeaningTable, shape: Ints, joins: list[Join]
+) -> tuple[int, str] | None:
     """Return a block and a code that is in force there or not, and counts; None if there is none.
 
-    `origin` (n,) are the lines of the program of all executed lines.
+    `shape` (n,) are the shapes of all written blocks.
     """
-    shape = run.listing.window.shape[origin]
-    groups = run.listing.table.groups[shape]
-    moves = np.any([run.listing.table.flag(f, shape) for f in ("moves", "has_centre", "acts")], 0)
+    groups = table.groups[shape]
+    moves = np.any([table.flag(f, shape) for f in ("moves", "has_centre", "acts")], 0)
     for column, name in enumerate(COLUMNS):
-        stated, initial = groups[:, column], _initial(run, name)
-        for join in _open_joins(stated, initial, joins):
-            if name in CARRIED and not _counts(stated[join.here :], moves[join.here :]):
+        group = _Group(groups[:, column], _initial(run, name), moves)
+        for join in group.open_at(joins):
+            if name in CARRIED and not group.counts(join.here):
                 continue
             if name not in UNMINDED:
                 return join.line, f"another code of the group {name}"
-        for join in joins:
-            since = min(join.jumps)
-            moved = moves[since + 1 : join.here].any()
-            if moved and _in_force(name, _last(stated[: since + 1], initial)):
+        for join in joins if name in ("cutter-comp", "motion", "cycle") else ():
+            since = min(join.jumps) + 1
+            if _in_force(name, group.code(since)) and moves[since : join.here].any():
                 return join.line, "cutter compensation or a canned cycle"
     return None
 
 
-def _open_joins(stated: Small, initial: int, joins: list[Join]) -> list[Join]:
-    """Return the joins at which the code of a group may be another one than that before it."""
-    found: list[Join] = []
-    for join in sorted(joins, key=lambda each: each.here):
-        now = _last(stated[: join.here], initial)
-        for jump in join.jumps:
-            before = [e.here for e in found if e.here <= jump]
-            loose = any((stated[here : jump + 1] < 0).all() for here in before)
-            if loose or _last(stated[: jump + 1], initial) != now:
-                found.append(join)
-                break
-        else:
-            inner = [e.here for e in found if e.here < join.here]
-            if any((stated[here : join.here] < 0).all() for here in inner):
-                found.append(join)
-    return found
+class _Group:
+    """The codes of one modal group in written blocks; `moves` are those to which they matter."""
+
+    def __init__(self, stated: Small, initial: int, moves: Flags) -> None:
+        self.codes, self.initial = stated, initial
+        number, count = np.arange(len(stated)), len(stated)
+        self.last = np.maximum.accumulate(np.where(stated >= 0, number, -1))
+        self.next = _next(np.where(stated >= 0, number, count))
+        self.use = _next(np.where(moves, number, count))
+
+    def stated_before(self, line: int) -> int:
+        """Return the block that states the code in force before one; -1: none."""
+        return int(self.last[line - 1]) if line > 0 else -1
+
+    def code(self, line: int) -> int:
+        """Return the code in force before a block, as they stand one behind the other."""
+        at = self.stated_before(line)
+        return int(self.codes[at]) if at >= 0 else self.initial
+
+    def counts(self, line: int) -> bool:
+        """Whether the code in force before a block counts before it is stated again."""
+        return line < len(self.use) and self.use[line] < min(len(self.use), self.next[line])
+
+    def open_at(self, joins: list[Join]) -> list[Join]:
+        """Return the joins at which another code may be in force than that before them."""
+        found, left = list[Join](), sorted(joins, key=lambda each: each.here)
+        is_open = np.zeros(len(self.codes) + 1, np.bool_)
+
+        def differs(join: Join) -> bool:
+            ways = [*(jump + 1 for jump in join.jumps), join.here]
+            loose = (is_open[self.stated_before(line) + 1 : line + 1].any() for line in ways)
+            return any(self.code(line) != self.code(join.here) for line in ways) or any(loose)
+
+        grown = True
+        while grown:  # a way back comes in before what lies on it
+            before = len(found)
+            for join in left:
+                if differs(join):
+                    found.append(join)
+                    is_open[join.here] = True
+            left = [join for join in left if not is_open[join.here]]
+            grown = len(found) > before
+        return found
 
 
-def _last(values: Small, initial: int) -> int:
-    stated = values[values >= 0]
-    return int(stated[-1]) if len(stated) else initial
+def _next(places: Ints) -> Ints:
+    """Return of each place the first one from there on."""
+    return np.minimum.accumulate(places[::-1])[::-1]
 
 
 def _initial(run: RunState, group: str) -> int:
@@ -132,10 +162,3 @@ def _in_force(group: str, number: int) -> bool:
     if group == "cutter-comp":
         return number > 0
     return group in ("motion", "cycle") and number in CYCLES
-
-
-def _counts(stated: Small, moves: Flags) -> bool:
-    """Whether a mode counts behind a stretch before it is stated again."""
-    use = int(np.argmax(moves)) if moves.any() else len(moves)
-    again = stated >= 0
-    return use < len(moves) and not again[: use + 1].any()

@@ -47,7 +47,6 @@ class StateRead:
 
     def values(self) -> dict[Key, float]:
         """Return the variables; nan where only the machine knows one. Raises InputError."""
-        self.places.interpreter.undecided = self.program.undecided()
         state = self.places.now()
         open_ = bool(self.branches.joins or state.kept_calls or state.lost_modes)
         modes = {} if open_ else {**_codes(state), **_words(state)}

@@ -33,7 +33,7 @@ from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.errormodel.model_file import CODES, check_version
 from gcxform.machine import control
 from gcxform.machine import kinds as presets
-from gcxform.machine.formats import NONE, Known
+from gcxform.machine.formats import NONE, Known, ProgramSettings, reader_findings
 from gcxform.machine.machine import (
     Axis,
     Machine,
@@ -66,6 +66,7 @@ def load_machine(path: Path, known: Known = NONE) -> Machine:
     file = presets.filled(file, known.kinematics)
     if found := named or tuple(_findings(document, file, known)):
         raise UsageError(found)
+    programs = _programs(document, file, known)
     return Machine(
         file=path,
         name=file.name or path.stem,
@@ -81,6 +82,8 @@ def load_machine(path: Path, known: Known = NONE) -> Machine:
         inert_m=control.inert_of(file.control),
         open=still_open,
         taken=taken,
+        subprograms=programs.folders,
+        told=dict(programs.parameters),
     )
 
 
@@ -92,6 +95,12 @@ def _named(document: TomlText, key: str, name: str | None) -> Path | None:
         message = f"{key}: no file is called {name!r}"
         raise UsageError.one(document.codes.wrong_value, message, document.where(key))
     return referred(Path(document.file).parent, name, document.where(key))
+
+
+def _programs(document: TomlText, file: MachineFile, known: Known) -> ProgramSettings:
+    """Return what the file of the control says of programs that the machine file names."""
+    place = _named(document, "ini", file.ini)
+    return known.controls[file.ini_control].programs(place) if place else ProgramSettings()
 
 
 def _tools(document: TomlText, file: MachineFile, known: Known) -> dict[int, Tool]:
@@ -291,14 +300,13 @@ def _strange_axes(
 
 
 def _table_findings(document: TomlText, file: MachineFile, known: Known) -> Iterator[Diagnostic]:
+    if file.ini is not None:
+        named = partial(document.where, "ini-control")
+        yield from reader_findings(document, file.ini_control, "programs", known, named)
     if file.tool_table is None:
         return
-    name = file.tool_table_control
-    readers = [other for other, control in known.controls.items() if control.reads("tools")]
-    if name not in readers:
-        message = f"there is no control {name!r} whose tool tables are read"
-        where = document.where("tool-table-control")
-        yield Diagnostic(document.codes.wrong_value, message, where, did_you_mean(name, readers))
+    named = partial(document.where, "tool-table-control")
+    yield from reader_findings(document, file.tool_table_control, "tools", known, named)
     if file.tool_table_units is None:
         yield Diagnostic(
             document.codes.missing_key,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 from typing import ClassVar, Literal, NamedTuple
 
-from gcxform.diagnostics import FileError, Location
+from gcxform.config.toml_text import TomlText, did_you_mean
+from gcxform.diagnostics import Diagnostic, FileError, Location
 from gcxform.machine.kinds import Kinds
 from gcxform.machine.machine import Machine, Tool
 from gcxform.machine.presets import Presets
@@ -18,6 +20,18 @@ TAKEN = frozenset(
     | {"json", "as_json"}
 )
 """What every command of `gcxform machine import` has, so no field of a control has such a name."""
+
+
+@dataclass(frozen=True)
+class ProgramSettings:
+    """What a file of a control says of programs.
+
+    `folders` are those in which subprograms are looked up, `parameters` the values that it gives to
+    parameters which programs read, as `parameters` of [input] names them.
+    """
+
+    folders: tuple[Path, ...] = ()
+    parameters: Mapping[str, float] = field(default_factory=dict)
 
 
 class ControlFiles:
@@ -46,8 +60,16 @@ class ControlFiles:
         """
         raise NotImplementedError
 
+    @staticmethod
+    def programs(path: Path) -> ProgramSettings:
+        """Return what a file says of programs.
+
+        Raises FileError, and UsageError with file and line.
+        """
+        raise NotImplementedError
+
     @classmethod
-    def reads(cls, what: Literal["kinematics", "tools"]) -> bool:
+    def reads(cls, what: Literal["kinematics", "tools", "programs"]) -> bool:
         """Return whether there is a method for some files of this control."""
         return getattr(cls, what) is not getattr(ControlFiles, what)
 
@@ -71,3 +93,18 @@ def control_lines(path: Path, encoding: str = "latin-1") -> list[Location]:
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
         raise FileError.one("GX901", f"cannot read {path}: {reason}") from None
     return [Location(str(path), n, 1, line, max(1, len(line))) for n, line in enumerate(lines, 1)]
+
+
+def reader_findings(
+    document: TomlText,
+    name: str,
+    what: Literal["tools", "programs"],
+    known: Known,
+    where: Callable[[], Location],
+) -> Iterator[Diagnostic]:
+    """Yield that there is no control of a name some files of which are read."""
+    readers = [other for other, control in known.controls.items() if control.reads(what)]
+    if name not in readers:
+        files = {"tools": "tool tables", "programs": "settings for programs"}[what]
+        message = f"there is no control {name!r} whose {files} are read"
+        yield Diagnostic(document.codes.wrong_value, message, where(), did_you_mean(name, readers))

@@ -122,6 +122,10 @@ class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
     tool_table_control: Annotated[
         str, says("the control whose table it is (`gcxform list controls`)")
     ] = "linuxcnc"
+    ini: Annotated[str | None, says("what a control says of programs: its INI file")] = None
+    ini_control: Annotated[str, says("the control whose file it is (`gcxform list controls`)")] = (
+        "linuxcnc"
+    )
     control: Annotated[
         dict[str, str | float | list[int] | dict[str, dict[str, str | int]]],
         says("settings of the control on which the meaning of codes depends"),
@@ -136,6 +140,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True):
     the machine positions of G28 and G30; `control` has settings that codes depend on; `inert_m` are
     M codes of the machine's own that move no axis and set no variable. `open` has the places of
     values that the file leaves to be filled in; `taken` says what is from a preset, and its source.
+    `subprograms` are folders and `told` values of parameters that a file of the control names.
     """
 
     file: Path
@@ -152,3 +157,5 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True):
     inert_m: frozenset[int] = frozenset()
     open: dict[tuple[str, ...], Location] = {}
     taken: tuple[str, ...] = ()
+    subprograms: tuple[Path, ...] = ()
+    told: dict[str, float] = {}

@@ -14,14 +14,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gcxform.config.quantities import LENGTH
-from gcxform.diagnostics import UsageError
 from gcxform.dialect.arithmetic import Key
 from gcxform.dialect.dialect import EXTRUDER, INCH, Dialect
 from gcxform.modal.control_limits import refuse_limits
 from gcxform.modal.cycles.expansion import Cycles
 from gcxform.modal.expressions.assignments import compute
 from gcxform.modal.expressions.unknown import note_prints
-from gcxform.modal.expressions.value import parameter_key
+from gcxform.modal.expressions.value import given_to
 from gcxform.modal.frame_state import FrameState
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import GROUPS, NUMBER, NURBS_END, SPLINES, MeaningTable
@@ -71,14 +70,6 @@ def _length(control: Mapping[str, str | float], name: str) -> float | None:
     """Return a length (mm) among the settings of the control."""
     value = control.get(name)
     return LENGTH.parse(value) if isinstance(value, str) else value
-
-
-def _key_of(parameter: str) -> Key:
-    """Return the key of a parameter. Raises UsageError for what is none."""
-    try:
-        return parameter_key(parameter)
-    except ValueError as error:
-        raise UsageError.one("GX701", f"parameters: {error}") from None
 
 
 UNSAID = {EXTRUDER: 0.0}
@@ -134,8 +125,7 @@ class Interpreter:
     def _given(self) -> dict[Key, float]:
         """Return the parameters whose values are given, but for those the control changes."""
         arithmetic = self.dialect.flow_rule.arithmetic
-        given = {_key_of(name): value for name, value in self.reading.parameters.items()}
-        return {k: v for k, v in given.items() if arithmetic is not None and arithmetic.owns(k)}
+        return {} if arithmetic is None else given_to(arithmetic, self.reading)
 
     def interpret(self, window: Window, table: MeaningTable) -> Interpreted:
         """Return the moves of a window. Raises InputError with all that speaks against it."""

@@ -147,13 +147,12 @@ class Lines:
             ends |= self.table.flag("ends", shape)
             if self.reading.blocks_with_a_slash(self.dialect) != "execute":
                 ends &= ~self.table.flag("deleted", shape)
+            ends[[line - self.window.first_line for line in self.undecided.lines]] = False
         percent = np.flatnonzero(self.table.flag("percent", shape))
         ends[percent[max(0, 1 - self.state.percents) :][:1]] = True
         self.state.percents += len(percent)
-        if not ends.any():
-            return len(shape)
-        self.state.ended = True
-        return int(np.argmax(ends)) + 1
+        self.state.ended = bool(ends.any())
+        return int(np.argmax(ends)) + 1 if self.state.ended else len(shape)
 
     def _deleted_blocks(self) -> None:
         """Execute or silence blocks with a slash, or refuse them."""

@@ -72,6 +72,7 @@ class Reading:
                   the same coordinates are said in another way
     parameters    values of parameters before the first block, by number ("100") or name ("<a>")
     subprograms   folders in which subprograms are looked up, behind that of the program
+    told          values of parameters that a file of the control gives, named as in `parameters`
     entry         how a subprogram is called that stands in a file by itself
     """
 
@@ -94,6 +95,7 @@ class Reading:
     stays: bool = False
     modes_count: bool = False
     subprograms: tuple[Path, ...] = ()
+    told: Mapping[str, float] = field(default_factory=dict)
     entry: Entry = field(default_factory=Entry)
 
     def __post_init__(self) -> None:
@@ -152,6 +154,8 @@ class Reading:
             control=machine.control,
             inert_m=machine.inert_m,
             rotary="".join(machine.table + machine.head),
+            subprograms=(*self.subprograms, *machine.subprograms),
+            told=machine.told,
         )
 
 

@@ -182,6 +182,8 @@ def assumptions(
         found.append(f"F{reading.feed:g} is in force before the first block")
     for name, value in reading.parameters.items():
         found.append(f"#{name} is {value:g} before the first block")
+    if reading.told:
+        found.append("what the file of the control says that ini of the machine file names")
     return found
 
 

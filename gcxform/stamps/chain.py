@@ -153,7 +153,11 @@ def _content(machine: Machine | None) -> dict[str, Any]:
         return {}
     plain = msgspec.to_builtins(msgspec.structs.replace(machine, open={}, taken=()), enc_hook=str)
     plain["inert_m"] = sorted(machine.inert_m)
-    return {key: value for key, value in plain.items() if value and key not in ("file", "errors")}
+    return {
+        key: value
+        for key, value in plain.items()
+        if value and key not in ("file", "errors", "subprograms")
+    }
 
 
 @dataclass(frozen=True)

@@ -482,7 +482,7 @@ MUTATIONS = (
     ),
     _macro(
         "what was set for a print in a branch counts behind it",
-        "gcxform/flow/branches.py",
+        "gcxform/flow/forks.py",
         "run.lasting.outputs.stands.clear()",
         "run.lasting.outputs.stands.copy()",
         "flow/dprnt-behind-branch",

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles import flows, macro_flows, rs274, toolpaths
+from oracles import flows, lost_flows, macro_flows, rs274, toolpaths
 from oracles.canon import CanonProgram
+from oracles.ways import difference
 from properties import executed
 from seeds_kit import DRAWN, shares
 
@@ -85,3 +86,28 @@ def test_macros_that_keep_their_structure_move_as_before(dialect: str, tmp_path:
         assert np.abs(old[:, :3] - new[:, :3]).max() < 0.01
     assert ways["refused"] <= COUNT // 50, ways
     assert min(ways["as it was"], ways["none"]) > 0, ways
+
+
+@shares(DRAWN // 2, 15)
+def test_every_way_is_that_of_the_program(seeds: range) -> None:
+    """What programs hang on is given values in front of both texts."""
+    pairs = [(program, done) for seed in seeds for program, done in written(seed)]
+    assert len(pairs) > len(seeds) // 3
+    both = [
+        [lost_flows.made_concrete(text, values) for text in pair]
+        for pair in pairs
+        for values in range(2)
+    ]
+    old, new = (rs274.run_many(texts) for texts in zip(*both, strict=True))
+    for (program, text), before, after in zip(both, old, new, strict=True):
+        assert isinstance(before, CanonProgram), f"{before}\n{program.decode()}"
+        assert isinstance(after, CanonProgram), f"{after}\n{text.decode()}"
+        problem = difference(before, after, 0.001)
+        assert not problem, f"{problem}\n{program.decode()}\n{text.decode()}"
+
+
+def written(seed: int) -> list[tuple[bytes, bytes]]:
+    """Return a program with what was written for it; nothing if it is refused, or decided here."""
+    program = lost_flows.program(seed)
+    done = folded(program)
+    return [(program, done.text)] if done is not None and b"#31" in done.text else []

@@ -13,9 +13,11 @@ from typing import Any
 
 from lark import Token, Tree
 
+from gcxform.diagnostics import UsageError
 from gcxform.dialect.arithmetic import RS274, Arithmetic, Key, NoValueError, whole
 from gcxform.dialect.logic import operator_of
 from gcxform.dialect.null import MAYBE, NULL, Null, as_argument
+from gcxform.modal.state import Reading
 from gcxform.syntax.grammar import rule_of, span_of
 from gcxform.syntax.tree import BLANKS, Statement
 
@@ -44,6 +46,21 @@ def parameter_key(text: str) -> Key:
     if not bare.isdecimal():
         raise ValueError(f"{text!r} is neither a number nor a name such as '<depth>'")
     return int(bare)
+
+
+def given_to(arithmetic: Arithmetic, reading: Reading) -> dict[Key, float]:
+    """Return the parameters whose values are given, but for those the control changes.
+
+    Raises UsageError for what is no parameter.
+    """
+    try:
+        found = {parameter_key(name): value for name, value in reading.parameters.items()}
+    except ValueError as error:
+        raise UsageError.one("GX701", f"parameters: {error}") from None
+    told = reading.told.items() if arithmetic.named else ()
+    return {parameter_key(name): value for name, value in told} | {
+        k: v for k, v in found.items() if arithmetic.may_be_given(k)
+    }
 
 
 def how_to_give(key: Key) -> str:

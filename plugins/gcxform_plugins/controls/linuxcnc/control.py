@@ -7,14 +7,15 @@ from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
 import gcxform as gx
-from gcxform.vocabulary import Machine, Tool
+from gcxform.vocabulary import Machine, ProgramSettings, Tool
 from gcxform_plugins.controls.linuxcnc.hal import read_hal
+from gcxform_plugins.controls.linuxcnc.ini import read_ini
 from gcxform_plugins.controls.linuxcnc.tools import read_tools
 
 
 @dataclass(frozen=True)
 class LinuxCncFiles(gx.ControlFiles):
-    """LinuxCNC: kinematics as HAL or INI files set them, and tool tables."""
+    """LinuxCNC: kinematics as HAL or INI files set them, tool tables, and what INI files say."""
 
     units: Annotated[
         Literal["mm", "in"],
@@ -35,3 +36,8 @@ class LinuxCncFiles(gx.ControlFiles):
     def tools(path: Path, units: Literal["mm", "in"]) -> dict[int, Tool]:
         """Return the tools of a table."""
         return read_tools(path, units)
+
+    @staticmethod
+    def programs(path: Path) -> ProgramSettings:
+        """Return what an INI file says of programs."""
+        return read_ini(path)
