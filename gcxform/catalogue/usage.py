@@ -176,9 +176,10 @@ CODES: dict[str, tuple[str, str]] = {
         "that states the arc, before the code that is named.",
     ),
     "GX736": (
-        "Pictures need matplotlib",
-        "Figures and tables work without it, pictures do not, and it is not installed. Install the "
-        "package with its extra: `pip install 'gcxform[plot]'`.",
+        "Something that is optional is not installed",
+        "Pictures need matplotlib, the language server of editors needs pygls; all else works "
+        "without them. Install the package with its extra: `pip install 'gcxform[plot]'`, or "
+        "`pip install 'gcxform[lsp]'`.",
     ),
     "GX737": (
         "Not a kind of picture",

@@ -44,6 +44,7 @@ VERBS: Final = {
     "list": "List what is installed, or the options of one thing.",
     "explain": "Explain a diagnostic code, or what a block does.",
     "schema": "Print the JSON Schema of a kind of files, or name schemas in files.",
+    "lsp": "Answer an editor about programs: a language server.",
     "completion": "Print what a shell needs to complete words of a command line.",
 }
 FILES: Final = {"list": "listing"}  # a module named `list` would hide the builtin in this one

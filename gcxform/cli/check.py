@@ -26,7 +26,7 @@ from gcxform.flow.straightened import located, written_out
 from gcxform.flow.subprogram_file import is_subprogram
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.program_end import Ending
-from gcxform.modal.reader import windows_of
+from gcxform.modal.reader import Tables, windows_of
 from gcxform.pipeline.certify import assumptions
 from gcxform.pipeline.chain import facts_after
 from gcxform.pipeline.pipeline import Pipeline
@@ -186,7 +186,7 @@ def speaks_against(
     taken = [] if taken is None else taken
     try:
         alone = not pipeline.copies and is_subprogram(source, pipeline.read_as)
-        found = [] if alone else list(_first(_reading(pipeline, source, taken)))
+        found = [] if alone else list(_first(speaks_against_reading(pipeline, source, taken)))
         return found or _refusals(pipeline, source, taken)
     except UsageError as error:  # of a pass that was told of a machine on trial
         return list(error.diagnostics)
@@ -201,10 +201,12 @@ def _again(pipeline: Pipeline, source: Source) -> list[Diagnostic]:
     return []
 
 
-def _reading(pipeline: Pipeline, source: Source, taken: list[str]) -> Iterator[Diagnostic]:
+def speaks_against_reading(
+    pipeline: Pipeline, source: Source, taken: list[str], tables: Tables | None = None
+) -> Iterator[Diagnostic]:
     """Yield what speaks against reading a program, or the blocks that it executes.
 
-    `taken` gets what was assumed on the way.
+    `taken` gets what was assumed on the way; `tables` are kept from one reading to the next.
     """
     try:
         told = pipeline.machine_reading, None if pipeline.copies else pipeline.target
@@ -212,7 +214,7 @@ def _reading(pipeline: Pipeline, source: Source, taken: list[str]) -> Iterator[D
     except InputError as error:
         yield from error.diagnostics
         return
-    for diagnostic in reading_findings(pipeline, executed, taken):
+    for diagnostic in reading_findings(pipeline, executed, taken, tables):
         yield from located(InputError((diagnostic,)), executed).diagnostics
 
 
@@ -222,7 +224,10 @@ def _first(found: Iterator[Diagnostic]) -> Iterator[Diagnostic]:
 
 
 def reading_findings(
-    pipeline: Pipeline, source: Source, taken: list[str] | None = None
+    pipeline: Pipeline,
+    source: Source,
+    taken: list[str] | None = None,
+    tables: Tables | None = None,
 ) -> Iterator[Diagnostic]:
     """Yield what speaks against reading a program; `taken` gets what was assumed on the way.
 
@@ -238,7 +243,7 @@ def reading_findings(
     centres = CentreProof(pipeline.context, source.name)
     stays = not any(step.demands.resolves for step in pipeline.path_passes)
     refused = False
-    for window, reader in windows_of(source, dialect):
+    for window, reader in windows_of(source, dialect, tables):
         try:
             path = interpreter.interpret(window, reader.table).path
             yield from centres.stops(path) if stays else ()

@@ -22,10 +22,10 @@ SHAPES_AT_MOST = 20_000  # a table of shapes that grows beyond is begun anew
 class WindowReader:
     """Turns texts of whole lines into windows, with the shapes and meanings they need."""
 
-    def __init__(self, dialect: type[Dialect]) -> None:
+    def __init__(self, dialect: type[Dialect], tables: Tables | None = None) -> None:
         self.dialect = dialect
         self.lines = 0
-        self.table = new_table(dialect)
+        self.table = new_table(dialect) if tables is None else tables.of(dialect)
 
     @property
     def shapes(self) -> ShapeTable:
@@ -64,8 +64,23 @@ def new_table(dialect: type[Dialect]) -> MeaningTable:
     return MeaningTable(ShapeTable(dialect.load_grammar(), comments), dialect)
 
 
-def windows_of(source: Source, dialect: type[Dialect]) -> Iterator[tuple[Window, WindowReader]]:
+class Tables:
+    """Tables of shapes that stay from one reading of a program to the next, by dialect."""
+
+    def __init__(self) -> None:
+        self._kept: dict[type[Dialect], MeaningTable] = {}
+
+    def of(self, dialect: type[Dialect]) -> MeaningTable:
+        """Return the table of a dialect, a new one where it has grown large."""
+        if dialect not in self._kept or len(self._kept[dialect].shapes) > SHAPES_AT_MOST:
+            self._kept[dialect] = new_table(dialect)
+        return self._kept[dialect]
+
+
+def windows_of(
+    source: Source, dialect: type[Dialect], tables: Tables | None = None
+) -> Iterator[tuple[Window, WindowReader]]:
     """Yield the windows of a program with the reader that knows their shapes."""
-    reader = WindowReader(dialect)
+    reader = WindowReader(dialect, tables)
     for text in source.windows():
         yield reader.read(text), reader

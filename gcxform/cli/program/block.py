@@ -43,25 +43,27 @@ _UNITS = {
 def explained(file: str, line: int, dialect: str | None, asked: Mapping[str, Any]) -> list[str]:
     """Return a line, from 1, of a file in words. Raises UsageError if the file is shorter."""
     kind, reading = Asked(**asked).reads(needed_dialect(dialect))
-    if kind.translator is not None:
-        with opened(file) as source:
-            return _foreign(source, line, kind, reading)
     with opened(file) as source:
-        if (ran := _executed(source, kind, reading)) is not None:
-            return _as_executed(source, ran, line, kind, reading)
-    with opened(file) as source:
+        if kind.translator is not None:
+            return foreign(source, line, kind, reading)
+        if (ran := executed(source, kind, reading)) is not None:
+            return as_executed(source, ran, line, kind, reading)
         tolerant = Tolerant(kind, source, reading)
-        text = _up_to(tolerant, source, line)
-        earlier = sorted(tolerant.refused)
-        before = copy.deepcopy(tolerant.interpreter.state)
-        _, path = tolerant.window(text)
-    block = kind.load_grammar().parse(text.rstrip(b"\r\n").decode("latin-1"))
-    lines = [f"{file}:{line}  {block.text}", "", *_items(block)]
+        return in_words(tolerant, _up_to(tolerant, source, line), line)
+
+
+def in_words(tolerant: Tolerant, text: bytes, line: int) -> list[str]:
+    """Return the text of a line, from 1, in words, behind all that a reader has read before."""
+    earlier = sorted(tolerant.refused)
+    before = copy.deepcopy(tolerant.interpreter.state)
+    _, path = tolerant.window(text)
+    block = tolerant.dialect.load_grammar().parse(text.rstrip(b"\r\n").decode("latin-1"))
+    lines = [f"{tolerant.source.name}:{line}  {block.text}", "", *_items(block)]
     told = _told(before, tolerant.interpreter.axes, earlier, tolerant.refused.get(line), path)
     return [*lines, *told]
 
 
-def _executed(source: Source, kind: type[Dialect], reading: Reading) -> WrittenOut | None:
+def executed(source: Source, kind: type[Dialect], reading: Reading) -> WrittenOut | None:
     """Return the blocks that a program with calls or loops executes, if that is known."""
     with suppress(InputError):
         ran = written_out(source, kind, reading)
@@ -69,7 +71,7 @@ def _executed(source: Source, kind: type[Dialect], reading: Reading) -> WrittenO
     return None
 
 
-def _as_executed(
+def as_executed(
     source: Source, ran: WrittenOut, line: int, kind: type[Dialect], reading: Reading
 ) -> list[str]:
     """Return a line in words as it is executed first, and what stands for it: a call's blocks."""
@@ -96,7 +98,7 @@ def _as_executed(
     return [*lines, *_told(before, tolerant.interpreter.axes, earlier, next(wrong, None), path)]
 
 
-def _foreign(source: Source, line: int, kind: type[Dialect], reading: Reading) -> list[str]:
+def foreign(source: Source, line: int, kind: type[Dialect], reading: Reading) -> list[str]:
     """Return a line of a program that is turned into blocks: those, and what they do."""
     blocks, error = translated_so_far(source, kind, reading)
     if line > len(blocks.lines):

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from gcxform.diagnostics import Diagnostic, InputError
 from gcxform.dialect.dialect import Dialect
 from gcxform.modal.interpreter import Interpreter
-from gcxform.modal.reader import WindowReader
+from gcxform.modal.reader import Tables, WindowReader
 from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source
@@ -25,12 +25,13 @@ class Tolerant:
     dialect: type[Dialect]
     source: Source
     reading: Reading
+    tables: Tables | None = None
     refused: dict[int, Diagnostic] = field(default_factory=dict)
     unread: int = 0
 
     def __post_init__(self) -> None:
         axes = self.source.axes(self.dialect.axes)
-        self.reader = WindowReader(self.dialect)
+        self.reader = WindowReader(self.dialect, self.tables)
         self.interpreter = Interpreter(self.dialect, self.reading, axes, self.source.name)
         self.interpreter.undecided = self.source.undecided
 

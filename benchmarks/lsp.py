@@ -1,0 +1,142 @@
+"""How long the language server takes to answer after a keystroke, over its protocol.
+
+    python benchmarks/lsp.py [--lines N] [--rounds N] [--all] [--check]
+
+Opens a program of plain moves, and one whose every other block has a comment of its own (`--all`:
+also one that computes, which has to be executed, and is read beside). It types, pastes and deletes,
+and asks after each change for the findings, what a block far below does, and the parts of the
+program. Prints the clock (the 30 ms for which the server waits for more keys are in that of
+findings) and the processor of the server, the median and the slowest. `--check` ends with 1 where
+the processor takes more than 100 ms for an answer.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import random
+import statistics
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "tests"))
+
+from lsp_kit import Editor, put  # noqa: E402
+
+BAR = 0.1  # s
+HEAD = ["%", "O1000 (BENCHMARK)", "G21 G90 G17 G94 G40 G49 G80", "T1 M6", "G0 X0. Y0. Z5."]
+TAIL = ["G0 Z50.", "M5", "M30", "%"]
+TICKS = os.sysconf("SC_CLK_TCK")
+
+
+def plain(count: int, draw: random.Random) -> list[str]:
+    found = [*HEAD, "G1 Z-1. F500"]
+    while len(found) < count - len(TAIL):
+        x, y, z = (draw.uniform(-90, 90) for _ in range(3))
+        found.append(f"X{x:.3f} Y{y:.3f} Z{z / 90:.3f}" if len(found) % 50 else f"(LEVEL {z:.1f})")
+    return [*found, *TAIL]
+
+
+def commented(count: int, draw: random.Random) -> list[str]:
+    """Every other block has a comment of its own, so no two of these are alike."""
+    lines = plain(count, draw)
+    return [
+        f"{text} (POINT {k})" if k % 2 and text[0] == "X" else text for k, text in enumerate(lines)
+    ]
+
+
+def computed(count: int, draw: random.Random) -> list[str]:
+    """A program that is executed, for every third block computes: it is read beside."""
+    found = [*HEAD, "#1=10.", "G1 Z-1. F500"]
+    while len(found) < count - len(TAIL):
+        x, y = (draw.uniform(-90, 90) for _ in range(2))
+        found.append(f"X[#1+{x:.3f}]" if len(found) % 3 else f"X{x:.3f} Y{y:.3f}")
+    return [*found, *TAIL]
+
+
+def changes(lines: list[str]) -> dict[str, list[dict[str, Any]]]:
+    """Return changes by what they are; each of a kind is undone by the next."""
+    middle, last = len(lines) // 2, len(lines) - 5
+    pasted = "".join(f"{line}\n" for line in lines[10:2010])
+    return {
+        "a key in the middle": [put(middle, 0, "G"), put(middle, 0, "", (middle, 1))],
+        "a key at the end": [put(last, 0, "X1."), put(last, 0, "", (last, 3))],
+        "a mode at the start": [put(4, 0, "G91\n"), put(4, 0, "", (5, 0))],
+        "half a block": [put(middle, 0, "G1 X1. Y\n"), put(middle, 0, "", (middle + 1, 0))],
+        "2000 lines pasted": [put(middle, 0, pasted), put(middle, 0, "", (middle + 2000, 0))],
+        "all replaced": [{"text": "\n".join([*lines, ""])}, {"text": "\n".join([*lines, ""])}],
+    }
+
+
+def used(editor: Editor) -> float:
+    """Return the processor's seconds of the server, 0 where the system does not say."""
+    try:
+        words = Path(f"/proc/{editor.process.pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(words[11]) + int(words[12])) / TICKS
+
+
+def measured(editor: Editor, ask: Callable[[], Any]) -> tuple[float, float]:
+    before, start = used(editor), perf_counter()
+    ask()
+    return perf_counter() - start, used(editor) - before
+
+
+def run(name: str, lines: list[str], rounds: int) -> float:
+    """Print the times of a program, and return the largest median of the processor."""
+    worst = 0.0
+    with tempfile.TemporaryDirectory() as folder:
+        editor = Editor(Path(folder), dialect="fanuc")
+        uri, version = editor.open("p.nc", "\n".join([*lines, ""])), 1
+        editor.findings(uri)
+        for what, pair in changes(lines).items():
+            times: dict[str, list[tuple[float, float]]] = {}
+            for change in pair * rounds:
+                version += 1
+
+                def typed(change: dict[str, Any] = change, version: int = version) -> None:
+                    editor.change(uri, version, change)
+                    editor.findings(uri, version)
+
+                asked = {
+                    "findings": typed,
+                    "hover": lambda: editor.at("hover", uri, len(lines) - 10),
+                    "symbols": lambda: editor.about("documentSymbol", uri),
+                }
+                for answer, ask in asked.items():
+                    times.setdefault(answer, []).append(measured(editor, ask))
+            for answer, found in times.items():
+                clock, cpu = zip(*found, strict=True)
+                row = [statistics.median(clock), max(clock), statistics.median(cpu), max(cpu)]
+                shown = " | ".join(f"{1000 * each:.0f}" for each in row)
+                print(f"| {name} | {what} | {answer} | {shown} |", flush=True)
+                worst = max(worst, row[2])
+        editor.close()
+    return worst
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--lines", type=int, default=10_000)
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--all", action="store_true")
+    parser.add_argument("--check", action="store_true")
+    given = parser.parse_args()
+    draw = random.Random(17)
+    print("| program | change | answer | clock, ms | slowest | processor, ms | slowest |")
+    print("|---|---|---|---|---|---|---|")
+    programs = {"plain": plain(given.lines, draw), "comments": commented(given.lines, draw)}
+    worst = max(run(name, lines, given.rounds) for name, lines in programs.items())
+    if given.all:
+        run("computed", computed(given.lines, draw), given.rounds)
+    return int(given.check and worst > BAR)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
