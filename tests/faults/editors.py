@@ -60,4 +60,11 @@ MUTATIONS = (
         "if step.name",
         EDITING_FORMAT,
     ),
+    Mutation(
+        "highlighting: a sign in front of a number is no operator",
+        "gcxform/cli/editing/highlighting.py",
+        'or each[0] == "NUMBER"]',
+        'or each[0] != "NUMBER"]',
+        "tests/test_highlighting.py",
+    ),
 )
