@@ -18,7 +18,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, ClassVar, NamedTuple, NoReturn
 
 from lark import Lark, Token, Tree
@@ -38,6 +38,7 @@ NUMBER = "NUMBER"
 """The terminal of a grammar that stands for numbers."""
 COMMENT, BLOCK_DELETE = "comment", "block_delete"
 HINT = "let the CAM write plain moves in its place"
+LATELY = 512  # lines that are the only ones of their shape, and are kept
 QUICK = 4  # lines that are only translated, in the time of one that is executed
 BRACKETS = str.maketrans("()", "[]")
 SLOT = "\uffff"  # stands for a number in a shape: no program, read as bytes, has it
@@ -140,6 +141,7 @@ class Translator(ABC):
         self._lark = _grammar(*self.grammar)
         self._split = re.compile(f"({self.number.pattern})", self.number.flags).split
         self._shapes: dict[str, _Shape] = {}
+        self._lone_lines = lru_cache(LATELY)(self._lone_line)
         self._items: tuple[Item, ...] = ()
 
     @abstractmethod
@@ -196,18 +198,22 @@ class Translator(ABC):
     def _shape(self, line: int) -> tuple[_Shape, list[str]]:
         """Return the shape of a line, and its numbers.
 
-        A line with numbers in a comment, or in a name, is the only one of its shape.
+        A line with numbers in a comment, or in a name, is the only one of its shape; in a loop it
+        is read more than once.
         """
         pieces = self._split(self.lines[line])
         found, key = pieces[1::2], SLOT.join(pieces[::2])
         shape = self._shapes.get(key)
         if shape is not None:
             return shape, found
-        numbers, parts = self._parsed(line)
-        shape = self._shape_of(line, numbers, parts)
+        shape, numbers = self._lone_lines(line)
         if numbers == found:
             self._shapes[key] = shape
         return shape, numbers
+
+    def _lone_line(self, line: int) -> tuple[_Shape, list[str]]:
+        numbers, parts = self._parsed(line)
+        return self._shape_of(line, numbers, parts), numbers
 
     def _shape_of(self, line: int, numbers: list[str], parts: tuple[_Part, ...]) -> _Shape:
         text = self.lines[line]
