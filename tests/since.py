@@ -25,6 +25,8 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
+from trees_kit import walk
+
 import gcxform
 from gcxform import cli
 from gcxform.plugin.registry import default_registry
@@ -65,6 +67,12 @@ def modules() -> dict[str, Path]:
     return found
 
 
+@cache
+def names() -> dict[str, str]:
+    """Return the names of all modules, by the paths of their files from the root."""
+    return {str(file.relative_to(ROOT)): name for name, file in modules().items()}
+
+
 def test_files() -> list[str]:
     """Return the names of the modules with tests."""
     return [name for name in modules() if name.rpartition(".")[2].startswith("test_")]
@@ -74,9 +82,11 @@ def test_files() -> list[str]:
 def read(name: str) -> Module:
     """Return what a module refers to."""
     found, tree = Module(), ast.parse(modules()[name].read_bytes())
-    docstrings = {node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
+    docstrings = set[ast.expr]()
+    for node in walk(tree):  # what holds another comes before it
+        if isinstance(node, ast.Expr):
+            docstrings.add(node.value)
+        elif isinstance(node, ast.Import):
             found.imports.update(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module:
             found.imports.update(f"{node.module}.{alias.name}" for alias in node.names)
@@ -158,7 +168,7 @@ def chosen(changed: Iterable[str]) -> set[str]:
 def depending(path: str) -> set[str]:
     """Return the modules with tests that depend on a file."""
     tests = set(test_files())
-    name = {str(file.relative_to(ROOT)): name for name, file in modules().items()}.get(path)
+    name = names().get(path)
     if name and name != "conftest" and name not in BY_NAME:
         starts = name.startswith("gcxform")
         found = {test for test in tests if name in everything(test) or (starts and _starts(test))}

@@ -14,7 +14,7 @@ def left_out(path: str) -> set[str]:
 
 
 def test_what_notices_a_fault_is_chosen_for_its_file() -> None:
-    paths = {str(file.relative_to(since.ROOT)): name for name, file in since.modules().items()}
+    paths = since.names()
     noticing = {(fault.file, fault.tests.split("::")[0]) for fault in MUTATIONS}
     assert [(file, test) for file, test in noticing if paths[test] in left_out(file)] == []
 

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from importlinter import Contract
 from importlinter.contracts.layers import LayersContract
+from trees_kit import statements, walk
 
 import gcxform as gx
 
@@ -255,7 +256,7 @@ def last_name(node: ast.expr) -> str:
 def assigned(method: ast.FunctionDef) -> Iterator[str]:
     """Yield the attributes that a method gives its first argument."""
     own = [each.arg for each in (*method.args.posonlyargs, *method.args.args)][:1]
-    for node in ast.walk(method):
+    for node in walk(method):
         on = node.value if isinstance(node, ast.Attribute | ast.Subscript) else None
         if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
             yield from (node.attr for _ in own if getattr(on, "id", "") == own[0])
@@ -291,7 +292,7 @@ def declared(node: ast.ClassDef) -> Iterator[str]:
         elif isinstance(each, ast.AnnAssign) and is_given(node, each):
             yield last_name(each.target)
         elif isinstance(each, ast.Assign):
-            yield from (name.id for name in ast.walk(each) if isinstance(name, ast.Name))
+            yield from (name.id for name in walk(each) if isinstance(name, ast.Name))
 
 
 def born_late(texts: dict[str, str]) -> dict[str, set[str]]:
@@ -300,21 +301,16 @@ def born_late(texts: dict[str, str]) -> dict[str, set[str]]:
     `texts`: the source of modules. A base is the class of its name that its module defines or
     imports, and any class of its name where it is reached in another way (`gx.Pass`).
     """
-    trees = {module: ast.parse(text) for module, text in texts.items()}
-    classes = {
-        (module, node.name): node
-        for module, tree in trees.items()
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ClassDef)
-    }
+    nodes = [(name, node) for name, text in texts.items() for node in statements(ast.parse(text))]
+    classes = {(name, node.name): node for name, node in nodes if isinstance(node, ast.ClassDef)}
     origin = {
         (module, name.asname or name.name): (node.module or "", name.name)
-        for module, tree in trees.items()
-        for node in ast.walk(tree)
+        for module, node in nodes
         if isinstance(node, ast.ImportFrom)
         for name in node.names
     }
 
+    @cache
     def whole(at: tuple[str, str]) -> set[str]:
         found = set(declared(classes[at]))
         for base in map(last_name, classes[at].bases):
