@@ -134,6 +134,8 @@ def needs(name: str) -> frozenset[str]:
         first, _, rest = imported.partition(".")
         home = gcxform._HOMES.get(rest) if first == "gcxform" else None
         found.update(known(home or imported))
+    beside = name.rpartition(".")[0]
+    found |= {f"{beside}.{word}" for word in module.words} & modules().keys()  # read as a text
     if not name.startswith("gcxform") or name.startswith("gcxform.testing"):
         asked = module.words | {f".{attribute}" for attribute in module.attributes}
         for word in asked & offers().keys():
