@@ -100,6 +100,8 @@ class Lasting:
         known, arithmetic = self.program.parameters.get(key), self.program.arithmetic
         if known is None or abs(known) < LONGEST:
             return known
+        if known != known:
+            self.program.needs({key})
         doubtful = key in self.program.dropped - self.program.settled.needed
         if known == DOUBTFUL or (arithmetic.owns(key) and doubtful):
             long = math.isfinite(known)

@@ -626,6 +626,13 @@ MUTATIONS = (
         "tests/test_linuxcnc_ini.py",
     ),
     Mutation(
+        "kept O-words: what a message prints may be left out",
+        "gcxform/flow/lasting_values.py",
+        "if known != known:",
+        "if False:",
+        "tests/test_corpus.py::test_case[flow/oword-message-lost]",
+    ),
+    Mutation(
         "kept O-words: a clause begins where the one before ends",
         "gcxform/flow/kept_owords.py",
         "        self.over = True\n        self.meet(kept.following, run.line)",
