@@ -50,7 +50,7 @@ EXAMPLES = {"axis": "X", "work-offset": "G54", "home": "G28", "tool": "1"}
 Keys = tuple[str | int, ...]
 HOME = re.compile(r"G28|G30( P[0-9]+)?")
 TOOL = re.compile("[0-9]{1,9}")
-WORK_OFFSET = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?|G154 P[0-9]+")
+WORK_OFFSET = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?|G154 P[0-9]+|G15 H[0-9]+")
 
 
 def load_machine(path: Path, known: Known = NONE) -> Machine:

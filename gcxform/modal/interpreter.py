@@ -23,7 +23,7 @@ from gcxform.modal.expressions.unknown import note_prints
 from gcxform.modal.expressions.value import given_to
 from gcxform.modal.frame_state import FrameState
 from gcxform.modal.lines import Lines
-from gcxform.modal.meaning.tables import GROUPS, NUMBER, NURBS_END, SPLINES, MeaningTable
+from gcxform.modal.meaning.tables import GROUPS, MANY_WORK, NUMBER, NURBS_END, SPLINES, MeaningTable
 from gcxform.modal.moves.kept_calls import refuse_lost_modes
 from gcxform.modal.moves.moves import Moves
 from gcxform.modal.noted import Assigned, Unknown
@@ -94,7 +94,8 @@ class Interpreter:
         self.state = self._first_state()
 
     def _first_state(self) -> State:
-        groups = {g: NUMBER[self.dialect.initial[g]] for g in GROUPS}
+        initial = self.dialect.initial
+        groups = {g: NUMBER.get(initial[g], MANY_WORK) for g in GROUPS}
         if self.reading.units:
             groups["units"] = int(self.reading.units == "in")
         start = self.reading.start

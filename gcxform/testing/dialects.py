@@ -118,7 +118,8 @@ def _check_tables(dialect: type[Dialect]) -> None:
     check(not set(axes) & set(dialect.block_rule.words), "a letter is an axis and a word")
     for group in GROUPS:
         code = dialect.initial.get(group, "")
-        check(code in NUMBER, f"initial[{group!r}] is {code!r}, which is no code of that group")
+        good = code in NUMBER or _is_work(dialect, code)
+        check(good, f"initial[{group!r}] is {code!r}, which is no code of that group")
     planes = {plane.name for plane in Plane}
     cut = dialect.arc_rule.planes
     check(cut <= planes, f"arc_rule.planes are {set(cut)}, not {planes}")
@@ -132,6 +133,12 @@ def _check_tables(dialect: type[Dialect]) -> None:
     check(dialect.arc_rule.absolute > 0, "arc_rule.absolute is the tolerance of arcs, above 0 mm")
     step = 10.0**-numbers.mm
     check(step < INCH, "lengths are written in whole inches")
+
+
+def _is_work(dialect: type[Dialect], name: str) -> bool:
+    """Whether a work offset is named by a code of the dialect and a number: G15 H1."""
+    code = dialect.codes.get(name.partition(" ")[0])
+    return code is not None and code.act == "work" and " " in name
 
 
 def _meaning(dialect: type[Dialect], text: str) -> Meaning:
@@ -194,7 +201,8 @@ def program(dialect: type[Dialect]) -> str:
         lines.append(ARCS[plane])
     for axis in dialect.axes[3:]:
         lines.append(f"G1 {axis}10. F100.")
-    if "G4" in has and dialect.point_rule.dwell:
+    waits = "G4" in has and has["G4"].effect is Effect.DWELL
+    if waits and dialect.point_rule.dwell:
         lines.append(f"G4 {next(iter(dialect.point_rule.dwell))}1.")
     lines.append("G1 X31.25 F200.")
     lines += [f"M{number}" for number in (5, 30) if number in dialect.m_codes]

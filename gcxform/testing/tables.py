@@ -141,6 +141,7 @@ def _words_of_codes(dialect: type[Dialect]) -> Complaints:
 def _families(dialect: type[Dialect]) -> Complaints:
     has = dialect.codes
     for family in canon.FAMILIES:
+        family = tuple(code for code in family if code not in dialect.differs)
         lacking = [code for code in family if code not in has and code not in canon.LOOSE]
         if lacking and any(code in has for code in family if code not in canon.LOOSE):
             others = " ".join(code for code in family if code in has)
