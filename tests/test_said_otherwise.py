@@ -216,3 +216,19 @@ def test_a_way_home_that_is_not_known_is_refused(blocks, homes):
     with pytest.raises(gx.GcxformError) as error:
         pipeline.run(f"{HEAD}G0 Z1.\n{blocks}\nM30\n".encode())
     assert error.value.diagnostics[0].code == "GX501"
+
+
+SETS = [
+    ("linuxcnc", "grbl", "G92 X1. Y2."),
+    ("grbl", "fanuc", "G92 X1. Y2."),
+    ("fanuc", "grbl", "G10 L2 P2 X1. Y0. Z0."),
+]
+
+
+@pytest.mark.parametrize(("source", "target", "block"), SETS)
+def test_codes_that_set_zeros_by_words_that_both_take(source, target, block):
+    assert said(source, target, f"{block}\nG0 X5. Y5. Z5.")[0] == [block, "G0 X5. Y5. Z5."]
+
+
+def test_a_word_that_one_of_them_takes_is_refused():
+    assert refused("linuxcnc", "grbl", "G10 L2 P2 X1. R30.\nG0 X5.").code == "GX501"

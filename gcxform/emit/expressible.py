@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gcxform.dialect.codes import Code, MCode
+from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.dialect import Dialect
 from gcxform.dialect.saying import Saying
 from gcxform.emit.manner import Manner
@@ -188,12 +188,14 @@ def other_in(
 ) -> str:
     """Return what the target cannot say, if a G code means something else there, or nothing."""
     other = target.codes.get(name)
-    if other is None or (other.group, other.effect, other.act, other.takes) != (
+    if other is None or (other.group, other.effect, other.act) != (
         code.group,
         code.effect,
         code.act,
-        code.takes,
     ):
+        return name
+    words = _words_of(meaning) if code.effect is Effect.FRAME else {*code.takes, *other.takes}
+    if words & (set(code.takes) ^ set(other.takes)):
         return name
     alone = not any(act.slots for act in meaning.acts if act.code == name)
     stays = source.tool_rule.h_stays, target.tool_rule.h_stays
@@ -204,6 +206,11 @@ def other_in(
     if code.act == "local" and source.offset_rule.g52_is_g92 != target.offset_rule.g52_is_g92:
         return f"{name} without changing what G92 has set"
     return ""
+
+
+def _words_of(meaning: Meaning) -> set[str]:
+    """Return the addresses of all words of a block."""
+    return {*meaning.slots, *(address for event in meaning.events for address, _ in event.slots)}
 
 
 def foreign_cycles(source: type[Dialect], target: type[Dialect]) -> frozenset[int]:

@@ -92,4 +92,11 @@ MUTATIONS = (
         "shift = tuple(0.0 * np.nan_to_num(frames.machine))",
         HERE,
     ),
+    Mutation(
+        "saying: words that the target does not take are left in",
+        "gcxform/emit/expressible.py",
+        "if words & (set(code.takes) ^ set(other.takes)):",
+        "if code.takes[:0] and words:",
+        HERE,
+    ),
 )
