@@ -88,3 +88,16 @@ def test_real_programs(dialect: str) -> None:
             hits[right] += 1
     share = hits[True] / hits.total()
     assert share == 1.0 if dialect == "heidenhain" else share > 0.7, hits
+
+
+ALIKE = {"trans.mpf", "trans_reset.mpf", "SINUMERIK850.nc"}
+"""Programs of a SINUMERIK that could be others as well: a few axis words, and another language."""
+
+
+@pytest.mark.skipif(not manifest(), reason="the collection of real programs is absent")
+@pytest.mark.parametrize("dialect", ["heidenhain", "sinumerik"])
+def test_languages_of_their_own_are_told_with_certainty(dialect: str) -> None:
+    for row in manifest():
+        if row["dialect"] == dialect and Path(row["path"]).name not in ALIKE:
+            guessed = gx.guess_dialect(BESIDE / row["path"]).dialects
+            assert guessed == (OURS.get(dialect, dialect),), row["path"]

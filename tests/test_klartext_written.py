@@ -190,8 +190,8 @@ def test_a_circle_becomes_lines_and_block_numbers_are_renewed():
 1 L X+0 Y+0 Z+5 R0 FMAX M3
 2 CC X+5 Y+0
 3 M8 ; arc
-4 L X+0.67 Y+2.5 F200
-5 L X+2.5 Y+4.33
+4 L X+0.6699 Y+2.5 F200
+5 L X+2.5 Y+4.3301
 6 L X+5 Y+5
 7 CYCL DEF 200 DRILLING ~
 Q200=2

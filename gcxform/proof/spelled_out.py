@@ -24,6 +24,7 @@ from gcxform.toolpath.path import Toolpath
 HINT = "nothing was written; let a pass write it in another way, or write for another dialect"
 NEAR = 1e-5  # mm: far below what rounding does
 ANGLE = 2e-4 * np.pi / 180  # rad: what rounding the angle of a helix does
+ROUND = 2e-4  # mm: so far words with four decimals may be off their circle
 SAME = ("kind", "feed_mode", "form", "side", "lost")
 ENDS = ("M2", "M30")
 
@@ -62,8 +63,7 @@ def _differences(a: Toolpath, b: Toolpath) -> Iterator[tuple[int, str]]:
     for name in SAME:
         yield from _first(getattr(a, name) != getattr(b, name), name)
     yield from _first(~_same(a.feed, b.feed, 1e-6 * np.abs(a.feed)), "feed")
-    size = np.hypot(*(a.start[:, :2] - a.centre[:, :2]).T)
-    near = NEAR + np.nan_to_num(size) * ANGLE
+    near = NEAR + np.maximum.accumulate(_slack(a)) if len(a) else np.zeros(0)
     yield from _first(~_same(a.end, b.end, near[:, None]).all(axis=1), "an end")
     yield from _first(~_same(a.centre, b.centre, near[:, None]).all(axis=1), "a centre")
     yield from _first(np.abs(a.sweep - b.sweep) > ANGLE + 1e-3, "a turn")
@@ -72,6 +72,19 @@ def _differences(a: Toolpath, b: Toolpath) -> Iterator[tuple[int, str]]:
             yield min(other[0], len(b)), f"{one[1]} is {other[1]}"
     if len(_events(a)) != len(_events(b)):
         yield len(b), "events are lost, or there are more"
+
+
+def _slack(path: Toolpath) -> Floats:
+    """Return by how much helices and several turns, said by their angle, may end elsewhere (n,) mm.
+
+    A round of them starts and ends as far from its centre; what is rounded in words is not. Words
+    behind it leave axes where they are, so it stays so for the rows that follow.
+    """
+    sizes = [np.hypot(*(at[:, :2] - path.centre[:, :2]).T) for at in (path.start, path.end)]
+    helix = np.nan_to_num(path.end[:, 2] - path.start[:, 2]) != 0
+    helix |= path.sweep > 2 * np.pi
+    slack = sizes[0] * ANGLE + np.minimum(np.abs(sizes[0] - sizes[1]), ROUND)
+    return np.where(helix, np.nan_to_num(slack), 0.0)
 
 
 def _events(path: Toolpath) -> list[tuple[int, str, tuple[tuple[str, float], ...]]]:

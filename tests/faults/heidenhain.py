@@ -139,7 +139,7 @@ MUTATIONS = (
     Mutation(
         "klartext: what hangs on the next line's direction is cut",
         BACK,
-        'if ROUNDED.match(next(ahead, "")):',
+        "if at < len(self.lines) and ROUNDED.match(self.lines[at]):",
         "if False:",
         f"{WRITTEN}::test_blocks_are_the_same_whatever_is_kept",
     ),

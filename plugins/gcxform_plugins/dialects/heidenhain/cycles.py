@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from decimal import Decimal
+from itertools import islice
 from typing import Any
 
 import gcxform as gx
@@ -95,7 +96,8 @@ class Cycles(Parameters):
             if axis in self.new_shift:
                 raise self.refusal("GX203", f"{axis} stands in this shift twice", item)
             self.new_shift[axis] = number
-        ahead = next((text for text in self.lines[self.at :] if text.strip()), "")
+        rest = islice(self.lines, self.at, None)
+        ahead = next((text for text in rest if text.strip()), "")
         if SHIFT_LINE.match(ahead):
             return []
         return self._shifted(item, self.new_shift)

@@ -93,6 +93,7 @@ class Heidenhain(gx.Dialect):
         9000: gx.MCode("kept", loses_position=True, takes="P"),
     }
     flow_rule = gx.FlowRule(lookup=gx.LookupRule(names=("{name}",), endings=(".H",), any_case=True))
+    numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     arc_rule = gx.ArcRule(absolute=0.016, turns="P")
     tip_rule = gx.TipRule(
         switches={"tip-on": "M128", "tip-off": "M129"},

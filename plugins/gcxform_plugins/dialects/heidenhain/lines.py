@@ -33,11 +33,13 @@ class Lines(gx.Speller):
     """Writes blocks as lines of Klartext.
 
     place   where the axes stand, in numbers of the program; an axis that is not here is lost
+    rounded axes that are where a helix ends, which is said by an angle
     steps   G91 is in force;  said: the unit has been written;  tool: that of the last T word
     """
 
     def __init__(self, name: str, inch: bool) -> None:
         super().__init__(re.sub(r"[^A-Z0-9_]", "", name.upper())[:16] or "A", inch)
+        self.rounded: set[str] = set()
         self.unit = "INCH" if inch else "MM"
         self.place: dict[str, Decimal] = {}
         self.motion, self.plane = "G0", "G17"
@@ -185,7 +187,14 @@ class Lines(gx.Speller):
         return " FMAX"
 
     def _line(self, ends: dict[str, Decimal]) -> str:
-        words = _words(ends, "I" if self.steps else "")
+        """Return the words of ends: steps as steps, but where a helix ends they would add up."""
+        words = ""
+        for axis, value in ends.items():
+            if self.steps and axis in self.rounded and axis in self.place:
+                words += f" {axis}{_signed(self.place[axis] + value)}"
+            else:
+                words += _words({axis: value}, "I" if self.steps else "")
+        self.rounded -= ends.keys()
         self._stand(ends)
         return words
 
@@ -217,6 +226,7 @@ class Lines(gx.Speller):
         rest = {axis: value for axis, value in ends.items() if axis not in "XY"}
         words = _words(rest, "I" if self.steps else "")
         self._stand(ends)
+        self.rounded |= {"X", "Y"}
         yield f"CP IPA{_signed(angle)}{words}{sense}{feed}"
 
     def _angle(self, ends: dict[str, Decimal], pole: dict[str, Decimal], turns: int) -> Decimal:

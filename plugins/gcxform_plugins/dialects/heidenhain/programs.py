@@ -87,8 +87,10 @@ class Programs(Klartext):
             self.refuse("on which side of the contour the tool is is not known", path)
         if path.name not in ("L", "LP") and self.scaled:
             self.refuse(f"{path.name} in a scale", path)
-        ahead = (text for text in self.lines[self.at :] if code(text).strip(" \t0123456789"))
-        if ROUNDED.match(next(ahead, "")):
+        at = self.at
+        while at < len(self.lines) and not code(self.lines[at]).strip(" \t0123456789"):
+            at += 1
+        if at < len(self.lines) and ROUNDED.match(self.lines[at]):
             self.refuse(f"the next line hangs on the direction of this {path.name}", path)
 
     # --- what is kept ---

@@ -23,8 +23,10 @@ class Blocks(Moves):
     number = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
     signs = re.compile(
         rb"\b(?:TRAORI|TRAFOOF|CYCLE8[0-9]|MCALL|SUPA|CR=|G710|G700|G64[1-5]|CIP|G500|GOTO[FB]\b"
-        rb"|DEF (?:REAL|INT)\b)|%_N_|\bMSG *\(\"|=(?:DC|AC|IC|ACP|ACN)\(",
-        re.IGNORECASE,
+        rb"|DEF (?:REAL|INT)\b|G290|[ABC]SPLINE\b|[SMR][0-9]+[ \t]*=|OS\[|[XYZ]=[-+.0-9])|%_N_"
+        rb"|\bMSG *\(\"|=(?:DC|AC|IC|ACP|ACN)\(|^[ \t]*(?:N[0-9]+[ \t]+)?"
+        rb"(?:A?(?:TRANS|ROT|SCALE|MIRROR)\b|(?:_[A-Z0-9_]+|[A-Z]{2}[A-Z0-9_]*)[ \t]*\()",
+        re.IGNORECASE | re.MULTILINE,
     )
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
