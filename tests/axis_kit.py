@@ -11,7 +11,7 @@ import os
 import shutil
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,9 +23,11 @@ import pytest
 SAMPLE = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim")
 INI = "axis/axis_mm.ini"
 NOBODY = 65534
-PATIENCE = 40.0  # s
+PATIENCE = 120.0  # s; nothing takes so long, but other work on the same processors may
 DRAWN, WIDE = 700, 738  # pixels of the window
-SETTLED = 1.5  # s in which a picture is drawn
+DRAWN_PART = 0.4  # of the window that is not black when all of it is there
+PACE = 0.5  # s between two looks
+STILL = 4  # looks that show the same: then it is drawn
 
 
 @dataclass
@@ -36,20 +38,28 @@ class Axis:
     environment: dict[str, str]
 
     def open(self, program: Path, like: Any = None) -> Any:
-        """Open a program; return the picture of the window: (height, width, 3), 0 to 255.
+        """Open a program that looks otherwise than what is shown; return the picture of the window.
 
-        It is taken until it stays, and with `like` until it is like that or it took too long.
+        It is (height, width, 3), 0 to 255, and taken when it is another one and stays; with `like`
+        when it is like that, or when it took too long.
         """
-        _as_nobody(["axis-remote", str(program)], self.environment).wait(PATIENCE)
-        end = time.monotonic() + PATIENCE
         before = self._shown()
-        while True:
-            time.sleep(SETTLED)
+        _as_nobody(["axis-remote", str(program)], self.environment).wait(PATIENCE)
+        if like is None:
+            return self.still(lambda shown: (shown != before).any())
+        return self.still(lambda shown: (shown == like).all())
+
+    def still(self, wanted: Callable[[Any], Any]) -> Any:
+        """Return the picture when it is as wanted and stays, the last one if it took too long."""
+        end, last, same = time.monotonic() + PATIENCE, self._shown(), 0
+        while time.monotonic() < end:
+            time.sleep(PACE)
             shown = self._shown()
-            stays = (shown == (before if like is None else like)).all()
-            if stays or time.monotonic() > end:
-                return shown
-            before = shown
+            same = same + 1 if (shown == last).all() else 0
+            last = shown
+            if same >= STILL and wanted(shown):
+                break
+        return last
 
     def _shown(self) -> Any:
         """Return the picture, down to where AXIS shows messages."""
@@ -76,7 +86,9 @@ def started(folder: Path, settings: str) -> Iterator[Axis]:
         running = _as_nobody(["linuxcnc", str(ini)], said)
         try:
             _wait_for(said)
-            yield Axis(screen, said)
+            axis = Axis(screen, said)
+            axis.still(lambda shown: shown.any(axis=2).mean() > DRAWN_PART)  # black before
+            yield axis
         finally:
             _as_nobody(["axis-remote", "--quit"], said).wait(PATIENCE)
             running.wait(PATIENCE)
@@ -103,7 +115,6 @@ def _wait_for(said: dict[str, str]) -> None:
     while _as_nobody(["axis-remote", "--ping"], said).wait(PATIENCE):
         assert time.monotonic() < end, "AXIS does not start"
         time.sleep(0.3)
-    time.sleep(SETTLED)
 
 
 def _as_nobody(words: list[str], said: dict[str, str]) -> subprocess.Popen[bytes]:

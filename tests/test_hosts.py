@@ -171,8 +171,8 @@ def test_axis_shows_the_compensated_path() -> None:
         (folder / "part.done").write_bytes(done.stdout_bytes)
         said = call("hosts", "linuxcnc", "-p", str(folder / "mill 1.toml")).stdout
         with axis_kit.started(folder, said) as axis:
-            plain = axis.open(folder / "part.plain")
             finished = axis.open(folder / "part.done")
+            plain = axis.open(folder / "part.plain")  # so that the next picture has to be drawn
             filtered = axis.open(folder / "part.ngc", finished)
     if PICTURES:
         for name, shown in {"axis": filtered, "axis-finished": finished}.items():
