@@ -11,6 +11,9 @@ BLOCKS = "plugins/gcxform_plugins/dialects/siemens/blocks.py"
 READING = "plugins/gcxform_plugins/dialects/siemens/reading.py"
 CYCLES = "plugins/gcxform_plugins/dialects/siemens/cycles.py"
 DECIDING = "plugins/gcxform_plugins/dialects/siemens/deciding.py"
+FRAMES = "plugins/gcxform_plugins/dialects/siemens/frames.py"
+FRAMING = "plugins/gcxform_plugins/dialects/siemens/framing.py"
+FLOW = "tests/properties/test_siemens_flow.py"
 STRUCTURE = "plugins/gcxform_plugins/dialects/siemens/structure.py"
 EFFECTS = "plugins/gcxform_plugins/dialects/siemens/effects.py"
 PROGRAMS = "plugins/gcxform_plugins/dialects/siemens/programs.py"
@@ -157,8 +160,8 @@ MUTATIONS = (
     Mutation(
         "siemens: behind a cycle the code before it is taken to hold",
         BLOCKS,
-        '        self.said = "0"\n        self.place.absolute(hole.axis',
-        "        self.place.absolute(hole.axis",
+        '        self.said = "0"\n\n    # --- tools',
+        "\n    # --- tools",
         RANDOM,
     ),
     Mutation(
@@ -314,5 +317,54 @@ MUTATIONS = (
         "return axes + LINEAR if DRILLING.search",
         "return axes if DRILLING.search",
         f"{CASES}[dialects/siemens/stands-a-hole]",
+    ),
+    Mutation(
+        "siemens: ROT turns about X before Y and Z",
+        FRAMES,
+        'about("Z", z) @ about("Y", y) @ about("X", x)',
+        'about("X", x) @ about("Y", y) @ about("Z", z)',
+        FLOW,
+    ),
+    Mutation(
+        "siemens: what is added to a frame acts outside of it",
+        FRAMING,
+        "made = self.frame @ made",
+        "made = made @ self.frame",
+        f"{CASES}[dialects/siemens/frame]",
+    ),
+    Mutation(
+        "siemens: arcs of a mirrored frame turn as they say",
+        FRAMING,
+        "if growth < 0 else motion",
+        "if growth is None else motion",
+        f"{CASES}[dialects/siemens/frame]",
+    ),
+    Mutation(
+        "siemens: axes stand in another frame where they stood in the one before",
+        FRAMING,
+        "made.inside(old.point(point))",
+        "point",
+        FLOW,
+    ),
+    Mutation(
+        "siemens: plain lines know no frame",
+        BLOCKS,
+        "if self.length_is_elsewhere or self.frame != Frame():",
+        "if self.length_is_elsewhere:",
+        f"{CASES}[dialects/siemens/frame]",
+    ),
+    Mutation(
+        "siemens: holes on a circle stand one step on",
+        CYCLES,
+        "first + k * (step",
+        "first + (k + 1) * (step",
+        f"{CASES}[dialects/siemens/frame]",
+    ),
+    Mutation(
+        "siemens: a tilted arc is drawn in its plane",
+        FRAMES,
+        "if any(abs(v) > NEAR for v in (m[a][c], m[b][c], m[c][a], m[c][b])):",
+        "if not m:",
+        f"{CASES}[dialects/siemens/frame-tilted]",
     ),
 )

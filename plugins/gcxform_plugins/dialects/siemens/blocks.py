@@ -8,15 +8,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from decimal import Decimal
 
 import gcxform as gx
 from gcxform_plugins.dialects.siemens.cycles import Drilling
+from gcxform_plugins.dialects.siemens.frames import Frame
+from gcxform_plugins.dialects.siemens.framing import Framing, rounded
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, STEP, Line
-from gcxform_plugins.dialects.siemens.moves import Moves, rest_of
-from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, PlaceError
+from gcxform_plugins.dialects.siemens.moves import rest_of
+from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, PlaceError, text_of
 
 
-class Blocks(Moves):
+class Blocks(Framing):
     """Turns the lines of a SINUMERIK into blocks of words."""
 
     grammar = ("gcxform_grammars", "siemens")
@@ -38,7 +41,8 @@ class Blocks(Moves):
         try:
             made = [block for block in self._made(line) if block]
         except PlaceError as error:
-            raise self.refusal(error.code, error.message, self.any_of(line), error.hint) from None
+            at = line.alone or self.any_of(line)
+            raise self.refusal(error.code, error.message, at, error.hint) from None
         self.plainly = self._takes_plain_lines()
         if made and line.number:
             made[0] = line.number + made[0]
@@ -56,7 +60,7 @@ class Blocks(Moves):
             return False
         if self.steps or self.said_steps or self.place.unwound or not self.place.moved:
             return False
-        if self.length_is_elsewhere:
+        if self.length_is_elsewhere or self.frame != Frame():
             return False
         if (self.changed and self.edge is None) or (self.waiting is not None and not self.changed):
             return False
@@ -64,10 +68,9 @@ class Blocks(Moves):
         return not cuts_tips or self.angles_change_in_proportion
 
     def _made(self, line: Line) -> Iterator[str]:
-        if line.alone is not None and line.alone.name in FRAMES and line.axes:
-            name = line.alone.name
-            why = f"{name} with words sets a frame of the program, which is not read"
-            self.refuse(why, line.alone, "let the CAM write positions without it")
+        if line.alone is not None and line.alone.name in FRAMES and not line.codes:
+            yield from self.set_frame(line)
+            return
         if line.alone is not None and (line.axes or line.centres or line.codes or line.motion):
             self.refuse("this stands in a block of its own", line.alone, "give it its own line")
         if line.dwell is not None or line.act is not None or line.cycle is not None:
@@ -108,19 +111,35 @@ class Blocks(Moves):
             yield from (f"F{line.feed}" if line.feed else "", line.act[0])
         elif self.once is not None:
             yield f"F{line.feed}" if line.feed else ""
-            yield from self._holes(self.once)
-            self.once = None
+            for place in self.holes or (None,):
+                yield from self._to_hole(place)
+                yield from self._holes(self.once)
+            self.once, self.holes = None, []
+
+    def _to_hole(self, place: tuple[Decimal, Decimal] | None) -> Iterator[str]:
+        """Yield the way to a hole of a pattern; none to where the axes stand."""
+        if place is not None:
+            texts = [text_of(rounded(value)) for value in place]
+            for axis, text in zip(self.plane, texts, strict=True):
+                self.place.absolute(axis, text)
+            ends = [axis + text for axis, text in zip(self.plane, texts, strict=True)]
+            words = ["G0", *self.outside(False, ends)]
+            yield " ".join([*self.distance_code(Line(), False), *words])
+            self.said, self.place.moved = "0", True
 
     def _holes(self, hole: Drilling) -> Iterator[str]:
         """Yield the moves of a cycle where the axes stand. Raises PlaceError."""
         if self.changed and self.edge is None:
             self.refuse("a cycle, and which edge is in force behind M6 is not known")
         self.check_plane(None)
-        first, *others = hole.blocks()
-        yield " ".join([*self.distance_code(Line(), False), first])
-        yield from others
+        for k, (code, text) in enumerate(hole.steps()):
+            if code == "4":
+                yield f"G4 P{text}"
+                continue
+            self.place.absolute(hole.axis, text)
+            words = [f"G{code}", *self.outside(False, [hole.axis + text])]
+            yield " ".join([*([] if k else self.distance_code(Line(), False)), *words])
         self.said = "0"
-        self.place.absolute(hole.axis, hole.back)
 
     # --- tools ---
 

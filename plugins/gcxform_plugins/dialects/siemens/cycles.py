@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -41,11 +42,13 @@ class Drilling:
     back: str
     dwell: str = ""
 
-    def blocks(self) -> list[str]:
-        """Return the moves at a place: rapid to the start, feed to the bottom, rapid back."""
-        moves = [f"G0 {self.axis}{self.start}", f"G1 {self.axis}{self.bottom}"]
-        wait = [f"G4 P{self.dwell}"] if self.dwell else []
-        return [*moves, *wait, f"G0 {self.axis}{self.back}"]
+    def steps(self) -> list[tuple[str, str]]:
+        """Return codes and levels at a place: rapid to the start, feed to the bottom, rapid back.
+
+        Code 4 is a dwell, of seconds.
+        """
+        wait = [("4", self.dwell)] if self.dwell else []
+        return [("0", self.start), ("1", self.bottom), *wait, ("0", self.back)]
 
 
 class CycleError(Exception):
@@ -72,6 +75,26 @@ def drilling(name: str, given: Sequence[str], axis: str) -> Drilling:
     return Drilling(axis, start, bottom, back, _seconds(dwell))
 
 
+def circle(given: Sequence[str]) -> list[tuple[Decimal, Decimal]]:
+    """Return the places of HOLES2 in the plane, in their order. Raises CycleError.
+
+    The first is at STA1, each further one by INDA, or by as much as goes round (Operating p. 286).
+    """
+    if len(given) != 6:
+        raise CycleError("it takes six arguments")
+    names = ("CPA", "CPO", "RAD", "STA1", "INDA")
+    a, b, radius, first, step = (
+        Decimal(_number(text or "0", name)) for text, name in zip(given, names, strict=False)
+    )
+    if not given[5].isdigit() or not 0 < int(given[5]) <= MOST or radius <= 0:
+        raise CycleError("NUM counts no holes, or RAD is not above 0")
+    count = int(given[5])
+    angles = [math.radians(float(first + k * (step or Decimal(360) / count))) for k in range(count)]
+    turns = [(Decimal(repr(math.cos(t))), Decimal(repr(math.sin(t)))) for t in angles]
+    return [(a + radius * x, b + radius * y) for x, y in turns]
+
+
+MOST = 9999  # holes of a pattern
 ALIKE = ("", "0", SECONDS)
 
 

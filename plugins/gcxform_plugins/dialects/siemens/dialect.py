@@ -27,7 +27,12 @@ their bytes, and what is refused below is then kept as it stands, with all that 
 | G54 to G57, G505, G506 | work offsets; G505 and G506 are G58 and G59 in the machine file | [K] |
 | G500, G53 | leave basic frames in force, which only the control knows: refused | K2 741 |
 | SUPA, G153 | in machine coordinates; only with D0: a tool length may stay | ISO 3-42 |
-| G58, G59, TRANS, ROT, SCALE, MIRROR | programmable frames: refused; bare, they end them | [K] |
+| TRANS, ROT, SCALE, MIRROR | a new programmable frame, in place of the one before | 808D 56 |
+| ATRANS, AROT, ASCALE, AMIRROR | in the frame that is in force: on its right | PM 631, K2 2-67 |
+| ROT X Y Z, RPL= | about Z, new Y, new X (RPY); about the axis across the plane | PM 309 |
+| behind them | nothing moves; steps are refused until their axis has been told (SD42440) | K2 1-7 |
+| arcs in frames that tilt, or do not grow axes alike | refused | |
+| ROTS, G58, G59, ROT of 90 or more about Y | refused | |
 | G710, G700 | mm, inches, also of feeds | 828D 341 |
 | G71 | `units` in `[input]`, mm unless said, is the unit of feeds; G70: refused | 828D 341 |
 | another feed mode | F has to be programmed again | |
@@ -52,6 +57,7 @@ their bytes, and what is refused below is then kept as it stands, with all that 
 | CYCLE800 | only empty, or without angles, with two rotary axes at 0 | SW 481 |
 | CYCLE81, CYCLE82 | rapid to RFP + SDIS, feed to DP, dwell, rapid to RTP | C81 |
 | MCALL | that behind each line with axis words | C81 |
+| HOLES2 under MCALL | holes on a circle, in the order of their numbers, by lines | OM 286 |
 | DP, DPR | absolute, or below RFP; both: refused; other cycles: refused | C81 |
 | R parameters | not known until they are set; a block sets several, left to right | [K] |
 | DEF of INT REAL BOOL CHAR STRING, arrays | 0 or empty, from 0, last index first | JP 54 |

@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 import gcxform as gx
 
 ABSOLUTE, STEP = "AC", "IC"
-FRAMES = frozenset(("TRANS", "ROT", "SCALE", "MIRROR"))
-"""Frames of the program: without words they end those that there are."""
+FRAMES = frozenset(
+    way + name for way in ("", "A") for name in ("TRANS", "ROT", "ROTS", "SCALE", "MIRROR")
+)
+"""Instructions for the frame of the program, new ones and those that add to it."""
 
 
 @dataclass(slots=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from decimal import Decimal
 
 import gcxform as gx
@@ -64,8 +65,19 @@ class Moves(Statements):
         elif line.centres or line.named or line.middles:
             self.refuse("words of an arc in a block that is none", self.first_of(line))
         steps, words = self._words(line, computed)
+        words = self.outside(steps, words)
+        if self.motion in ("2", "3", "CIP"):
+            motion, arc = self.arc_outside(motion, arc)
         codes = [*self.motion_code(line, motion), *self.distance_code(line, steps)]
         return " ".join([*line.codes, *codes, *words, *arc, *rest_of(line)])
+
+    def outside(self, steps: bool, words: Sequence[str]) -> list[str]:
+        """Return axis words as they are outside of the frame of the program."""
+        raise NotImplementedError
+
+    def arc_outside(self, motion: str, arc: Sequence[str]) -> tuple[str, list[str]]:
+        """Return the code of an arc and its words, outside of the frame of the program."""
+        raise NotImplementedError
 
     def any_of(self, line: Line) -> gx.Item | None:
         """Return a word of a move."""

@@ -6,7 +6,7 @@ Positions are the texts of the program, or sums of them, so that nothing is roun
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from decimal import Decimal
 
 LINEAR, ROTARY = "XYZ", "ABC"
@@ -94,6 +94,14 @@ class Place:
             self.at[axis] = self.line, None
             if shifted:
                 self.shifted[axis] = self.line
+
+    def seen_anew(self, moved: Callable[[Sequence[Decimal]], Sequence[Decimal]]) -> None:
+        """Take another frame: nothing moves, and X, Y, Z are elsewhere in it, if that is known."""
+        known = [self.known(axis) for axis in LINEAR]
+        there = [value for value in known if value is not None]
+        found = [*moved(there)] if len(there) == len(known) else [None] * len(known)
+        for axis, value in zip(LINEAR, found, strict=True):
+            self.at[axis], self.shifted[axis] = (self.line, value), self.line
 
     def absolute(self, axis: str, number: str) -> None:
         """Take an absolute word. Raises PlaceError."""

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from decimal import Decimal
 from typing import Any
 
 import gcxform as gx
 from gcxform_plugins.dialects.siemens import cycles as cycles
+from gcxform_plugins.dialects.siemens.frames import Frame
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, STEP, Line
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, Place
 
@@ -61,12 +63,13 @@ Reader = Callable[[Line, gx.Item], None]
 class Statements(gx.Translator):
     """Puts items into a `Line`, and keeps what the control keeps.
 
+    frame         TRANS, ROT and their like, as far as blocks are written outside of it
     motion        of the program: "0" to "3", "CIP", or nothing where none has been stated
     said, said_steps, said_centres   what the blocks have said of motion, G91 and G90.1
     following     TRAORI is in force;  orientation: what ORIAXES and ORIMKS and their like have said
     tool, waiting the tools in the spindle and of the last T;  edge: "0", "1", None where not known
     changed       M6 has been;  comp: G41 or G42 is in force
-    drilling      the cycle of MCALL;  once: that of a line
+    drilling      the cycle of MCALL;  once: that of a line;  holes: the places of a pattern
     """
 
     def __init__(
@@ -78,6 +81,7 @@ class Statements(gx.Translator):
         self.plainly = False
         self.motion, self.said, self.plane, self.work, self.unit = "", "", "XY", "", ""
         self.steps = self.said_steps = self.said_centres = False
+        self.frame = Frame()
         self.following = self.comp = self.changed = False
         self.orientation = ["", ""]
         self.tool: str | None = None
@@ -85,6 +89,7 @@ class Statements(gx.Translator):
         self.edge: str | None = None
         self.drilling: cycles.Drilling | None = None
         self.once: cycles.Drilling | None = None
+        self.holes: list[tuple[Decimal, Decimal]] = []
         self.read: Mapping[str, Reader] = {
             "word": self._word,
             "value": self._word,
@@ -225,12 +230,19 @@ class Statements(gx.Translator):
 
     def _compensates(self, line: Line, item: gx.Item, code: str) -> None:
         """Take G41 and G42, with the radius of the tool whose edge is in force."""
+        if not self.keeps_radii:
+            self.refuse("compensation in a frame that mirrors, grows or tilts", item)
         edge = line.edge_number if line.edge is not None else self.edge
         if edge != "1" or self.tool is None or line.tool or self.following or self.drilling:
             message = "compensation needs D1 of a known tool, and neither TRAORI nor MCALL"
             self.refuse(message, item, "write T, M6 and D1 before")
         self.comp = True
         line.codes.append(f"G{code} D{self.tool}")
+
+    @property
+    def keeps_radii(self) -> bool:
+        """Whether the frame of the program keeps sides and radii in the plane."""
+        raise NotImplementedError
 
     def _motion_code(self, line: Line, item: gx.Item, code: str) -> None:
         self._once(line, item, "motion")
@@ -254,6 +266,8 @@ class Statements(gx.Translator):
             self.refuse(message, item, 'say units = "mm" in [input], or write G710')
         self._once(line, item, "units")
         unit = "G20" if code == "700" else "G21"
+        if self.frame != Frame() and unit != self.unit:
+            self.refuse("other units in a frame of the program", item, "write TRANS before")
         if self.unit not in ("", unit) or unit == "G20":
             self.place.lose(LINEAR, shifted=False)
         self.unit = unit
@@ -283,7 +297,7 @@ class Statements(gx.Translator):
 
     def _named(self, line: Line, item: gx.Item) -> None:
         name = item.name
-        if name in ("CR", "AR", "TURN"):
+        if name in ("CR", "AR", "TURN", "RPL"):
             self._once(line, item, name)
             line.named[name] = (item.numbers[0], item)
         elif name not in TOLERANCES:
@@ -326,6 +340,12 @@ class Statements(gx.Translator):
         elif name in ("CYCLE81", "CYCLE82"):
             line.cycle = item
             self._drilled(line, item, name, given)
+        elif name == "HOLES2" and self.drilling is not None:
+            line.cycle, self.once = item, self.drilling
+            try:
+                self.holes = cycles.circle(given)
+            except cycles.CycleError as error:
+                self.refuse(f"{name}: {error}", item)
         elif self._quiet(name, given):
             line.alone = item
         else:
