@@ -344,7 +344,7 @@ MUTATIONS = (
         FRAMING,
         "made.inside(old.point(point))",
         "point",
-        FLOW,
+        f"{CASES}[dialects/siemens/frame-stands]",
     ),
     Mutation(
         "siemens: plain lines know no frame",
@@ -359,12 +359,5 @@ MUTATIONS = (
         "first + k * (step",
         "first + (k + 1) * (step",
         f"{CASES}[dialects/siemens/frame]",
-    ),
-    Mutation(
-        "siemens: a tilted arc is drawn in its plane",
-        FRAMES,
-        "if any(abs(v) > NEAR for v in (m[a][c], m[b][c], m[c][a], m[c][b])):",
-        "if not m:",
-        f"{CASES}[dialects/siemens/frame-tilted]",
     ),
 )

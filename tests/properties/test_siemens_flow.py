@@ -200,8 +200,9 @@ class Builder:
             )
         )
         self.shifted, self.turned = {*"XYZ"}, True
-        self.lines.append("G0 X1 Y=BB Z5")
-        self.shifted = set()
+        told = self.pick("XYZ", "XYZ", "YZ", "X")
+        self.lines.append("G0 " + " ".join({"X": "X1", "Y": "Y=BB", "Z": "Z5"}[a] for a in told))
+        self.shifted -= {*told}
 
     def drilled(self):
         depth = self.pick("-3.5", "", "-10")
