@@ -360,4 +360,11 @@ MUTATIONS = (
         "first + (k + 1) * (step",
         f"{CASES}[dialects/siemens/frame]",
     ),
+    Mutation(
+        "siemens: words behind a value that is not known are none",
+        PROGRAMS,
+        "            return [*words_of(self.tree_of(text), text)]\n",
+        "            return items\n",
+        f"{CASES}[dialects/siemens/stands-by-all-its-words]",
+    ),
 )

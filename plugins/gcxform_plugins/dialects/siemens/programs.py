@@ -12,6 +12,8 @@ import re
 import zlib
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
+from lark.exceptions import UnexpectedInput
+
 import gcxform as gx
 from gcxform import vocabulary as v
 from gcxform_plugins.dialects.siemens.calls import Calls
@@ -20,7 +22,7 @@ from gcxform_plugins.dialects.siemens.line import FRAMES, Line
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
 from gcxform_plugins.dialects.siemens.reading import QUIET
 from gcxform_plugins.dialects.siemens.spelling import spelled
-from gcxform_plugins.dialects.siemens.standing import ALL, DRILLING, OTHER, PATHS, axes_of
+from gcxform_plugins.dialects.siemens.standing import ALL, DRILLING, OTHER, PATHS, axes_of, words_of
 from gcxform_plugins.dialects.siemens.structure import code
 
 KEPT = "M9000"
@@ -56,6 +58,7 @@ KEEPS = (
     "units, plane, feed mode and compensation are taken to be as before"
 )
 MODAL_CALL = re.compile(r"(?<![A-Z0-9_])MCALL(?![A-Z0-9_])", re.IGNORECASE)
+UNREAD = gx.Item("flow", ("",), (), (0, 0))
 STEPPED = re.compile(r"=[ \t]*IC[ \t]*\(|(?<![A-Z0-9_])G[ \t]*0*91(?![0-9.])", re.IGNORECASE)
 KNOWN = QUIET, frozenset(n for n in v.ISO_M if n not in (128, 129)) | {17}
 """Commands and M codes that move nothing."""
@@ -81,12 +84,13 @@ class Programs(Calls):
         if self.line < self.kept_until:
             return self._perhaps(items) if self.perhaps else self._kept(items, self.kept_why, True)
         self.kept_until, self.perhaps = 0, False
+        words = self._words_in(items)
         before = {name: getattr(self, name) for name in STATE}
         orientation = [*self.orientation]
         try:
-            if self.unknown_cycle and any(i.name in LINEAR for i in items if i.names):
+            if self.unknown_cycle and any(i.name in LINEAR for i in words if i.names):
                 self.refuse(f"{self.unknown_cycle} is called behind this block")
-            if self.line in self.stay and any(i.names and i.name in ALL for i in items):
+            if self.line in self.stay and any(i.names and i.name in ALL for i in words):
                 self.refuse("only the control knows how often this is executed")
             return [*self.executed(items)]
         except gx.InputError as error:
@@ -118,6 +122,19 @@ class Programs(Calls):
             self.assumed[UNDEFINED] = None
         return []
 
+    def _words_in(self, items: Sequence[gx.Item], line: int = -1) -> Sequence[gx.Item]:
+        """Return all items of a line, of one that computes too; as they are where it is not read.
+
+        Then something among them is not known, and loses all.
+        """
+        if not any(item.kind in ("expression", "system", "array") for item in items):
+            return items
+        text = self.lines[self.line if line < 0 else line]
+        try:
+            return [*words_of(self.tree_of(text), text)]
+        except UnexpectedInput:
+            return [*items, UNREAD]
+
     def effect(self, text: str) -> str | None:
         """Return the axes that are lost behind a line that stays; None where it may do anything."""
         return effect_of(self.tree_of, text, lambda name: self._cell(name) is not None)
@@ -128,7 +145,8 @@ class Programs(Calls):
         for line in lines:
             text, effect = self.lines[line], self.effect(self.lines[line])
             if effect is None:
-                effect = axes_of([i for i in self.items(line) if i.kind != "comment"], *KNOWN)
+                here = [i for i in self.items(line) if i.kind not in ("comment", "block_delete")]
+                effect = axes_of(self._words_in(here, line), *KNOWN)
             self.lose_axes(ALL + "F" if effect is None else effect.replace("T", ""))
             self.place.moved = True
             if effect is None:
@@ -148,7 +166,7 @@ class Programs(Calls):
         """Return the block of a line that stays as it stands."""
         if not items:
             return []
-        text = self.lines[self.line]
+        items, text = self._words_in(items), self.lines[self.line]
         if FROM_HERE.search(code(text).upper()):
             self.keep_rest(why)
         line = self._codes_of(items)

@@ -7,12 +7,15 @@ words says. It is executed as it was; what it names is somewhere else behind it,
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import gcxform as gx
+from gcxform_plugins.dialects.siemens.nodes import rule_of, span_of
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
 
 ALL = LINEAR + ROTARY
+WORD = re.compile(r"([A-Z])[ \t]*([-+]?[0-9.]+)")
 CODES = frozenset((
     "0", "1", "2", "3", "4", "9", "17", "18", "19", "40", "41", "42", "54", "55", "56", "57", "60",
     "64", "71", "90", "91", "93", "94", "95", "110", "111", "112", "450", "451", "601", "602",
@@ -37,6 +40,26 @@ DRILLING = re.compile(r"(?:CYCLE(?:8[1-9]|840|801)|HOLES[12])[ \t]*\(", re.IGNOR
 """Cycles that move along the axis of the tool, or on to holes; they return modes and frames."""
 
 
+def words_of(tree: Any, text: str) -> Iterator[gx.Item]:
+    """Yield the items of a line that computes: to the grammar of words its rest is one item."""
+    for node in tree.children:
+        rule, place = rule_of(node), span_of(node)
+        whole = text[slice(*place)].strip().upper()
+        found = WORD.fullmatch(whole)
+        if rule == "word" and found:
+            yield gx.Item("word", (found[1],), (found[2],), place)
+        elif rule == "assignment":
+            target = node.children[0]
+            name = str(target.children[0]).upper()
+            numbered = len(name) > 1 and name[1:].isdigit()
+            kind = "array" if len(target.children) > 1 else "indexed" if numbered else "expression"
+            yield gx.Item(kind, (name[0] if kind == "indexed" else name,), (), place)
+        elif rule == "bare":
+            yield gx.Item("command", (whole,), (), place)
+        else:
+            yield gx.Item("label" if rule in ("label", "sequence") else "call", (whole,), (), place)
+
+
 def axes_of(items: Sequence[gx.Item], quiet: frozenset[str], m_codes: frozenset[int]) -> str | None:
     """Return the axes that are elsewhere behind a line, T for a tool; None where it may do more."""
     found = [_of_item(item, quiet, m_codes) for item in items]
@@ -56,7 +79,7 @@ def _of_item(item: gx.Item, quiet: frozenset[str], m_codes: frozenset[int]) -> s
     if kind in ("named", "expression"):
         return None if name in MOVING else LINEAR if name in POLAR else ""
     if kind == "indexed":
-        return "" if name in "IJKMS" else ALL
+        return "" if name in "IJKMRS" else ALL
     if kind == "tool_name":
         return ALL + "T"
     if kind == "command":
