@@ -7,6 +7,7 @@ modes. What the names are worth was asked of LinuxCNC's interpreter (`tests/fact
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -48,7 +49,16 @@ class Places:
                 self.interpreter.interpret(self.reader.read(text), self.reader.table)
             except InputError as error:
                 raise self.program.located(error) from None
-        return self.interpreter.state
+        return self._where_ways_meet(self.interpreter.state)
+
+    def _where_ways_meet(self, state: State) -> State:
+        """Return the state before the next block: another way may come in there."""
+        letters = self.interpreter.undecided.lost.get(self.program.blocks, "")
+        if not letters:
+            return state
+        position = state.position.copy()
+        position[[k for k, axis in enumerate(self.axes) if axis in letters]] = math.nan
+        return replace(state, position=position, feed_lost=state.feed_lost or "F" in letters)
 
     @property
     def axes(self) -> str:
@@ -71,10 +81,10 @@ class Places:
 
     def parameters(self) -> dict[int | str, float]:
         """Return the parameters that say where axes stand, and the modes; nan: not known."""
-        words = self.words()
+        words, state = self.words(), self.now()
         found: dict[int | str, float] = {FIRST + k: word for k, word in enumerate(words.values())}
         named = {f"_{axis.lower()}": word for axis, word in words.items()}
-        return found | named | self._modes(self.interpreter.state)
+        return found | named | self._modes(state)
 
     def _modes(self, state: State) -> dict[str, float]:
         """Return what the names of modes are worth: 1 where one is in force, F and S as written."""

@@ -626,6 +626,13 @@ MUTATIONS = (
         "tests/test_linuxcnc_ini.py",
     ),
     Mutation(
+        "kept O-words: where ways meet the place of one is read",
+        "gcxform/flow/places.py",
+        "if not letters:",
+        "if True:",
+        "tests/test_corpus.py::test_case[flow/oword-place-lost]",
+    ),
+    Mutation(
         "kept O-words: what a message prints may be left out",
         "gcxform/flow/lasting_values.py",
         "if known != known:",
