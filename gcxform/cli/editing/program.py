@@ -3,7 +3,7 @@
 A program is read whole after a change; ten thousand blocks take some hundredths of a second, for
 the shapes of lines that were met before are kept. So an answer is always that of a fresh reading,
 and nothing has to be mended. What a block does is asked with all before it read; readings of what
-has not changed are kept for that, one for every thousand lines.
+has not changed are kept for that, one for every two thousand lines.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from gcxform.modal.state import State
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax.source import WINDOW, Source
 
-STRIDE: Final = 1000  # lines between two states that are kept
+STRIDE: Final = 2000  # lines between two states that are kept
 _END: Final = re.compile(rb"\r\n|\n|\r")
 
 
