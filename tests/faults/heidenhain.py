@@ -25,6 +25,13 @@ REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 
 MUTATIONS = (
     Mutation(
+        "klartext: a full circle behind a helix is one by its end",
+        LINES,
+        "not (self.rounded and self._whole(ends))",
+        "True",
+        "tests/test_klartext_spelled.py::test_a_full_circle_behind_a_helix_stays_one",
+    ),
+    Mutation(
         "klartext: powers bind to the left",
         "grammars/gcxform_grammars/heidenhain_computed.lark",
         "?power: applied | applied POWER power",

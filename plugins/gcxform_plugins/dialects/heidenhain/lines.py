@@ -219,7 +219,7 @@ class Lines(gx.Speller):
         by = {axis: Decimal(values.pop(letter, "0")) for axis, letter in (("X", "I"), ("Y", "J"))}
         pole = {axis: self.place[axis] + by[axis] for axis in "XY"}
         yield f"CC{_words(pole)}"
-        if set(ends) <= {"X", "Y"} and turns == 1:
+        if set(ends) <= {"X", "Y"} and turns == 1 and not (self.rounded and self._whole(ends)):
             yield f"C{self._line(ends)}{sense}{feed}"
             return
         angle = self._angle(ends, pole, turns)
@@ -228,6 +228,10 @@ class Lines(gx.Speller):
         self._stand(ends)
         self.rounded |= {"X", "Y"}
         yield f"CP IPA{_signed(angle)}{words}{sense}{feed}"
+
+    def _whole(self, ends: dict[str, Decimal]) -> bool:
+        """Whether an arc ends where it starts: C would then be next to nothing behind a helix."""
+        return all(d == (0 if self.steps else self.place[a]) for a, d in ends.items() if a in "XY")
 
     def _angle(self, ends: dict[str, Decimal], pole: dict[str, Decimal], turns: int) -> Decimal:
         """Return the angle of a helix, with its sign."""
