@@ -23,7 +23,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from gcxform.diagnostics import UsageError
+from gcxform import diagnostics
 from gcxform.dialect.codes import Effect
 from gcxform.dialect.dialect import Dialect
 
@@ -64,11 +64,11 @@ class Saying:
             if not self._may_go(name):
                 message = f"{name} of {self.source.name} cannot be left out or replaced"
                 hint = "what waits, moves, sets frames or modes of moves, or ends a program, stays"
-                raise UsageError.one("GX707", message, hint=hint)
+                raise diagnostics.UsageError.one("GX707", message, hint=hint)
         known = self.target.m_codes
         for name in self.m_codes.values():
             if int(name[1:]) not in known and self.target.block_rule.unknown_m is None:
-                raise UsageError.one("GX707", f"{self.target.name} has no code {name}")
+                raise diagnostics.UsageError.one("GX707", f"{self.target.name} has no code {name}")
 
     def _may_go(self, name: str) -> bool:
         if name in self.source.codes:
@@ -140,8 +140,8 @@ class Saying:
 
     def _named(self, act: str) -> str:
         """Return the one code of the target that does an act, "" if there is none."""
-        found = [name for name, code in self.target.codes.items() if code.act == act]
-        return found[0] if len(found) == 1 else ""
+        names = [name for name, code in self.target.codes.items() if code.act == act]
+        return names[0] if len(names) == 1 else ""
 
     def _spelled(self, what: str, act: str) -> str:
         """Return the code of the target that does an act, or a stronger one."""
@@ -149,9 +149,9 @@ class Saying:
         if there.get(what) == act:
             return "" if act == BLEND and self._unbounded(what) else what
         for wanted in filter(None, (act, STRONGER.get(act))):
-            found = [name for name, other in there.items() if other == wanted]
-            if len(found) == 1 and self._takes_alike(what, found[0], wanted):
-                return found[0]
+            names = [name for name, other in there.items() if other == wanted]
+            if len(names) == 1 and self._takes_alike(what, names[0], wanted):
+                return names[0]
         ends_nothing = act.startswith(ENDS) and act.removeprefix(ENDS) not in there.values()
         return "" if act in NEEDLESS or ends_nothing else what
 
