@@ -15,6 +15,7 @@ import importlib
 import pkgutil
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from inspect import CO_NEWLOCALS
 from pathlib import Path
@@ -71,8 +72,9 @@ def load() -> Loaded:
     sys.setprofile(see)
     for package in map(importlib.import_module, PACKAGES):
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-            if not module.name.endswith("__main__"):
-                importlib.import_module(module.name)
+            with suppress(ModuleNotFoundError):  # of what is installed for a host alone
+                if not module.name.endswith("__main__"):
+                    importlib.import_module(module.name)
     importlib.import_module("gcxform").Registry.load()
     sys.setprofile(None)
     gc.collect()

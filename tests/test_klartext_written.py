@@ -150,8 +150,8 @@ def test_it_is_written_back_with_positions_for_steps():
 
 
 def test_what_only_the_control_decides_is_kept_with_all_behind_it():
-    lines = ["Q1 = 5", "FN 18: SYSREAD Q1 = ID20", "FN 9: IF +Q1 EQU +5 GOTO LBL 1"]
-    lines += ["L IX+5 FMAX", "LBL 1"]
+    lines = ["L X+0 FMAX", "Q1 = 5", "FN 18: SYSREAD Q1 = ID20"]
+    lines += ["FN 9: IF +Q1 EQU +6 GOTO LBL 1", "L IX+5 FMAX", "LBL 1"]
     assert written(program(*lines))[0] == program(*lines)
 
 
