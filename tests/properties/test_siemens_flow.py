@@ -226,7 +226,12 @@ def check(seed, folder):
     """Compare what a program does here and there."""
     text = Builder(seed).text()
     there = moves(text, FILES)
-    path = gx.read(text.encode(), SIEMENS, subprograms=(folder,)).path
+    try:
+        path = gx.read(text.encode(), SIEMENS, subprograms=(folder,)).path
+    except gx.InputError as error:  # a draw with a step behind a frame: a setting decides on it
+        if "SD42440" not in error.diagnostics[0].message:
+            raise
+        return
     ours = [(KINDS[m.kind], *(m.end[a] for a in "XYZ")) for m in moves_of(path)]
     assert [m[0] for m in ours] == [m[0] for m in there], f"seed {seed}\n{text}"
     for k, (one, other) in enumerate(zip(ours, there, strict=True)):

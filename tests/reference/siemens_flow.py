@@ -45,6 +45,18 @@ def applied(a, v):
     return [sum(a[i][k] * v[k] for k in range(3)) for i in range(3)]
 
 
+def parted(text):
+    """Return what stands between the commas of a text that are in no brackets."""
+    found, depth = [""], 0
+    for letter in text:
+        depth += (letter == "(") - (letter == ")")
+        found[-1] += letter
+        if letter == "," and not depth:
+            found[-1] = found[-1][:-1].strip()
+            found.append("")
+    return [*found[:-1], found[-1].strip()]
+
+
 class Machine:
     """What a control has while it executes a program, and the moves that it made."""
 
@@ -255,7 +267,7 @@ class Machine:
         lines = self.files[name].splitlines()
         head = re.match(r"PROC\s+\w+\s*(?:\((.*)\))?", lines[0], re.IGNORECASE)
         inner = given[1] if given else ""
-        values = [v.strip() for v in re.split(r",(?![^()]*\))", inner)] if inner.strip() else []
+        values = parted(inner) if inner.strip() else []
         names, types, back = {}, {}, {}
         for k, each in enumerate((head[1] or "").split(",") if head[1] else []):
             shared, kind, known, default = re.match(
