@@ -104,7 +104,7 @@ def _killed(
     here: Path, words: list[str], count: int, cluster: list[subprocess.Popen[bytes]]
 ) -> int:
     """End a process of a call at a tenth, the call at a fifth; return how many were done twice."""
-    running = subprocess.Popen(words, cwd=here, start_new_session=True, **QUIET)  # type: ignore[call-overload]
+    running = subprocess.Popen(words, cwd=here, process_group=0, **QUIET)  # type: ignore[call-overload]
     _until(here, running, count // 10)
     if cluster:
         cluster[1].kill()
@@ -117,7 +117,7 @@ def _killed(
     running.wait()
     time.sleep(1.0)
     before = _results(here)
-    again = subprocess.Popen(words, cwd=here, start_new_session=True, **QUIET)  # type: ignore[call-overload]
+    again = subprocess.Popen(words, cwd=here, process_group=0, **QUIET)  # type: ignore[call-overload]
     if not cluster:
         _until(here, again, 3 * count // 10)
         again.kill()

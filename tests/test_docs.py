@@ -20,6 +20,7 @@ from gcxform_plugins.passes.volumetric.forward import lines
 import gcxform as gx
 from gcxform.catalogue import CATALOGUE
 from gcxform.cli import VERBS
+from gcxform.cli.plant.tasks import load_manifest
 from gcxform.contract.options import describe
 from gcxform.deviations.deviation import deviation
 from gcxform.machine.chain import chain_of
@@ -257,6 +258,9 @@ def test_toml_snippets_are_right(folder, tmp_path):
         elif "[axis." in snippet:
             (tmp_path / "axes.toml").write_text(snippet, "utf-8")
             load_machine(tmp_path / "axes.toml", REGISTRY.machines)
+        elif "[[batch]]" in snippet:
+            (folder / "plant.toml").write_text(snippet, "utf-8")
+            assert load_manifest(folder / "plant.toml")
         elif snippet.startswith("format") and "[X]" not in snippet and "[Y]" not in snippet:
             (folder / "snippet.toml").write_text(snippet, "utf-8")
             gx.Pipeline.load(folder / "snippet.toml")

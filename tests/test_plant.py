@@ -324,7 +324,7 @@ def test_a_batch_that_is_killed_goes_on_where_it_was(plant: Path) -> None:
     words = [sys.executable, "-m", "gcxform.cli", "batch", "-p", "job.toml", "-o", "out", "many"]
     seen: dict[str, int] = {}
     for share in (1, 2, 3):
-        running = subprocess.Popen(words, stderr=subprocess.DEVNULL, start_new_session=True)
+        running = subprocess.Popen(words, stderr=subprocess.DEVNULL, process_group=0)
         while len(found := inodes(plant / "out" / "job")) < 80 * share:
             assert running.poll() is None
             time.sleep(0.01)

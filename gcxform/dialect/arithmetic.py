@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from gcxform.dialect.machine_parameters import FANUC, MachineParameters, among
+from gcxform.dialect.machine_parameters import FANUC, MachineParameters, NamedParameters, among
 
 PI = np.longdouble("3.14159265358979323846264338327950288")
 NEAR = 1e-9  # of a number: so far may another control's arithmetic be off
@@ -90,7 +90,7 @@ class Arithmetic:
 
     def may_be_given(self, key: Key) -> bool:
         """Return whether a value of a parameter may be told that the program does not set."""
-        return self.owns(key) or (isinstance(key, str) and key.startswith(self.machine.given))
+        return self.owns(key) or (isinstance(key, str) and key.startswith(self.machine.names.given))
 
     def sets(self, key: Key) -> bool:
         """Return whether a program may set a parameter, and what changes by it is followed."""
@@ -111,7 +111,7 @@ class Arithmetic:
         """Return whether a parameter has a value, if only the machine may know which."""
         if isinstance(key, int):
             return 0 < key <= self.machine.highest
-        named = self.named and key.split("[")[0] not in self.machine.hidden
+        named = self.named and key.split("[")[0] not in self.machine.names.hidden
         return named and (key.startswith("_") or not self.owns(key))
 
     def hangs_on(self, key: Key) -> str:
@@ -119,7 +119,7 @@ class Arithmetic:
         known = self.machine
         if self.owns(key) or among(key, known.signals):
             return ""
-        if isinstance(key, str) and key.split("[")[0] in known.names:
+        if isinstance(key, str) and key.split("[")[0] in known.names.signals:
             return ""
         return "units" if among(key, known.measured) else "place"
 
@@ -292,10 +292,12 @@ RS274 = Arithmetic(
     machine=MachineParameters(
         outputs=(range(5061, 5071),),
         signals=(range(5070, 5071), range(5399, 5401), range(5599, 5600)),
-        names=SIGNAL_NAMES,
+        names=NamedParameters(
+            signals=SIGNAL_NAMES,
+            given=("_ini[", "_hal["),
+            hidden=frozenset({"_line", "_call_level", "_remap_level"}),
+        ),
         measured=(range(5061, 5070), range(5161, 5400), range(5401, 5411)),
-        given=("_ini[", "_hal["),
-        hidden=frozenset({"_line", "_call_level", "_remap_level"}),
         highest=5601,
     ),
 )

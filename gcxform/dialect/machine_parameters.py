@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,10 +16,8 @@ class MachineParameters:
     zeros      entries of the table of work offsets
     aliases    numbers that are other names of a program's own parameters, and how much higher
     signals    those that mean the same in any unit, mode and place: inputs, clocks, counters
-    names      names of such
+    names      what is known of those that have names
     measured   those that do in any mode and place, in one unit: offsets, results of probes
-    given      how the names begin of those that do not change, or of which a user may say so
-    hidden     names that have another value where calls and loops are written out
     highest    the highest number; a higher one is an error
     null       the parameter without a value (`gcxform/dialect/null.py`); None: there is none
     """
@@ -31,10 +29,8 @@ class MachineParameters:
     zeros: tuple[range, ...] = ()
     aliases: tuple[tuple[range, int], ...] = ()
     signals: tuple[range, ...] = ()
-    names: frozenset[str] = frozenset()
+    names: NamedParameters = field(default_factory=lambda: NamedParameters())
     measured: tuple[range, ...] = ()
-    given: tuple[str, ...] = ()
-    hidden: frozenset[str] = frozenset()
     highest: int = 2**31
     null: int | None = None
 
@@ -42,6 +38,20 @@ class MachineParameters:
         """Return the number of the tool that an entry of the table of tools belongs to."""
         of = next(each for each in self.lengths if number in each)
         return number - of.start + 1
+
+
+@dataclass(frozen=True)
+class NamedParameters:
+    """What is known of parameters of a control that have names.
+
+    signals    those that mean the same in any unit, mode and place
+    given      how the names begin of those that do not change, or of which a user may say so
+    hidden     those that have another value where calls and loops are written out
+    """
+
+    signals: frozenset[str] = frozenset()
+    given: tuple[str, ...] = ()
+    hidden: frozenset[str] = frozenset()
 
 
 def among(key: int | str, numbers: tuple[range, ...]) -> bool:
