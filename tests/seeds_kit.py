@@ -1,20 +1,16 @@
 """Seeds of generated programs, in shares: each is a test of seconds, and they run side by side.
 
 A property of which an example is dear (a program is drawn, run and compared, or LinuxCNC is asked)
-is tried on multiples of `DRAWN`: 20 where a cheap one is tried on 75, and as many as it over night.
-A fault is looked for with 30, and so are the tests that notice one tried once more without it.
+is tried on multiples of `DRAWN`: 30 where a cheap one is tried on 75, and as many as it over night.
 """
 
 from __future__ import annotations
-
-import os
 
 import pytest
 from hypothesis import settings
 
 LONG = settings.default.max_examples > 1000  # the profile of that name
-DEAR = {"dev": 20, "ci": 20, "faults": 30}
-DRAWN = DEAR.get(os.environ.get("HYPOTHESIS_PROFILE", "ci"), settings.default.max_examples)
+DRAWN = settings.default.max_examples if LONG else min(30, settings.default.max_examples)
 
 
 def some(count: int) -> range:
