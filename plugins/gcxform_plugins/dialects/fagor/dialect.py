@@ -77,9 +77,10 @@ class Fagor(gx.Dialect):
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
         "G95": gx.Code("feed-mode"),
-        "G97": v.inert("spindle-mode", "S"),
+        "G97": v.inert("spindle-mode", "S", act="rpm"),
         **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
-        **{code: v.inert("path", "PQ", "PQ") for code in ("G61", "G64")},
+        "G61": v.inert("path", "PQ", "PQ", act="exact-path"),
+        "G64": v.inert("path", "PQ", "PQ", act="blend"),
         "G43": v.frame("tool-length", "length", "H"),
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
