@@ -64,7 +64,7 @@ are looked for in any test."""
 NAMED = re.compile(r"::\w+\[(.+)\]$")
 WHICH: dict[str, Callable[[Case], object]] = {}
 """What must hold of a case on which a test is run, by the name of the test."""
-COMMAND_LINE = re.compile(r"GX700|GX72[6-9]|GX73\d|GX749|GX75[01]")
+COMMAND_LINE = re.compile(r"GX700|GX72[6-9]|GX73\d|GX749|GX75[0-2]")
 
 
 def paths() -> list[Path]:
