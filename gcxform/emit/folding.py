@@ -298,7 +298,8 @@ class _Folding:
         if any(isinstance(item, Statement) for item in items):
             return True
         inside = range(step + 1, self.walk.returned(step))
-        lines = {n for k in inside for n in range(*self.walk.steps[k][:2]) if n in self.walk.reads}
+        looked_at = (self.walk.looked_at(self.walk.steps[k]) for k in inside)
+        lines = {line for found in looked_at for line in found if line in self.walk.reads}
         return not any(
             key is None or not self.walk.arithmetic.outlives(key)
             for line in lines

@@ -47,6 +47,7 @@ class Execution(RunState):
         self.times = np.zeros(len(listing), np.int64)
         self.kept: tuple[Definition, ...] = ()
         self.deciding: set[int] = set()
+        self.asked: dict[int, set[int]] = {}
         self.jumps: set[int] = set()
         self.tied = ""
 
@@ -203,6 +204,7 @@ class Execution(RunState):
             callees,
             tuple(self._called_files()),
             frozenset(self.deciding),
+            self.asked,
             jumps,
             made,
             self.tied,

@@ -334,8 +334,10 @@ class OWords(OWordLoops):
 
     def _if(self, word: OWord) -> None:
         construct = self.construct[self.line]
+        asked = self.asked.setdefault(self.line, set())
         for line in construct.lines:
             self.line = line
+            asked.add(line)
             other = self.words[line]
             holds = True if other.keyword in ("else", "endif") else self.truth(other)
             if holds is None:

@@ -92,6 +92,7 @@ class Walk:
     callees      by the first line of a definition: those that it may call
     files        those that are called, each as one definition
     deciding     the lines that decided what is executed next, or stored modes
+    asked        by a line that was executed, those of which it looked at the conditions as well
     jumps        the steps that went to a line by its number
     made         the assignments, in order
     tied         why the order of execution rests on the path itself; nothing if it does not
@@ -107,6 +108,7 @@ class Walk:
     callees: Mapping[int, tuple[Definition, ...]]
     files: tuple[Definition, ...]
     deciding: frozenset[int]
+    asked: Mapping[int, set[int]]
     jumps: frozenset[int]
     made: tuple[Made, ...]
     tied: str
@@ -165,10 +167,14 @@ class Walk:
         """The steps of the lines that name parameters, ascending."""
         found: dict[int, list[int]] = {}
         for number, step in enumerate(self.steps):
-            for line in range(step.first, step.stop):
+            for line in self.looked_at(step):
                 if line in self.reads:
                     found.setdefault(line, []).append(number)
         return found
+
+    def looked_at(self, step: Step) -> set[int]:
+        """Return the lines of which a step reads the parameters."""
+        return {*range(step.first, step.stop), *self.asked.get(step.first, ())}
 
     def calls(self, step: int) -> bool:
         """Whether a step begins a call."""

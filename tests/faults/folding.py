@@ -21,6 +21,13 @@ MUTATIONS = (
         "self.walk.deciding",
         tests="tests/test_corpus.py::test_case[structure/called-by-what-is-written-out]",
     ),
+    _fold(
+        "a condition behind elseif reads nothing",
+        "*self.asked.get(step.first, ())",
+        "*()",
+        "gcxform/flow/walk.py",
+        "tests/test_corpus.py::test_case[structure/elseif-reads-what-was-set]",
+    ),
     _fold("a call in what is written out is none", "return calls or any(line", "return any(line"),
     _fold(
         "values that are set behind a call are one",
