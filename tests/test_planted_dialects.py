@@ -113,14 +113,23 @@ PLANTED: dict[str, tuple[Callable[[], Kind], str]] = {
         "G92.3 is 'act preset-clear'",
     ),
     "G43.2 as G43": (lambda: codes(NGC, G43_2=NGC.codes["G43"]), "G43.2 is 'act length'"),
-    "G1 inert": (lambda: codes(FANUC, G1=v.inert("motion")), "G1 is 'inert'"),
-    "G91 inert": (lambda: codes(FANUC, G91=v.inert("distance")), "G91 is 'inert'"),
-    "G55 inert": (lambda: codes(GRBL, G55=v.inert("frame")), "G55 is 'inert'"),
-    "G41 inert": (lambda: codes(FANUC, G41=v.inert("cutter-comp", "D")), "G41 is 'inert'"),
+    "G1 inert": (lambda: codes(FANUC, G1=v.inert("motion")), "G1 is inert and would replace"),
+    "G91 inert": (lambda: codes(FANUC, G91=v.inert("distance")), "G91 is inert and would replace"),
+    "G55 inert": (lambda: codes(GRBL, G55=v.inert("frame")), "G55 is inert and would replace"),
+    "G41 inert": (
+        lambda: codes(FANUC, G41=v.inert("cutter-comp", "D")),
+        "G41 is inert and would replace",
+    ),
     "G28 inert": (lambda: codes(FANUC, G28=v.inert("non-modal")), "G28 is 'inert'"),
     "G4 inert": (lambda: codes(FANUC, G4=v.inert("non-modal", "PX")), "G4 is 'inert'"),
-    "G31 a plain move": (lambda: codes(FANUC, G31=v.inert("non-modal", "PQ")), "G31 is 'inert'"),
-    "G43 in a language": (lambda: codes(FAGOR, G43=v.inert("tool-length", "H")), "G43 is 'inert'"),
+    "G31 a plain move": (
+        lambda: codes(FANUC, G31=v.inert("non-modal", "PQ")),
+        "G31 is an act on other controls",
+    ),
+    "G43 in a language": (
+        lambda: codes(FAGOR, G43=v.inert("tool-length", "H")),
+        "G43 is an act on other controls",
+    ),
     "G52 in a language": (
         lambda: codes(KLARTEXT, G52=v.frame("non-modal", "preset", v.AXES)),
         "G52 is 'act preset'",
@@ -172,7 +181,10 @@ PLANTED: dict[str, tuple[Callable[[], Kind], str]] = {
         lambda: codes(FANUC, G43=v.frame("tool-length", "length", "HD")),
         "takes ['D'], of which its act knows nothing",
     ),
-    "G54.1 without P": (lambda: codes(FANUC, G54_1=v.frame("frame", "work")), "['P']"),
+    "G54.1 without P": (
+        lambda: codes(FANUC, G54_1=v.frame("frame", "work")),
+        "takes no word that says",
+    ),
     "G54.1 with axes": (
         lambda: codes(FANUC, G54_1=v.frame("frame", "work", "PX")),
         "takes axis words away",

@@ -22,13 +22,13 @@ def merged(dialect: type[Dialect]) -> Iterator[str]:
                 f"offset_rule.names does not say it either"
             )
         numbers = set(code.takes) - set(dialect.axes)
-        if code.effect is Effect.INERT and numbers and _frames_elsewhere(name):
+        if code.effect is Effect.INERT and numbers and _is_an_act(name):
             yield (
-                f"{name} changes frames on other controls; where it is inert, no two values of "
+                f"{name} is an act on other controls; where it is inert, no two values of "
                 f"{sorted(numbers)} are told apart: make it an act, or a barrier"
             )
 
 
-def _frames_elsewhere(name: str) -> bool:
-    """Whether a code changes frames on all controls on which it is known."""
+def _is_an_act(name: str) -> bool:
+    """Whether a code is an act of frames or of places on all controls on which it is known."""
     return all(one.startswith("act ") for one in canon.MEANINGS.get(name, ("",)))
