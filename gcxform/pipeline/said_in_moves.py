@@ -19,9 +19,13 @@ from gcxform.toolpath.path import Form, Toolpath
 
 
 def said_in_moves(plan: Plan, read: Interpreted, window: Window, file: str) -> Toolpath:
-    """Return the path of a window, in which such blocks are plain moves. Raises InputError."""
+    """Return the path of a window, in which such blocks are plain moves. Raises InputError.
+
+    Cycles stay, to be refused by who writes, where a step proves its path by what it was given.
+    """
     path, foreign = _homed(plan, read), plan.manner.foreign_cycles
-    if not foreign or not (path.form == Form.CYCLE).any():
+    resolves = any(step.demands.resolves for step in plan.path_passes)
+    if resolves or not foreign or not (path.form == Form.CYCLE).any():
         return path
     with placing(window, file):
         return cycles_as_moves(path, np.isin(read.modes.cycle[path.block], list(foreign)))
