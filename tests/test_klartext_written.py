@@ -167,6 +167,8 @@ def test_cycles_that_call_themselves_keep_what_follows():
     lines += ["L X+1 FMAX", "L IX+1 FMAX"]
     changed = [*lines[:-1], "L X+2 FMAX"]
     assert written(program(*lines))[0] == program(*changed)
+    lines[1:3] = ["L X+5 R0 F100 M89", "L X+7 Y+7 Z+5 R0 F100", "L IX+5 F100"]
+    assert "IX+5" in written(program(*lines))[0]
 
 
 ARCS = """0 BEGIN PGM A MM

@@ -203,7 +203,7 @@ MUTATIONS = (
         "gcxform/syntax/outlines.py",
         "[match.start() for match in pattern.finditer(text)] if pattern else []",
         "[]",
-        "tests/properties/test_outlines.py",
+        "tests/properties/test_outlines.py::test_a_comment_that_is_executed_is_no_slot_of_one_that_is_not",
     ),
     Mutation(
         "outlines: comments to the end of a line are like those in brackets",

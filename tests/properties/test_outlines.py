@@ -97,3 +97,11 @@ def test_a_column_is_refused_at_the_line_that_has_no_value() -> None:
 def test_what_nobody_has_set_is_not_zero() -> None:
     (finding,) = result(f"{HEAD}G20\nG1 X#7\nM2\n".encode(), "linuxcnc", "metric", "")  # type: ignore[misc]
     assert "#7 is computed by the machine" in finding[1]
+
+
+def test_a_comment_that_is_executed_is_no_slot_of_one_that_is_not() -> None:
+    """Lines that are alike but for what their comments say: only the message is an effect."""
+    lines = ["G4 P1. (MSG, on)", "G4 P1. (on)", "X1. (wall)", "X2. (DEBUG, wall)", "X3. (wall)"]
+    path = gx.read((HEAD + "\n".join(lines) + "\nM2\n").encode(), "linuxcnc").path
+    effects = [(each.line, each.what) for each in path.events if each.what.startswith("(")]
+    assert effects == [(6, "(MSG, on)"), (9, "(DEBUG, wall)")]
