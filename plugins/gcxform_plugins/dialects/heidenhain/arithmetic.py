@@ -10,6 +10,7 @@ import math
 import operator
 
 from gcxform import vocabulary as v
+from gcxform_plugins.dialects.common.arithmetic import rules
 
 NEAR = 1e-9
 """So near may two values be that the control takes for the same, by one simulator; or not so."""
@@ -41,8 +42,7 @@ def _decimal_logarithm(a: float) -> float:
     return math.log10(a)
 
 
-RS274 = v.RS274.functions
-TNC = v.Arithmetic(
+TNC = rules(
     operators={
         "^": v.RS274.operators["**"],
         "*": operator.mul,
@@ -55,9 +55,6 @@ TNC = v.Arithmetic(
         "%": _rest,
     },
     functions={
-        **{name: RS274[name] for name in ("ABS", "ACOS", "ASIN", "COS", "EXP", "LN", "SIN")},
-        "TAN": v.MACRO_B.functions["TAN"],
-        "SQRT": RS274["SQRT"],
         "ATAN": lambda a: math.degrees(math.atan(a)),
         "SQ": lambda a: a * a,
         "LOG": _decimal_logarithm,
@@ -66,11 +63,6 @@ TNC = v.Arithmetic(
         "FRAC": lambda a: a - math.trunc(a),
         "SGN": _sign,
     },
-    own=(),
-    named=True,
-    system=frozenset(),
-    whole="",
-    whole_slip=0.0,
 )
 """What Klartext computes; `gcxform/modal/expressions/value.py` is what does it."""
 

@@ -10,8 +10,8 @@ import re
 from collections.abc import Sequence
 from decimal import Decimal
 
-COMMENT = re.compile(r"\([^()]*\)")
-WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
+from gcxform_plugins.dialects.common.words import COMMENT, WORD
+
 AXES = "XYZABCUVW"
 VALUE = r"[-+]?[ \t]*(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)"
 AXIS = re.compile(

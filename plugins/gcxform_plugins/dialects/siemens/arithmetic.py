@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable
 
 from gcxform import vocabulary as v
+from gcxform_plugins.dialects.common.arithmetic import rules
 
 RELATIVE = 1e-12
 LARGEST = 2**31
@@ -59,7 +60,7 @@ def _within(low: float, high: float, value: float) -> float:
     return min(max(value, low), high)
 
 
-SINUMERIK = v.Arithmetic(
+SINUMERIK = rules(
     operators={
         "*": v.RS274.operators["*"],
         "/": v.RS274.operators["/"],
@@ -81,11 +82,6 @@ SINUMERIK = v.Arithmetic(
         "<": _ordered(lambda a, b: a < b),
     },
     functions={
-        **{
-            name: v.RS274.functions[name]
-            for name in ("ABS", "ACOS", "ASIN", "COS", "EXP", "LN", "SIN", "SQRT")
-        },
-        "TAN": v.MACRO_B.functions["TAN"],
         "ATAN2": v.RS274.functions["ATAN/"],
         "POT": lambda a: a * a,
         "ROUND": ROUND,
@@ -95,11 +91,6 @@ SINUMERIK = v.Arithmetic(
         "MAXVAL": max,
         "BOUND": _within,
     },
-    own=(),
-    named=True,
-    system=frozenset(),
-    whole="",
-    whole_slip=0.0,
 )
 """What the language computes; `gcxform/modal/expressions/value.py` is what does it."""
 COUNTS = {"ATAN2": 2, "MINVAL": 2, "MAXVAL": 2, "BOUND": 3}

@@ -10,9 +10,9 @@ import re
 from collections.abc import Sequence
 from decimal import Decimal
 
+from gcxform_plugins.dialects.common.words import COMMENT, WORD
+
 CODE = re.compile(r'((?:[^";]|"[^"]*")*)(.*)', re.DOTALL)
-COMMENT = re.compile(r"\([^()]*\)")
-WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
 AXES = "XYZABC"
 VALUE = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
 AXIS = re.compile(
