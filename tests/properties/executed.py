@@ -1,7 +1,9 @@
 """Programs with calls, loops, computed words and lost values: read, kept, and asked of LinuxCNC.
 
 Three kinds in turn: plain ones (`flows`) and those in which all is computed (`rich_flows`) are
-read, and ones that may keep their structure are written again by `absolute`.
+read, and ones that may keep their structure are written again by `absolute`. What is read of a
+program in which only the machine decides is all its ways, one behind the other, and not what the
+interpreter does: such a program is written again too, and the interpreter runs both.
 """
 
 from __future__ import annotations
@@ -9,11 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from oracles import flows, rich_flows, rs274, toolpaths
+from oracles import flows, rich_flows, rs274, toolpaths, ways
 from oracles.canon import CanonProgram
 from properties.figures import Figures
 
 import gcxform as gx
+from gcxform.flow.straightened import written_out
+from gcxform.syntax.source import Source
 
 NOT_RESOLVED = (
     "polar words are resolved in G8",
@@ -23,6 +27,8 @@ NOT_RESOLVED = (
     "the modes are restored here",
     "one of two coolants would go off",
     "has a value that only the control knows",
+    "only the machine knows whether it is executed",
+    "is computed by the machine, and would have another value",
     "nothing in the program has set #",  # it is so where a block before was skipped
     "turns the work offset in force, under",
     "is not known here: it was set",
@@ -53,7 +59,10 @@ ABSOLUTE = replace(
 
 @dataclass
 class Executed:
-    """A program, what is asked about (what was written, or itself), and what came of it."""
+    """A program, what is asked about (what was written, or itself), and what came of it.
+
+    `is_open`: only the machine decides which of its ways it goes.
+    """
 
     seed: int
     chain: str
@@ -62,6 +71,7 @@ class Executed:
     kind: str = ""
     code: str = ""
     said: str = ""
+    is_open: bool = False
 
     def __str__(self) -> str:
         written = "" if self.text in (b"", self.source) else f"\n---\n{self.text.decode()}"
@@ -74,8 +84,16 @@ class Executed:
         elif not isinstance(canon, CanonProgram):
             self.kind, self.said = "disagrees", f"LinuxCNC refuses it: {canon}"
         else:
-            self.said = toolpaths.difference(toolpaths.read(self.source), canon) or ""
+            self.said = self._differs(canon)
             self.kind = "disagrees" if self.said else "compared"
+
+    def _differs(self, canon: CanonProgram) -> str:
+        if not self.is_open:
+            return toolpaths.difference(toolpaths.read(self.source), canon) or ""
+        before = rs274.run_many([self.source])[0]
+        if not isinstance(before, CanonProgram):
+            return f"LinuxCNC refuses the source alone: {before}"
+        return ways.difference(before, canon, 0.001) or ""
 
     def _may_be_refused(self, canon: CanonProgram | rs274.Rejected) -> bool:
         known = any(reason in self.said for reason in NOT_RESOLVED)
@@ -94,20 +112,28 @@ def rich(seed: int) -> Executed:
 
 def kept(seed: int) -> Executed:
     """Return a program that is written by `absolute`."""
-    job = Executed(seed, "absolute", flows.program(seed, flows.Kept))
-    try:
-        job.text = ABSOLUTE.run(job.source).text
-    except gx.VerificationError as error:
-        job.kind, job.said = "exit 4", str(error)
-    except gx.InputError as error:
-        _refuse(job, error)
-    return job
+    return _written(Executed(seed, "absolute", flows.program(seed, flows.Kept)))
 
 
 def _read(job: Executed) -> Executed:
     job.text = job.source
     try:
         toolpaths.read(job.source)
+    except gx.InputError as error:
+        _refuse(job, error)
+        return job
+    source = Source.of_bytes(job.source)
+    executed = written_out(source, PIPELINE.source, ABSOLUTE.reading)
+    return _written(job) if executed.undecided else job
+
+
+def _written(job: Executed) -> Executed:
+    source = Source.of_bytes(job.source)
+    try:
+        job.text = ABSOLUTE.run(job.source).text
+        job.is_open = bool(written_out(source, PIPELINE.source, ABSOLUTE.reading).undecided)
+    except gx.VerificationError as error:
+        job.kind, job.said = "exit 4", str(error)
     except gx.InputError as error:
         _refuse(job, error)
     return job
