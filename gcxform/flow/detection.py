@@ -33,6 +33,8 @@ PRINTED = re.compile(rb"\([ \t]*(?:DEBUG|PRINT|LOG)[ \t]*,[^()\n\r]*" + POSITION
 """Messages of LinuxCNC that may print where the axes stand, or modes."""
 READS = rb"#[ \t]*(?:40(?:0[123567]|14)|4109|4120|500[123])(?![0-9])"
 """Variables of macro B that say modes of the block before, and where the axes stand."""
+ALARM = rb"#[ \t]*3000(?![0-9])"
+"""The variable with which a program of macro B stops the control for good."""
 SIGNS: dict[str, tuple[tuple[bytes, bytes], ...]] = {
     "o-words": (
         (b"O", rb"O[ \t]*[0-9<#]"),
@@ -50,6 +52,7 @@ SIGNS: dict[str, tuple[tuple[bytes, bytes], ...]] = {
         (b"G", WITH_VALUES),
         (b"#", NULL),
         (b"#", READS),
+        (b"#", ALARM),
     ),
 }
 """A byte, and what a program with flow has where it has that byte."""
@@ -62,7 +65,8 @@ PROOFS = {
         re.IGNORECASE | re.MULTILINE,
     ),
     "macro-b": re.compile(
-        rb"|".join((CALLS, rb"GOTO|WHILE|IF[ \t]*\[", WITH_VALUES, NULL, READS)), re.IGNORECASE
+        rb"|".join((CALLS, rb"GOTO|WHILE|IF[ \t]*\[", WITH_VALUES, NULL, READS, ALARM)),
+        re.IGNORECASE,
     ),
 }
 """What that looks like outside of comments."""

@@ -37,8 +37,9 @@ class Execution(RunState):
     def __init__(self, listing: Listing, reading: Reading, keeps: bool = False) -> None:
         super().__init__(listing, reading, keeps)
         self.at = 0
-        self.ended = self.acted = False
+        self.ended = self.acted = self.alarmed = False
         self.executed = 0
+        self.alarm: int | None = None
         self.skipped: set[int] = set()
         self.percents = 0
         self.steps = self.entries = 0
@@ -175,6 +176,7 @@ class Execution(RunState):
         only stand where they are.
         """
         self.kept = kept
+        self.alarm = self.blocks - 1 if self.ended and self.alarmed else None
         self.close_branches()
         self.executed = self.blocks
         for each in self.behind:

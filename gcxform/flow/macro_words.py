@@ -176,7 +176,7 @@ class MacroWords(Jumping):
             if text := self.lasting.account(key, value, kept):
                 self.write_line(text + self._told_with(key))
             if key == self.arithmetic.machine.alarm:
-                self.branches.over, self.ended = bool(self.branches.open), not self.branches.open
+                self._stop_with_alarm()
 
     def _told_with(self, key: Key) -> str:
         """Return the comments of the line if an assignment shows them: those of #3000, #3006."""
@@ -198,10 +198,14 @@ class MacroWords(Jumping):
 
     def stop(self, block: Block) -> None:
         """End the program, or go on where a jump ahead may lead to: an alarm ends nothing else."""
-        if self.branches.open and self.alarms(block):
-            self.branches.over = True
+        if self.alarms(block):
+            self._stop_with_alarm()
         else:
             super().stop(block)
+
+    def _stop_with_alarm(self) -> None:
+        self.branches.over, self.ended = bool(self.branches.open), not self.branches.open
+        self.alarmed = self.ended
 
     # --- loops ---
 

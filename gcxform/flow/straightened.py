@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,7 @@ from gcxform.flow.walk import Walked
 from gcxform.modal.inventory import Tally
 from gcxform.modal.state import Reading
 from gcxform.syntax.source import Source
+from gcxform.syntax.undecided import Undecided
 from gcxform.system.arrays import Flags
 
 if TYPE_CHECKING:
@@ -49,12 +51,14 @@ def written_out(
     run = _executed(source, dialect, reading, keeps)
     if not run.acted and not (assigns and run.lasting.outputs.assigned):
         source.assumed = tuple(run.assumed)
+        source.undecided = Undecided(alarm=run.alarm)
         return source
     lines = np.concatenate([np.empty(0, np.int64), *run.origin])
-    text, undecided = b"".join(run.text), run.undecided()
+    text, undecided = b"".join(run.text), replace(run.undecided(), alarm=run.alarm)
     found = WrittenOut(source, text, lines, run.assumed, run.listing.files, undecided)
     if not undecided:
         found = Walked(source, text, lines, run.walk(callees(run)), run.assumed)
+        found.undecided = undecided
     found.executed = _account(run)
     found.called = _inside(run)[lines]
     return found

@@ -147,7 +147,7 @@ class Lines:
             ends |= self.table.flag("ends", shape)
             if self.reading.blocks_with_a_slash(self.dialect) != "execute":
                 ends &= ~self.table.flag("deleted", shape)
-            ends[[line - self.window.first_line for line in self.undecided.lines]] = False
+        self.undecided.settle_ends(ends, self.window.first_line)
         percent = np.flatnonzero(self.table.flag("percent", shape))
         ends[percent[max(0, 1 - self.state.percents) :][:1]] = True
         self.state.percents += len(percent)

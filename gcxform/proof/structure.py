@@ -16,7 +16,6 @@ from gcxform.diagnostics import Diagnostic, GcxformError, Location, Verification
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.straightened import written_out
 from gcxform.flow.walk import Walk, Walked
-from gcxform.modal.expressions.value import key_set
 from gcxform.modal.inventory import Tally
 from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.modal.reader import WindowReader
@@ -24,7 +23,6 @@ from gcxform.modal.state import Reading
 from gcxform.stamps.comment import is_stamp
 from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source
-from gcxform.syntax.tree import Mark, Statement
 from gcxform.system.arrays import Ints
 
 HINT = "nothing was written; this is a bug of gcxform"
@@ -51,12 +49,7 @@ def check_executed(
         where = next((each.where.line - 1 for each in error.diagnostics if each.where), 0)
         raise _wrong(f"what was written is not executed: {why}", lines, where, file) from None
     now, wanted = b"".join(executed.windows()).splitlines(), proved.splitlines()
-    last = (
-        executed.walk.blocks if isinstance(executed, Walked) else _last(written, dialect, reading)
-    )
-    if not isinstance(executed, Walked) and wanted and _is_alarm(wanted[-1], dialect):
-        last = min(last or len(now), len(wanted))
-    now = now[:last]  # without what stands behind the end
+    now = now[: _last(executed, dialect, reading)]  # without what stands behind the end
     if now == wanted:
         return
     same = zip(now, wanted, strict=False)
@@ -69,7 +62,11 @@ def check_executed(
 
 
 def _last(written: Source, dialect: type[Dialect], reading: Reading) -> int | None:
-    """Return how many lines of a program without calls and loops are executed; None for all."""
+    """Return how many lines of an executed program come before its end; None for all."""
+    if isinstance(written, Walked):
+        return written.walk.blocks
+    if written.undecided.alarm is not None:
+        return written.undecided.alarm + 1
     if not dialect.program_rule.stops_at_end:
         return None
     window, table = _read(b"".join(written.windows()), dialect)
@@ -77,16 +74,6 @@ def _last(written: Source, dialect: type[Dialect], reading: Reading) -> int | No
     if reading.blocks_with_a_slash(dialect) != "execute":
         ends &= ~table.flag("deleted", window.shape)
     return int(np.argmax(ends)) + 1 if ends.any() else None
-
-
-def _is_alarm(line: bytes, dialect: type[Dialect]) -> bool:
-    """Return whether a line stops the control with an alarm, whatever its switches say."""
-    arithmetic = dialect.flow_rule.arithmetic
-    if arithmetic is None or arithmetic.machine.alarm is None:
-        return False
-    items = dialect.load_grammar().parse(line.decode("latin-1")).items
-    keys = [key_set(each) for each in items if isinstance(each, Statement)]
-    return arithmetic.machine.alarm in keys and not any(isinstance(each, Mark) for each in items)
 
 
 def check_kept(text: bytes, walk: Walk, gone: Sequence[tuple[int, int]] | None, file: str) -> None:

@@ -23,6 +23,7 @@ class Undecided:
     lost     before which lines axes are lost, by their letters; F is the feed
     forgets  before which lines parameters are no longer known, by number or name
     perhaps  those that may not be executed, and move something
+    alarm    the one that stops the control for good: nothing behind it is executed
     """
 
     lines: frozenset[int] = frozenset()
@@ -30,13 +31,14 @@ class Undecided:
     lost: Mapping[int, str] = field(default_factory=dict)
     forgets: Mapping[int, frozenset[int | str]] = field(default_factory=dict)
     perhaps: frozenset[int] = frozenset()
+    alarm: int | None = None
 
     def __bool__(self) -> bool:
         return bool(self.lines or self.labels or self.lost or self.forgets or self.perhaps)
 
     def within(self, first: int, count: int) -> Undecided:
         """Return what of it is in so many lines from the first on."""
-        if not self:
+        if not self and self.alarm is None:
             return self
         here = range(first, first + count)
         lines, labels, perhaps = (
@@ -45,7 +47,14 @@ class Undecided:
         )
         lost = {n: axes for n, axes in self.lost.items() if n in here}
         forgets = {n: keys for n, keys in self.forgets.items() if n in here}
-        return Undecided(lines, labels, lost, forgets, perhaps)
+        alarm = self.alarm if self.alarm in here else None
+        return Undecided(lines, labels, lost, forgets, perhaps, alarm)
+
+    def settle_ends(self, ends: Flags, first: int) -> None:
+        """Set which of the lines from the first on end the program, of those that may by words."""
+        ends[[line - first for line in self.lines]] = False
+        if self.alarm is not None:
+            ends[self.alarm - first] = True
 
     def at_jumps(self, first: int, count: int) -> Flags:
         """Return which of so many lines from the first on jumps leave, meet, or may leave out."""
@@ -57,7 +66,7 @@ class Undecided:
 
     def through(self, source: Ints, first: int) -> Undecided:
         """Return the same of a text whose line `first + k` was written for the line source[k]."""
-        if not self:
+        if not self and self.alarm is None:
             return self
         at: dict[int, list[int]] = {}
         for k, line in enumerate(source.tolist()):
@@ -69,7 +78,8 @@ class Undecided:
         lost = {at[line][0]: axes for line, axes in self.lost.items() if line in at}
         forgets = {at[line][0]: keys for line, keys in self.forgets.items() if line in at}
         perhaps = frozenset(n for line in self.perhaps for n in at.get(line, ()))
-        return Undecided(written(self.lines), written(self.labels), lost, forgets, perhaps)
+        alarm = at[self.alarm][-1] if self.alarm in at else None
+        return Undecided(written(self.lines), written(self.labels), lost, forgets, perhaps, alarm)
 
 
 def _flags(lines: frozenset[int], first: int, count: int) -> Flags:

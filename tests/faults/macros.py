@@ -175,8 +175,8 @@ MUTATIONS = (
     _macro(
         "nothing is executed behind an alarm, but for where it was a branch",
         "gcxform/flow/macro_words.py",
-        "if self.branches.open and self.alarms(block):",
-        "if self.alarms(block) and not self.branches.open:",
+        "bool(self.branches.open), not self.branches.open",
+        "not self.branches.open, bool(self.branches.open)",
         "flow/fanuc-alarm",
     ),
     _macro(
@@ -217,9 +217,16 @@ MUTATIONS = (
     _macro(
         "what stands behind an alarm is executed where all is written out",
         "gcxform/proof/structure.py",
-        "and _is_alarm(wanted[-1], dialect):",
-        "and not wanted:",
+        "if written.undecided.alarm is not None:",
+        "if False:",
         "flow/fanuc-alarm-written-out",
+    ),
+    _macro(
+        "what stands behind an alarm is read",
+        "gcxform/syntax/undecided.py",
+        "if self.alarm is not None:",
+        "if False:",
+        "flow/fanuc-alarm-alone-ends",
     ),
     _macro(
         "the text of an alarm is left out",
