@@ -704,8 +704,8 @@ MUTATIONS = (
     ),
     Mutation(
         "kept O-words: who reads the text ends where one way does",
-        "gcxform/modal/lines.py",
-        "ends[[line - self.window.first_line for line in self.undecided.lines]] = False",
+        "gcxform/syntax/undecided.py",
+        "ends[[line - first for line in self.lines]] = False",
         "pass",
         "tests/test_corpus.py::test_case[flow/oword-if-ends]",
     ),
