@@ -62,7 +62,8 @@ class _Spelling:
     """What the speller of a language says to the blocks of its programs, one after the other."""
 
     def __init__(self, translator: Translator, blocks: list[bytes]) -> None:
-        kind = translator.speller
+        replaces = type(translator).replaced is not Translator.replaced
+        kind = translator.speller if replaces else None
         self.speller = None if kind is None else kind("", inch_first(blocks, False))
 
     def said(self, blocks: list[bytes]) -> list[str]:

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
+
+COMMENT = re.compile(r"\(([^()]*)\)")
+WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
+BLANKS = str.maketrans("", "", " \t")
 
 
 class UnspeakableError(Exception):
@@ -18,6 +23,13 @@ class Speller(ABC):
     def __init__(self, name: str, inch: bool) -> None:
         self.name = name
         self.inch = inch
+
+    @staticmethod
+    def parts(block: str) -> tuple[list[str], list[tuple[str, str]]]:
+        """Return the comments of a block, and its words: letters and numbers."""
+        comments = [each.strip() for each in COMMENT.findall(block)]
+        bare = COMMENT.sub("", block).partition(";")[0]
+        return comments, WORD.findall(bare.translate(BLANKS).upper())
 
     @abstractmethod
     def lines(self, block: str) -> list[str]:

@@ -27,6 +27,7 @@ ANGLE = 2e-4 * np.pi / 180  # rad: what rounding the angle of a helix does
 ROUND = 2e-4  # mm: so far words with four decimals may be off their circle
 SAME = ("kind", "feed_mode", "form", "side", "lost")
 ENDS = ("M2", "M30")
+LENGTH = "tool-length"
 
 
 def check_spelled_out(
@@ -41,7 +42,7 @@ def check_spelled_out(
         (first, *_) = error.diagnostics
         message = f"what was written is not read: {first.message}"
         raise VerificationError((Diagnostic("GX601", message, first.where, HINT),)) from None
-    for row, what in _differences(wanted, now):
+    for row, what in _differences(wanted, now, dialect):
         line = found.line_of(int(now.source[row]) + 1) if row < len(now) else len(found.lines)
         text = found.lines[line - 1]
         where = Location(found.name, line, 1, text, max(1, len(text)))
@@ -55,7 +56,7 @@ def _path(text: bytes, dialect: type[Dialect], reading: Reading, name: str) -> T
     return interpreter.interpret(reader.read(text), reader.table).path
 
 
-def _differences(a: Toolpath, b: Toolpath) -> Iterator[tuple[int, str]]:
+def _differences(a: Toolpath, b: Toolpath, dialect: type[Dialect]) -> Iterator[tuple[int, str]]:
     """Yield the first row of each thing that differs, and what it is."""
     if len(a) != len(b):
         yield min(len(a), len(b)), f"{len(a)} moves are {len(b)}"
@@ -67,10 +68,10 @@ def _differences(a: Toolpath, b: Toolpath) -> Iterator[tuple[int, str]]:
     yield from _first(~_same(a.end, b.end, near[:, None]).all(axis=1), "an end")
     yield from _first(~_same(a.centre, b.centre, near[:, None]).all(axis=1), "a centre")
     yield from _first(np.abs(a.sweep - b.sweep) > ANGLE + 1e-3, "a turn")
-    for one, other in zip(_events(a), _events(b), strict=False):
+    for one, other in zip(_events(a, dialect), _events(b, dialect), strict=False):
         if one != other:
             yield min(other[0], len(b)), f"{one[1]} is {other[1]}"
-    if len(_events(a)) != len(_events(b)):
+    if len(_events(a, dialect)) != len(_events(b, dialect)):
         yield len(b), "events are lost, or there are more"
 
 
@@ -87,9 +88,20 @@ def _slack(path: Toolpath) -> Floats:
     return np.where(helix, np.nan_to_num(slack), 0.0)
 
 
-def _events(path: Toolpath) -> list[tuple[int, str, tuple[tuple[str, float], ...]]]:
-    """Return what happens between moves; the end of the file is one of the program."""
-    found = [(e.row, e.what, e.values) for e in path.events]
+def _events(
+    path: Toolpath, dialect: type[Dialect]
+) -> list[tuple[int, str, tuple[tuple[str, float], ...]]]:
+    """Return what happens between moves; the end of the file is one of the program.
+
+    A tool length that is stated again while it is in force is nothing that happens.
+    """
+    found, length = [], None
+    for event in path.events:
+        code = dialect.codes.get(event.what)
+        said = event.what, event.values
+        if code is None or code.group != LENGTH or said != length:
+            found.append((event.row, *said))
+        length = said if code is not None and code.group == LENGTH else length
     return found[:-1] if found and found[-1][1] in ENDS else found
 
 

@@ -19,6 +19,7 @@ from gcxform import vocabulary as v
 from gcxform_plugins.dialects.siemens.calls import Calls
 from gcxform_plugins.dialects.siemens.effects import effect_of
 from gcxform_plugins.dialects.siemens.line import FRAMES, Line
+from gcxform_plugins.dialects.siemens.lines import Lines
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
 from gcxform_plugins.dialects.siemens.reading import QUIET
 from gcxform_plugins.dialects.siemens.spelling import spelled
@@ -74,6 +75,7 @@ class Programs(Calls):
     """Executes the lines of a program for a SINUMERIK."""
 
     writes = True
+    speller = Lines
     kept = KEPT
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:

@@ -1,0 +1,138 @@
+"""Blocks of words as lines for a SINUMERIK: `CR=`, `TURN=`, `T1 M6 D1`, `SUPA`, `G4 F`, `; text`.
+
+One block after the other; what the language has no words for is refused by its name. What comes out
+is read again, and has to be the program that was written: so nothing here needs to be believed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from decimal import Decimal
+
+import gcxform as gx
+from gcxform_plugins.dialects.siemens.place import text_of
+from gcxform_plugins.dialects.siemens.reading import WORK
+
+OFFSETS = {name: f"G{number}" for number, name in WORK.items()}
+CODES = {
+    "G20": "G700",
+    "G21": "G710",
+    "G61": "G60",
+    "G49": "D0",
+    **OFFSETS,
+    **dict.fromkeys(("G80", "G91.1", "G97", "G98", "G99", "G50", "G69"), ""),
+}
+"""Codes by another name, or by none: where nothing else is read, nothing has to be said."""
+SAME = frozenset(
+    (
+        *("G0", "G1", "G2", "G3", "G17", "G18", "G19", "G90", "G91", "G93", "G94", "G95", "G9"),
+        *("G40", "G41", "G42", "G60", "G64"),
+    )
+)
+LETTERS = {"R": "CR=", **{letter: letter for letter in "XYZABCIJKFSN"}}
+OWN = (17, 128, 129, 9000)
+NO_LENGTH = "0"
+
+
+class Lines(gx.Speller):
+    """Writes blocks as lines for a SINUMERIK.
+
+    tool      that of the last T, and `in_spindle`;  length: the one in force, "0" for none
+    """
+
+    def __init__(self, name: str, inch: bool) -> None:
+        super().__init__(name, inch)
+        self.tool = self.in_spindle = ""
+        self.length = NO_LENGTH
+
+    def lines(self, block: str) -> list[str]:
+        """Return the lines for a block. Raises UnspeakableError."""
+        comments, words = gx.Speller.parts(block)
+        found = [*self._said(words)] if words else []
+        if comments:
+            text = "; " + " ".join(comments)
+            found = [f"{found[0]} {text}", *found[1:]] if found else [text]
+        return found
+
+    def _said(self, words: list[tuple[str, str]]) -> Iterator[str]:
+        names = [letter + text_of(Decimal(text)) for letter, text in words]
+        values = dict(words)
+        self._check_m(names)
+        number = f"N{values['N']} " if "N" in values else ""
+        if "G4" in names:
+            yield f"{number}G4 F{values.pop('P', '0')}"
+            words = [each for each in words if each[0] not in "NPG"]
+        elif "G53" in names:
+            yield from self._in_machine(number, names, words)
+            return
+        else:
+            yield from self._tooled(number, names, values)
+        said = [*self._words(words, values)]
+        if any(word[0] != "N" for word in said):
+            yield " ".join(said)
+
+    def _check_m(self, names: list[str]) -> None:
+        own = [name for name in names if name[0] == "M" and name[1:] in map(str, OWN)]
+        if own:
+            raise gx.UnspeakableError(f"{own[0]} is a function of the machine, or of blocks")
+
+    # --- tools ---
+
+    def _tooled(self, number: str, names: list[str], values: dict[str, str]) -> Iterator[str]:
+        """Yield the lines of T with M6, and of D for a length. Raises UnspeakableError."""
+        if "T" in values:
+            self.tool = text_of(Decimal(values["T"]))
+        if "M6" in names:
+            if not self.tool:
+                raise gx.UnspeakableError("M6, and which tool it takes is not said before")
+            self.in_spindle = self.tool
+            yield f"{number}T{self.tool}"
+            yield "M6"
+        if "G43" in names:
+            self.length = text_of(Decimal(values["H"])) if "H" in values else self.in_spindle
+        elif "G49" in names:
+            self.length = NO_LENGTH
+        if {"M6", "G43", "G49"}.isdisjoint(names):
+            return
+        if self.length not in (NO_LENGTH, self.in_spindle):
+            raise gx.UnspeakableError("the length of another tool than the one in the spindle")
+        yield self._edge
+
+    @property
+    def _edge(self) -> str:
+        return "D0" if self.length == NO_LENGTH else "D1"
+
+    # --- words ---
+
+    def _words(self, words: list[tuple[str, str]], values: dict[str, str]) -> Iterator[str]:
+        """Yield the words of a line but those of tools. Raises UnspeakableError."""
+        for letter, text in words:
+            name = letter + text_of(Decimal(text))
+            if letter == "G" and name not in ("G43", "G49"):
+                yield from self._code(name)
+            elif letter == "M" and name != "M6":
+                yield name
+            elif letter in LETTERS:
+                yield LETTERS[letter] + (text_of(Decimal(text)) if letter != "N" else text)
+            elif letter == "P" and int(text) > 1:
+                yield f"TURN={int(text) - 1}"
+            elif letter == "D" and text_of(Decimal(text)) != self.length:
+                raise gx.UnspeakableError("the radius of another tool than that of the length")
+            elif letter not in "DGHMOPT":
+                raise gx.UnspeakableError(f"{letter} has no words on a SINUMERIK")
+
+    def _code(self, name: str) -> Iterator[str]:
+        if name not in SAME and name not in CODES:
+            raise gx.UnspeakableError(f"{name} has no words on a SINUMERIK")
+        if said := CODES.get(name, name):
+            yield said
+
+    def _in_machine(
+        self, number: str, names: list[str], words: list[tuple[str, str]]
+    ) -> Iterator[str]:
+        """Yield SUPA, which asks for D0, and the length again that was in force."""
+        rest = [each for each in words if each[0] != "N" and each != ("G", "53")]
+        said = " ".join(self._words(rest, dict(rest)))
+        yield f"{number}SUPA {said} D0"
+        if self.length != NO_LENGTH:
+            yield self._edge
