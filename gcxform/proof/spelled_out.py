@@ -7,19 +7,21 @@ grammar of the language, and both are interpreted: moves, modes and events have 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
 
-from gcxform.diagnostics import Diagnostic, GcxformError, Location, VerificationError
+from gcxform.diagnostics import Diagnostic, GcxformError, InputError, Location, VerificationError
 from gcxform.dialect.dialect import Dialect
+from gcxform.flow.speller import Speller
 from gcxform.flow.translated import translated
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Floats
-from gcxform.toolpath.path import Toolpath
+from gcxform.toolpath.path import Event, Toolpath
 
 HINT = "nothing was written; let a pass write it in another way, or write for another dialect"
 NEAR = 1e-5  # mm: far below what rounding does
@@ -27,22 +29,28 @@ ANGLE = 2e-4 * np.pi / 180  # rad: what rounding the angle of a helix does
 ROUND = 2e-4  # mm: so far words with four decimals may be off their circle
 SAME = ("kind", "feed_mode", "form", "side", "lost")
 ENDS = ("M2", "M30")
-LENGTH = "tool-length"
+COUNTS = ("tool-length", "frame")
+"""Groups of codes that say how words count. Between two moves it does not matter when they do, or
+how often they are stated, and a move in coordinates of the machine does without them."""
+MACHINE = "machine"
+"""The act of codes for a move in coordinates of the machine."""
+Values = tuple[tuple[str, float], ...]
 
 
 def check_spelled_out(
     written: Source, blocks: bytes, dialect: type[Dialect], reading: Reading
 ) -> None:
-    """Check that what was written is a program of blocks. Raises VerificationError."""
+    """Check that what was written is a program of blocks. Raises GcxformError."""
     try:
         found = translated(written, dialect, reading)
         now = _path(found.text, dialect, reading, written.name)
         wanted = _path(blocks, dialect, reading, written.name)
     except GcxformError as error:
         (first, *_) = error.diagnostics
-        message = f"what was written is not read: {first.message}"
-        raise VerificationError((Diagnostic("GX601", message, first.where, HINT),)) from None
-    for row, what in _differences(wanted, now, dialect):
+        message = f"{dialect.name} would not read what is written: {first.message}"
+        raise InputError((Diagnostic("GX501", message, first.where, first.hint),)) from None
+    told = blocks.splitlines(), found.text.splitlines()
+    for row, what in (*_differences(wanted, now, dialect), *_places(wanted, now, dialect, *told)):
         line = found.line_of(int(now.source[row]) + 1) if row < len(now) else len(found.lines)
         text = found.lines[line - 1]
         where = Location(found.name, line, 1, text, max(1, len(text)))
@@ -67,12 +75,36 @@ def _differences(a: Toolpath, b: Toolpath, dialect: type[Dialect]) -> Iterator[t
     near = NEAR + np.maximum.accumulate(_slack(a)) if len(a) else np.zeros(0)
     yield from _first(~_same(a.end, b.end, near[:, None]).all(axis=1), "an end")
     yield from _first(~_same(a.centre, b.centre, near[:, None]).all(axis=1), "a centre")
+    yield from _first((a.side != 0) & ~_same(a.radius, b.radius, 0.0), "the radius of a tool")
     yield from _first(np.abs(a.sweep - b.sweep) > ANGLE + 1e-3, "a turn")
-    for one, other in zip(_events(a, dialect), _events(b, dialect), strict=False):
+    yield from _first(_frames(a, dialect) != _frames(b, dialect), "a work offset, or a length")
+    acts = _acts(a, dialect), _acts(b, dialect)
+    for one, other in zip(*acts, strict=False):
         if one != other:
             yield min(other[0], len(b)), f"{one[1]} is {other[1]}"
-    if len(_events(a, dialect)) != len(_events(b, dialect)):
+    if len(acts[0]) != len(acts[1]):
         yield len(b), "events are lost, or there are more"
+
+
+def _places(
+    a: Toolpath, b: Toolpath, dialect: type[Dialect], one: list[bytes], other: list[bytes]
+) -> Iterator[tuple[int, str]]:
+    """Yield the first move in the machine that goes elsewhere: where that is, no column says."""
+    for (row, line), (_, there) in zip(_machine(a, dialect), _machine(b, dialect), strict=False):
+        if _words(one[line]) != _words(other[there]):
+            yield row, "a place in the machine"
+            return
+
+
+def _machine(path: Toolpath, dialect: type[Dialect]) -> list[tuple[int, int]]:
+    """Return the moves in coordinates of the machine, with the lines of their blocks from 0."""
+    found = [e for e in path.events if e.row < len(path) and _act(e, dialect) == MACHINE]
+    return [(e.row, e.line) for e in found]
+
+
+def _words(block: bytes) -> dict[str, Decimal]:
+    words = Speller.parts(block.decode("latin-1"))[1]
+    return {letter: Decimal(text) for letter, text in words if letter not in "GMNFST"}
 
 
 def _slack(path: Toolpath) -> Floats:
@@ -88,24 +120,33 @@ def _slack(path: Toolpath) -> Floats:
     return np.where(helix, np.nan_to_num(slack), 0.0)
 
 
-def _events(
-    path: Toolpath, dialect: type[Dialect]
-) -> list[tuple[int, str, tuple[tuple[str, float], ...]]]:
-    """Return what happens between moves; the end of the file is one of the program.
+def _acts(path: Toolpath, dialect: type[Dialect]) -> list[tuple[int, str, Values]]:
+    """Return what happens between moves, but for what only says how words count: see `_frames`.
 
-    A tool length that is stated again while it is in force is nothing that happens.
+    The end of the file is one of the program.
     """
-    found, length = [], None
-    for event in path.events:
-        code = dialect.codes.get(event.what)
-        said = event.what, event.values
-        if code is None or code.group != LENGTH or said != length:
-            found.append((event.row, *said))
-        length = said if code is not None and code.group == LENGTH else length
+    found = [(e.row, e.what, e.values) for e in path.events if _group(e, dialect) not in COUNTS]
     return found[:-1] if found and found[-1][1] in ENDS else found
 
 
-def _same(a: Floats, b: Floats, near: Floats) -> Any:
+def _frames(path: Toolpath, dialect: type[Dialect]) -> Any:
+    """Return by which frame the words of each move count (n,): by none in that of the machine."""
+    found = np.array(["", *map(repr, path.frames)])[path.frame + 1]
+    found[[row for row, _ in _machine(path, dialect)]] = ""
+    return found
+
+
+def _group(event: Event, dialect: type[Dialect]) -> str:
+    code = dialect.codes.get(event.what)
+    return "" if code is None else code.group
+
+
+def _act(event: Event, dialect: type[Dialect]) -> str:
+    code = dialect.codes.get(event.what)
+    return "" if code is None else code.act
+
+
+def _same(a: Floats, b: Floats, near: Any) -> Any:
     return (np.isnan(a) & np.isnan(b)) | (np.abs(a - b) <= near)
 
 

@@ -22,8 +22,49 @@ ARITHMETIC = "plugins/gcxform_plugins/dialects/siemens/arithmetic.py"
 RANDOM = "tests/test_siemens.py::test_it_reads_what_the_reference_reads"
 CASES = "tests/test_corpus.py::test_case"
 TIPS = "tests/test_siemens.py::test_five_axes_become_what_the_same_program_by_hand_becomes"
+LINES = "plugins/gcxform_plugins/dialects/siemens/lines.py"
+SPELLED = "gcxform/proof/spelled_out.py"
+WRITTEN = "tests/test_siemens_written.py::test_words_become_lines_in_its_idiom"
+COMPARED = "tests/test_siemens_written.py::test_what_is_written_is_read_and_compared"
 
 MUTATIONS = (
+    Mutation(
+        "siemens written: TURN counts the arc as well",
+        LINES,
+        'yield f"TURN={int(text) - 1}"',
+        'yield f"TURN={int(text)}"',
+        WRITTEN,
+    ),
+    Mutation(
+        "siemens written: no length is said behind a tool change",
+        LINES,
+        'moves = self.waits and not values.keys().isdisjoint("XYZIJKR")',
+        "moves = False",
+        "tests/test_siemens_written.py::"
+        "test_a_length_that_stays_in_force_is_said_before_the_next_move",
+    ),
+    Mutation(
+        "siemens written: behind SUPA there is no length",
+        LINES,
+        "if self.length and self.length != NO_LENGTH:",
+        "if False:",
+        "tests/test_siemens_written.py::"
+        "test_a_length_ends_for_a_move_in_the_machine_and_is_in_force_again",
+    ),
+    Mutation(
+        "written in a language: by which offset words count is not compared",
+        SPELLED,
+        'yield from _first(_frames(a, dialect) != _frames(b, dialect), "a work offset, or a length")',
+        "pass",
+        f"{COMPARED}[G55-G56-a work offset, or a length]",
+    ),
+    Mutation(
+        "written in a language: places in the machine are not compared",
+        SPELLED,
+        "if _words(one[line]) != _words(other[there]):",
+        "if False:",
+        f"{COMPARED}[SUPA G0 Z0 D0-SUPA G0 Z5 D0-a place in the machine]",
+    ),
     Mutation(
         "siemens: DC goes the longer way",
         PLACE,

@@ -83,7 +83,7 @@ def one(control: Control, raw: str) -> None:
     modes(control, codes, named, cip)
     tooled(control, words, named)
     if named.keys() & {*"XYZABCIJK"}:
-        move(control, named)
+        move(control, named, "SUPA" in line)
         for kind, level in control.hole:
             axis = next(a for a in "XYZ" if a not in control.plane)
             control.seconds.append(level) if kind == "4" else control.go(kind, {axis: level})
@@ -112,7 +112,7 @@ def modes(
             control.plane = PLANES[int(code)]
         if code in (90, 91):
             control.steps = code == 91
-        if code in (54, 55, 56, 57) and f"G{code:g}" != control.work:
+        if code in (54, 55, 56, 57, 505, 506) and f"G{code:g}" != control.work:
             if control.work or control.moves:
                 control.at = {}
             control.work = f"G{code:g}"
@@ -150,8 +150,8 @@ def turned(before: float | None, way: str, value: float) -> float:
     return before + up if way == "ACP" else before + up - 360.0
 
 
-def move(control: Control, named: dict[str, tuple[str, float]]) -> None:
-    """Execute a motion."""
+def move(control: Control, named: dict[str, tuple[str, float]], machine: bool) -> None:
+    """Execute a motion; in coordinates of the machine, axes are then nowhere known."""
     start, end = dict(control.at), {}
     for axis in "XYZABC":
         if axis not in named:
@@ -163,6 +163,9 @@ def move(control: Control, named: dict[str, tuple[str, float]]) -> None:
             end[axis] = turned(start.get(axis), way, value)
         else:
             end[axis] = value
+    if machine:
+        control.at = {axis: at for axis, at in start.items() if axis not in end}
+        end = {}
     if control.motion in ("0", "1"):
         control.go(control.motion, end)
         return

@@ -19,6 +19,10 @@ from gcxform_plugins.dialects.siemens.moves import rest_of
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, PlaceError, text_of
 
 
+CHANGE = 6
+"""M6, which moves no axis where `inert-m` of the machine file says so."""
+
+
 class Blocks(Framing):
     """Turns the lines of a SINUMERIK into blocks of words."""
 
@@ -153,7 +157,8 @@ class Blocks(Framing):
                 self.refuse(message, line.changes, "give M6 its own line, with TRAFOOF before")
             yield f"T{line.tool} M6" if line.tool else "M6"
             self.tool, self.changed, self.edge = self.waiting, True, None
-            self.place.lose(LINEAR + ROTARY)
+            if CHANGE not in self.reading.inert_m:
+                self.place.lose(LINEAR + ROTARY)
             setting = self.reading.control.get("edge-after-tool-change")
             if line.edge is None and setting in (0, 1):
                 yield from self._with_edge(str(int(setting)), line.changes)

@@ -1,7 +1,8 @@
 """SINUMERIK 840D sl and SINUMERIK ONE, milling, in its own language (G290).
 
-It is written from itself alone, by passes that keep positions: lines that are not changed keep
-their bytes, and what is refused below is then kept as it stands, with all that is lost behind it.
+Programs of words are written for it (`lines.py`). From itself it is written by passes that keep
+positions: lines that are not changed keep their bytes, and what is refused below is then kept as it
+stands, with all that is lost behind it.
 
 | what | SINUMERIK | known from |
 |---|---|---|
@@ -51,7 +52,8 @@ their bytes, and what is refused below is then kept as it stands, with all that 
 | `[control] orientation-path = "angles"` | in proportion unless ORIVECT or ORIPLANE is in force | |
 | `A3= B3= C3=`, `A2=`, LEAD, TILT | refused | |
 | G60, G9 | exact stops | [K] |
-| G64, G641 to G645, G601 to G603, ADIS | how corners are rounded: left out | [K] |
+| G64, G641 to G645 | corners are rounded: G64, however far | [K] |
+| G601 to G603, ADIS | how far: left out | [K] |
 | SOFT, BRISK, FFWON, COMPCAD ... | how fast, and how smooth: left out | [K] |
 | CYCLE832 | left out, with names as `_FINISH`: digits may switch TRAORI | [K] |
 | CYCLE800 | only empty, or without angles, with two rotary axes at 0 | SW 481 |
@@ -131,7 +133,9 @@ class Siemens(gx.Dialect):
         **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
         "G43": v.frame("tool-length", "length", "H"),
         "G53": v.frame("non-modal", "machine"),
-        **{code: v.inert("path") for code in ("G9", "G60", "G64")},
+        "G9": v.inert("path"),
+        "G60": v.inert("path", act="exact-stop"),
+        "G64": v.inert("path", act="blend"),
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
         **v.ISO_M,

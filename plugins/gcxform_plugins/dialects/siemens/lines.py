@@ -37,13 +37,16 @@ NO_LENGTH = "0"
 class Lines(gx.Speller):
     """Writes blocks as lines for a SINUMERIK.
 
-    tool      that of the last T, and `in_spindle`;  length: the one in force, "0" for none
+    tool      that of the last T, and `in_spindle`
+    length    the number of the one in force, "0" for none, nothing where none has been said: behind
+              M6 the machine file then says which edge is in force, or nothing may move
+    waits     M6 has been, and D has not yet: it is said before the next move, or by the next code
     """
 
     def __init__(self, name: str, inch: bool) -> None:
         super().__init__(name, inch)
-        self.tool = self.in_spindle = ""
-        self.length = NO_LENGTH
+        self.tool = self.in_spindle = self.length = ""
+        self.waits = False
 
     def lines(self, block: str) -> list[str]:
         """Return the lines for a block. Raises UnspeakableError."""
@@ -85,21 +88,22 @@ class Lines(gx.Speller):
         if "M6" in names:
             if not self.tool:
                 raise gx.UnspeakableError("M6, and which tool it takes is not said before")
-            self.in_spindle = self.tool
-            yield f"{number}T{self.tool}"
-            yield "M6"
+            self.in_spindle, self.waits = self.tool, bool(self.length)
+            yield f"{number}T{self.tool} M6"
         if "G43" in names:
             self.length = text_of(Decimal(values["H"])) if "H" in values else self.in_spindle
         elif "G49" in names:
             self.length = NO_LENGTH
-        if {"M6", "G43", "G49"}.isdisjoint(names):
-            return
-        if self.length not in (NO_LENGTH, self.in_spindle):
-            raise gx.UnspeakableError("the length of another tool than the one in the spindle")
-        yield self._edge
+        moves = self.waits and not values.keys().isdisjoint("XYZIJKR")
+        if moves or not {"G43", "G49"}.isdisjoint(names):
+            yield self._edge
 
     @property
     def _edge(self) -> str:
+        """The word for the length in force. Raises UnspeakableError."""
+        if self.length not in (NO_LENGTH, self.in_spindle):
+            raise gx.UnspeakableError("the length of another tool than the one in the spindle")
+        self.waits = False
         return "D0" if self.length == NO_LENGTH else "D1"
 
     # --- words ---
@@ -134,5 +138,6 @@ class Lines(gx.Speller):
         rest = [each for each in words if each[0] != "N" and each != ("G", "53")]
         said = " ".join(self._words(rest, dict(rest)))
         yield f"{number}SUPA {said} D0"
-        if self.length != NO_LENGTH:
+        self.waits = False
+        if self.length and self.length != NO_LENGTH:
             yield self._edge

@@ -18,9 +18,8 @@ MODAL = {
     **dict.fromkeys(("93", "94", "95"), "feed"),
     **dict.fromkeys(("40", "41", "42"), "comp"),
 }
-INERT = frozenset(
-    ("64", "641", "642", "643", "644", "645", "601", "602", "603", "290", "450", "451")
-)
+INERT = frozenset(("601", "602", "603", "290", "450", "451"))
+BLENDS = frozenset(("64", "641", "642", "643", "644", "645"))
 WORK = {"54": "G54", "55": "G55", "56": "G56", "57": "G57", "505": "G58", "506": "G59"}
 PLANES = {"17": "XY", "18": "ZX", "19": "YZ"}
 REASONS = {
@@ -253,6 +252,8 @@ class Statements(gx.Translator):
             line.dwell = item
         elif code in ("60", "9"):
             line.codes.append(f"G{code}")
+        elif code in BLENDS:
+            line.codes.append("G64")
         elif code in ("71", "700", "710"):
             self._units(line, item, code)
         elif code == "153":

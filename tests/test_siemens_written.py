@@ -1,0 +1,182 @@
+"""Random programs of words become programs for a SINUMERIK and words again, and stay the same."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from gcxform_plugins.dialects.siemens.lines import Lines
+from gcxform_plugins.passes.absolute import Absolute
+from seeds_kit import LONG, some
+from test_klartext_spelled import Writer
+from test_siemens import check
+
+import gcxform as gx
+from gcxform.machine.machine import Tool
+from gcxform.modal.state import Reading
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.plugin.registry import default_registry
+
+DIALECTS = default_registry().dialects
+WORDS, SIEMENS = DIALECTS["linuxcnc"], DIALECTS["siemens"]
+TOOLS = {n: Tool(length=10.0 * n, radius=1.0) for n in range(1, 9)}
+START = {"X": 0.0, "Y": 0.0, "Z": 50.0}
+READING = Reading(START, tools=TOOLS, control={"tool-length-axis": "Z"})
+HEAD = "G21 G17 G90 G94 G49 G54\n"
+
+
+def written(text, source=WORDS, target=SIEMENS, passes=(), reading=READING):
+    """Return what a program becomes, proved."""
+    result = Pipeline(source, target, tuple(passes), reading).run(text.encode("latin-1"))
+    assert result.certificate.verified
+    return result.text.decode("latin-1")
+
+
+def said(blocks, **options):
+    """Return the lines for blocks, without those of the head and of the end."""
+    return written(f"{HEAD}{blocks}\nM2\n", **options).splitlines()[2:-1]
+
+
+IDIOMS = [
+    ("G0 X1. Y-2.5 (to the part; here)", ["G0 X1 Y-2.5 ; to the part; here"]),
+    ("(alone)", ["; alone"]),
+    ("N10 G0 X1.", ["N10 G0 X1"]),
+    ("T3 M6\nG43 H3\nG0 X1. Y2. Z3.", ["T3 M6", "D1", "G0 X1 Y2 Z3"]),
+    ("G4 P1.5", ["G4 F1.5"]),
+    ("G0 X10. Y0.\nG2 X20. Y10. R10. F100.", ["G0 X10 Y0", "G2 X20 Y10 I10 J0 F100"]),
+    (
+        "G0 X0. Y0.\nG3 X10. Y0. Z-1. I5. J0. P3 F50.",
+        ["G0 X0 Y0", "G3 X10 Y0 Z-1 I5 J0 TURN=2 F50"],
+    ),
+    ("G55\nG0 X1.\nG59\nG0 X1.", ["G55", "G0 X1", "G506", "G0 X1"]),
+    ("G53 G0 Z0.", ["SUPA G0 Z0 D0"]),
+    ("G93 G1 X5. F2.\nG94 F100. G1 X1.", ["G93 G1 X5 F2", "G94 F100 G1 X1"]),
+    ("S1000 M3\nM8\nM9\nM5\nM0", ["S1000 M3", "M8", "M9", "M5", "M0"]),
+    ("G61.1\nG1 X1. F50.", ["G60", "G1 X1 F50"]),
+    ("G64 P0.01", ["G64"]),
+    ("G0 X0. Z0.\nG18\nG2 X1. Z1. I1. K0. F20.", ["G0 X0 Z0", "G18", "G2 X1 Z1 K0 I1 F20"]),
+]
+
+
+@pytest.mark.parametrize(("blocks", "lines"), IDIOMS)
+def test_words_become_lines_in_its_idiom(blocks, lines):
+    assert said(blocks) == lines
+
+
+def test_a_length_ends_for_a_move_in_the_machine_and_is_in_force_again():
+    found = said("T3 M6\nG43 H3\nG0 X1. Y2. Z3.\nG53 G0 Z0.\nG0 X1. Y1. Z5.")
+    assert found[-3:] == ["SUPA G0 Z0 D0", "D1", "G0 X1 Y1 Z5"]
+
+
+def test_a_length_that_stays_in_force_is_said_before_the_next_move():
+    found = said("T3 M6\nG43 H3\nG0 X1. Y2. Z3.\nM5\nM6 T3\nM3 S100\nG0 X1. Y1. Z5.")
+    assert found[-4:] == ["T3 M6", "M3 S100", "D1", "G0 X1 Y1 Z5"]
+
+
+WRONG = [
+    ("D1", "D0", "an end"),
+    ("G55", "G56", "a work offset, or a length"),
+    ("M8", "M7", "M8 is M7"),
+    ("SUPA G0 Z0 D0", "SUPA G0 Z5 D0", "a place in the machine"),
+    ("SUPA G0 Z0 D0", "SUPA G0 X0 D0", "X"),
+    ("G2 X5", "G3 X5", "kind"),
+    ("G4 F1", "G4 F2", "DWELL is DWELL"),
+    ("M5", "", "events"),
+    ("TURN=1", "TURN=2", "a turn"),
+    ("F50", "F51", "feed"),
+]
+
+
+@pytest.mark.parametrize(("right", "wrong", "why"), WRONG)
+def test_what_is_written_is_read_and_compared(right, wrong, why, monkeypatch):
+    lines = Lines.lines
+
+    def mistaken(self, block):
+        return [line.replace(right, wrong) for line in lines(self, block)]
+
+    text = "T3 M6\nG43 H3\nG55\nG0 X1. Y2. Z3.\nG2 X5. Y2. I2. J0. F50.\nM8\nG4 P1."
+    text += "\nG2 X1. Y2. I-2. J0. P2\nG53 G0 Z0.\nM5"
+    said(text)
+    monkeypatch.setattr(Lines, "lines", mistaken)
+    with pytest.raises(gx.GcxformError, match=why):
+        said(text)
+
+
+REFUSED = [
+    ("T3 M6\nG43 H4\nG0 X1. Y1. Z1.", "the length of another tool than the one in the spindle"),
+    ("G0 X0. Y0.\nG3 X0. Y0. Z-3. I5. J0. P3 F50.", "TURN= of a full circle"),
+    ("G0 U1.", "U"),
+]
+
+
+@pytest.mark.parametrize(("blocks", "why"), REFUSED)
+def test_what_has_no_words_is_refused(blocks, why):
+    with pytest.raises(gx.GcxformError, match=why):
+        said(blocks)
+
+
+def test_behind_a_tool_change_without_a_length_a_setting_decides():
+    text = "G21 G17 G90 G94\nT1 M6\nG0 X1. Y1. Z1.\nM2\n"
+    with pytest.raises(gx.InputError, match="MD20270"):
+        written(text)
+    lines = written(text, reading=Reading(START, control={"edge-after-tool-change": 0.0}))
+    assert "D0" not in lines
+
+
+class Wider(Writer):
+    """Draws planes, radii, offsets and units as well."""
+
+    def program(self):
+        text = super().program().decode()
+        head = self.draw.choice(("G54 G49", "G55 G49", "G58 G64 G49"))
+        return f"{head}\n{text}"
+
+    def function(self):
+        more = ("G55", "G54", "G61.1", "G64", "(a; [b])", "G59")
+        if self.draw.random() < 0.3 and not self.steps:
+            return [self.draw.choice(more), f"G0{self.words({a: self.number() for a in 'XYZ'})}"]
+        return super().function()
+
+    def arc(self):
+        kind = self.draw.random()
+        if kind < 0.5 or self.steps:
+            return super().arc()
+        plane, (a, b) = self.draw.choice((("G17", "XY"), ("G18", "ZX"), ("G19", "YZ")))
+        ends = {axis: self.number() for axis in (a, b)}
+        chord = math.dist([self.at[axis] for axis in (a, b)], [*ends.values()])
+        if chord < 0.5:
+            return []
+        radius = round(chord * self.draw.uniform(0.52, 2.0), 4) * self.draw.choice((1, 1, -1))
+        code = self.draw.choice(("G2", "G3"))
+        return [plane, f"{code}{self.words(ends)} R{radius}", "G17"]
+
+
+def read(text, dialect):
+    return gx.read(
+        text.encode("latin-1"),
+        dialect,
+        start=START,
+        tools=TOOLS,
+        control={"tool-length-axis": "Z"},
+    )
+
+
+@pytest.mark.parametrize("seed", some(20 if not LONG else 20_000))
+def test_words_and_its_language_say_the_same(seed):
+    text = Wider(seed).program()
+    try:
+        lines = written(text)
+    except gx.InputError as error:
+        assert "TURN= of a full circle" in str(error)
+        return
+    one, two = read(text, WORDS), read(lines, SIEMENS)
+    check(lines)
+    assert gx.compare(one, two).deviation < 0.004, text
+    back = written(lines, SIEMENS, WORDS, (Absolute(),))
+    assert gx.compare(two, read(back, WORDS)).deviation < 0.004, text
+    try:
+        own = written(lines, SIEMENS, SIEMENS, (Absolute(),))
+    except gx.InputError as error:  # lines of D are kept, in the modes that they had
+        assert "this is kept as it stands" in str(error)
+        return
+    assert gx.compare(two, read(own, SIEMENS)).deviation < 0.004, text
