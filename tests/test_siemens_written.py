@@ -167,7 +167,8 @@ def test_words_and_its_language_say_the_same(seed):
     try:
         lines = written(text)
     except gx.InputError as error:
-        assert "TURN= of a full circle" in str(error)
+        if "TURN= of a full circle" not in str(error):
+            raise
         return
     one, two = read(text, WORDS), read(lines, SIEMENS)
     check(lines)
@@ -177,6 +178,7 @@ def test_words_and_its_language_say_the_same(seed):
     try:
         own = written(lines, SIEMENS, SIEMENS, (Absolute(),))
     except gx.InputError as error:  # lines of D are kept, in the modes that they had
-        assert "this is kept as it stands" in str(error)
+        if "this is kept as it stands" not in str(error):
+            raise
         return
     assert gx.compare(two, read(own, SIEMENS)).deviation < 0.004, text

@@ -54,8 +54,8 @@ MUTATIONS = (
     Mutation(
         "written in a language: by which offset words count is not compared",
         SPELLED,
-        'yield from _first(_frames(a, dialect) != _frames(b, dialect), "a work offset, or a length")',
-        "pass",
+        "_frames(a, dialect) != _frames(b, dialect)",
+        "_frames(a, dialect) != _frames(a, dialect)",
         f"{COMPARED}[G55-G56-a work offset, or a length]",
     ),
     Mutation(

@@ -18,7 +18,6 @@ from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, STEP, Line
 from gcxform_plugins.dialects.siemens.moves import rest_of
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, PlaceError, text_of
 
-
 CHANGE = 6
 """M6, which moves no axis where `inert-m` of the machine file says so."""
 
