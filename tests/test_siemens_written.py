@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from gcxform_plugins.dialects.siemens.lines import Lines
@@ -22,6 +24,7 @@ WORDS, SIEMENS = DIALECTS["linuxcnc"], DIALECTS["siemens"]
 TOOLS = {n: Tool(length=10.0 * n, radius=1.0) for n in range(1, 9)}
 START = {"X": 0.0, "Y": 0.0, "Z": 50.0}
 READING = Reading(START, tools=TOOLS, control={"tool-length-axis": "Z"})
+EXAMPLE = Path(__file__).parents[1] / "examples" / "bracket"
 HEAD = "G21 G17 G90 G94 G49 G54\n"
 
 
@@ -121,6 +124,18 @@ def test_behind_a_tool_change_without_a_length_a_setting_decides():
         written(text)
     lines = written(text, reading=Reading(START, control={"edge-after-tool-change": 0.0}))
     assert "D0" not in lines
+
+
+def test_what_is_compensated_for_it_says_so_and_is_not_compensated_again():
+    plan = replace(Pipeline.load(EXAMPLE / "bracket.toml"), target=SIEMENS)
+    result = plan.run(EXAMPLE / "bracket.nc")
+    assert result.certificate.verified
+    lines = result.text.decode().splitlines()
+    assert lines[5].startswith("; GCXFORM STAMP")
+    assert lines[-1].startswith("; GCXFORM SEAL")
+    assert read(result.text.decode(), SIEMENS).path.end.any()
+    with pytest.raises(gx.InputError, match="GX240"):
+        replace(plan, source=SIEMENS, target=WORDS).run(result.text)
 
 
 class Wider(Writer):

@@ -244,7 +244,7 @@ CODES: dict[str, tuple[str, str]] = {
         "Its programs are not written in words. They are turned into blocks that are, and what is "
         "written has to be a program of another control: name it in [output], or with -t. A "
         "SINUMERIK or a TNC may be written from itself, by passes that change neither positions "
-        "nor text, and a TNC from other controls, by passes that put no stamp into programs.",
+        "nor text, and both from other controls, a TNC by passes that put no stamp into programs.",
     ),
     "GX748": (
         "A tolerance without a unit, and a large one",

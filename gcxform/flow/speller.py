@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from abc import ABC, abstractmethod
+from typing import ClassVar
 
 COMMENT = re.compile(r"\(([^()]*)\)")
 WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
@@ -18,7 +19,12 @@ class Speller(ABC):
     """Says the blocks of one program in another language, one after the other.
 
     Whatever comes out is read again by the grammar of the language, and has to be the same program.
+
+    `comment` begins a line that says nothing to the control, wherever one may stand behind the end
+    of a program; nothing where none may.
     """
+
+    comment: ClassVar[str] = ""
 
     def __init__(self, name: str, inch: bool) -> None:
         self.name = name

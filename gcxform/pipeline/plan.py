@@ -160,11 +160,13 @@ class Plan:
     def _spells_out(self) -> bool:
         """Whether a program of another control is written in the language of its target.
 
-        Stamps and what changes text are for programs of words.
+        What changes text is for programs of words, and so are stamps where the language has no
+        comment that may stand behind the end.
         """
-        plain = not self.text_passes and stamp_of(self.passes, self.context, self.words) is None
         speller = getattr(self.target.translator, "speller", None)
-        return plain and speller is not None and self.source is not self.target
+        if speller is None or self.text_passes or self.source is self.target:
+            return False
+        return bool(speller.comment) or stamp_of(self.passes, self.context, self.words) is None
 
     def _writes_back(self) -> bool:
         """Whether a program in a language of its own is written in that language again.

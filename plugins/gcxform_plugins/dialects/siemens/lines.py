@@ -43,6 +43,8 @@ class Lines(gx.Speller):
     waits     M6 has been, and D has not yet: it is said before the next move, or by the next code
     """
 
+    comment = "; "
+
     def __init__(self, name: str, inch: bool) -> None:
         super().__init__(name, inch)
         self.tool = self.in_spindle = self.length = ""
@@ -53,7 +55,7 @@ class Lines(gx.Speller):
         comments, words = gx.Speller.parts(block)
         found = [*self._said(words)] if words else []
         if comments:
-            text = "; " + " ".join(comments)
+            text = self.comment + " ".join(comments)
             found = [f"{found[0]} {text}", *found[1:]] if found else [text]
         return found
 
