@@ -27,7 +27,6 @@ FIVE, FIVE_UNVERIFIED = "five axes: gcxform, verified", "five axes: gcxform, `--
 SHOP_READ, SHOP_COPIED = "shop: `rs274 -g`", "shop: gcxform, verified"
 SHOP_REWRITTEN, SHOP_UNVERIFIED = "shop: gcxform, rewritten", "shop: gcxform, `--verify off`"
 SHOP_TENFOLD = "shop: gcxform, rewritten, ten times the lines"
-ROADS = ("comments", "expressions", "assignments", "loop")
 HELP, LDDM = "`gcxform --help`", "LDDM example"
 COPIED, REWRITTEN = "absolute", "cycles | offsets | absolute"
 
@@ -142,26 +141,6 @@ def shop_jobs(scratch: Path, lines: int) -> list[Job]:
         shop_job(SHOP_REWRITTEN, program, scratch, REWRITTEN),
         shop_job(SHOP_UNVERIFIED, program, scratch, COPIED, "--verify", "off"),
     ]
-
-
-def road_names(road: str) -> tuple[str, str]:
-    """Return what the jobs of a road are called: rs274's and ours."""
-    return f"{road}: `rs274 -g`", f"{road}: gcxform, verified"
-
-
-def road_jobs(scratch: Path, lines: int) -> list[Job]:
-    """Return the jobs on programs with comments, expressions and loops, of a fifth of the lines."""
-    jobs, lines = [], max(lines // 5, 10)
-    for road in ROADS:
-        source, out = scratch / f"{road}.ngc", scratch / f"{road}-out.ngc"
-        command = [sys.executable, str(HERE / "computing.py"), road, "--lines", str(lines)]
-        subprocess.run([*command, str(source)], check=True)
-        reading = reading_job(source, scratch, lines)
-        options = ["-q", "-f", "linuxcnc", "-x", COPIED, "-o", str(out)]
-        ours = Job("", [str(GCXFORM), "run", *options, str(source)], out, lines, b"M2")
-        reading.name, ours.name = road_names(road)
-        jobs += [reading, ours]
-    return jobs
 
 
 def five_axis_jobs(scratch: Path, lines: int) -> list[Job]:
