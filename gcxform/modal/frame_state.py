@@ -7,8 +7,9 @@ positions (see `gcxform/toolpath/frames.py`), nan where they are not known.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import isfinite, nan
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from gcxform.system.arrays import Floats
 from gcxform.toolpath.frames import Frame, Matrix, Vector
 
 NO_TOOL = (0.0, 0.0, 0.0)
+UNFRAMED: Final = frozenset({"work", "known", "in_spindle", "changes", "homes", "written"})
+"""Fields on which the frame of a work offset does not depend: it is looked up by that offset."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +30,7 @@ class Turn:
     centre: tuple[float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FrameState:
     """What decides how words become positions. Vectors have one number per axis, mm or degrees.
 
@@ -88,6 +91,8 @@ class FrameState:
     tilt: str = ""
     tip: str = ""
     tilted: int = 0
+    made: dict[str, Frame] = field(default_factory=dict, init=False, repr=False, compare=False)
+    """The frames of work offsets that were asked for."""
 
     @classmethod
     def at_start(
@@ -157,6 +162,11 @@ class FrameState:
 
     def frame(self) -> Frame:
         """Return the frame in force."""
+        if self.work not in self.made:
+            self.made[self.work] = self._frame()
+        return self.made[self.work]
+
+    def _frame(self) -> Frame:
         zero = self.zero_of(self.work)
         away = self._unknown_zero()
         origin = [self.first if isfinite(place) else away for place in zero]
@@ -212,6 +222,25 @@ class FrameState:
         about = np.array(rotation(angle, 0, 1))
         matrix, shift = about @ matrix, about @ shift
         return _matrix(matrix), shift.tolist()
+
+
+if TYPE_CHECKING:
+    from dataclasses import replace as replace
+else:
+
+    def replace(state: FrameState, **changes: object) -> FrameState:
+        """Return a state with some fields changed, as `dataclasses.replace` does.
+
+        A program may change its frame in every other line, and a constructor of 30 fields takes
+        longer than all else that is then done.
+        """
+        changed = object.__new__(FrameState)
+        fields = changed.__dict__
+        fields.update(state.__dict__)
+        fields.update(changes)
+        if not changes.keys() <= UNFRAMED:
+            fields["made"] = {}
+        return changed
 
 
 def rotation(angle: float, first: int, second: int) -> Matrix:

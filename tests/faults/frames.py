@@ -57,8 +57,8 @@ MUTATIONS = (
     Mutation(
         "frames: diameters are radii in what acts",
         "gcxform/modal/frames/track.py",
-        'return {**words, "X": words["X"] / 2}',
-        "return words",
+        'axes["X"] /= 2',
+        "pass",
         SHIFTS,
     ),
     Mutation(

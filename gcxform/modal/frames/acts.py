@@ -69,5 +69,7 @@ def unheard(act: str, asked: Asked) -> str:
 
     Two blocks that differ in such a word alone would be taken for the same.
     """
+    if not asked.written:
+        return ""
     heard = asked.numbers if act == "work" else WORDS.get(act, "")
     return next((a for a in asked.written if a not in asked.dialect.axes and a not in heard), "")

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from gcxform.catalogue.offers import tool_said
-from gcxform.modal.frame_state import NO_TOOL, FrameState
+from gcxform.modal.frame_state import NO_TOOL, FrameState, replace
 from gcxform.modal.frames.act import ActError, Asked
 
 BEFORE = "the H before the program"

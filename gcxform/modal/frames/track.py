@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite, remainder
+from math import isfinite, isnan, remainder
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.frame_state import FrameState
 from gcxform.modal.frames.act import ActError, Asked
 from gcxform.modal.frames.acts import ACTS, unheard
+from gcxform.modal.frames.transforms import turned_by
 from gcxform.modal.lines import LENGTHS, Lines
 from gcxform.modal.meaning.meaning import ZEROING, Act
 from gcxform.modal.state import Modes
@@ -45,6 +46,8 @@ LENGTHENED = frozenset(
 LENGTH_STEP = "tool-length-alone"  # what another tool length does to Z before Z is programmed
 UNFOLLOWED, SWITCHED = frozenset({"plane", "tip"}), frozenset({"tip-on", "tip-off"})
 SPATIAL = 0b111  # X, Y and Z as bits
+PLANES = tuple(Plane)
+NOTHING: dict[str, float] = {}
 WHOLE_TURN = 360.0  # degrees
 NOISE = 1e-9  # degrees; what steps of G91 may leave of their sum
 
@@ -103,12 +106,12 @@ class Track:
 
     def words_on(self, line: int) -> dict[str, float]:
         """Return the axis words of a line, mm and degrees."""
-        found = {}
-        for axis in self.axes:
-            word = self.column(axis)
-            if word is not None and word[1][line]:
-                found[axis] = float(word[0][line])
-        return found
+        return {axis: float(value[line]) for axis, (value, has) in self._named_axes if has[line]}
+
+    @cached_property
+    def _named_axes(self) -> list[tuple[str, tuple[Floats, Flags]]]:
+        """The columns of axes that any line names, in the order of the axes."""
+        return [(axis, word) for axis in self.axes if (word := self.column(axis)) is not None]
 
     # --- acts ---
 
@@ -146,12 +149,13 @@ class Track:
         lengthened = act.name in LENGTHENED and frames.frame() != old
         height = self._moved_by_length(line, old) if lengthened else np.nan
         tools = self.dialect.tool_rule
-        if np.isnan(frames.tool[2]) and frames.tool[0] == 0.0 and tools.lengths_aside:
+        if isnan(frames.tool[2]) and frames.tool[0] == 0.0 and tools.lengths_aside:
             self.state.assumed[ALONG_Z] = None
         if act.name == "polar":
             self.state.polar = np.nan, np.nan
         if act.name in LOST_BY_TURN:
-            self._lose(line, self._turned_by(line, before, frames))
+            plane = PLANES[self.modes.plane[line]]
+            self._lose(line, turned_by(before, frames, plane))
         self.enter(line, old)
         self._stand(2, height)
 
@@ -169,7 +173,7 @@ class Track:
 
     def _stand(self, k: int, word: float) -> None:
         """Let an axis stand where a word of the frame in force leads, if that is known."""
-        if not np.isfinite(word) or self.frame.matrix is not None:
+        if not isfinite(word) or self.frame.matrix is not None:
             return
         words = self.frame.words(self.state.position[None, :])[0].copy()
         words[k] = word
@@ -180,15 +184,6 @@ class Track:
         rotary = self.lines.reading.rotary or ROTARY
         turned = [v for a, v in zip(self.axes, self.state.position, strict=True) if a in rotary]
         return all(isfinite(v) and abs(remainder(v, WHOLE_TURN)) < NOISE for v in turned)
-
-    def _turned_by(self, line: int, before: FrameState, after: FrameState) -> int:
-        """Return the axes, as bits, of which controls differ in where a turn leaves them."""
-        if before.polar != after.polar:
-            first, second, _ = Plane(int(self.modes.plane[line])).axes
-            return 1 << first | 1 << second
-        turns = {*before.turns} ^ {*after.turns}
-        matrices = [np.array(turn.matrix) - np.eye(3) for _, turn in turns]
-        return sum({1 << int(k) for matrix in matrices for k in np.flatnonzero(matrix.any(axis=1))})
 
     def reset_work(self, line: int) -> None:
         """Enter the work offset that the end of a program leaves, before a line."""
@@ -201,36 +196,40 @@ class Track:
         """Note the frame that is in force from a line on, if it is another one."""
         new = self.state.frames.frame()
         if new != old:
-            pairs = enumerate(zip(old.origin, new.origin, strict=True))
-            self._lose(line, sum(1 << k for k, (was, now) in pairs if was != now))
+            if new.origin != old.origin:
+                pairs = enumerate(zip(old.origin, new.origin, strict=True))
+                self._lose(line, sum(1 << k for k, (was, now) in pairs if was != now))
             self.frames.append(new)
 
     def _asked(self, act: Act, line: int) -> Asked:
+        written, words, axes = self._said(act, line) if act.slots else (NOTHING, NOTHING, NOTHING)
+        modes, calls = self.modes, self.lines.kept_calls
+        return Asked(
+            act.code,
+            words,
+            written,
+            axes,
+            self.state.position,
+            bool(modes.incremental[line]),
+            PLANES[modes.plane[line]],
+            float(modes.tool[line]),
+            self.dialect,
+            self.lines.reading,
+            next((call.ends for call in calls if call.line == line), "") if calls else "",
+        )
+
+    def _said(self, act: Act, line: int) -> tuple[dict[str, float], ...]:
+        """Return the words that an act takes: as written, in mm, and those of axes as radii."""
         window, first = self.lines.window, int(self.lines.first[line])
         written = {a: float(window.value[first + slot]) for a, slot in act.slots}
         scale = INCH if self.modes.inch[line] else 1.0
         words = {a: v * scale if a in LINEAR else v for a, v in written.items()}
         for address, slot in act.slots if act.name not in UNFOLLOWED else ():
             self.lines.refuse_pointless(line, address, first + slot)
-        return Asked(
-            act.code,
-            words,
-            written,
-            self._radial({a: v for a, v in words.items() if a in self.axes}),
-            self.state.position,
-            bool(self.modes.incremental[line]),
-            Plane(int(self.modes.plane[line])),
-            float(self.modes.tool[line]),
-            self.dialect,
-            self.lines.reading,
-            next((call.ends for call in self.lines.kept_calls if call.line == line), ""),
-        )
-
-    def _radial(self, words: dict[str, float]) -> dict[str, float]:
-        """Return axis words with X as a radius."""
-        if self.state.frames.diameter and "X" in words:
-            return {**words, "X": words["X"] / 2}
-        return words
+        axes = {a: v for a, v in words.items() if a in self.axes}
+        if self.state.frames.diameter and "X" in axes:
+            axes["X"] /= 2
+        return written, words, axes
 
     def _lose(self, line: int, axes: int) -> None:
         if not axes:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from gcxform.modal.frame_state import FrameState, Turn, rotation
+from gcxform.modal.frame_state import FrameState, Turn, replace, rotation
 from gcxform.modal.frames.act import Act, ActError, Asked
+from gcxform.toolpath.path import Plane
 
 
 def rotate(state: FrameState, asked: Asked) -> FrameState:
@@ -113,3 +112,13 @@ def no_polar(state: FrameState, asked: Asked) -> FrameState:
 def diameter(state: FrameState, asked: Asked) -> FrameState:
     """G7, G8: X words are diameters, or not."""
     return replace(state, diameter=asked.code == "G7")
+
+
+def turned_by(before: FrameState, after: FrameState, plane: Plane) -> int:
+    """Return the axes, as bits, of which controls differ in where a turn leaves them."""
+    if before.polar != after.polar:
+        first, second, _ = plane.axes
+        return 1 << first | 1 << second
+    turns = {*before.turns} ^ {*after.turns}
+    matrices = [np.array(turn.matrix) - np.eye(3) for _, turn in turns]
+    return sum({1 << int(k) for matrix in matrices for k in np.flatnonzero(matrix.any(axis=1))})

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 
 from gcxform.dialect.machine_parameters import among
-from gcxform.modal.frame_state import FrameState, rotation
+from gcxform.modal.frame_state import FrameState, replace, rotation
 from gcxform.modal.frames.act import ActError, Asked
 from gcxform.modal.frames.tool_lengths import set_in_table, written
 from gcxform.toolpath.frames import Vector
@@ -70,8 +69,10 @@ def work(state: FrameState, asked: Asked) -> FrameState:
         if number < 1 or number % 1:
             raise ActError("GX213", f"{name} needs a whole number in {address}")
         name = f"{name} {address}{number:.0f}"
+    if state.known:
+        return state.in_work(name)
     unmoved = bool(np.isnan(asked.position).all())
-    if not state.known and unmoved and name not in asked.reading.work_offsets:
+    if unmoved and name not in asked.reading.work_offsets:
         return state.starting_in(name, asked.reading.work_offsets, True)
     return state.in_work(name)
 

@@ -13,7 +13,7 @@ from gcxform.modal.frames.track import LEFT, Track
 from gcxform.modal.meaning.calls import CALL
 from gcxform.modal.meaning.meaning import OWN_MOVES, Act
 from gcxform.modal.moves.blind_moves import note_way
-from gcxform.modal.moves.rows import Rows
+from gcxform.modal.moves.rows import Own
 from gcxform.modal.moves.spindle_and_probe import probe
 from gcxform.modal.noted import AT
 from gcxform.system.arrays import Floats
@@ -26,7 +26,7 @@ PLACE = "write it under G90, with its place in the machine"
 CLEAR = "write G0 in this block if the way is clear, or G1"
 
 
-def own_moves(track: Track, line: int) -> Rows | None:
+def own_moves(track: Track, line: int) -> Own | None:
     """Return the moves of a line that has such a code, None if it has none."""
     meaning = track.lines.table.meanings[int(track.lines.shape[line])]
     for act in meaning.acts:
@@ -63,13 +63,13 @@ def _reference(track: Track, line: int, act: Act) -> str:
     return f"{act.code} P{number:g}"
 
 
-def _rows(track: Track, line: int, form: Form, moves: list[tuple[int, Floats]]) -> Rows:
+def _rows(track: Track, line: int, form: Form, moves: list[tuple[int, Floats]]) -> Own:
     if moves:
         track.state.position = moves[-1][1].copy()
-    return Rows.of_line(line, form, moves, len(track.frames) - 1)
+    return Own(line, form, moves, len(track.frames) - 1)
 
 
-def _home(track: Track, line: int, code: str) -> Rows:
+def _home(track: Track, line: int, code: str) -> Own:
     """G28: rapid over the point given, then with the axes named to the reference point."""
     words = track.words_on(line)
     moves: list[tuple[int, Floats]] = []
@@ -175,7 +175,7 @@ def _in_frame(track: Track, k: int, value: float) -> float:
     return float(track.state.frames.machine[k]) + value
 
 
-def _called(track: Track, line: int) -> Rows | None:
+def _called(track: Track, line: int) -> Own | None:
     """Return the way to the point at which a call ends, where the machine file says that it does.
 
     How it gets there is not known, so that the block stays as it is. None for other calls.
@@ -209,7 +209,7 @@ def _target(track: Track, line: int) -> dict[str, float]:
     return found
 
 
-def _in_machine(track: Track, line: int) -> Rows:
+def _in_machine(track: Track, line: int) -> Own:
     """G53: to a point in the coordinates of the machine, without any offset."""
     if track.modes.incremental[line] and track.dialect.motion_rule.g53_in_g91 != "absolute":
         message = "G53 under G91: controls refuse it, ignore it, or take it as absolute"

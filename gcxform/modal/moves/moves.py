@@ -26,7 +26,7 @@ from gcxform.modal.moves.cycle_patterns import Drilling
 from gcxform.modal.moves.home import TOOL_BACK, own_moves
 from gcxform.modal.moves.nurbs import Nurbs
 from gcxform.modal.moves.printers import SAY_MOTION, UNMOVED, refuse_unheard
-from gcxform.modal.moves.rows import Rows, Stretches
+from gcxform.modal.moves.rows import Own, Rows, Stretches
 from gcxform.modal.moves.spindle_and_probe import Tied
 from gcxform.modal.moves.splines import read_splines, with_splines
 from gcxform.modal.moves.tool_vectors import Pointing
@@ -77,7 +77,9 @@ class Moves:
         found = [self._stretch(first, last, of, moving, losing) for first, last in of.borders]
         if self.lines.live in of.leaving:
             self.track.lose_all(self.lines.live)
-        rows = [part for part in found if part is not None and len(part.line)]
+        rows = [part for part in found if isinstance(part, Rows) and len(part.line)]
+        if own := [part for part in found if isinstance(part, Own) and part.moves]:
+            rows.append(Rows.of_lines(own))
         if self.shifted is not None:
             rows.append(self._plain(*self.shifted.rows()))
         rows += self.drilling.rows()
@@ -230,7 +232,7 @@ class Moves:
 
     def _stretch(
         self, first: int, last: int, of: Stretches, moving: Flags, lost: Flags | None
-    ) -> Rows | None:
+    ) -> Rows | Own | None:
         """Return the rows of a stretch; None where it has none, or they are made at the end."""
         self._refuse_other_units(first, first + 1)
         if first in of.resets:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,6 +28,19 @@ class Stretches:
     leaving: set[int]
     lost: dict[int, str]
     busy: list[int]
+
+
+class Own(NamedTuple):
+    """The moves of one line, kinds and ends, that moves in its own way: G28, G53, a probe, a tap.
+
+    They are as short as can be: a program may have such a line for each ten, and arrays of their
+    own would take longer than all else.
+    """
+
+    line: int
+    form: Form
+    moves: list[tuple[int, Floats]]
+    frame: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,16 +68,18 @@ class Rows:
         )
 
     @classmethod
-    def of_line(cls, line: int, form: Form, moves: list[tuple[int, Floats]], frame: int) -> Rows:
-        """Return the moves of one line, given kinds and ends."""
-        count = len(moves)
+    def of_lines(cls, own: Sequence[Own]) -> Rows:
+        """Return the moves of lines that move in ways of their own, at least one move in all."""
+        count = np.array([len(each.moves) for each in own])
+        form = np.array([each.form for each in own], np.int8)
+        frame = np.array([each.frame for each in own])
         return cls(
-            np.full(count, line),
-            np.array([kind for kind, _ in moves], np.int8),
-            np.array([end for _, end in moves]),
-            np.arange(count),
-            constant(form, count, np.int8),
-            constant(frame, count, np.int64),
+            np.repeat(np.array([each.line for each in own]), count),
+            np.array([kind for each in own for kind, _ in each.moves], np.int8),
+            np.array([end for each in own for _, end in each.moves]),
+            np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count),
+            np.repeat(form, count),
+            np.repeat(frame, count),
         )
 
     @classmethod

@@ -17,7 +17,7 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.frames.track import SPATIAL, Break, Track
 from gcxform.modal.meaning.tables import NUMBER, PROBES, TAP, THREAD, THREAD_CYCLE
 from gcxform.modal.moves.blind_moves import note_way
-from gcxform.modal.moves.rows import Rows
+from gcxform.modal.moves.rows import Own, Rows
 from gcxform.modal.moves.thread_cycles import thread_cycle
 from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE
 from gcxform.system.arrays import Flags, Floats, Ints, Small
@@ -102,7 +102,7 @@ class Tied:
         form = np.where(thread, Form.THREAD, Form.PLAIN).astype(np.int8)
         return Rows(found.line, kind, found.end, found.nth, form, found.frame)
 
-    def row(self, line: int) -> Rows:
+    def row(self, line: int) -> Own:
         """Return the rows of a line that is a tap, a probe or a thread in passes."""
         if self.cycle[line]:
             return thread_cycle(self.track, line)
@@ -121,16 +121,16 @@ class Tied:
         return feed, mode
 
 
-def tap(track: Track, line: int) -> Rows:
+def tap(track: Track, line: int) -> Own:
     """Return the moves of a tap: to its end, and back to where it began."""
     start = track.state.position.copy()
     end = track.along(line, line + 1, np.array([line]), None)[0]
     track.state.position = start.copy()
     moves: list[tuple[int, Floats]] = [(Kind.LINE, end), (Kind.LINE, start)]
-    return Rows.of_line(line, Form.SYNCHRONISED, moves, len(track.frames) - 1)
+    return Own(line, Form.SYNCHRONISED, moves, len(track.frames) - 1)
 
 
-def probe(track: Track, line: int) -> Rows:
+def probe(track: Track, line: int) -> Own:
     """Return the move of a probe; where the axes it names stand afterwards is not known."""
     start = track.state.position.copy()
     end = track.along(line, line + 1, np.array([line]), None)[0]
@@ -148,4 +148,4 @@ def probe(track: Track, line: int) -> Rows:
             track.state.position[k] = np.nan
     track.note_lost(lost)
     track.breaks.append(Break(line + 1, lost))
-    return Rows.of_line(line, Form.PROBE, [(Kind.LINE, end)], len(track.frames) - 1)
+    return Own(line, Form.PROBE, [(Kind.LINE, end)], len(track.frames) - 1)

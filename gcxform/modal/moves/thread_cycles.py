@@ -15,12 +15,12 @@ import numpy as np
 
 from gcxform.dialect.dialect import INCH
 from gcxform.modal.frames.track import Track
-from gcxform.modal.moves.rows import Rows
+from gcxform.modal.moves.rows import Own
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.path import Form, Kind
 
 
-def thread_cycle(track: Track, line: int) -> Rows:
+def thread_cycle(track: Track, line: int) -> Own:
     """Return the deepest pass of a thread, and the way back to its drive line."""
     start = track.state.position.copy()
     letters = {letter: _value(track, letter, line) for letter in "PIJKRLQ"}
@@ -38,7 +38,7 @@ def thread_cycle(track: Track, line: int) -> Rows:
         beside = place.copy()
         beside[0] += away
         moves.append((kind, beside))
-    return Rows.of_line(line, Form.PASSES, [*moves, (Kind.RAPID, end)], len(track.frames) - 1)
+    return Own(line, Form.PASSES, [*moves, (Kind.RAPID, end)], len(track.frames) - 1)
 
 
 def _objections(
