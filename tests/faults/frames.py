@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from faults.mutation import CORPUS, FACTS, FOUND, OFFSETS, SHIFTS, Mutation
 
+ROADS = "tests/properties/test_roads.py::test_a_frame_that_is_kept_is_the_one_that_would_be_made"
+
 MUTATIONS = (
     Mutation(
         "frames: the sign of G92 is swapped",
@@ -46,6 +48,27 @@ MUTATIONS = (
         "shift[k] += length\n",
         "shift[k] += 2.0 * length\n",
         SHIFTS,
+    ),
+    Mutation(
+        "frames: the frame of another tool is kept",
+        "gcxform/modal/frame_state.py",
+        '"in_spindle", "changes", "homes"',
+        '"in_spindle", "changes", "tool", "homes"',
+        ROADS,
+    ),
+    Mutation(
+        "frames: frames are kept whatever has changed",
+        "gcxform/modal/frame_state.py",
+        'fields["made"] = {}',
+        "pass",
+        ROADS,
+    ),
+    Mutation(
+        "frames: the ways of lines that move by themselves are counted through",
+        "gcxform/modal/moves/rows.py",
+        "np.repeat(np.cumsum(count) - count, count)",
+        "0",
+        CORPUS,
     ),
     Mutation(
         "frames: G92.3 restores nothing",
