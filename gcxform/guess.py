@@ -3,13 +3,14 @@
 Every dialect reads the program with its own grammar and tables. What counts most is what it does
 not know; the rest is custom: points, program numbers, the unit of dwells, names in comments. The
 scores order the dialects and are no probabilities. Dialects that nothing tells apart are named
-together.
+together; of a control and those of its kin (`Dialect.kin`) the control alone, so that a program is
+not called uncertain by every control that reads a little more.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
@@ -96,15 +97,45 @@ def guess_dialect(
     known = default_registry().dialects if dialects is None else dialects
     head = b"".join(islice(source.windows(), WINDOWS))
     tried = {name: dialect for name, dialect in known.items() if has_signs(head, dialect)}
-    seen = {name: _seen(source, head, dialect) for name, dialect in tried.items()}
-    found = {name: tuple(_evidence(tried[name], seen[name])) for name in tried}
-    fitting = [n for n in tried if seen[n].foreign <= HOPELESS * max(seen[n].lines, 1)]
-    scores = {name: sum(item.weight for item in found[name]) for name in fitting}
-    best = max(scores.values(), default=0.0)
-    if not any(seen[name].lines for name in fitting):
-        return Guess((), found)
-    chosen = [name for name in scores if scores[name] > best - ALIKE]
-    return Guess(tuple(sorted(chosen, key=lambda name: (-scores[name], name))), found)
+    kin = {name for name in tried if tried[name].kin in known}
+    look = _Looks(source, head, tried)
+    look.at(tried.keys() - kin)
+    if look.anything_against() or any(name.encode() in head.lower() for name in kin):
+        look.at(kin)
+    scores = look.scores()
+    others = max((score for name, score in scores.items() if name not in kin), default=-np.inf)
+    near = [n for n in scores if n not in kin or scores[n] >= others + ALIKE]
+    best = max((scores[name] for name in near), default=0.0)
+    chosen = [name for name in near if scores[name] > best - ALIKE]
+    return Guess(tuple(sorted(chosen, key=lambda name: (-scores[name], name))), look.found)
+
+
+class _Looks:
+    """What dialects see in a program, and what that is evidence of, by name."""
+
+    def __init__(self, source: Source, head: bytes, tried: Mapping[str, type[Dialect]]) -> None:
+        self.source, self.head, self.tried = source, head, tried
+        self.seen: dict[str, _Seen] = {}
+        self.found: dict[str, tuple[Evidence, ...]] = {}
+
+    def at(self, names: Set[str]) -> None:
+        """Let dialects see the program."""
+        for name in sorted(names):
+            self.seen[name] = _seen(self.source, self.head, self.tried[name])
+            self.found[name] = tuple(_evidence(self.tried[name], self.seen[name]))
+
+    def scores(self) -> dict[str, float]:
+        """Return the scores of the dialects that fit; none where they see nothing."""
+        fits = [n for n, one in self.seen.items() if one.foreign <= HOPELESS * max(one.lines, 1)]
+        if not any(self.seen[name].lines for name in fits):
+            return {}
+        return {name: sum(item.weight for item in self.found[name]) for name in fits}
+
+    def anything_against(self) -> bool:
+        """Whether something speaks against each dialect that fits best, or none fits."""
+        scores = self.scores()
+        best = [n for n in scores if scores[n] == max(scores.values())]
+        return not any(all(item.weight > 0 for item in self.found[name]) for name in best)
 
 
 # --- what a dialect sees ---

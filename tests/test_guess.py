@@ -37,6 +37,8 @@ def test_generated_programs_may_be_in_their_dialect(name: str) -> None:
         (b"G21\no100 sub\n#<x> = 1\nG1 X#<x> F10\no100 endsub\nM2\n", {"linuxcnc"}),
         (b"(for grbl)\nG21 G90\nG1 X1.5 F100\nM30\n", {"grbl"}),
         (b"G21 G90\nG1 X10 Y5 F100\nM30\n", {"grbl", "linuxcnc"}),
+        (b"(for fluidnc)\nG21 G90\nG1 X1.5 F100\nM30\n", {"fluidnc"}),
+        (b"(for grblhal)\nG21 G90\nG1 X1.5 F100\nM30\n", {"grbl"}),
         (b"0 BEGIN PGM A MM\n1 L X+10 R0 FMAX\n2 END PGM A MM\n", {"heidenhain"}),
         (b"", set()),
         (b"\x00\x01\xff" * 50, set()),

@@ -65,6 +65,8 @@ class Dialect:
     """The base every controller dialect inherits: the common part of ISO word-address programs."""
 
     name: ClassVar[str] = ""
+    kin: ClassVar[str] = ""
+    """The dialect for which programs are taken where nothing in them tells the two apart."""
     grammar: ClassVar[tuple[str, str]] = ("gcxform_grammars", "iso")
     axes: ClassVar[str] = "XYZABC"
     translator: ClassVar[type[Language] | None] = None

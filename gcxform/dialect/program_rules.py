@@ -48,6 +48,7 @@ class TextRule:
     active_comments       how comments begin that the control executes, in capitals
     telling_comments      which of these only show or log something
     acts_anywhere         characters on which it acts as they come in, also in a comment
+    semicolon_ends        `;` ends a block also inside a comment in parentheses
     """
 
     lower_case: bool = True
@@ -59,6 +60,7 @@ class TextRule:
     active_comments: tuple[str, ...] = ()
     telling_comments: tuple[str, ...] = ()
     acts_anywhere: str = ""
+    semicolon_ends: bool = False
 
     def executes(self, comment: str) -> bool:
         """Whether the control does something when it reads a comment."""

@@ -258,6 +258,8 @@ def comment_for(source: type[Dialect], target: type[Dialect], text: str) -> str:
         text = f"{text[0]}-{text[1:]}"
     if source is not target:
         text = text.translate({ord(each): "-" for each in target.text_rule.acts_anywhere})
+    if target.text_rule.semicolon_ends and not source.text_rule.semicolon_ends and text[0] == "(":
+        text = text.replace(";", ",")
     return comment_in(target, text)
 
 

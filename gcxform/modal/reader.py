@@ -60,7 +60,7 @@ class WindowReader:
 def new_table(dialect: type[Dialect]) -> MeaningTable:
     """Return the table of the meanings of shapes of which none is known yet."""
     rule = dialect.text_rule
-    comments = Comments(rule.comments, rule.active_comments)
+    comments = Comments(rule.comments, rule.active_comments, rule.semicolon_ends)
     return MeaningTable(ShapeTable(dialect.load_grammar(), comments), dialect)
 
 

@@ -41,16 +41,22 @@ NAMES[list(b"#GMOgmo")] = True
 
 @dataclass(frozen=True)
 class Comments:
-    """How comments begin ("(" and ";" or one of them), and which of them a control executes."""
+    """How comments begin ("(" and ";" or one of them), and which of them a control executes.
+
+    `cut`: a semicolon ends a comment in parentheses, and the block with it.
+    """
 
     begin: str
     active: tuple[str, ...] = ()
+    cut: bool = False
 
     @cached_property
     def executed(self) -> re.Pattern[bytes] | None:
-        """What a comment looks like that the control executes."""
+        """What a comment looks like that the control executes, or that ends before its bracket."""
         names = b"|".join(re.escape(name.encode("latin-1")) for name in self.active)
-        return re.compile(rb"[(;][(; \t]*(?:" + names + rb")", re.IGNORECASE) if names else None
+        looks = [rb"[(;][(; \t]*(?:" + names + rb")"] if names else []
+        looks += [rb"\([^()\n]*;"] if self.cut else []
+        return re.compile(b"|".join(looks), re.IGNORECASE) if looks else None
 
 
 @dataclass(frozen=True, slots=True)

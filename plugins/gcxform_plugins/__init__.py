@@ -8,6 +8,7 @@ import gcxform as gx
 @gx.hookimpl
 def gcxform_dialects() -> list[type[gx.Dialect]]:
     """Return one class for each controller family."""
+    from gcxform_plugins.dialects.controls.grbls import FluidNC, GrblHAL
     from gcxform_plugins.dialects.fagor.dialect import Fagor
     from gcxform_plugins.dialects.fanuc import Fanuc
     from gcxform_plugins.dialects.grbl import Grbl
@@ -17,7 +18,8 @@ def gcxform_dialects() -> list[type[gx.Dialect]]:
     from gcxform_plugins.dialects.marlin import Marlin
     from gcxform_plugins.dialects.siemens.dialect import Siemens
 
-    return [Fagor, Fanuc, Grbl, Haas, Heidenhain, LinuxCNC, Marlin, Siemens]
+    old = [Fagor, Fanuc, Grbl, Haas, Heidenhain, LinuxCNC, Marlin, Siemens]
+    return [*old, FluidNC, GrblHAL]
 
 
 @gx.hookimpl

@@ -97,6 +97,8 @@ def reading(fact: dict[str, Any]) -> dict[str, Any]:
     skips = "-b" in fact.get("rs274_args", ())
     by_switch = "skip" if skips else "execute"
     told: dict[str, Any] = {"start": START, "work_offsets": OFFSETS, "homes": HOMES}
+    if "block delete off" in fact.get("fact", ""):
+        told["block_delete"] = "execute"
     if fact["dialect"] == "linuxcnc":
         told |= {"block_delete": by_switch, "homes": homes_of(fact), "tools": tools_of(fact)}
     return told

@@ -1,0 +1,1 @@
+"""Controls that people have, each a table of what differs from its nearest relative."""
