@@ -25,6 +25,8 @@ ANSWERS: dict[str, Any] = {
     "null-compare": "zero",
     "ends": "unknown",
     "inert-m": [50],
+    "for-end": "included",
+    "subroutine-locals": "shared",
 }
 
 

@@ -97,8 +97,5 @@ def test_it_is_known_what_they_are_written_in(dialect):
 def test_a_program_is_copied_and_not_written(dialect):
     kind = default_registry().dialect(dialect)
     assert gx.Pipeline(kind, kind).run(program(dialect)).text == program(dialect)
-    if dialect == "fagor":  # the others are written again, see emit/respelling.py
-        with pytest.raises(gx.UsageError, match="GX747"):
-            gx.Pipeline.parse("absolute", dialect)
     with pytest.raises(gx.UsageError, match="GX747"):
         gx.Pipeline.parse("renumber", dialect)

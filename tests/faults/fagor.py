@@ -14,26 +14,109 @@ READS = "tests/test_fagor.py::test_it_reads_what_another_reader_reads"
 WALK = "tests/test_translation.py"
 RUNS = "tests/test_translated_runs.py"
 
+FLOW = "plugins/gcxform_plugins/dialects/fagor/flow.py"
+COMPUTING = "plugins/gcxform_plugins/dialects/fagor/computing.py"
+STRUCTURE = "plugins/gcxform_plugins/dialects/fagor/structure.py"
+PROGRAMS = "plugins/gcxform_plugins/dialects/fagor/programs.py"
+FLOWS = "tests/test_fagor_flow.py"
+
 MUTATIONS = (
+    Mutation(
+        "fagor: $FOR always runs for its last value",
+        FLOW,
+        'return chosen == "included"',
+        "return True",
+        FLOWS,
+    ),
+    Mutation(
+        "fagor: the parameter of $FOR is known behind it",
+        FLOW,
+        "        else:\n            self.known[name] = None",
+        "        else:\n            pass",
+        FLOWS,
+    ),
+    Mutation(
+        "fagor: #PCALL has the parameters of the caller",
+        FLOW,
+        'kind = "own" if way == "#PCALL" else',
+        'kind = "shared" if way == "#PCALL" else',
+        FLOWS,
+    ),
+    Mutation(
+        "fagor: what a subroutine sets is never the caller's",
+        FLOW,
+        "if not call.kind:",
+        "if call.kind is None:",
+        FLOWS,
+    ),
+    Mutation(
+        "fagor: a parameter is set and used in one block",
+        COMPUTING,
+        "if names & set(self._names_in(node)):",
+        "if not names:",
+        FLOWS,
+    ),
+    Mutation(
+        "fagor: a sign binds before a power",
+        COMPUTING,
+        'if rule == "power" and rule_of(node.children[0]) == "negated":',
+        'if rule == "powers":',
+        FLOWS,
+    ),
+    Mutation(
+        "fagor: lines of a loop that goes on are changed",
+        PROGRAMS,
+        "return None if self.tied else spelled",
+        "return spelled",
+        FLOWS,
+    ),
+    Mutation(
+        "fagor: a structure that was executed before is only kept",
+        PROGRAMS,
+        " or self.line in self.ran:",
+        ":",
+        FLOWS,
+    ),
+    Mutation(
+        "fagor: moves behind a cycle that is kept are changed",
+        PROGRAMS,
+        "        if self.modal:",
+        "        if not self.modal and self.tied:",
+        FLOWS,
+    ),
+    Mutation(
+        "fagor: moves beside a rounding are changed",
+        PROGRAMS,
+        "if beside or (self.hangs and self._next_hangs()):",
+        "if self.tied:",
+        FLOWS,
+    ),
+    Mutation(
+        "fagor: a program that is called may leave G91 behind",
+        PROGRAMS,
+        '            self.unsaid = {"distance", "motion"}',
+        "            self.unsaid = set()",
+        FLOWS,
+    ),
     Mutation(
         "fagor: X10I counts from zero",
         PLACES,
-        "found[item.name] = before + Decimal(item.numbers[0])",
-        "found[item.name] = Decimal(item.numbers[0])",
+        "self.at[item.name] + Decimal(item.numbers[0])",
+        "Decimal(item.numbers[0])",
         READS,
     ),
     Mutation(
         "fagor: what was incremental before does not count",
         PLACES,
-        '                    if other.kind == "word":\n                        return way',
-        "                    return way",
+        "self.at[item.name] += value",
+        "pass",
         READS,
     ),
     Mutation(
         "fagor: the coordinate before holds over another work offset",
         PLACES,
-        "            if not _quiet(items):\n                break",
-        "            if not items:\n                break",
+        "        if not _quiet(items):",
+        "        if not items:",
         f"{CASE}incremental-from-nowhere]",
     ),
     Mutation(

@@ -48,12 +48,14 @@ class Blocks(gx.Translator):
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
         """Return the blocks of a line. Raises InputError for what is not read."""
+        self.places.arrive()
         number, items = self._without_marks(items)
         if any(item.kind == "statement" for item in items):
             blocks = [*self._statement(items)]
         else:
             blocks = [*self._block(items)]
         self.plainly = not self.bars
+        self.places.note(items)
         return [f"{number}{blocks[0]}", *blocks[1:]] if blocks else []
 
     def _without_marks(self, items: Sequence[gx.Item]) -> tuple[str, list[gx.Item]]:
@@ -162,7 +164,7 @@ class Blocks(gx.Translator):
         marked = [item for item in items if item.kind == "incremental"]
         if not marked or self.incremental:
             return words, []
-        known = self.places.of(marked)
+        known = self.places.of(marked, items)
         if known:
             return [known.get(word[0], word) for word in words], []
         absolute = [item for item in items if item.kind == "word" and item.name in tables.AXES]

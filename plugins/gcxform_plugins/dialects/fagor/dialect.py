@@ -1,18 +1,35 @@
-"""Fagor CNC 8065 and 8070, mill: read, not written (`blocks.py` makes blocks of it).
+"""Fagor CNC 8065 and 8070, mill (`blocks.py` makes blocks of it).
 
-Sources: [post] the open post-processor of Autodesk for DMS routers with a Fagor; [8070] the control
+It is written from itself, by passes that keep positions: lines that are not changed keep their
+bytes, and what is refused below is then kept as it stands, with all that is lost behind it.
+
+Sources: [M] programming manual of the 8070, Ref. 1709, by page; [V02] that of its software V02.0x;
+[Q] quick reference of the 8065; [55] programming manual of the 8055 M, V02.2x; [post] the open post-processor of Autodesk for DMS routers with a Fagor; [8070] the control
 service of the 4DIAC runtime for the 8070; [stone] the open CAM of a bridge saw with a Fagor; [isg]
 infosys.beckhoff.com, TF5200, of a control whose words are near; [doc] public tables of the manuals
-of 8055 and 8065. What no source says is refused.
+of 8055 and 8065; [K] not looked up. What no source says is refused.
 
 | what | Fagor 8065 |
 |---|---|
 | motion at start | a parameter decides: an axis word before any motion code is refused |
 | `X10I` | incremental whatever G90 says [doc]; `X10 I5` and `X10I5` have a centre |
+| P1=, `P1 += 2`, XP1, X[P1*2] | computed [M 50]; a block that sets and reads one: refused |
+| a parameter that nothing has set, V.A., V.G. | only the control knows it |
+| V.P., V.S. | variables of the program [K] |
+| SIN, COS, TAN, ASIN, ACOS, ATAN, ARG | in degrees; ARG from 0 to 360 [55 390] |
+| INT, FRACT, FUP, ROUND, MOD | below zero, and of halves: refused |
+| `-2**2`, EXP, LOG, `&`, `|`, `^` | refused |
+| `[P1==1]*[P2>3]`, `+` | and, or [M 50]; values that are nearly the same: refused |
+| $IF $ELSEIF $ELSE, $WHILE, $DO $ENDDO | structures [isg] |
+| $FOR | its end: `[control] for-end`; its parameter is lost behind it |
+| $SWITCH | a case that does not end with $BREAK: refused |
+| $GOTO N10, $GOTO [NAME] | in the same program, and into no structure |
+| `%L NAME` | a local subroutine, before the program [M 32, Q 45]; it ends with #RET, M17, M29 |
+| LL NAME, L, #CALL | in this file, in one beside it, in either |
+| P0 to P99 in them | `[control] subroutine-locals`: the caller's, or their own; by #PCALL own [K] |
 | `X10I 5` | may be either: refused |
 | `X10I Y5` | X counts from the last coordinates in the program, which must be there; else refused |
 | `X=10` | the same as X10; names of more than a letter (`X1=10`) are refused |
-| `XP1`, `X[...]`, `V.A...`, P1=3, `$IF` | the control computes and decides: refused |
 | arc centre | from the start; with G6 from the work zero: both words, for one block [doc] |
 | arc centre, a word less | is 0 [doc] |
 | full circle | end repeated, or left out; with R refused |
@@ -50,9 +67,10 @@ of 8055 and 8065. What no source says is refused.
 | `#HSC`, `#ROUNDPAR`, `#SLOPE`, `#FLUSH`, `#MSG` | move nothing, and are left out |
 | `#TIME`, and all else behind `#` | refused |
 | `;`, `( )`, `(` to the end of the line | comments |
+| NR, #RPT, #MCALL, #EXEC | refused |
 | `(IF`, `(CALL`, `(P1=3` | statements of an 8055: refused |
-| `%name` | the name of the program, at its head; `%L` and another program are refused |
-| `[NAME]`, `N10:` | labels: kept out, as nothing jumps |
+| `%name` | the name of the program, at its head; another program is refused |
+| `[NAME]`, `N10:` | labels |
 | `/` | a switch of the control decides; `/1` is refused |
 | rotary axes | are taken to count on, and to go where they are told: no shortest way |
 | after M2, M30 | nothing is executed |
@@ -65,15 +83,15 @@ from typing import ClassVar
 
 import gcxform as gx
 from gcxform import vocabulary as v
-from gcxform_plugins.dialects.fagor.blocks import Blocks
+from gcxform_plugins.dialects.fagor.programs import Programs
 
 
 class Fagor(gx.Dialect):
-    """Fagor 8065 and 8070, mill: programs are read, and written for others."""
+    """Fagor 8065 and 8070, mill."""
 
     name = "fagor"
     axes = "XYZABCUVW"
-    translator = Blocks
+    translator = Programs
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
         "G95": gx.Code("feed-mode"),
@@ -88,9 +106,17 @@ class Fagor(gx.Dialect):
         6: gx.MCode("tool", act="change-tool", loses_position=True),
         128: gx.MCode("tip", barrier=v.FOLLOWING),
         129: gx.MCode("tip"),
+        9000: gx.MCode("kept", takes="P"),
     }
     chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
         "ABC", "rotary axes go where they are told, whichever way is shorter"
+    )
+    flow_rule = gx.FlowRule(
+        lookup=gx.LookupRule(names=("{name}",), endings=("", ".nc", ".fst"), any_case=True)
+    )
+    settings = (
+        gx.Setting("for-end", "fagor: $FOR runs for its last value", ("included", "excluded")),
+        gx.Setting("subroutine-locals", "fagor: P0 to P99 in LL, L, #CALL", ("shared", "own")),
     )
     program_rule = gx.ProgramRule(has_percent=False, has_program_number=False)
     block_rule = gx.BlockRule(words="DFHIJKNPQRST", m_order_chosen=True)

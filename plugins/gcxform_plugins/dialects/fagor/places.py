@@ -1,14 +1,14 @@
-"""Where a word counts from that is incremental beside words that are not: `X10I Y5`."""
+"""Where axes stand in the words of a Fagor program: what `X10I Y5` and polar words count from."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from decimal import Decimal
 
 import gcxform as gx
 from gcxform_plugins.dialects.fagor import tables as tables
 
-QUIET = tables.PLAIN | {*tables.CORNERS, "G4", "G6", "G60", "G80", "G90"}
+QUIET = tables.PLAIN | {*tables.CORNERS, "G4", "G6", "G60", "G80", "G90", "G91"}
 QUIET |= {f"M{code}" for code in (0, 1, 3, 4, 5, 7, 8, 9)}
 """Codes over which the coordinates of an axis stay what they are."""
 KINDS = {"code", "word", "incremental", "comment", "label", "colon"}
@@ -23,47 +23,78 @@ def code_of(item: gx.Item) -> str:
 
 
 class Places:
-    """The coordinates of a program in G90, as it writes them.
+    """The coordinates of a program, as it writes them.
 
-    They are sums of what is written, in decimals, so that no digit is lost.
+    They are sums of what is written, in decimals, so that no digit is lost. `at` has those that are
+    known behind what was followed; `passed` are blocks behind that, as ranges of plain lines or as
+    items.
     """
 
     def __init__(self, translator: gx.Translator) -> None:
         self.translator = translator
-        self.known: dict[str, tuple[int, Decimal]] = {}
+        self.at: dict[str, Decimal] = {}
+        self.steps = False
+        self.passed: list[range | Sequence[gx.Item]] = []
+        self.next = 0
 
-    def of(self, items: Sequence[gx.Item]) -> dict[str, str]:
-        """Return the words to which incremental ones lead, by axis; nothing where none is known."""
-        found: dict[str, Decimal] = {}
-        if not _quiet(self.translator.items(self.translator.line)):
+    def arrive(self) -> None:
+        """Note the plain lines before the one that is translated."""
+        line = self.translator.line
+        if line > self.next:
+            self.passed.append(range(self.next, line))
+        self.next = line + 1
+
+    def jumped(self) -> None:
+        """Note that the line behind this one is another."""
+        self.next = self.translator.at
+
+    def note(self, items: Sequence[gx.Item]) -> None:
+        """Note a block that was executed."""
+        self.passed.append(items)
+
+    def lose(self) -> None:
+        """Forget all that is known."""
+        self.follow()
+        self.at = {}
+
+    def of(self, items: Sequence[gx.Item], block: Sequence[gx.Item]) -> dict[str, str]:
+        """Return the words to which incremental ones lead, by axis; nothing where one is unknown.
+
+        `block` are all items of the block.
+        """
+        self.follow()
+        if not _quiet(block) or not {item.name for item in items} <= self.at.keys():
             return {}
-        for item in items:
-            before = self._before(item)
-            if before is None:
-                return {}
-            found[item.name] = before + Decimal(item.numbers[0])
-        for axis, place in found.items():
-            self.known[axis] = self.translator.line, place
+        found = {item.name: self.at[item.name] + Decimal(item.numbers[0]) for item in items}
         return {axis: f"{axis}{place:f}" for axis, place in found.items()}
 
-    def _before(self, item: gx.Item) -> Decimal | None:
-        """Return the coordinate of an axis before the line that is translated, None if unknown."""
-        way, axis = Decimal(0), item.name
-        known_at, known = self.known.get(axis, (-1, Decimal(0)))
-        for line in range(self.translator.line - 1, -1, -1):
-            items = self.translator.items(line)
-            if line == known_at:
-                return known + way
-            if not _quiet(items):
-                break
-            for other in items:
-                if other.name == axis and other.kind in ("word", "incremental"):
-                    way += Decimal(other.numbers[0])
-                    if other.kind == "word":
-                        return way
-            if any(code_of(other) == "G90" for other in items):
-                break
-        return None
+    def follow(self) -> None:
+        """Follow what was executed since."""
+        for passed in self.passed:
+            for items in self._blocks(passed):
+                self._take(items)
+        self.passed = []
+
+    def _blocks(self, passed: range | Sequence[gx.Item]) -> Iterator[Sequence[gx.Item]]:
+        if isinstance(passed, range):
+            yield from (self.translator.items(line) for line in passed)
+        else:
+            yield passed
+
+    def _take(self, items: Sequence[gx.Item]) -> None:
+        codes = {code_of(item) for item in items if item.kind == "code"}
+        if codes & {"G90", "G91"}:
+            self.steps = "G91" in codes
+        for item in items:
+            if item.kind not in ("word", "incremental") or item.name not in tables.AXES:
+                continue
+            value = Decimal(item.numbers[0])
+            if item.kind == "word" and not self.steps:
+                self.at[item.name] = value
+            elif item.name in self.at:
+                self.at[item.name] += value
+        if not _quiet(items):
+            self.at = {}
 
 
 def _quiet(items: Sequence[gx.Item]) -> bool:

@@ -114,9 +114,6 @@ OFF = frozenset({"#CS", "#ACS", "#MCS", "#TLC", "#CSROT", "#TOOL", "#DEFROT"})
 
 KINDS: Mapping[str, str] = {
     "ambiguous": "whether this I makes the coordinate incremental, or is a centre, is not certain",
-    "flow": "it decides what is executed next",
-    "assignment": "it sets what only the control has",
-    "expression": "its value is computed by the control",
     "repeat": "it repeats blocks",
     "string": "it names something that is not in this file",
     "old": "on an 8055 this is executed, on an 8065 it is a comment",

@@ -1,0 +1,264 @@
+"""Programs of a Fagor that are written for a Fagor again: what is not read stays as it stands.
+
+A line that is kept is a block of its own, behind which no position is known, nor anything else that
+it may have set. Where only the control knows where a program goes on, all that follows stays, and
+no line may change that might be executed again.
+"""
+
+from __future__ import annotations
+
+import re
+import zlib
+from collections.abc import Iterable, Iterator, Sequence
+from copy import copy
+
+import gcxform as gx
+from gcxform_plugins.dialects.fagor import tables
+from gcxform_plugins.dialects.fagor.flow import Flow
+from gcxform_plugins.dialects.fagor.places import code_of
+from gcxform_plugins.dialects.fagor.spelling import counts, spelled
+from gcxform_plugins.dialects.fagor.structure import StructureError, code
+
+KEPT = "M9000"
+KEEPABLE = frozenset(
+    ("GX203", "GX204", "GX206", "GX207", "GX208", "GX210", "GX213", "GX215", "GX220", "GX221")
+)
+"""The refusals of what may stand as it is: it is not known, or not read."""
+KEEPS = (
+    "as they stand: {}; where the axes are behind them is not known, nor what they have set; "
+    "units, plane and feed mode are taken to be as before"
+)
+HANGS = re.compile(r"(?<![A-Z0-9_.])G[ \t]*0*(?:8|36|37|38|39)(?![0-9.])", re.IGNORECASE)
+"""Codes that take the direction of the move before them, or change the moves beside them."""
+BEHIND = re.compile(r"(?<![A-Z0-9_.])G[ \t]*0*(?:36|37|38|39)(?![0-9.])", re.IGNORECASE)
+MODAL = re.compile(
+    r"(?<![A-Z0-9_.])G[ \t]*0*(?:8[1-9]|21[0-4]|41|42|33|63|45|77)(?![0-9.])|#MCALL|#SPLINE|#AKIMA"
+    r"|#POLY|#HSC|G[ \t]*0*6[245](?![0-9.])",
+    re.IGNORECASE,
+)
+"""Codes and statements with which the moves behind them are others than they say."""
+FROM_HERE = re.compile(
+    r"(?<![A-Z0-9_.])G[ \t]*0*(?:20|70|93|96|151|158|261)(?![0-9.])|#(?:TRAFO|CYL|FACE|RENAME|SET"
+    r"|FREE|LINK|EXEC|EXBLK|PATH|MASTER)(?![A-Z])|#RPT|(?<![A-Z0-9_.])NR(?=[ \t]*[0-9P\[])",
+    re.IGNORECASE,
+)
+"""What changes the meaning of all words behind it, or repeats lines."""
+CALLS = re.compile(r"[ \t]*(?:N[0-9: \t]*)?(?:LL?[ \t]|#P?CALL|#MCALL|#EXEC)", re.IGNORECASE)
+LEAVES = re.compile(r"\$(?:GOTO|BREAK|CONTINUE)|#RET|(?<![A-Z0-9])M0*(?:2|17|29|30)(?![0-9])", re.I)
+STATED = frozenset(("G0", "G1", "G2", "G3", "G17", "G18", "G19", "G90", "G91", "G94", "G95"))
+STATE = (
+    *("bars", "incremental", "following", "taken_away", "corners", "kinematics", "tool", "edge"),
+    *("in_spindle", "changing", "across", "long", "known", "doubtful", "at", "calls", "counting"),
+    "gone",
+)
+
+
+class Programs(Flow):
+    """Executes a program, and keeps what it does not understand where that may stay.
+
+    unsaid  what has to be said before the next move, as it may have been changed: G90, and a motion
+    ran     lines that were executed, and not kept;  named: axes of the program
+    gone    those that may stand anywhere
+    """
+
+    writes = True
+    kept = KEPT
+
+    def __init__(self, *given: object) -> None:
+        super().__init__(*given)
+        self.kept_lines: list[tuple[int, str]] = []
+        self.kept_until = -1
+        self.why = self.tied = self.modal = ""
+        self.unsaid: set[str] = set()
+        self.beside = False
+        self.ran: set[int] = set()
+        self.gone: set[str] = set()
+        self.named = tables.AXES & set("".join(map(code, self.lines)).upper())
+        self.hangs = any(HANGS.search(code(text)) for text in self.lines)
+        self.plainly = self.plainly and not (self.reading.stays and self.hangs)
+
+    def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
+        """Return the blocks of a line. Raises InputError."""
+        if not self.reading.stays:
+            return super().blocks(items)
+        self.places.arrive()
+        if self.line <= self.kept_until:
+            return self._kept(items, self.why)
+        before = {name: copy(getattr(self, name)) for name in STATE}
+        try:
+            self._check_beside(items)
+            made = [*super().blocks(items)]
+            self.ran.add(self.line)
+            free = not (self.hangs or self.unsaid or self.modal or self.gone)
+            self.plainly = self.plainly and free
+            return made
+        except gx.InputError as error:
+            (found, *_) = error.diagnostics
+            if found.code not in KEEPABLE:
+                raise
+            vars(self).update(before)
+            self.places.next = self.line + 1
+            return self._keep(items, found.message)
+
+    def _check_beside(self, items: Sequence[gx.Item]) -> None:
+        """Refuse to change what the lines beside it hang on. Raises InputError."""
+        codes = {code_of(item) for item in items if item.kind == "code"}
+        moved = any(self._moves(item) for item in items)
+        if "G80" in codes or "G40" in codes:
+            self.modal = ""
+        if moved:
+            self.unsaid -= {"motion"} if codes & {"G0", "G1", "G2", "G3"} else set()
+        self.unsaid -= {"distance"} if codes & {"G90", "G91"} else set()
+        if not moved:
+            return
+        beside, self.beside = self.beside, False
+        if self.modal:
+            self.refuse(f"moves behind {self.modal} are others than they say")
+        if self.unsaid:
+            self.refuse("whether G90 and which motion is in force is not known here")
+        if beside or (self.hangs and self._next_hangs()):
+            self.refuse("the lines beside it hang on the direction of this move")
+
+    def _moves(self, item: gx.Item) -> bool:
+        if item.kind in ("word", "incremental", "ambiguous"):
+            return item.name in tables.AXES | {*"IJKRQ"}
+        if item.kind == "expression":
+            return item.name.lstrip()[:1] in tables.AXES | {*"IJKRQ"}
+        return False
+
+    def _next_hangs(self) -> bool:
+        """Whether the next line takes the direction of this one, or may do so."""
+        for line in range(self.line + 1, len(self.lines)):
+            text = code(self.lines[line]).strip()
+            if text:
+                flows = "$" in text or "#" in text or CALLS.match(text) is not None
+                return flows or HANGS.search(text) is not None
+        return False
+
+    # --- what is kept ---
+
+    def _keep(self, items: Sequence[gx.Item], why: str) -> list[str]:
+        """Keep a line, or the structure that it begins, or all that follows."""
+        text = code(self.lines[self.line])
+        decides = "$" in text
+        until = self._structure_to(text) if decides and not self.calls else -1
+        if self.calls or FROM_HERE.search(text) or (decides and until < 0):
+            return self._stop(items, why)
+        self.kept_until, self.why = max(self.kept_until, until), why
+        return self._kept(items, why)
+
+    def _structure_to(self, text: str) -> int:
+        """Return the last line of a structure that only the control decides on; -1 for others."""
+        try:
+            part = self.structure.at.get(self.line)
+        except StructureError:
+            return -1
+        if part is None or part.first != self.line or self.line in self.ran:
+            return -1
+        inside = (code(self.lines[line]) for line in range(part.first, part.last + 1))
+        return -1 if any(LEAVES.search(each) for each in inside) else part.last
+
+    def _stop(self, items: Sequence[gx.Item], why: str) -> list[str]:
+        """Keep all that follows: it is not executed here, so lines before may be again."""
+        made = self._kept(items, why)
+        self.tied = why
+        self.calls = []
+        self.at = len(self.lines)
+        return made or [self._stays("")]
+
+    def _stays(self, text: str) -> str:
+        return f"{KEPT} P{zlib.crc32(text.encode('latin-1')) & 0xFFFFF}"
+
+    def _kept(self, items: Sequence[gx.Item], why: str) -> list[str]:
+        """Return the block of a line that stays as it stands."""
+        items = [item for item in items if item.kind not in ("header", "label", "colon")]
+        if not [item for item in items if item.name != "N"]:
+            return []
+        text = code(self.lines[self.line])
+        self.kept_lines.append((self.line, why))
+        self._lose(items, text)
+        said = [code_of(item) for item in items if code_of(item) in STATED]
+        if self.line <= self.kept_until:  # it may be executed, or not
+            said = []
+        self.loses |= {*tables.AXES & set(self.dialect.axes), "F"}
+        return [" ".join([*said, self._stays(text)])]
+
+    def _lose(self, items: Sequence[gx.Item], text: str) -> None:
+        """Forget what a line may have changed."""
+        codes = {code_of(item) for item in items}
+        self.places.lose()
+        self.gone = set(self.named)
+        self.bars, self.plainly = {}, False
+        opaque = CALLS.match(text) is not None or "$" in text or self.line <= self.kept_until
+        opaque |= any(c[:1] == "M" and c not in tables.M_CODES for c in codes)
+        if opaque or "=" in text:
+            self.known = dict.fromkeys(self.known)
+            self.doubtful = set()
+        if opaque:
+            self.unsaid = {"distance", "motion"}
+        elif codes & {"G90", "G91"}:
+            self.incremental = "G91" in codes
+        modal = MODAL.search(text)
+        self.modal = modal[0] if modal else self.modal
+        if codes & {"G80", "G40"} and not modal:
+            self.modal = ""
+        self.beside = BEHIND.search(text) is not None
+        if opaque or any(item.name in ("T", "D") for item in items) or "M6" in codes:
+            self.tool = self.edge = self.in_spindle = ""
+
+    def _length(self, edge: str, item: gx.Item) -> str:
+        """Return the block of D: for the same control no length need be known."""
+        if not self.reading.stays:
+            return super()._length(edge, item)
+        self.places.lose()
+        self.gone |= self.named & {*"XYZ"}
+        self.loses |= {*"XYZ"}
+        return f"{KEPT} P{edge}"
+
+    def _relative(self, items: Sequence[gx.Item], words: list[str]) -> tuple[list[str], list[str]]:
+        """Return the words of a block; steps from where an axis may stand anywhere are refused."""
+        if self.reading.stays:
+            changes = any(code_of(item) == "M6" for item in items)
+            self.gone = set(self.named) if changes else self.gone
+            for item in items:
+                steps = item.kind == "incremental" or (self.incremental and item.kind == "word")
+                if steps and item.name in self.gone:
+                    self.refuse(f"a step of {item.name}, which may stand anywhere", item)
+            told = {item.name for item in items if item.kind == "word"}
+            self.gone -= told if not self.incremental else set()
+        return super()._relative(items, words)
+
+    def _tips(self, item: gx.Item, on: bool) -> str:
+        """Return the code that follows the tip; for the same control the statement stays."""
+        if self.reading.stays:
+            self.refuse("#RTCP: what the words are of changes with it", item)
+        return super()._tips(item, on)
+
+    def _move(self, item: gx.Item) -> None:
+        """Ask nothing of offsets and lengths where words are words of the same control again."""
+        if not self.reading.stays:
+            super()._move(item)
+
+    # --- writing ---
+
+    def spelled(self, line: int, blocks: Sequence[str]) -> str | None:
+        """Return a line that stands for new blocks; None where that is not known."""
+        return None if self.tied else spelled(self.lines[line], blocks)
+
+    def counts(self, line: str) -> bool:
+        """Whether a line has a word that counts from where its axis stands."""
+        return counts(line)
+
+    def closing(self) -> Iterator[str]:
+        """Say which lines are kept."""
+        if self.kept_lines:
+            lines = sorted({line for line, _ in self.kept_lines})
+            few = ", ".join(map(self._named, lines[:8])) + (" and more" if len(lines) > 8 else "")
+            line, why = min(self.kept_lines)
+            first = f"line {self._named(line)}: {why}"
+            self.assumed[f"lines {few} ({len(lines)}) are kept {KEEPS.format(first)}"] = None
+        return iter(())
+
+    def _named(self, line: int) -> str:
+        file, number = self.place_of(line)
+        return str(number) if line < self.own else f"{number} of {file}"

@@ -1,0 +1,77 @@
+"""Lines of a Fagor whose blocks have changed, in the manner in which they were programmed.
+
+Words keep their order and their blanks; `X5I` becomes `X` with the place it leads to, and G91
+becomes G90, as the block says. What cannot be said so is no line.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from decimal import Decimal
+
+from gcxform_plugins.dialects.common.words import COMMENT, WORD
+from gcxform_plugins.dialects.fagor.structure import code
+
+AXES = "XYZABCUVW"
+NUMBER = r"[-+]?[ \t]*(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
+VALUE = rf"(?:{NUMBER}|[-+]?[ \t]*(?:P[0-9]+|\[(?:[^\[\]]|\[[^\[\]]*\])*\]))"
+STEP = r"I(?![ \t]*[-+.0-9=\[P])"
+AXIS = re.compile(
+    rf"(?<![A-Z0-9_.])(?P<axis>[{AXES}])(?P<blank>[ \t]*=?[ \t]*)(?P<value>{VALUE})"
+    rf"(?P<step>{STEP})?(?![ \t]*[*/]|[-+0-9.])",
+    re.IGNORECASE,
+)
+STEPS = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*91(?![0-9.])", re.IGNORECASE)
+ABSOLUTE = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*90(?![0-9.])", re.IGNORECASE)
+RADIUS = re.compile(rf"(?<![A-Z0-9_])R[ \t]*=?[ \t]*{NUMBER}", re.IGNORECASE)
+HEAD = re.compile(r"[ \t]*/?[ \t]*(?:N[ \t]*[0-9]+[ \t]*:?)?(?:[ \t]*\[[A-Z0-9_ ]*\])*", re.I)
+STEPPED = re.compile(rf"(?<![A-Z0-9_.])[{AXES}RQ][ \t]*=?[ \t]*{VALUE}{STEP}", re.IGNORECASE)
+
+
+def counts(line: str) -> bool:
+    """Whether a line has a word that counts from where its axis stands, or says G91."""
+    text = code(line)
+    return STEPPED.search(text) is not None or STEPS.search(text) is not None
+
+
+def spelled(line: str, blocks: Sequence[str]) -> str | None:
+    """Return a line that stands for blocks; None where that is not known."""
+    words = [each for block in blocks for each in WORD.findall(COMMENT.sub("", block))]
+    values = {letter: text for letter, text in words if letter in AXES}
+    moved = [letter for letter, _ in words if letter in AXES]
+    text = code(line).rstrip()
+    if ";" in line or "(" in line:
+        text = line[: len(text)]
+    behind = line[len(text) :]
+    if code(text) != text or len(set(moved)) != len(moved) or ("G", "91") in words:
+        return None
+    said = [m["axis"].upper() for m in AXIS.finditer(text)]
+    if len(set(said)) != len(said) or not set(values) <= set(said) or (said and not values):
+        return None
+    centre = " ".join(f"{letter}{_number(value)}" for letter, value in words if letter in "IJK")
+    text = AXIS.sub(lambda m: _axis(m, values), text)
+    if centre:
+        text = RADIUS.sub(centre, text)
+    text = STEPS.sub("G90", text)
+    if ("G", "90") in words:
+        if not ABSOLUTE.search(text):
+            head = HEAD.match(text)
+            at = head.end() if head else 0
+            text = f"{text[:at]}{' ' if at else ''}G90 {text[at:].lstrip()}"
+    return text + behind
+
+
+def _number(text: str) -> str:
+    return format(Decimal(text).normalize(), "f")
+
+
+def _axis(found: re.Match[str], values: dict[str, str]) -> str:
+    """Return an axis word with its new value; one that does not move any more is left out."""
+    axis = found["axis"]
+    if axis.upper() not in values:
+        return ""
+    new, old = Decimal(values[axis.upper()]), found["value"].replace(" ", "").replace("\t", "")
+    if not found["step"] and re.fullmatch(NUMBER, old) and Decimal(old) == new:
+        return found[0]
+    return f"{axis}{found['blank']}{_number(values[axis.upper()])}"
