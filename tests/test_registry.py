@@ -107,7 +107,7 @@ def test_every_builtin_dialect_format_and_control_is_listed() -> None:
     files = [
         f for kind in ("dialects", "formats", "controls") for f in folder.glob(f"{kind}/[!_]*")
     ]
-    assert modules == {(f.parent.name, f.stem) for f in files} - {("formats", "shared")}
+    assert modules == {(f.parent.name, f.stem) for f in files if f.stem != "shared"}
 
 
 def test_a_plugin_is_found(install: Install) -> None:

@@ -13,7 +13,7 @@ import operator
 from collections.abc import Callable
 
 from gcxform import vocabulary as v
-from gcxform_plugins.dialects.common.arithmetic import rules
+from gcxform_plugins.dialects.shared.arithmetic import rules
 
 NEAR = 1e-9
 """So near may two values be that the control takes for the same, or not so."""

@@ -4,8 +4,9 @@ It is written from itself, by passes that keep positions: lines that are not cha
 bytes, and what is refused below is then kept as it stands, with all that is lost behind it.
 
 Sources: [M] programming manual of the 8070, Ref. 1709, by page; [V02] that of its software V02.0x;
-[Q] quick reference of the 8065; [55] programming manual of the 8055 M, V02.2x; [post] the open post-processor of Autodesk for DMS routers with a Fagor; [8070] the control
-service of the 4DIAC runtime for the 8070; [stone] the open CAM of a bridge saw with a Fagor; [isg]
+[Q] quick reference of the 8065; [55] programming manual of the 8055 M, V02.2x; [post] the open
+post-processor of Autodesk for DMS routers with a Fagor; [8070] the control service of the 4DIAC
+runtime for the 8070; [stone] the open CAM of a bridge saw with a Fagor; [isg]
 infosys.beckhoff.com, TF5200, of a control whose words are near; [doc] public tables of the manuals
 of 8055 and 8065; [K] not looked up. What no source says is refused.
 
@@ -18,7 +19,7 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | V.P., V.S. | variables of the program [K] |
 | SIN, COS, TAN, ASIN, ACOS, ATAN, ARG | in degrees; ARG from 0 to 360 [55 390] |
 | INT, FRACT, FUP, ROUND, MOD | below zero, and of halves: refused |
-| `-2**2`, EXP, LOG, `&`, `|`, `^` | refused |
+| `-2**2`, EXP, LOG, operators of bits | refused |
 | `[P1==1]*[P2>3]`, `+` | and, or [M 50]; values that are nearly the same: refused |
 | $IF $ELSEIF $ELSE, $WHILE, $DO $ENDDO | structures [isg] |
 | $FOR | its end: `[control] for-end`; its parameter is lost behind it |

@@ -10,8 +10,8 @@ import re
 from collections.abc import Sequence
 from decimal import Decimal
 
-from gcxform_plugins.dialects.common.words import COMMENT, WORD
 from gcxform_plugins.dialects.fagor.structure import code
+from gcxform_plugins.dialects.shared.words import COMMENT, WORD
 
 AXES = "XYZABCUVW"
 NUMBER = r"[-+]?[ \t]*(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
@@ -54,11 +54,10 @@ def spelled(line: str, blocks: Sequence[str]) -> str | None:
     if centre:
         text = RADIUS.sub(centre, text)
     text = STEPS.sub("G90", text)
-    if ("G", "90") in words:
-        if not ABSOLUTE.search(text):
-            head = HEAD.match(text)
-            at = head.end() if head else 0
-            text = f"{text[:at]}{' ' if at else ''}G90 {text[at:].lstrip()}"
+    if ("G", "90") in words and not ABSOLUTE.search(text):
+        head = HEAD.match(text)
+        at = head.end() if head else 0
+        text = f"{text[:at]}{' ' if at else ''}G90 {text[at:].lstrip()}"
     return text + behind
 
 

@@ -10,7 +10,7 @@ import math
 import operator
 
 from gcxform import vocabulary as v
-from gcxform_plugins.dialects.common.arithmetic import rules
+from gcxform_plugins.dialects.shared.arithmetic import rules
 
 NEAR = 1e-9
 """So near may two values be that the control takes for the same, by one simulator; or not so."""

@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 
 from gcxform import vocabulary as v
-from gcxform_plugins.dialects.common.arithmetic import rules
+from gcxform_plugins.dialects.shared.arithmetic import rules
 
 RELATIVE = 1e-12
 LARGEST = 2**31

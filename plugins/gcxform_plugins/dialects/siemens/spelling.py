@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 from decimal import Decimal
 
-from gcxform_plugins.dialects.common.words import COMMENT, WORD
+from gcxform_plugins.dialects.shared.words import COMMENT, WORD
 
 CODE = re.compile(r'((?:[^";]|"[^"]*")*)(.*)', re.DOTALL)
 AXES = "XYZABC"
