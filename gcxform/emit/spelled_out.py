@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import PurePath
 
@@ -19,8 +20,8 @@ HINT = "let a pass write it in another way, or write for another dialect"
 
 def spelled_out(
     blocks: Sequence[bytes], source: Sequence[int], kind: type[Speller], file: str, inch: bool
-) -> tuple[bytes, list[int]]:
-    """Return a program for blocks, and for each of its lines the line that it is for.
+) -> tuple[bytes, list[int], Counter[str]]:
+    """Return a program for blocks, for each of its lines the line that it is for, what is left out.
 
     `source` are lines of the program, from 0, of which the blocks are. Raises InputError for a
     block that cannot be said.
@@ -39,7 +40,7 @@ def spelled_out(
         of += [line] * len(said)
     ends = speller.closing()
     lines, of = speller.numbered([*lines, *ends]), [*of, *[of[-1] if of else 0] * len(ends)]
-    return "".join(f"{line}\n" for line in lines).encode("latin-1"), of
+    return "".join(f"{line}\n" for line in lines).encode("latin-1"), of, speller.left_out
 
 
 def inch_first(blocks: Sequence[bytes], inch: bool) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from abc import ABC, abstractmethod
+from collections import Counter
 from typing import ClassVar
 
 COMMENT = re.compile(r"\(([^()]*)\)")
@@ -29,6 +30,8 @@ class Speller(ABC):
     def __init__(self, name: str, inch: bool) -> None:
         self.name = name
         self.inch = inch
+        self.left_out: Counter[str] = Counter()
+        """Codes for which there are no words and no need; the certificate lists them."""
 
     @staticmethod
     def parts(block: str) -> tuple[list[str], list[tuple[str, str]]]:

@@ -79,6 +79,7 @@ class SpelledOut:
     kind: type[Speller]
     parts: list[Emitted] = field(default_factory=list)
     why: tuple[str, ...] = ()
+    told: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, plan: Plan, given: Source, source: Source) -> SpelledOut | None:
@@ -96,7 +97,9 @@ class SpelledOut:
         blocks = [line for part in self.parts for line in part.text.splitlines()]
         lines = [line for part in self.parts for line in part.source.tolist()]
         inch = self.plan.first_units == "in"
-        text, of = spelled_out(blocks, lines, self.kind, self.given.name, inch)
+        text, of, left_out = spelled_out(blocks, lines, self.kind, self.given.name, inch)
+        name = self.plan.target.name
+        self.told = tuple(f"{code} is left out for {name}: {n}" for code, n in left_out.items())
         return Folded(text, tuple(self.source.line_of(line + 1) - 1 for line in of), (), ())
 
     def prove(self, folded: Folded, reading: Reading, account: Account, findings: Findings) -> None:

@@ -24,6 +24,8 @@ from gcxform.system.arrays import Floats
 from gcxform.toolpath.path import Event, Toolpath
 
 HINT = "nothing was written; let a pass write it in another way, or write for another dialect"
+LENGTH = "the length of a tool counts from its change on, and here it should not"
+CALLED = "call it by G43 H in the block behind the change; or say in the machine file that it is 0"
 NEAR = 1e-5  # mm: far below what rounding does
 ANGLE = 2e-4 * np.pi / 180  # rad: what rounding the angle of a helix does
 ROUND = 2e-4  # mm: so far words with four decimals may be off their circle
@@ -54,8 +56,9 @@ def check_spelled_out(
         line = found.line_of(int(now.source[row]) + 1) if row < len(now) else len(found.lines)
         text = found.lines[line - 1]
         where = Location(found.name, line, 1, text, max(1, len(text)))
-        message = f"what was written is another program: {what}"
-        raise VerificationError((Diagnostic("GX601", message, where, HINT),))
+        code, hint = ("GX501", CALLED) if what is LENGTH else ("GX601", HINT)
+        message = what if what is LENGTH else f"what was written is another program: {what}"
+        raise VerificationError((Diagnostic(code, message, where, hint),))
 
 
 def _path(text: bytes, dialect: type[Dialect], reading: Reading, name: str) -> Toolpath:
@@ -69,6 +72,8 @@ def _differences(a: Toolpath, b: Toolpath, dialect: type[Dialect]) -> Iterator[t
     if len(a) != len(b):
         yield min(len(a), len(b)), f"{len(a)} moves are {len(b)}"
         return
+    tools = (np.array([f.tool for f in path.frames])[path.frame] for path in (a, b))
+    yield from _first(~_same(*tools, 0.0).all(axis=1), LENGTH)
     for name in SAME:
         yield from _first(getattr(a, name) != getattr(b, name), name)
     yield from _first(~_same(a.feed, b.feed, 1e-6 * np.abs(a.feed)), "feed")
@@ -123,9 +128,13 @@ def _slack(path: Toolpath) -> Floats:
 def _acts(path: Toolpath, dialect: type[Dialect]) -> list[tuple[int, str, Values]]:
     """Return what happens between moves, but for what only says how words count: see `_frames`.
 
-    The end of the file is one of the program.
+    The end of the file is one of the program, and no tolerance of the path is what there is before
+    the first one.
     """
     found = [(e.row, e.what, e.values) for e in path.events if _group(e, dialect) not in COUNTS]
+    bound = [k for k, each in enumerate(found) if each[1] == "G64" and any(v for _, v in each[2])]
+    loose = min(bound, default=len(found))
+    found = [each for k, each in enumerate(found) if k >= loose or each[1] != "G64"]
     return found[:-1] if found and found[-1][1] in ENDS else found
 
 

@@ -25,6 +25,20 @@ REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 
 MUTATIONS = (
     Mutation(
+        "klartext: no tolerance is one of 0",
+        CYCLES,
+        'f"G64 P{bound}" if Decimal(bound) > 0 else "G61"',
+        'f"G64 P{bound}"',
+        "tests/test_klartext_target.py::test_the_tolerance_of_the_builder_is_none_at_all_elsewhere",
+    ),
+    Mutation(
+        "klartext: a length counts from where it is called",
+        SPELLED,
+        "    yield from _first(~_same(*tools, 0.0).all(axis=1), LENGTH)\n",
+        "",
+        "tests/test_klartext_target.py::test_a_length_that_comes_later_is_refused_where_it_would_count",
+    ),
+    Mutation(
         "klartext: a full circle behind a helix is one by its end",
         LINES,
         "not (self.rounded and self._whole(ends))",

@@ -42,6 +42,7 @@ class Cycles(Parameters):
         self.hole: dict[int, Decimal] = {}
         self.pecks: dict[int, Decimal] = {}
         self.cycle = 0
+        self.bounded = False
 
     def define(self, item: gx.Item) -> list[str]:
         """CYCL DEF: what a cycle is told. Raises InputError for those that are not resolved."""
@@ -53,7 +54,9 @@ class Cycles(Parameters):
             return self._shift(item, part, text)
         if number == 9:
             return self._dwell(item, part, text)
-        if number == 32 or text in CANCELS.get(f"{number}.{part}", ()):
+        if number == 32:
+            return self._tolerance(item, part, text)
+        if text in CANCELS.get(f"{number}.{part}", ()):
             return []
         if number == 247:
             return self._preset(item, self._parameters(text))
@@ -84,6 +87,20 @@ class Cycles(Parameters):
     def _dwell(self, item: gx.Item, part: int, text: str) -> list[str]:
         """Cycle 9: seconds."""
         return [f"G4 P{self._value(item, text)}"] if part == 1 else []
+
+    def _tolerance(self, item: gx.Item, part: int, text: str) -> list[str]:
+        """Cycle 32: how far the path may be off; without T the machine's own holds again.
+
+        No code of words has the builder's tolerance; G64 P0 would be none at all.
+        """
+        found = re.fullmatch(rf"T\s*(?:({VALUE})|([+-]?\s*Q[LR]?\d+))", text)
+        if part != 1 or (found is None and not self.bounded):
+            return []
+        bound = "0"
+        if found is not None:
+            bound = plain(found[1]) if found[1] else self._parameter(found[2], item)
+        self.bounded = found is not None
+        return [f"G64 P{bound}" if Decimal(bound) > 0 else "G61"]
 
     # --- where the zero is ---
 

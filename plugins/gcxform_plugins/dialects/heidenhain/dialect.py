@@ -38,7 +38,8 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | END PGM | ends the program, as M2 and M30 do | [K] |
 | cycle 7 | the zero is elsewhere, by axes; `IX` adds to its shift; tables: refused | TNC 426, 640 |
 | cycle 9 | a dwell in seconds | 640, p. 631 |
-| cycle 32 | tolerance: changes no position that is programmed | |
+| cycle 32 | T is how far the path may be off, as G64 P; its other lines: nothing | 620, p. 276 |
+| cycle 32 without T | the builder's tolerance, known to none: G61, no tolerance | klartext-portal |
 | PLANE RESET STAY, ROT+0, SCL 1 | cancel what is refused here | [K] |
 | cycle 247 | preset 0, before the first move; others are refused | [K] |
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |
@@ -83,7 +84,8 @@ class Heidenhain(gx.Dialect):
         "G43": v.frame("tool-length", "length", "H"),
         "G52": v.frame("non-modal", "local", v.AXES),
         "G53": v.frame("non-modal", "machine"),
-        "G64": v.inert("path"),
+        "G61": v.inert("path", act="exact-path"),  # what no T says: nearer than any tolerance
+        "G64": v.inert("path", "P", "P", act="blend"),
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
         **v.ISO_M,

@@ -19,7 +19,7 @@ WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
 BLANKS = str.maketrans("", "", " \t")
 AXES = "XYZABCUVW"
 LINEAR = "XYZ"
-MODES = frozenset(("G80", "G90.1", "G91.1", "G94", "G64", "G61", "G97", "G54", "G98", "G99"))
+MODES = frozenset(("G80", "G90.1", "G91.1", "G94", "G97", "G54", "G98", "G99"))
 """Codes that say what a TNC does anyway, as far as the reading of it shows."""
 LAST = 88  # M functions above are those of the control
 TIP = (128, 129)
@@ -43,7 +43,7 @@ class Lines(gx.Speller):
         self.unit = "INCH" if inch else "MM"
         self.place: dict[str, Decimal] = {}
         self.motion, self.plane = "G0", "G17"
-        self.steps = self.over = False
+        self.steps = self.over = self.bounded = False
         self.tool = self.in_spindle = self.speed = ""
         self.side = " R0"
 
@@ -89,6 +89,8 @@ class Lines(gx.Speller):
         if own := [c for c in functions if int(c[1:]) > LAST or int(c[1:]) in TIP]:
             raise gx.UnspeakableError(f"{own[0]} has no words in Klartext")
         ahead = [c for c in functions if int(c[1:]) in BEFORE]
+        if "G64" in codes:
+            yield from self._tolerance(_plain(values.pop("P", "0")))
         if "G4" in codes:
             yield "CYCL DEF 9.0 DWELL TIME"
             yield f"CYCL DEF 9.1 DWELL {_plain(values.pop('P', '0'))}"
@@ -111,8 +113,21 @@ class Lines(gx.Speller):
             elif code in ("G20", "G21"):
                 if (code == "G20") != self.inch:
                     raise gx.UnspeakableError("a TNC has one unit in a program")
+            elif code == "G61":
+                raise gx.UnspeakableError("a TNC has no exact path: leave G61 out by drop")
             elif code[0] == "G" and code not in MODES and code not in ACTS:
                 raise gx.UnspeakableError(f"{code} has no words in Klartext")
+
+    def _tolerance(self, bound: str) -> Iterator[str]:
+        """Yield cycle 32; without a tolerance the machine has one of its own, which is as near."""
+        if float(bound) > 0:
+            self.bounded = True
+            yield "CYCL DEF 32.0 TOLERANCE"
+            yield f"CYCL DEF 32.1 T{bound}"
+        elif self.bounded:
+            raise gx.UnspeakableError("G64 without P behind one with P has no words in Klartext")
+        else:
+            self.left_out["G64"] += 1
 
     def _tools(self, codes: list[str], values: dict[str, str]) -> Iterator[str]:
         """Yield TOOL CALL for T, M6 and S."""
@@ -253,7 +268,7 @@ class Lines(gx.Speller):
             self.place.pop(axis, None)
 
 
-ACTS = frozenset(("G4", "G43", "G49", "G52", "G53", *SIDES))
+ACTS = frozenset(("G4", "G43", "G64", "G49", "G52", "G53", *SIDES))
 
 
 def _code(letter: str, text: str) -> str:

@@ -39,7 +39,8 @@ FREE = re.compile(r"^[ \t]*[0-9]+[ \t]+F[LC]T?(?![A-Z])", re.IGNORECASE | re.MUL
 STATE = (
     *("place", "lost", "pole", "polar", "moved", "motion", "feed", "tool_feed", "feed_lost"),
     *("following", "shortest", "side", "in_spindle", "over", "begun", "axis", "tool", "q", "at"),
-    *("shift", "new_shift", "hole", "pecks", "cycle", "calls", "left", "repeated", "selected"),
+    *("shift", "new_shift", "hole", "pecks", "cycle", "bounded", "calls", "left", "repeated"),
+    *("selected",),
 )
 
 

@@ -1,0 +1,139 @@
+"""Write every real program without macros in another language and back, and compare all three.
+
+    python benchmarks/round_trips.py [CORPUS] [--to NAME] [--from NAME] [--list] [--keep FOLDER]
+
+The programs are those of `corpus.py`, with the machines that it gives them. What counts is a
+program without macros that goes through `absolute` in its own dialect, and is no file of a
+subprogram. *Round* is one that is proved on both ways, and whose three programs `compare` the same
+within what rounding does; codes that both certificates list as said otherwise are not compared.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import re
+import sys
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import gcxform as gx
+from corpus import BESIDE, HERE, NUMBERS, Job, Outcome, counted, filled_in
+from corpus import run as run_in_own
+from gcxform.modal.state import Reading
+from gcxform.pipeline.chain_text import parse_chain
+from gcxform.pipeline.pipeline import Result
+from gcxform.plugin.registry import default_registry
+from gcxform.toolpath.path import Toolpath
+
+TARGETS = ("heidenhain", "siemens", "fagor")
+SOURCES = ("linuxcnc", "fanuc")
+MACRO = re.compile(rb"#|\bO\s*<|\bo[0-9<]|\[|M98|G65", re.IGNORECASE)
+COMMENT = re.compile(rb"\([^)]*\)|;.*")
+ENDS = {"M2", "M30", "G80", "G98", "G99", "G43", "G49", "G54"}
+"""What a language need not say: the end of a file, cycles that are moves, lengths with tools."""
+LONGEST = 200_000  # bytes
+SAID = re.compile(r"(\S+)(?: [A-Z]+)? is (?:left out|said as|a comment)")
+TOLERANCE = 0.002  # mm: twice what a program is rounded by
+
+
+def plain(job: Job) -> bool:
+    """Whether a program has no macros, and is not too long to be compared."""
+    bare = b"\n".join(COMMENT.sub(b"", line) for line in job.text.splitlines())
+    return job.chain == "absolute" and len(bare) < LONGEST and not MACRO.search(bare)
+
+
+def round_trip(job: Job, target: str, keep: Path | None = None) -> Outcome:
+    """Write a program in a language and back."""
+    try:
+        return _round_trip(job, target, keep)
+    except gx.GcxformError as error:
+        first = error.diagnostics[0]
+        return Outcome(job, first.code, first.message, first.where.line if first.where else 0)
+    except Exception as error:
+        return Outcome(job, "CRASH", repr(error))
+
+
+def _round_trip(job: Job, target: str, keep: Path | None) -> Outcome:
+    registry = default_registry()
+    there, chain = registry.dialect(target), parse_chain("absolute", HERE, registry)
+    made = filled_in(job.dialect, job.path, "absolute", job.corpus)
+    said = replace(made, target=there, passes=(), numbers=NUMBERS).run(job.corpus / job.path)
+    if keep is not None:
+        (keep / job.path.replace("/", "__")).write_bytes(said.text)
+    reading = made.machine_reading
+    anew = replace(made, source=there, passes=tuple(chain), numbers=NUMBERS)
+    back = replace(anew, reading=_bare(made.reading)).run(said.text)
+    programs = [
+        gx.Program(text, kind, reading if kind is made.source else _bare(reading))
+        for text, kind in ((job.text, made.source), (said.text, there), (back.text, made.source))
+    ]
+    for one, other in itertools.pairwise(programs):
+        if why := apart(one, other, told(said, back)):
+            return Outcome(job, "DIFFERS", f"{one.dialect.name} to {other.dialect.name}: {why}")
+    return Outcome(job)
+
+
+def _bare(reading: Reading) -> Reading:
+    """Return what is known of the machine, without what holds for the language of the source."""
+    return Reading(reading.start, tools=reading.tools, crosses=reading.crosses)
+
+
+def told(*results: Result) -> set[str]:
+    """Return the names of codes that certificates list as said otherwise."""
+    said = (SAID.match(line) for result in results for line in result.certificate.assumed)
+    return {found[1] for found in said if found}
+
+
+def apart(one: gx.Program, other: gx.Program, but: set[str]) -> str:
+    """Return how two programs differ; nothing where they are the same but for some codes."""
+    for program in (one, other):
+        vars(program)["path"] = _without(program.path, but)
+    found = gx.compare(one, other, TOLERANCE)
+    if found.same:
+        return ""
+    first = [each.what for each in (*found.feeds, *found.events, *found.places)][:1]
+    return f"{found.deviation:.4g} mm, {found.angle:.4g} degrees, {found.parted or first}"
+
+
+def _without(path: Toolpath, but: set[str]) -> Toolpath:
+    """Return a path without events that are said otherwise."""
+    events = [e for e in path.events if e.what.split(" ")[0].lstrip("/") not in but | ENDS]
+    if "(...)" in but:
+        events = [e for e in events if not e.what.startswith("(")]
+    return replace(path, events=tuple(events))
+
+
+def counts(job: Job) -> bool:
+    """Whether a program is one of those that are asked for."""
+    return plain(job) and run_in_own(job).code in ("", "LOST")
+
+
+def main() -> int:
+    """Print the table; return 1 for what crashed, or differs and should not."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("corpus", nargs="?", type=Path, default=BESIDE)
+    parser.add_argument("--to", choices=TARGETS, default=TARGETS[0])
+    parser.add_argument("--from", dest="source", choices=SOURCES, action="append")
+    parser.add_argument("--list", action="store_true", help="one line per program")
+    parser.add_argument("--keep", type=Path, help="write what is in the language into a folder")
+    options = parser.parse_args()
+    with ProcessPoolExecutor(2) as pool:
+        jobs = [*counted(options.corpus, options.source or SOURCES)]
+        jobs = [job for job, good in zip(jobs, pool.map(counts, jobs), strict=True) if good]
+        to = [options.to] * len(jobs)
+        found = [*pool.map(round_trip, jobs, to, [options.keep] * len(jobs))]
+    found = [one for one in found if one.code != "GX226"]
+    for one in found:
+        if options.list:
+            print(f"{one.job.path}: {one.code} {one.line} {one.says}".rstrip(" 0:"))
+    for cause, count in Counter(f"{one.code} {one.says[:90]}" for one in found).most_common():
+        print(f"| {count} | {cause.strip() or 'round'} |")
+    print(f"{sum(not one.code for one in found)} of {len(found)} there and back")
+    return 1 if {"CRASH", "DIFFERS"} & {one.code for one in found} else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,87 @@
+"""What Klartext says otherwise than words do, on the way there and back.
+
+Cycle 32 is Klartext's tolerance of the path (TNC 620, cycles, p. 276; klartext-portal.com: without
+a value the builder's own holds again). TOOL CALL takes the length of its tool at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+from heidenhain_kit import DIALECT, TOOLS
+from seeds_kit import LONG
+
+import gcxform as gx
+from gcxform.modal.state import Reading
+from gcxform.pipeline.pipeline import Pipeline
+from gcxform.plugin.registry import default_registry
+
+DIALECTS = default_registry().dialects
+START = {"X": 0.0, "Y": 0.0, "Z": 50.0}
+HEAD = "G21 G17 G90 G94\nG0 X0. Y0. Z5.\n"
+
+
+def said(blocks, source="linuxcnc", **options):
+    """Return the lines of Klartext behind the head, and what is said of codes."""
+    made = Pipeline(DIALECTS[source], DIALECT, (), Reading(START, tools=TOOLS), **options)
+    result = made.run(f"{HEAD}{blocks}\nM2\n".encode())
+    lines = [line.split(" ", 1)[1] for line in result.text.decode().splitlines()]
+    return lines[2:-1], [each for each in result.certificate.assumed if "left out" in each]
+
+
+def words(*lines, target="linuxcnc"):
+    """Return what becomes of lines of Klartext in words."""
+    text = "".join(f"{n} {line}\n" for n, line in enumerate(("BEGIN PGM A MM", *lines)))
+    made = Pipeline(DIALECT, DIALECTS[target], (), Reading(START, tools=TOOLS))
+    return made.run(f"{text}99 END PGM A MM\n".encode()).text.decode().splitlines()[1:-1]
+
+
+def test_a_tolerance_is_cycle_32_and_back():
+    lines, told = said("G64 P0.05\nG1 X1. F100.")
+    assert lines == ["CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1 T0.05", "L X+1 F100"]
+    assert not told
+    assert words(*lines) == ["G64 P0.05", "G1 X1. F100"]
+
+
+def test_no_tolerance_is_left_out_and_told():
+    lines, told = said("G64\nG1 X1. F100.\nG64 P0\nX2.")
+    assert lines == ["L X+1 F100", "L X+2"]
+    assert told == ["G64 is left out for heidenhain: 2"]
+    with pytest.raises(gx.GcxformError, match="behind one with P"):
+        said("G64 P0.1\nG1 X1. F100.\nG64\nX2.")
+
+
+@pytest.mark.parametrize("end", ["CYCL DEF 32.1", "CYCL DEF 32.1 T0"])
+def test_the_tolerance_of_the_builder_is_none_at_all_elsewhere(end):
+    lines = ("CYCL DEF 32.1 T0.05", "L X+1 F100", end, "L X+2")
+    assert words(*lines) == ["G64 P0.05", "G1 X1. F100", "G61", "X2."]
+    assert words("CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1", "L X+1 F100") == ["G1 X1. F100"]
+
+
+def test_an_exact_path_is_left_out_where_the_user_says_so():
+    with pytest.raises(gx.GcxformError, match="no exact path"):
+        said("G61\nG1 X1. F100.")
+    lines, told = said("G61\nG1 X1. F100.", drop=frozenset({"G61"}))
+    assert (lines, told) == (["L X+1 F100"], ["G61 is left out for heidenhain: 1"])
+
+
+def test_a_length_that_comes_later_is_refused_where_it_would_count():
+    tool = "T2 M6\nG0 X1. Y2. Z3.\n"
+    with pytest.raises(gx.GcxformError, match="length of a tool"):
+        said(f"{tool}G43 H2 Z9.")
+    assert said("T2 M6\nG43 H2\nG0 X1. Y2. Z3.")[0] == ["TOOL CALL 2 Z", "L X+1 Y+2 Z+3 R0 FMAX"]
+
+
+@pytest.mark.skipif(not LONG, reason="takes a minute")
+def test_real_programs_go_there_and_back():
+    sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+    import round_trips
+
+    if not round_trips.BESIDE.exists():
+        pytest.skip("the corpus is not beside the checkout")
+    jobs = [job for job in round_trips.counted(round_trips.BESIDE, round_trips.SOURCES)]
+    found = [round_trips.round_trip(job, "heidenhain") for job in jobs if round_trips.counts(job)]
+    assert not {"CRASH", "DIFFERS", "GX601"} & {one.code for one in found}
+    assert sum(not one.code for one in found) >= 14
