@@ -94,6 +94,7 @@ class _Shape:
     parts: tuple[_Part, ...]
     comments: str
     template: str
+    routine: bool = False
 
 
 class Translator(ABC):
@@ -155,6 +156,21 @@ class Translator(ABC):
         the way through `blocks` while `plainly` is set: each item has a name, or one and a number.
         """
         return False
+
+    def routine(self, items: Sequence[Item], text: str) -> bool:
+        """Whether lines that differ from this one, `text`, only in numbers may come in runs.
+
+        Asked once for each shape, of a line without a comment.
+        """
+        del items, text
+        return False
+
+    def several(self) -> list[str]:
+        """Return the blocks of a run of lines from `line` on, one for each; nothing without one.
+
+        They have to be what `blocks` returns for each of them by itself.
+        """
+        return []
 
     def closing(self) -> Iterable[str]:
         """Return the blocks behind the last line."""
@@ -223,12 +239,14 @@ class Translator(ABC):
         slots = [slot for part in rest for slot in part.slots]
         pairs = all(len(part.names) == 1 and len(part.slots) <= 1 for part in rest)
         if not rest or not pairs or slots != [*range(len(numbers))]:
-            return _Shape(parts, comments, "")
+            routine = not said and self.routine([part.item(numbers) for part in rest], text)
+            return _Shape(parts, comments, "", routine)
         template = ""
         if self.plain([part.item(numbers) for part in rest]):
             words = [part.names[0].replace("%", "%%") + "%s" * len(part.slots) for part in rest]
             template = " ".join([*words, comments.replace("%", "%%")]).rstrip()
-        return _Shape(parts, comments, template)
+        routine = not said and self.routine([part.item(numbers) for part in rest], text)
+        return _Shape(parts, comments, template, routine)
 
     def items_in(self, text: str) -> tuple[Item, ...]:
         """Return the items of a text that stands for the line. Raises InputError."""
@@ -295,6 +313,14 @@ class Translator(ABC):
             if shape.template and self.plainly:
                 yield self.line, shape.template % (*numbers,)
                 continue
+            run = self.several() if shape.routine else ()
+            for block in run:
+                yield self.line, block
+                self.line, self.at = self.at, self.at + 1
+                self.visit += 1
+            if run:
+                left -= len(run)
+                shape, numbers = self._shape(self.line)
             for block in self._translated(shape, numbers):
                 yield self.line, block
         self.line = max(self.own - 1, 0)

@@ -152,7 +152,8 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
         what = "whether the tool is clear in moves that the source does not have"
         certificate.not_checked.append(f"{what}: {', '.join(added)}")
     taken = run.plan.machine.taken if run.plan.machine else ()
-    chosen = (*run.assumed, *run.stages.emitter.assumed, *run.books.sentences, *taken)
+    told = getattr(run.structure, "told", ())
+    chosen = (*run.assumed, *told, *run.stages.emitter.assumed, *run.books.sentences, *taken)
     certificate.assumed += assumptions(run.stages.interpreter, run.plan.source, chosen)
     certificate.warnings += warnings_of(run.stages.interpreter, run.source)
 

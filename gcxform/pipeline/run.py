@@ -214,7 +214,6 @@ class Run:
     def _fold(self, structure: Structure | WrittenBack | SpelledOut, out: Output) -> None:
         """Hand the program on with its calls and loops, or written out where that cannot be."""
         folded = structure.fold()
-        self.assumed += structure.told if isinstance(structure, SpelledOut) else ()
         if folded is None:
             assert isinstance(structure, Structure)
             self._put(structure.text, structure.lines.tolist(), out, True)

@@ -15,6 +15,7 @@ TESTS = "tests/test_heidenhain.py"
 PARAMETERS = "plugins/gcxform_plugins/dialects/heidenhain/parameters.py"
 COMPUTES = "plugins/gcxform_plugins/dialects/heidenhain/arithmetic.py"
 BACK = "plugins/gcxform_plugins/dialects/heidenhain/programs.py"
+RUNS = "plugins/gcxform_plugins/dialects/heidenhain/runs.py"
 SPELLING = "plugins/gcxform_plugins/dialects/heidenhain/spelling.py"
 LINES = "plugins/gcxform_plugins/dialects/heidenhain/lines.py"
 SPELLED = "gcxform/proof/spelled_out.py"
@@ -24,6 +25,27 @@ READ = f"{TESTS}::test_it_is_read_as_by_a_reader_of_one_line_at_a_time"
 REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 
 MUTATIONS = (
+    Mutation(
+        "klartext: runs end nowhere",
+        RUNS,
+        "            self.place[letter] = number\n",
+        "",
+        "tests/test_klartext_runs.py::test_runs_are_their_lines",
+    ),
+    Mutation(
+        "klartext: feeds of runs in inches are of mm",
+        RUNS,
+        '" F" in text and not rapid and self.inch',
+        "False",
+        "tests/test_klartext_runs.py::test_runs_are_their_lines",
+    ),
+    Mutation(
+        "klartext: runs leave the contour by R0 in no time",
+        RUNS,
+        '" R" in text and self.side',
+        "False",
+        "tests/test_klartext_runs.py::test_runs_are_their_lines",
+    ),
     Mutation(
         "klartext: no tolerance is one of 0",
         CYCLES,

@@ -12,8 +12,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from copy import copy
 
 import gcxform as gx
-from gcxform_plugins.dialects.heidenhain.klartext import Klartext
 from gcxform_plugins.dialects.heidenhain.lines import Lines
+from gcxform_plugins.dialects.heidenhain.runs import Runs
 from gcxform_plugins.dialects.heidenhain.spelling import STEPPED, code, spelled
 
 KEPT = "M9000"
@@ -44,7 +44,7 @@ STATE = (
 )
 
 
-class Programs(Klartext):
+class Programs(Runs):
     """Executes a program, and keeps what it does not understand where that may stay."""
 
     writes = True
@@ -76,6 +76,10 @@ class Programs(Klartext):
             if DECIDES.search(text) and "PGM" not in text.upper():
                 self._keep_rest(found.message)
             return self._kept(items, found.message)
+
+    def _hangs_on_more(self, rapid: bool) -> bool:
+        kept = self.reading.stays and (self.rest_kept or self.modal or self.aside)
+        return bool(kept) or super()._hangs_on_more(rapid)
 
     def _check_beside(self, items: Sequence[gx.Item]) -> None:
         """Refuse to cut what the lines beside it hang on. Raises InputError."""

@@ -1,0 +1,81 @@
+"""Lines that are translated at once are what each of them is by itself."""
+
+from __future__ import annotations
+
+from random import Random
+
+import pytest
+from gcxform_plugins.dialects.heidenhain.runs import Runs
+from heidenhain_kit import DIALECT, TOOLS
+from seeds_kit import LONG, some
+
+from gcxform.diagnostics import InputError
+from gcxform.flow.translated import translated
+from gcxform.modal.state import Reading
+from gcxform.syntax.source import Source
+
+START = {"X": 0.0, "Y": 0.0, "Z": 5.0}
+BETWEEN = (
+    *("L IX+1 Y+2", "CC X+0 Y+0", "CC IX+3 IY+4", "C X+3 Y+4 DR+", "L X+3 R0", "L Y+2,5 FMAX"),
+    *("L X+1 Y+1 RL F200", "L Y+3 R0", "L X+0 FMAX M3", "TOOL CALL 2 Z S500", "l x+1 y+2", "STOP"),
+    *("M128", "L X+1 ; note 5", "L  X+1", "L X +1", "LBL 0", "L X+1 X+2", "L X+1.Y2", "Q1 = 5"),
+    *("L X+Q1", "L X-+5", "L A+5 X+1", "L X+1 F0", "L Z+3 R00", "LP PR+4 PA+30", "L F300", "L"),
+    *(
+        "CYCL DEF 7.1 X+5",
+        "L X+1234567890123456789012",
+        "/L X+3",
+        "L IZ-1 FMAX",
+        "RND R2",
+        "L X+1.",
+    ),
+)
+SHAPES = ("L XV YV", "L XV", "L XV YV ZV", "L XV YV FMAX", "L ZV R0 FMAX", "L YV FV", "L XV R0 FV")
+
+
+def drawn(seed):
+    """Return a program: runs of few shapes, and between them what may change what they mean."""
+    draw, lines = Random(seed), []
+    for _ in range(draw.randint(1, 6)):
+        shapes = draw.sample(SHAPES, draw.randint(1, 3))
+        for _ in range(draw.randint(1, 12)):
+            line = draw.choice(shapes)
+            while "V" in line:
+                digits = draw.choice(("0", "7", "12.5", "3.", "0.0004", "123456.789"))
+                sign = (
+                    draw.choice(("+", "-", "")) if "FV" not in line[line.index("V") - 1 :] else ""
+                )
+                line = line.replace("V", sign + digits, 1)
+            lines.append(line)
+        lines += draw.choices(BETWEEN, k=draw.randint(0, 2))
+    numbers = draw.choice((True, True, False))
+    unit = draw.choice(("MM", "MM", "INCH"))
+    lines = [f"BEGIN PGM A {unit}", "L Z+5 F100", *lines, f"END PGM A {unit}"]
+    return "".join(f"{k} {line}\n" if numbers else f"{line}\n" for k, line in enumerate(lines))
+
+
+def result(text, stays):
+    source = Source.of_bytes(text.encode("latin-1"), "a.h")
+    try:
+        found = translated(source, DIALECT, Reading(START, stays=stays, tools=TOOLS))
+    except InputError as error:
+        return str(error)
+    state = found.translator
+    known = state.place, state.moved, state.feed, state.polar, state.motion, state.lost
+    return found.text, found.origin.tolist(), len(set(found.visits.tolist())), known
+
+
+@pytest.mark.parametrize("seed", some(60 if not LONG else 20_000))
+def test_runs_are_their_lines(seed, monkeypatch):
+    text = drawn(seed)
+    at_once = [result(text, stays) for stays in (False, True)]
+    monkeypatch.setattr(Runs, "several", lambda self: [])
+    assert at_once == [result(text, stays) for stays in (False, True)], text
+
+
+def test_there_are_runs(monkeypatch):
+    taken = []
+    several = Runs.several
+    monkeypatch.setattr(Runs, "several", lambda self: taken.append(several(self)) or taken[-1])
+    for seed in range(20):
+        result(drawn(seed), False)
+    assert sum(map(len, taken)) > 30
