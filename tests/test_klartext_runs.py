@@ -41,10 +41,8 @@ def drawn(seed):
             line = draw.choice(shapes)
             while "V" in line:
                 digits = draw.choice(("0", "7", "12.5", "3.", "0.0004", "123456.789"))
-                sign = (
-                    draw.choice(("+", "-", "")) if "FV" not in line[line.index("V") - 1 :] else ""
-                )
-                line = line.replace("V", sign + digits, 1)
+                signs = ("",) if line.startswith("FV", line.index("V") - 1) else ("+", "-", "")
+                line = line.replace("V", draw.choice(signs) + digits, 1)
             lines.append(line)
         lines += draw.choices(BETWEEN, k=draw.randint(0, 2))
     numbers = draw.choice((True, True, False))
@@ -79,3 +77,11 @@ def test_there_are_runs(monkeypatch):
     for seed in range(20):
         result(drawn(seed), False)
     assert sum(map(len, taken)) > 30
+
+
+def test_a_run_with_r0_leaves_the_contour():
+    lines = ["L X+1 Y+1 RL F200", *(f"L X+{k} R0" for k in range(8))]
+    text = "".join(f"{line}\n" for line in ("BEGIN PGM A MM", "TOOL CALL 1 Z", *lines, "M2"))
+    found = result(text, False)
+    assert isinstance(found, tuple), found
+    assert b"G40 X0\n" in found[0]

@@ -44,7 +44,7 @@ MUTATIONS = (
         RUNS,
         '" R" in text and self.side',
         "False",
-        "tests/test_klartext_runs.py::test_runs_are_their_lines",
+        "tests/test_klartext_runs.py::test_a_run_with_r0_leaves_the_contour",
     ),
     Mutation(
         "klartext: no tolerance is one of 0",
@@ -56,7 +56,7 @@ MUTATIONS = (
     Mutation(
         "klartext: a length counts from where it is called",
         SPELLED,
-        "    yield from _first(~_same(*tools, 0.0).all(axis=1), LENGTH)\n",
+        "    yield from _first(~_same(one, other, 0.0).all(axis=1), LENGTH)\n",
         "",
         "tests/test_klartext_target.py::test_a_length_that_comes_later_is_refused_where_it_would_count",
     ),
