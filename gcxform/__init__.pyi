@@ -78,9 +78,9 @@ from gcxform.errormodel.text_tables import decimal as decimal
 from gcxform.errormodel.text_tables import number_findings as number_findings
 from gcxform.errormodel.text_tables import placed as placed
 from gcxform.errormodel.text_tables import text_rows as text_rows
+from gcxform.flow.items import Item as Item
 from gcxform.flow.speller import Speller as Speller
 from gcxform.flow.speller import UnspeakableError as UnspeakableError
-from gcxform.flow.translation import Item as Item
 from gcxform.flow.translation import Translator as Translator
 from gcxform.guess import Evidence as Evidence
 from gcxform.guess import Guess as Guess

@@ -19,69 +19,28 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from typing import Any, ClassVar, NamedTuple, NoReturn
+from typing import ClassVar, NoReturn
 
-from lark import Lark, Token, Tree
+from lark import Lark
 from lark.exceptions import UnexpectedInput
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.annexed import Annexed
+from gcxform.flow.items import Item, Part, part_of
 from gcxform.flow.lookup import Folders, LookupFailedError
 from gcxform.flow.speller import Speller
 from gcxform.modal.state import Reading
 from gcxform.syntax import grammar_cache as kept
-from gcxform.syntax.grammar import parsed, refusal_of, rule_of, span_of
+from gcxform.syntax.grammar import parsed, refusal_of
 from gcxform.system.limits import how_to_raise, limits
 
-NUMBER = "NUMBER"
-"""The terminal of a grammar that stands for numbers."""
 COMMENT, BLOCK_DELETE = "comment", "block_delete"
 HINT = "let the CAM write plain moves in its place"
 LATELY = 512  # lines that are the only ones of their shape, and are kept
 QUICK = 4  # lines that are only translated, in the time of one that is executed
 BRACKETS = str.maketrans("()", "[]")
 SLOT = "\uffff"  # stands for a number in a shape: no program, read as bytes, has it
-
-
-class Item(NamedTuple):
-    """A part of a statement, as the grammar names it.
-
-    `kind` is the rule, `names` are its terminals but for numbers, in capitals, `numbers` the
-    numbers as written, without blanks; `place` are columns of its line, from 0.
-    """
-
-    kind: str
-    names: tuple[str, ...]
-    numbers: tuple[str, ...]
-    place: tuple[int, int]
-
-    @property
-    def name(self) -> str:
-        """The first name; nothing where there is none."""
-        return self.names[0] if self.names else ""
-
-    @property
-    def value(self) -> float:
-        """The only number. Raises ValueError where there is none, or more than one."""
-        (number,) = self.numbers
-        return float(number)
-
-
-@dataclass(frozen=True, slots=True)
-class _Part:
-    """An item of a shape: its numbers are slots."""
-
-    kind: str
-    names: tuple[str, ...]
-    slots: tuple[int, ...]
-    place: tuple[int, int]
-
-    def item(self, numbers: Sequence[str]) -> Item:
-        """Return the item with its numbers; most have one, and there are many lines."""
-        slots = self.slots
-        own = (numbers[slots[0]],) if len(slots) == 1 else tuple(numbers[slot] for slot in slots)
-        return Item(self.kind, self.names, own, self.place)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +50,7 @@ class _Shape:
     `template` is the block of a plain line, to be filled in with its numbers; nothing if it is not.
     """
 
-    parts: tuple[_Part, ...]
+    parts: tuple[Part, ...]
     comments: str
     template: str
     routine: bool = False
@@ -231,7 +190,7 @@ class Translator(ABC):
         numbers, parts = self._parsed(line)
         return self._shape_of(line, numbers, parts), numbers
 
-    def _shape_of(self, line: int, numbers: list[str], parts: tuple[_Part, ...]) -> _Shape:
+    def _shape_of(self, line: int, numbers: list[str], parts: tuple[Part, ...]) -> _Shape:
         text = self.lines[line]
         said = [part for part in parts if part.kind == COMMENT]
         comments = "".join(_comment(text[slice(*part.place)]) for part in said)
@@ -258,7 +217,7 @@ class Translator(ABC):
         """Return another grammar of the language, as `grammar` names one."""
         return _grammar(package, name)
 
-    def _parsed(self, line: int, text: str | None = None) -> tuple[list[str], tuple[_Part, ...]]:
+    def _parsed(self, line: int, text: str | None = None) -> tuple[list[str], tuple[Part, ...]]:
         """Return the numbers of a line, and its parts; or of another text for it."""
         text = self.lines[line] if text is None else text
         try:
@@ -268,7 +227,7 @@ class Translator(ABC):
             what = f"this is not a program for {self.dialect.name}: {message}"
             raise self._error(line, "GX101", what, (column - 1, column), "") from None
         numbers: list[str] = []
-        return numbers, tuple(_part(child, numbers) for child in tree.children)
+        return numbers, tuple(part_of(child, numbers) for child in tree.children)
 
     # --- files ---
 
@@ -401,26 +360,3 @@ def _comment(text: str) -> str:
     """Return a comment in round brackets."""
     inner = text[1:].removesuffix(")") if text.startswith("(") else text.lstrip(";* \t")
     return f"({inner.strip().translate(BRACKETS)})"
-
-
-def _part(node: Any, numbers: list[str]) -> _Part:
-    """Return a child of the start rule; its numbers are put behind those there are."""
-    tokens = [node] if isinstance(node, Token) else [*_tokens(node)]
-    names, slots = [], []
-    for token in tokens:
-        if token.type.rsplit("__", 1)[-1] == NUMBER:
-            slots.append(len(numbers))
-            numbers.append(str(token))
-        else:
-            names.append(str(token).upper())
-    kind = node.type.lower() if isinstance(node, Token) else rule_of(node)
-    return _Part(kind, tuple(names), tuple(slots), span_of(node))
-
-
-def _tokens(tree: Tree[Token]) -> Iterator[Token]:
-    """Yield the terminals below a node, in order."""
-    for child in tree.children:
-        if isinstance(child, Token):
-            yield child
-        else:
-            yield from _tokens(child)
