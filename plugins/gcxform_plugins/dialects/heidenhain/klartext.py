@@ -14,6 +14,7 @@ from gcxform_plugins.dialects.heidenhain.words import exact, plain
 BEGIN = re.compile(r"BEGIN\s+PGM\b.*?\b(MM|INCH)\s*")
 END = re.compile(r"END\s+PGM\b(?:.*?\b(MM|INCH))?.*")
 TOOL = re.compile(rf"TOOL\s+DEF\s*(\d{{1,9}})(?:\s+L\s*({VALUE}))?(?:\s+R\s*({VALUE}))?\s*")
+FIRST_WORD = re.compile(r"TOOL|[A-Z]+")
 TCPM = "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"
 RESET = "FUNCTION RESET TCPM"
 OTHERWISE = {
@@ -45,6 +46,19 @@ class Klartext(Cycles):
             "stop": self.stop,
             "m": self.functions,
             "text": self.text,
+        }
+        self.texts: dict[str, Callable[[gx.Item], list[str]]] = {
+            "BEGIN": self._begin,
+            "END": self._end,
+            "BLK": _nothing,
+            "TOOL": self._tool_def,
+            "CYCL": self.define,
+            "CYCLE": self.define,
+            "LBL": self.label,
+            "CALL": self.call,
+            "SEL": self.select,
+            **dict.fromkeys(("FN", "Q", "QL", "QR", "QS"), self.computed),
+            "FUNCTION": self._function_of,
         }
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
@@ -82,21 +96,9 @@ class Klartext(Cycles):
         """Return the blocks of what is no path function."""
         item = items[0]
         name = item.name
-        word = re.match(r"TOOL|[A-Z]+", name)
+        word = FIRST_WORD.match(name)
         assert word is not None
-        read = {
-            "BEGIN": self._begin,
-            "END": self._end,
-            "BLK": _nothing,
-            "TOOL": self._tool_def,
-            "CYCL": self.define,
-            "CYCLE": self.define,
-            "LBL": self.label,
-            "CALL": self.call,
-            "SEL": self.select,
-            **dict.fromkeys(("FN", "Q", "QL", "QR", "QS"), self.computed),
-            "FUNCTION": self._function_of,
-        }.get(word[0])
+        read = self.texts.get(word[0])
         if read is not None:
             return read(item)
         if name.split() == ["PLANE", "RESET", "STAY"]:  # no plane is read that it could end

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from decimal import Decimal
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 from lark import Token, Tree
@@ -38,6 +38,7 @@ WHY = {
     29: "FN 29 sets values of the PLC",
 }
 CONTROL = range(100, 200)
+FORMULAS = 4096  # that are kept as they were parsed
 
 
 Node = Tree[Token]
@@ -81,6 +82,12 @@ class Parameters(Labels):
         """The grammar of lines that compute."""
         return self.grammar_named("gcxform_grammars", "heidenhain_computed")
 
+    @cached_property
+    def parsed_formulas(self) -> Callable[[str], Any]:
+        """What parses a line that computes; a loop comes back to the same ones."""
+        parse = self.grammar_of_formulas.parse
+        return lru_cache(FORMULAS)(lambda text: parse(text).children[0])
+
     def worth(self, node: Any) -> float:
         """Return what a formula is worth. Raises NoValueError."""
         value = Formula(self.q).value(node)
@@ -95,7 +102,7 @@ class Parameters(Labels):
             return self._other_function(item, int(match[1]), match[2])
         self.computes = True
         try:
-            node: Any = self.grammar_of_formulas.parse(item.name).children[0]
+            node: Any = self.parsed_formulas(item.name)
         except UnexpectedInput:
             if TEXTS.search(item.name):
                 self._forget(item.name)
@@ -192,4 +199,9 @@ def _number(head: Any) -> int:
 
 def rule_of(node: Any) -> str:
     """Return the rule of a node; nothing for a terminal."""
-    return str(node.data).rsplit("__", 1)[-1] if isinstance(node, Tree) else ""
+    return _last(str(node.data)) if isinstance(node, Tree) else ""
+
+
+@lru_cache
+def _last(name: str) -> str:
+    return name.rsplit("__", 1)[-1]
