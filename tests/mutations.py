@@ -52,6 +52,8 @@ IMPORTED = (
     *("pytest", "_hypothesis_pytestplugin", "xdist.plugin", "xdist.looponfail", "xdist.newhooks"),
     *("pdb", "faulthandler", "readline", "unittest.mock", "_pytest.pytester_assertions"),
 )
+PLUGINS = ["--disable-plugin-autoload"]  # what is installed is not looked through for each fault
+PLUGINS += [word for name in ("_hypothesis_pytestplugin", "xdist.plugin") for word in ("-p", name)]
 FAILED, BROKEN = 1, 99  # FAILED is pytest's exit code for tests that failed
 NOT_SWAPPED = 98
 TIMEOUT = 180  # seconds for one set of tests; a mutant that hangs is noticed too
@@ -138,6 +140,7 @@ def tested(folder: Path, job: Job, loaded: swapping.Loaded | None) -> int:
     assert Path(str(package.__file__)).is_relative_to(ROOT if loaded else folder), package.__file__
     pytest = importlib.import_module("pytest")
     options = ["-x", "-q", "-p", "no:cacheprovider", f"--basetemp={folder / 'tmp'}"]
+    options += PLUGINS
     options += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]  # of what is imported already
     named = frozenset(test.partition("::")[2].partition("[")[0] for test in tests)
     return int(pytest.main([*options, *tests], plugins=[Noticed(folder / NOTICED, named)]))
@@ -195,6 +198,7 @@ class Verdict:
     test: str
     said: str
     seconds: float
+    anew: bool  # whether gcxform was loaded for it
 
     @property
     def word(self) -> str:
@@ -220,7 +224,7 @@ def finished(
             mended(job[0], folder)
         free.append(folder)
         test, said = ((folder / name).read_text("utf-8", "replace") for name in (NOTICED, SAID))
-        yield Verdict(job, code, test, said[-3000:], seconds)
+        yield Verdict(job, code, test, said[-3000:], seconds, loaded is None)
 
 
 def finished_loaded(jobs: list[Job], folders: list[Path]) -> Iterator[Verdict]:
@@ -273,13 +277,25 @@ def remember(found: list[tuple[Mutation, Verdict]]) -> None:
     REMEMBERED.write_text("".join(lines), "utf-8")
 
 
-def failing(tests: set[str], folders: list[Path]) -> list[str]:
-    """Return what is said of tests that fail on copies without a fault, a file at a time."""
-    by_file: dict[str, list[str]] = defaultdict(list)
-    for test in sorted(tests):
-        by_file[test.partition("::")[0]].append(test)
-    jobs: list[Job] = [(None, some) for some in sorted(by_file.values(), key=len, reverse=True)]
-    return [one.said for one in finished(jobs, folders) if one.code]
+def failing(found: list[Verdict], folders: list[Path]) -> list[str]:
+    """Return what is said of tests that fail without a fault, a file at a time.
+
+    They run as they did when they noticed one: in a gcxform that was loaded for it, or before.
+    """
+    said = []
+    for finish, anew in ((finished_loaded, False), (finished, True)):
+        by_file: dict[str, list[str]] = defaultdict(list)
+        for test in sorted({one.test for one in found if one.anew == anew} - {""}):
+            by_file[test.partition("::")[0]].append(test)
+        jobs: list[Job] = [(None, some) for some in sorted(by_file.values(), key=len, reverse=True)]
+        verdicts = list(finish(jobs, folders)) if jobs else []
+        assert len(verdicts) == len(jobs), "a process that had loaded gcxform ended before its time"
+        said += [one.said for one in verdicts if one.code]
+        print(
+            f"{sum(one.seconds for one in verdicts):.0f} s to see that they pass without",
+            flush=True,
+        )
+    return said
 
 
 # --- the script ---
@@ -322,7 +338,7 @@ def judged(chosen: list[Mutation], folders: list[Path], writes: bool) -> int:
         print(f"{one.seconds:6.1f} s  {mutation.name}  {one.test}")
     caught = sum(one.code == FAILED for _, one in found)
     print(f"{caught} of {len(found)} mutations are caught")
-    if wrong := failing({one.test for _, one in found} - {""}, folders):
+    if wrong := failing([one for _, one in found], folders):
         print("without any mutation these fail as well:", *wrong, sep="\n")
     elif writes:
         remember(found)

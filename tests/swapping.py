@@ -61,7 +61,7 @@ class Loaded:
 
 
 def load() -> Loaded:
-    """Load every module of the packages and the plugins, and see what runs while that is done."""
+    """Load every module, the plugins and their grammars, and see what runs while that is done."""
     found = Loaded()
 
     def see(frame: FrameType, event: str, _: object) -> None:
@@ -75,7 +75,8 @@ def load() -> Loaded:
             with suppress(ModuleNotFoundError):  # of what is installed for a host alone
                 if not module.name.endswith("__main__"):
                     importlib.import_module(module.name)
-    importlib.import_module("gcxform").Registry.load()
+    for dialect in importlib.import_module("gcxform").Registry.load().dialects.values():
+        dialect.load_grammar()
     sys.setprofile(None)
     gc.collect()
     for thing in gc.get_objects():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -16,14 +16,22 @@ def radius_and_angle(path: Toolpath, rows: Ints) -> tuple[Floats, Floats, Floats
     """Return radius at the start, radius at the end (mm) and angle at the start (rad) of arcs."""
     first, last, angle = np.zeros((3, len(rows)))
     start, end = path.start[rows], path.end[rows]
-    for plane in Plane:
-        here = path.plane[rows] == plane
+    for plane, here in _by_plane(path, rows):
         axes = list(plane.axes[:2])
         centre = path.centre[rows[here]][:, axes]
         u, v = start[here][:, axes] - centre, end[here][:, axes] - centre
         first[here], last[here] = np.hypot(*u.T), np.hypot(*v.T)
         angle[here] = np.arctan2(u[:, 1], u[:, 0])
     return first, last, angle
+
+
+def _by_plane(path: Toolpath, rows: Ints) -> Iterator[tuple[Plane, Ints]]:
+    """Yield the planes that rows are in, each with the places of its rows: mostly it is one."""
+    of = path.plane[rows]
+    for plane in Plane:
+        here = np.flatnonzero(of == plane)
+        if len(here):
+            yield plane, here
 
 
 def points_on_arcs(path: Toolpath, rows: Ints, part: Floats) -> Floats:
@@ -37,8 +45,7 @@ def points_on_arcs(path: Toolpath, rows: Ints, part: Floats) -> Floats:
     at = angle + path.sense[rows] * path.sweep[rows] * part
     start, end = path.start[rows, :3], path.end[rows, :3]
     point = start + part[:, None] * (end - start)
-    for plane in Plane:
-        here = np.flatnonzero(path.plane[rows] == plane)
+    for plane, here in _by_plane(path, rows):
         a, b, _ = plane.axes
         point[here, a] = path.centre[rows[here], a] + size[here] * np.cos(at[here])
         point[here, b] = path.centre[rows[here], b] + size[here] * np.sin(at[here])
@@ -101,10 +108,7 @@ def arc_cuts(
         widest = np.minimum(widest, path.sweep[rows] * longest / np.maximum(length, longest))
     count = np.ceil(path.sweep[rows] / np.minimum(widest, 0.5)).astype(np.int64)
     found = [_even_cuts(rows, count)]
-    for plane in Plane:
-        here = np.flatnonzero(path.plane[rows] == plane)
-        if not len(here):
-            continue
+    for plane, here in _by_plane(path, rows):
         mine = rows[here]
         shift = offset if len(offset) == 1 else offset[mine]
         a, b, normal = plane.axes
