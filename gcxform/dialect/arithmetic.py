@@ -102,10 +102,13 @@ class Arithmetic:
 
     def behind(self, key: Key, value: float) -> dict[Key, float]:
         """Return parameters behind an assignment: only the control knows those of its own."""
-        if self.owns(key):
-            return {key: value}
-        other = (int(key) - off for each, off in self.machine.aliases if among(key, (each,)))
-        return dict.fromkeys((key, *other), math.nan)
+        return {key: value if self.owns(key) else math.nan}
+
+    def cell(self, key: Key) -> Key:
+        """Return the name by which a parameter is known here that has another one."""
+        aliases = self.machine.aliases
+        own = (int(key) - off for each, off in aliases if among(key, (each,)))
+        return next(filter(self.owns, own), key)
 
     def exists(self, key: Key) -> bool:
         """Return whether a parameter has a value, if only the machine may know which."""

@@ -17,6 +17,7 @@ from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.lookup import Found, LookupFailedError, only
 from gcxform.flow.residual import Edit
 from gcxform.flow.run_state import UNKNOWN, Call, RunState, computed, has_slash
+from gcxform.flow.text import as_named
 from gcxform.flow.walk import Step, Walk, split
 from gcxform.modal.expressions.value import Evaluator, forgotten
 from gcxform.modal.state import Reading
@@ -37,7 +38,7 @@ class Execution(RunState):
     def __init__(self, listing: Listing, reading: Reading, keeps: bool = False) -> None:
         super().__init__(listing, reading, keeps)
         self.at = 0
-        self.ended = self.acted = self.alarmed = False
+        self.ended = self.acted = False
         self.executed = 0
         self.alarm: int | None = None
         self.skipped: set[int] = set()
@@ -176,7 +177,6 @@ class Execution(RunState):
         only stand where they are.
         """
         self.kept = kept
-        self.alarm = self.blocks - 1 if self.ended and self.alarmed else None
         self.close_branches()
         self.executed = self.blocks
         for each in self.behind:
@@ -314,12 +314,13 @@ class Execution(RunState):
         edits = self.edits(block)
         self.acted |= self.becomes_other(block)
         statements = _statements(block)
-        changes = [self._assigned(statement) for statement in statements]
+        changes = [self.assignment(each.tree, (each.start, each.end)) for each in statements]
         texts = [self.kept_assignment(*both) for both in zip(statements, changes, strict=True)]
         for change in changes:
             self.set(self.arithmetic.behind(*change))
         for statement, change, text in zip(statements, changes, texts, strict=True):
-            edits.append((statement.start, statement.end, self.lasting.account(*change, text)))
+            made = self.lasting.account(*change, text)
+            edits.append((statement.start, statement.end, as_named(statement, change[0], made)))
         edits += self.lasting.messages(block)
         self.lasting.outputs.before(block)
         edits = [(start, end, new) for start, end, new in edits if block.text[start:end] != new]
@@ -336,10 +337,6 @@ class Execution(RunState):
     def stop(self, block: Block) -> None:
         """Note that nothing is executed behind a block that ends the program."""
         self.ended |= self._ends(block)
-
-    def _assigned(self, statement: Statement) -> tuple[Key, float]:
-        """Return a parameter and its new value."""
-        return self.assignment(statement.tree, (statement.start, statement.end))
 
     def kept_assignment(self, statement: Statement, change: tuple[Key, float]) -> str:
         """Return what stays of an assignment that only the machine can make; "" for another."""

@@ -205,7 +205,7 @@ class MacroWords(Jumping):
 
     def _stop_with_alarm(self) -> None:
         self.branches.over, self.ended = bool(self.branches.open), not self.branches.open
-        self.alarmed = self.ended
+        self.alarm = self.blocks - 1 if self.ended else None
 
     # --- loops ---
 

@@ -187,7 +187,8 @@ def _function(arithmetic: Arithmetic, node: Any, in_word: bool = False) -> Compi
 
 def _put(arithmetic: Arithmetic, line: int, statement: Statement) -> Put:
     parameter, expression = statement.tree.children
-    key = parameter_of(parameter)
+    named = parameter_of(parameter)
+    key = named if named is None else arithmetic.cell(named)
     if key is None or (isinstance(key, str) and not arithmetic.named) or not arithmetic.owns(key):
         raise NoColumnError
     added = _added(arithmetic, settable(arithmetic, key), expression)

@@ -6,7 +6,8 @@ from decimal import Decimal
 
 from gcxform.dialect.arithmetic import Arithmetic, Key
 from gcxform.dialect.null import Null
-from gcxform.modal.expressions.value import written
+from gcxform.modal.expressions.value import key_set, written
+from gcxform.syntax.tree import Statement
 
 DECIMALS = 8
 """Of mm or inch: far below what any control resolves, and what is read as fast as any number."""
@@ -31,3 +32,10 @@ def number(value: float, arithmetic: Arithmetic) -> str:
     text = f"{Decimal(digits):f}"
     whole, _, rest = text.partition(".")
     return f"{whole}.{rest.rstrip('0')}"
+
+
+def as_named(statement: Statement, key: Key, text: str) -> str:
+    """Return an assignment to a parameter by the name that the statement has for it."""
+    name = key_set(statement)
+    known = name in (None, key) or not text.startswith(written(key))
+    return text if known or name is None else written(name) + text.removeprefix(written(key))

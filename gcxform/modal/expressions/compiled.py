@@ -85,6 +85,7 @@ class Compiler:
         key = parameter_of(node)
         if key is None or (isinstance(key, str) and not self.arithmetic.named):
             return _refused
+        key = self.arithmetic.cell(key)
 
         def read(parameters: Parameters, _: Operands) -> float:
             value: float = parameters.get(key, np.nan)

@@ -94,7 +94,8 @@ def _made(table: MeaningTable, shape: int) -> Functions | None:
         try:
             if key is None or (isinstance(key, str) and not arithmetic.named):
                 return None
-            assigned.append((settable(arithmetic, key), compiler.compiled(expression)))
+            key = settable(arithmetic, arithmetic.cell(key))
+            assigned.append((key, compiler.compiled(expression)))
             many_assigned.append((key, many.compiled(expression)))
         except NoValueError:
             return None

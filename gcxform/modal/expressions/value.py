@@ -151,7 +151,7 @@ class Evaluator:
             if not self.arithmetic.named:
                 raise NoValueError("this dialect has no parameters with names", code="GX206")
             return _name(child)
-        return whole(self.value(child))
+        return self.arithmetic.cell(whole(self.value(child)))
 
     def _read(self, key: Key) -> float:
         if key == self.arithmetic.machine.null:
