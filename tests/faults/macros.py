@@ -222,13 +222,6 @@ MUTATIONS = (
         "flow/fanuc-alarm-written-out",
     ),
     _macro(
-        "another name of a variable is another variable",
-        "gcxform/modal/expressions/value.py",
-        "self.arithmetic.cell(whole(self.value(child)))",
-        "whole(self.value(child))",
-        "flow/haas-other-names",
-    ),
-    _macro(
         "what stands behind an alarm is read",
         "gcxform/syntax/undecided.py",
         "if self.alarm is not None:",

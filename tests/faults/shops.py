@@ -125,15 +125,15 @@ FAULTS = (
     (
         "what is set in the control has that value behind",
         "gcxform/dialect/arithmetic.py",
-        "return dict.fromkeys((key, *other), math.nan)",
-        "return {key: value, **dict.fromkeys(other, math.nan)}",
+        "return {key: value if self.owns(key) else math.nan}",
+        "return {key: value}",
         f"{CASE}[flow/control-values-set]",
     ),
     (
         "another name of a parameter is another parameter",
         "gcxform/dialect/arithmetic.py",
-        "return dict.fromkeys((key, *other), math.nan)",
-        "return dict.fromkeys((key,), math.nan)",
+        "return next(filter(self.owns, own), key)",
+        "return key",
         f"{CASE}[flow/haas-other-names]",
     ),
     (
