@@ -82,6 +82,7 @@ class Verifier:
         self.reader = WindowReader(context.target)
         self.interpreter = Interpreter(context.target, reading, axes, "output")
         self.undecided = undecided
+        self.behind = 0
         self.whole = Whole(context.target)
         self.limit = limit
         self.centres = CentreProof(context, file)
@@ -108,7 +109,10 @@ class Verifier:
         XX        Raises VerificationError.
         """
         again = self.reader.read(text)
-        self.interpreter.undecided = self.undecided.through(source, again.first_line)
+        self.interpreter.undecided = self.undecided.through(
+            source, again.first_line, range(self.behind, lines.stop)
+        )
+        self.behind = int(source.max()) + 1 if len(source) else self.behind
         try:
             back = self.interpreter.interpret(again, self.reader.table)
         except GcxformError as error:

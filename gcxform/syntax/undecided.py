@@ -6,7 +6,8 @@ between a jump and where it leads change nothing, or what they change is taken f
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -64,19 +65,35 @@ class Undecided:
         """Return which of so many lines from the first on may not be executed."""
         return _flags(self.perhaps, first, count)
 
-    def through(self, source: Ints, first: int) -> Undecided:
-        """Return the same of a text whose line `first + k` was written for the line source[k]."""
+    def through(self, source: Ints, first: int, window: range) -> Undecided:
+        """Return the same of a text whose line `first + k` was written for the line source[k].
+
+        `window` are the lines behind the last one for which something was written before. What is
+        no longer known before a line for which nothing is written is not known before the next one.
+        """
         if not self and self.alarm is None:
             return self
         at: dict[int, list[int]] = {}
         for k, line in enumerate(source.tolist()):
             at.setdefault(line, []).append(first + k)
+        there = sorted(at)
 
         def written(lines: frozenset[int]) -> frozenset[int]:
             return frozenset(at[line][0] for line in lines if line in at)
 
-        lost = {at[line][0]: axes for line, axes in self.lost.items() if line in at}
-        forgets = {at[line][0]: keys for line, keys in self.forgets.items() if line in at}
+        def before(lines: Iterable[int]) -> Iterator[tuple[int, int]]:
+            """Yield lines, and which of the text they are before."""
+            for line in lines:
+                k = bisect_left(there, line)
+                if line in window and k < len(there):
+                    yield line, at[there[k]][0]
+
+        lost: dict[int, str] = {}
+        forgets: dict[int, frozenset[int | str]] = {}
+        for line, place in before(self.lost):
+            lost[place] = lost.get(place, "") + self.lost[line]
+        for line, place in before(self.forgets):
+            forgets[place] = forgets.get(place, frozenset()) | self.forgets[line]
         perhaps = frozenset(n for line in self.perhaps for n in at.get(line, ()))
         alarm = at[self.alarm][-1] if self.alarm in at else None
         return Undecided(written(self.lines), written(self.labels), lost, forgets, perhaps, alarm)

@@ -710,6 +710,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[flow/oword-if-ends]",
     ),
     Mutation(
+        "branches: what is forgotten before a line that is left out is known again",
+        "gcxform/syntax/undecided.py",
+        "for line, place in before(self.forgets):",
+        "for line, place in ((n, at[n][0]) for n in self.forgets if n in at):",
+        "tests/test_corpus.py::test_case[offsets/branch-behind-a-call]",
+    ),
+    Mutation(
         "branches: who reads the text does not forget",
         "gcxform/modal/expressions/assignments.py",
         "self.lines.parameters |= dict.fromkeys(undecided.forgets.get(place, ()), UNKNOWN)",
