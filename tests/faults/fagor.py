@@ -20,7 +20,24 @@ STRUCTURE = "plugins/gcxform_plugins/dialects/fagor/structure.py"
 PROGRAMS = "plugins/gcxform_plugins/dialects/fagor/programs.py"
 FLOWS = "tests/test_fagor_flow.py"
 
+LINES = "plugins/gcxform_plugins/dialects/fagor/lines.py"
+SAID = "tests/test_fagor_written.py"
+
 MUTATIONS = (
+    Mutation(
+        "fagor: what is written for it has no length behind a tool change",
+        LINES,
+        "if moves or before != self.length or not",
+        "if not",
+        SAID,
+    ),
+    Mutation(
+        "fagor: the length of another tool is said as D1",
+        LINES,
+        'if self.length not in ("0", self.in_spindle):',
+        "if not self.length:",
+        SAID,
+    ),
     Mutation(
         "fagor: $FOR always runs for its last value",
         FLOW,

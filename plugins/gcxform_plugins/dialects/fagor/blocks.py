@@ -28,7 +28,11 @@ class Blocks(gx.Translator):
 
     grammar = ("gcxform_grammars", "fagor")
     number = re.compile(r"(?<![GMgm0-9.])[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
-    signs = re.compile(rb"(?im)^[^(;\n]*#(?:RTCP|TLC|CS|ACS|MCS|KIN|HSC)\b")
+    signs = re.compile(
+        rb"(?im)^[^(;\n]*(?:#(?:RTCP|TLC|CS|ACS|MCS|KIN|HSC|P?CALL|MCALL|RET)\b"
+        rb"|\$(?:IF|FOR|WHILE|GOTO|SWITCH)\b|[XYZ]-?[0-9.]+I(?![-+.0-9 \t=\[]))"
+        rb"|^%(?!O[0-9])[A-Z][A-Z0-9_]{0,13}[ \t]*$"
+    )
 
     def __init__(self, *given: object) -> None:
         super().__init__(*given)  # type: ignore[arg-type]

@@ -98,8 +98,8 @@ class Fagor(gx.Dialect):
         "G95": gx.Code("feed-mode"),
         "G97": v.inert("spindle-mode", "S", act="rpm"),
         **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
-        "G61": v.inert("path", "PQ", "PQ", act="exact-path"),
-        "G64": v.inert("path", "PQ", "PQ", act="blend"),
+        "G61": v.inert("path", act="exact-path"),
+        "G64": v.inert("path", act="blend"),
         "G43": v.frame("tool-length", "length", "H"),
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {

@@ -15,8 +15,9 @@ from copy import copy
 import gcxform as gx
 from gcxform_plugins.dialects.fagor import tables
 from gcxform_plugins.dialects.fagor.flow import Flow
+from gcxform_plugins.dialects.fagor.lines import Lines
 from gcxform_plugins.dialects.fagor.places import code_of
-from gcxform_plugins.dialects.fagor.spelling import counts, spelled
+from gcxform_plugins.dialects.fagor.spelling import HEAD, counts, spelled
 from gcxform_plugins.dialects.fagor.structure import StructureError, code
 
 KEPT = "M9000"
@@ -62,6 +63,7 @@ class Programs(Flow):
     """
 
     writes = True
+    speller = Lines
     kept = KEPT
 
     def __init__(self, *given: object) -> None:
@@ -244,6 +246,17 @@ class Programs(Flow):
     def spelled(self, line: int, blocks: Sequence[str]) -> str | None:
         """Return a line that stands for new blocks; None where that is not known."""
         return None if self.tied else spelled(self.lines[line], blocks)
+
+    def replaced(self, line: int, said: Sequence[str]) -> str | None:
+        """Return the lines that stand for what a line became, with its head and its comment."""
+        if self.tied:
+            return None
+        text = self.lines[line]
+        head, bare = HEAD.match(text), code(text).rstrip()
+        behind = text[len(bare) :] if text.startswith(bare) else ""
+        first, *more = [each.partition(";")[0].rstrip() for each in said]
+        blank = " " if head and head[0].strip() else ""
+        return "\n".join([f"{head[0].rstrip() if head else ''}{blank}{first}{behind}", *more])
 
     def counts(self, line: str) -> bool:
         """Whether a line has a word that counts from where its axis stands."""

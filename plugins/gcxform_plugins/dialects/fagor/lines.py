@@ -1,0 +1,115 @@
+"""Blocks of words as lines for a Fagor: `G71`, `G5`, `T1 M6`, `D1`, `G4 K2`, `; text`.
+
+One block after the other; what the language has no words for is refused by its name. What comes out
+is read again, and has to be the program that was written: so nothing here needs to be believed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from decimal import Decimal
+
+import gcxform as gx
+from gcxform_plugins.dialects.fagor import tables
+
+CODES = {
+    "G21": "G71",
+    "G61": "G7",
+    "G64": "G5",
+    **dict.fromkeys(("G80", "G91.1", "G98", "G99", "G43", "G49", "G4"), ""),
+}
+"""Codes by another name, or by none: where nothing else is read, nothing has to be said."""
+SAME = tables.PLAIN | tables.WORK | {"G90", "G91"}
+LONGEST = 14  # characters of the name of a program [Q 45]
+ENDS = ("M2", "M30")
+
+
+class Lines(gx.Speller):
+    """Writes blocks as lines for a Fagor.
+
+    tool    that of the last T, and `in_spindle`
+    length  that of which tool is in force, "0" for none
+    waits   M6 has been, and D has not yet: it is said before the next move
+    over    the program has ended
+    """
+
+    comment = "; "
+
+    def __init__(self, name: str, inch: bool) -> None:
+        bare = re.sub(r"[^A-Z0-9_]", "", name.upper()) or "PART"
+        bare = f"P{bare}" if bare.startswith("L") else bare
+        super().__init__(bare[:LONGEST], inch)
+        self.tool = self.in_spindle = self.length = "0"
+        self.waits = self.over = False
+
+    def opening(self) -> list[str]:
+        """Return the first line."""
+        return [f"%{self.name}"]
+
+    def lines(self, block: str) -> list[str]:
+        """Return the lines for a block. Raises UnspeakableError."""
+        comments, words = gx.Speller.parts(block)
+        found = [*self._said(words)] if words else []
+        if comments:
+            text = self.comment + " ".join(comments)
+            found = [f"{found[0]} {text}", *found[1:]] if found else [text]
+        return found
+
+    def _said(self, words: list[tuple[str, str]]) -> Iterator[str]:
+        names = [letter + _plain(text) for letter, text in words]
+        if self.over and any(name[0] != "N" for name in names):
+            raise gx.UnspeakableError("something stands behind the end of the program")
+        values = dict(words)
+        yield from self._tooled(names, values)
+        if "G4" in names:
+            yield f"G4 K{_plain(values.pop('P', '0'))}"
+        said = [*self._words(words, "G4" in names)]
+        if any(word[0] != "N" for word in said):
+            yield " ".join(said)
+        self.over |= not {*ENDS}.isdisjoint(names)
+
+    def _tooled(self, names: list[str], values: dict[str, str]) -> Iterator[str]:
+        """Yield the lines of T with M6, and of D for a length. Raises UnspeakableError."""
+        if "T" in values:
+            self.tool = _plain(values["T"])
+        if "M6" in names:
+            self.in_spindle, self.waits = self.tool, True
+            yield f"T{self.tool} M6"
+        before = self.length
+        if "G43" in names:
+            self.length = _plain(values["H"]) if "H" in values else self.in_spindle
+        elif "G49" in names:
+            self.length = "0"
+        moves = self.waits and not values.keys().isdisjoint("XYZABCUVWIJKR")
+        if moves or before != self.length or not {"G43", "G49"}.isdisjoint(names):
+            if self.length not in ("0", self.in_spindle):
+                raise gx.UnspeakableError("the length of another tool than the one in the spindle")
+            self.waits = False
+            yield "D0" if self.length == "0" else "D1"
+
+    def _words(self, words: list[tuple[str, str]], waits: bool) -> Iterator[str]:
+        """Yield the words of a line but those of tools. Raises UnspeakableError."""
+        for letter, text in words:
+            name = letter + _plain(text)
+            if letter == "G":
+                if name not in SAME and name not in CODES:
+                    raise gx.UnspeakableError(f"{name} has no words on a Fagor")
+                if said := CODES.get(name, name):
+                    yield said
+            elif letter == "M":
+                if name not in tables.M_CODES:
+                    raise gx.UnspeakableError(f"{name} is a function of the machine")
+                if name != "M6":
+                    yield name
+            elif letter in tables.PLAIN_WORDS or letter == "N":
+                yield letter + (_plain(text) if letter != "N" else text)
+            elif letter not in "THO" and not (letter == "P" and waits):
+                raise gx.UnspeakableError(f"{letter} has no words on a Fagor")
+
+
+def _plain(text: str) -> str:
+    """Return a number without a plus, and without zeros that say nothing."""
+    number = format(Decimal(text), "f")
+    number = number.rstrip("0").rstrip(".") if "." in number else number
+    return "0" if number in ("-0", "") else number
