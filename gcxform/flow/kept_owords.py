@@ -12,11 +12,11 @@ subprogram is called twice its labels would be.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from gcxform.dialect.arithmetic import Key
-from gcxform.flow.constructs import Construct, OWord
+from gcxform.flow.constructs import Construct, Constructs, OWord
 from gcxform.flow.execution import Execution
 from gcxform.flow.forks import HINT, Arrival, Forks, differ
 from gcxform.flow.modes import StoredModes
@@ -94,6 +94,8 @@ class KeptOWords(Forks):
         super().__init__(run)
         self.inside: list[Kept] = []
         self.used: set[str] = set()
+        self.largest = 0  # number of a label in what was `counted`, or given to what is kept
+        self.counted: Constructs | None = None
 
     # --- the walk ---
 
@@ -256,20 +258,22 @@ class KeptOWords(Forks):
         run = self.run
         label = run.words[construct.lines[0]].label
         if label in self.used or any(label == name for _, name in run.subprograms.arranged.subs):
-            label = next(each for each in self._labels() if each not in self.used)
+            label = self._free_label()
         self.used.add(label)
         self.inside.append(Kept(construct, label, len(run.calls)))
         return self.inside[-1]
 
-    def _labels(self) -> Iterator[str]:
-        """Yield numbers that no label of the program has."""
+    def _free_label(self) -> str:
+        """Return a number that no label has, of the program or of what is kept."""
         arranged = self.run.subprograms.arranged
-        names = [word.label for word in arranged.words.values()]
-        numbers = [int(name) for name in names if name.isdigit()]
-        number = max([*numbers, *arranged.labels, 0])
-        while True:
-            number += 1
-            yield str(number)
+        if arranged is not self.counted:  # a file was called meanwhile
+            self.counted = arranged
+            names = [word.label for word in arranged.words.values()]
+            self.largest = max(
+                self.largest, *map(int, filter(str.isdigit, names)), *arranged.labels
+            )
+        self.largest += 1
+        return str(self.largest)
 
     def _write(self, kept: Kept, keyword: str = "") -> None:
         """Write the O-word at which the run stands with the label of its construct."""

@@ -26,7 +26,7 @@ from gcxform.syntax.tree import (
 )
 from gcxform.system.limits import how_to_raise, limits
 
-LATELY = 512  # blocks whose trees are kept
+LATELY = 8192  # blocks whose trees are kept
 ABOVE = 3  # levels of a tree above the first of an expression: start, word
 MARKS = frozenset(
     {
