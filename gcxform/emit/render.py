@@ -178,18 +178,7 @@ def interleave(
         return window.text, source, which
     if not len(order):
         return b"", source, which
-    is_copy = order < len(keep)
-    edges = np.flatnonzero(np.append(True, is_copy[1:] != is_copy[:-1]))
-    ends = np.append(edges[1:], len(order))
-    at = np.append(0, np.cumsum(lengths))
-    parts = []
-    done = 0
-    for first, last in zip(edges.tolist(), ends.tolist(), strict=True):
-        if is_copy[first]:
-            parts += _copied_runs(task, source[first:last])
-        else:
-            parts.append(text[int(at[done]) : int(at[done + last - first])])
-            done += last - first
+    parts = _parts(task, order < len(keep), source, text, lengths)
     return b"".join(parts), source, which
 
 
@@ -207,11 +196,20 @@ def _unreached(task: Task) -> Flags:
     return np.asarray(percent | np.array(blank, np.bool_))
 
 
-def _copied_runs(task: Task, lines: Ints) -> list[bytes]:
-    """Return the source text of lines, one slice for each run of neighbours."""
-    window = task.window
-    breaks = np.flatnonzero(np.diff(lines) != 1) + 1
-    return [
-        window.text[int(window.start[run[0]]) : int(window.next[run[-1]])]
-        for run in np.split(lines, breaks)
-    ]
+def _parts(task: Task, is_copy: Flags, source: Ints, text: bytes, lengths: Ints) -> list[bytes]:
+    """Return the pieces that make the new text: a slice for each run of neighbours.
+
+    `is_copy` and `source` (lines of the new text,) say which are copies, and of which lines; those
+    of the others follow one another in `text`. Slices are cut by columns: every other line of a
+    contour is another run.
+    """
+    window, at = task.window, np.append(0, np.cumsum(lengths))
+    begins = (is_copy[1:] != is_copy[:-1]) | (is_copy[1:] & (np.diff(source) != 1))
+    first = np.flatnonzero(np.append(True, begins))
+    last = np.append(first[1:], len(source)) - 1
+    copied = is_copy[first]
+    before = np.append(0, np.cumsum(~is_copy))
+    begin = np.where(copied, window.start[source[first]], at[before[first]])
+    end = np.where(copied, window.next[source[last]], at[before[last + 1]])
+    cuts = zip(copied.tolist(), begin.tolist(), end.tolist(), strict=True)
+    return [(window.text if copy else text)[a:b] for copy, a, b in cuts]

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 
 from gcxform.flow.run_state import RunState
 from gcxform.syntax.tree import Block, Number
@@ -38,6 +39,12 @@ RESTORED = ("plane", "distance", "arc-distance", "feed-mode", "frame", "retract"
 LEFT = frozenset({"motion", "cycle", "non-modal", "stop", "tool", "modal-store", "output", "user"})
 STORE, FORGET, RESTORE, STORE_FOR_CALL = 70, 71, 72, 73
 Codes = dict[str, str]
+
+
+@lru_cache(maxsize=2)
+def _stores(text: bytes) -> bool:
+    """Whether modes are stored anywhere in a program: asked at each of its kept loops."""
+    return STORING.search(text) is not None
 
 
 @dataclass(slots=True)
@@ -98,7 +105,7 @@ class StoredModes:
 
     def touched_by(self, text: bytes) -> frozenset[str]:
         """Return of which groups codes stand in a text; nothing where no modes come back."""
-        if STORING.search(self.program.listing.window.text) is None:
+        if not _stores(self.program.listing.window.text):
             return frozenset()
         self._in_force()
         mine, self.now = self.now, dict.fromkeys(self.now, "")

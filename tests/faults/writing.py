@@ -6,6 +6,13 @@ from faults.mutation import CORPUS, FIGURES, FOUND, LAWS, VERIFY, Mutation
 
 MUTATIONS = (
     Mutation(
+        "writing: a run of copied lines goes on over a line that is not copied",
+        "gcxform/emit/render.py",
+        " | (is_copy[1:] & (np.diff(source) != 1))",
+        "",
+        CORPUS,
+    ),
+    Mutation(
         "writing: another axis may move where only the machine knows whether it does",
         "gcxform/emit/copying.py",
         "        lines[self.path.block[extra]] = True\n",

@@ -208,6 +208,7 @@ class _CentrePath:
         self.start = path.start
         self.end = np.array(path.end)
         self.sweep = np.array(path.sweep)
+        self.sense = path.sense.astype(np.int64)
         self.inserted: dict[int, Edge] = {}
 
     def resolve(self, first: int, last: int) -> None:
@@ -236,7 +237,7 @@ class _CentrePath:
         path, part = self.before, slice(first, last)
         start, end = self.start[part][:, axes].tolist(), path.end[part][:, axes].tolist()
         centre, sweep = path.centre[part][:, axes].tolist(), path.sweep[part].tolist()
-        sense = path.sense[part].astype(np.int64).tolist()
+        sense = self.sense[part].tolist()
         rows, edges = [], []
         for index, (a, b) in enumerate(zip(start, end, strict=True)):
             if sense[index]:
