@@ -15,6 +15,7 @@ TESTS = "tests/test_heidenhain.py"
 PARAMETERS = "plugins/gcxform_plugins/dialects/heidenhain/parameters.py"
 COMPUTES = "plugins/gcxform_plugins/dialects/heidenhain/arithmetic.py"
 BACK = "plugins/gcxform_plugins/dialects/heidenhain/programs.py"
+CONTOURS = "plugins/gcxform_plugins/dialects/heidenhain/contours.py"
 RUNS = "plugins/gcxform_plugins/dialects/heidenhain/runs.py"
 SPELLING = "plugins/gcxform_plugins/dialects/heidenhain/spelling.py"
 LINES = "plugins/gcxform_plugins/dialects/heidenhain/lines.py"
@@ -25,6 +26,55 @@ READ = f"{TESTS}::test_it_is_read_as_by_a_reader_of_one_line_at_a_time"
 REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 
 MUTATIONS = (
+    Mutation(
+        "klartext: corners turn the other way",
+        CONTOURS,
+        '"G3" if left > 0 else "G2")',
+        '"G2" if left > 0 else "G3")',
+        "tests/test_klartext_contours.py::test_a_corner_is_rounded",
+    ),
+    Mutation(
+        "klartext: a chamfer is as long as it is across",
+        CONTOURS,
+        'back = size if name == "CHF" else',
+        'back = size / 2 if name == "CHF" else',
+        "tests/test_klartext_contours.py::test_a_chamfer_cuts_both_lines_along_themselves",
+    ),
+    Mutation(
+        "klartext: a rounding begins as far away as its radius",
+        CONTOURS,
+        "else size / tan(angle / 2)",
+        "else size",
+        "tests/test_klartext_contours.py::test_a_corner_is_rounded",
+    ),
+    Mutation(
+        "klartext: the feed of a corner stays in force",
+        CONTOURS,
+        '        return [block, f"F{old}"]',
+        "        return [block]",
+        "tests/test_klartext_contours.py::test_steps_count_from_the_corner_and_f_of_a_corner_is_its_own",
+    ),
+    Mutation(
+        "klartext: an arc goes on against the arc before it",
+        CONTOURS,
+        "by = -left * (end[1] - centre[1]), left * (end[0] - centre[0])",
+        "by = left * (end[1] - centre[1]), -left * (end[0] - centre[0])",
+        "tests/test_klartext_contours.py::test_an_arc_goes_on_where_an_arc_ends",
+    ),
+    Mutation(
+        "klartext: CC holds behind a tangential arc",
+        CONTOURS,
+        "        self.pole = {}\n        return self._all(said, block)",
+        "        return self._all(said, block)",
+        "tests/test_klartext_contours.py::test_what_is_not_certain_is_refused",
+    ),
+    Mutation(
+        "klartext: roundings may be longer than their lines",
+        CONTOURS,
+        "size <= 0 or back > min(sizes) + 1e-9",
+        "size <= 0",
+        "tests/test_klartext_contours.py::test_what_is_not_certain_is_refused",
+    ),
     Mutation(
         "klartext: runs end nowhere",
         RUNS,

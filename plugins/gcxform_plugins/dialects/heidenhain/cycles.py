@@ -161,7 +161,7 @@ class Cycles(Parameters):
                 self.place[axis] = exact(Decimal(self.place[axis]) - by[axis])
             else:
                 self.lose(axis)
-        self.shift, self.pole, self.polar = new, {}, None
+        self.shift, self.pole, self.polar, self.last = new, {}, None, None
         return ["G52 " + " ".join(f"{axis}{number}" for axis, number in new.items())]
 
     def _preset(self, item: gx.Item, told: dict[int, Decimal]) -> list[str]:
@@ -223,7 +223,7 @@ class Cycles(Parameters):
 
     def _out(self, blocks: list[str], height: str) -> list[str]:
         """Return blocks with the way out; which feed is in force behind a cycle is not certain."""
-        self.place["Z"], self.polar = height, None
+        self.place["Z"], self.polar, self.last = height, None, None
         self.motion, self.feed_lost = "G0", True
         self.moved.add("Z")
         return [*blocks, f"G0 Z{height}"]

@@ -19,7 +19,11 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | arcs outside XY, helices by C | refused: helices are polar only | TNC 430, p. 153 |
 | RL, RR | the contour, as G41 and G42: `cutter-comp` must be told corners and entry | 640, p. 201 |
 | RL, RR, R0 | only in lines with X or Y; much is refused while on | 620 ISO, p. 154 |
-| RND, CHF, APPR, DEP, CT, LN, FK, PLANE | refused | |
+| RND, CHF | between lines in X and Y, before any offset; F is their own | 620, p. 291 |
+| CHF | its length is that along each line (a simulator of TNC 426) | |
+| CT | from the direction in which the element before it ends | iTNC 530, p. 225 |
+| CC behind RND, CHF, CT | whether it holds is not known: write it again | |
+| APPR, DEP, LN, FK, PLANE | refused | |
 | M3 M4 M8 M13 M14 | at the start of their block | TNC 155, p. 15 |
 | M0 M2 M5 M6 M9 M30 | at the end of their block; M0 stops the spindle | TNC 155, p. 15 |
 | M91 | coordinates of the machine, without the tool length | TNC 426 B, p. 122 |

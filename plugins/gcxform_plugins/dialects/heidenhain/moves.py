@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from math import atan2, ceil, cos, degrees, hypot, radians, sin
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.positioning import Said, Saying
-from gcxform_plugins.dialects.heidenhain.words import ROTARY, exact, written
+from gcxform_plugins.dialects.heidenhain.words import ROTARY, Element, exact, written
 
 TURN = 360.0
 SIDES = {"RL": "G41", "RR": "G42"}
@@ -53,11 +53,21 @@ class Moves(Saying):
             self._check_feed()
         beside = self._beside(said, ends)
         block = f"{self.moving(code)}{words}{said.feed}".lstrip()
+        self.last = self._element(code, ends) if code == "G1" else None
         self.place.update(ends)
         self.moved.update(ends)
         if not {"X", "Y"}.isdisjoint(ends):
             self.polar = None
         return f"{beside} {block}" if beside else block
+
+    def _element(
+        self, code: str, ends: Iterable[str], pole: dict[str, str] | None = None
+    ) -> Element | None:
+        """Return what begins where the axes stand, if it goes along in X and Y alone."""
+        if not ({"X", "Y"} >= {*ends} and {"X", "Y"} <= self.place.keys()):
+            return None
+        start = float(self.place["X"]), float(self.place["Y"])
+        return code, start, None if pole is None else (float(pole["X"]), float(pole["Y"]))
 
     def _beside(self, said: Said, ends: dict[str, str]) -> str:
         """Return the code with which radius compensation begins or ends in a line."""
@@ -195,12 +205,15 @@ class Moves(Saying):
             raise self.refusal("GX213", f"{path.name} with FMAX, M91 or R", path)
         self._check_feed()
         start = {axis: self.stands_at(axis, path) for axis in "XY"}
+        by_size = " R" in words or path.name == "CT"
         if not words:
             pole = self._pole(path)
             words = "".join(
                 f" {letter}{exact(Decimal(pole[axis]) - start[axis])}"
                 for axis, letter in (("X", "I"), ("Y", "J"))
             )
+        self.last = self._element(said.sense, ends, None if by_size else self._pole(path))
+        self.last = None if by_size else self.last
         self.place.update(ends)
         self.moved.update("XY", ends)
         self.polar = None

@@ -71,7 +71,8 @@ class Runs(Klartext):
 
     def _hangs_on_more(self, rapid: bool) -> bool:
         """Whether lines are translated by more than what they say."""
-        return not self.begun or self.over or (self.feed_lost and not rapid)
+        beside = not self.begun or self.over or self.begins is not None
+        return beside or (self.feed_lost and not rapid)
 
     def _take(self, blocks: str) -> None:
         """Take note of where blocks lead, and how fast."""

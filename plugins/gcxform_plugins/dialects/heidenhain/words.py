@@ -35,6 +35,10 @@ def exact(value: Decimal) -> str:
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
+Point = tuple[float, float]
+Element = tuple[str, Point, Point | None]
+
+
 class Words(gx.Translator):
     """The state that statements of a TNC share.
 
@@ -43,6 +47,8 @@ class Words(gx.Translator):
     pole      X and Y of CC, as numbers of the program
     polar     PR and PA that were programmed last, None after other moves
     polar_at  PR and PA that lines lead to by steps; None where they do to several places
+    last      code, start and centre of the element that ends where the axes stand; None where that
+              has no direction in X and Y
     moved     axes that have moved to a place of the workpiece since the program began
     side      G41 or G42 where RL or RR is in force
     over      whether the program has ended
@@ -60,6 +66,7 @@ class Words(gx.Translator):
         self.lost: dict[str, int] = {}
         self.pole: dict[str, str] = {}
         self.polar: tuple[float, float] | None = None
+        self.last: Element | None = None
         self.polar_at: dict[int, tuple[str, str] | None] = {}
         self.moved: set[str] = set()
         self.motion = ""
@@ -138,5 +145,6 @@ class Words(gx.Translator):
         self.lost |= dict.fromkeys(lost, self.line + 1)
         for axis in lost:
             self.place.pop(axis, None)
+        self.last = None
         if not {"X", "Y"}.isdisjoint(lost):
             self.polar = None
