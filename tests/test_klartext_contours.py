@@ -43,7 +43,9 @@ def test_an_arc_goes_on_where_the_line_points():
 
 
 def test_an_arc_goes_on_where_an_arc_ends():
-    _, _, centre = plane(("L X+0 Y+0 F100", "CC X+10 Y+0", "C X+10 Y+10 DR-", "CT X+30 Y+0"))
+    path, _, centre = plane(("L X+0 Y+0 F100", "CC X+10 Y+0", "C X+10 Y+10 DR-", "CT X+30 Y+0"))
+    assert path.kind[2] == 2
+    assert math.degrees(path.sweep[2]) == pytest.approx(53.130, abs=1e-3)
     assert centre[2] == pytest.approx((10.0, -15.0), abs=1e-6)
 
 
@@ -98,7 +100,7 @@ def test_a_rounding_touches_both_lines(seed):
         (("L X+0 Y+0 F100", "L X+4", "CT X+9"), "straight on"),
         (("L X+0 Y+0 F100", "L X+4", "L Z+5", "CT X+9 Y+9"), "no direction"),
         (("L X+0 Y+0 F100", "L X+4 FMAX", "CT X+9 Y+9"), "no direction"),
-        ((*TANGENT, "C X+45 Y+20 DR+"), "needs a CC"),
+        (("CC X+45 Y+25", *TANGENT, "C X+45 Y+20 DR+"), "needs a CC"),
     ],
 )
 def test_what_is_not_certain_is_refused(lines, why):

@@ -16,6 +16,7 @@ PARAMETERS = "plugins/gcxform_plugins/dialects/heidenhain/parameters.py"
 COMPUTES = "plugins/gcxform_plugins/dialects/heidenhain/arithmetic.py"
 BACK = "plugins/gcxform_plugins/dialects/heidenhain/programs.py"
 CONTOURS = "plugins/gcxform_plugins/dialects/heidenhain/contours.py"
+HOLES = "plugins/gcxform_plugins/dialects/heidenhain/holes.py"
 RUNS = "plugins/gcxform_plugins/dialects/heidenhain/runs.py"
 SPELLING = "plugins/gcxform_plugins/dialects/heidenhain/spelling.py"
 LINES = "plugins/gcxform_plugins/dialects/heidenhain/lines.py"
@@ -26,6 +27,55 @@ READ = f"{TESTS}::test_it_is_read_as_by_a_reader_of_one_line_at_a_time"
 REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 
 MUTATIONS = (
+    Mutation(
+        "klartext: a reamer leaves in the feed of the way in",
+        CYCLES,
+        "exact(told[208] or feed)",
+        "exact(feed)",
+        "tests/test_klartext_holes.py::test_a_reamer_leaves_at_a_feed",
+    ),
+    Mutation(
+        "klartext: a reamer leaves at no feed",
+        CYCLES,
+        "exact(told[208] or feed)",
+        "exact(told[208])",
+        "tests/test_klartext_holes.py::test_a_reamer_leaves_at_a_feed",
+    ),
+    Mutation(
+        "klartext: the last hole around is the first",
+        HOLES,
+        "count if whole else count - 1",
+        "count - 1",
+        "tests/test_klartext_holes.py::test_holes_around_begin_at_the_first_angle_and_do_not_meet_it_again",
+    ),
+    Mutation(
+        "klartext: an arc of holes does not reach its end",
+        HOLES,
+        "count if whole else count - 1",
+        "count",
+        "tests/test_klartext_holes.py::test_holes_along_an_arc_end_at_the_last_angle",
+    ),
+    Mutation(
+        "klartext: a row of holes is not turned",
+        HOLES,
+        "step * k, told[224])",
+        "step * k, told[224] * 0)",
+        "tests/test_klartext_holes.py::test_holes_in_a_row_are_turned_about_the_first_one",
+    ),
+    Mutation(
+        "klartext: patterns keep the surface of the cycle",
+        CYCLES,
+        "hole = {**self.hole, **{n: told[n] for n in (200, 203, 204)}}",
+        "hole = self.hole",
+        "tests/test_klartext_holes.py::test_the_surface_is_that_of_the_pattern",
+    ),
+    Mutation(
+        "klartext: depths of centres may be diameters",
+        HOLES,
+        '{343: "a depth by the diameter"}, (344,)',
+        "{}, (344, 343)",
+        "tests/test_klartext_holes.py::test_what_is_not_certain_is_refused",
+    ),
     Mutation(
         "klartext: corners turn the other way",
         CONTOURS,
@@ -358,7 +408,7 @@ MUTATIONS = (
     Mutation(
         "klartext: a hole in many strokes is one in one",
         CYCLES,
-        "if depth >= 0 or peck < -depth or self.inch:",
+        "if depth >= 0 or told.get(202, -depth) < -depth or self.inch:",
         "if depth >= 0 or self.inch:",
         f"{TESTS}::test_other_holes_are_not_certain",
     ),

@@ -158,7 +158,8 @@ class Contours(Moves):
 
     def _ahead(self, item: gx.Item) -> tuple[tuple[gx.Item, ...], tuple[gx.Item, ...]]:
         """Return the items of the corner ahead, and of the line behind it."""
-        found, at = [], self.at
+        found: list[tuple[gx.Item, ...]] = []
+        at = self.at
         while at < len(self.lines) and len(found) < 2:
             if not BARE.fullmatch(self.lines[at]):
                 found.append(tuple(i for i in self.items(at) if i.kind not in ("seq", "comment")))

@@ -9,6 +9,7 @@ from itertools import islice
 from typing import Any
 
 import gcxform as gx
+from gcxform_plugins.dialects.heidenhain.holes import HOLES, PATTERNS, round_places, row_places
 from gcxform_plugins.dialects.heidenhain.parameters import Parameters
 from gcxform_plugins.dialects.heidenhain.words import LINEAR, exact, plain, written
 
@@ -19,8 +20,6 @@ SHIFTED = re.compile(rf"(I?)([XYZABCUVW])\s*(?:({VALUE})|([+-]?\s*Q[LR]?\d+))\s*
 LAST_VALUE = re.compile(rf"(?:[A-Z][A-Z. -]*?)?\s*({VALUE})")
 PARAMETER = re.compile(rf"Q(\d{{1,4}})\s*=\s*({VALUE})(?![\w.,])")
 PARAMETER_LINE = re.compile(r"[\s\d]*Q[2-4]\d\d\s*=")
-REST_OF_HOLES = {395: "a depth of the tip or of the full diameter", 210: "a dwell above"}
-HOLE = (200, 201, 206, 202, 203, 204, 211)
 PECKS = ("DIST", "DEPTH", "PECKING DEPTH", "DWELL", "F")
 CANCELS = {
     **{"8.0": ("MIRROR IMAGE", "SPIEGELN"), "8.1": ("",)},
@@ -60,10 +59,12 @@ class Cycles(Parameters):
             return []
         if number == 247:
             return self._preset(item, self._parameters(text))
-        if number == 200:
-            self.hole, self.cycle = self._parameters(text), 200
+        if number in HOLES:
+            self.hole, self.cycle = self._parameters(text), number
             self.given(self.hole.items())
             return []
+        if number in PATTERNS:
+            return self._pattern(item, number, self._parameters(text))
         if number == 1:
             return self._peck(item, part, text)
         self.refuse(f"CYCL DEF {number} {text}".rstrip() + " is a cycle of the control", item)
@@ -75,7 +76,8 @@ class Cycles(Parameters):
 
     def assigned(self, key: str) -> None:
         """Forget a cycle of which a parameter is set: whether it then counts is not known."""
-        if self.cycle == 200 and key[1:].isdigit() and int(key[1:]) in HOLE:
+        hole = HOLES.get(self.cycle)
+        if hole is not None and key[1:].isdigit() and int(key[1:]) in hole.needs:
             self.cycle = 0
 
     def _value(self, item: gx.Item, text: str) -> str:
@@ -191,31 +193,57 @@ class Cycles(Parameters):
         self.refuse_beside("a cycle", item)
         if self.following:
             self.refuse("a cycle while the control follows the tip", item)
-        if self.cycle == 200:
-            return self._hole(item)
+        if self.cycle in HOLES:
+            return self._hole(item, self.hole)
         if self.cycle == 1:
             return self._pecked(item)
         raise self.refusal("GX215", "no cycle that is known here has been defined", item)
 
-    def _hole(self, item: gx.Item) -> list[str]:
-        """Cycle 200 in one stroke: down at Q206, dwell Q211, up in rapid."""
-        told = {**dict.fromkeys(HOLE, None), **self.hole}
-        if None in told.values():
-            raise self.refusal("GX215", "cycle 200 lacks a parameter", item)
-        for number, why in REST_OF_HOLES.items():
-            if told.pop(number, 0):
-                raise self.refusal("GX215", f"cycle 200 with Q{number}, {why}", item, ALONE)
-        if len(told) > len(HOLE):
-            raise self.refusal("GX215", "cycle 200 with parameters that are not known", item)
-        clear, depth, feed, peck, surface, high, dwell = (self.hole[n] for n in HOLE)
-        if depth >= 0 or peck < -depth or self.inch:
-            message = "cycle 200 in several strokes, upwards, or in inches"
+    def _hole(self, item: gx.Item, told: dict[int, Decimal]) -> list[str]:
+        """Return the blocks of a hole in one stroke: out in rapid, or at Q208."""
+        hole, name = HOLES[self.cycle], f"cycle {self.cycle}"
+        if not told.keys() >= {*hole.needs}:
+            raise self.refusal("GX215", f"{name} lacks a parameter", item)
+        for number, why in hole.zero.items():
+            if told.get(number):
+                raise self.refusal("GX215", f"{name} with Q{number}, {why}", item, ALONE)
+        if told.keys() - {*hole.needs, *hole.zero, *hole.idle}:
+            raise self.refusal("GX215", f"{name} with parameters that are not known", item)
+        clear, depth, feed, surface, high = (told[n] for n in (200, 201, 206, 203, 204))
+        if depth >= 0 or told.get(202, -depth) < -depth or self.inch:
+            message = f"{name} in several strokes, upwards, or in inches"
             raise self.refusal("GX215", message, item, ALONE)
         if clear < 0 or 0 < high < clear:
-            raise self.refusal("GX215", "cycle 200 with Q204 below Q200", item, ALONE)
+            raise self.refusal("GX215", f"{name} with Q204 below Q200", item, ALONE)
         up = exact(surface + clear)
-        blocks = [f"G0 Z{up}", *self._stroke(surface + depth, feed, dwell)]
+        blocks = [f"G0 Z{up}", *self._stroke(surface + depth, feed, told[211])]
+        if 208 in hole.needs:
+            blocks.append(f"Z{up}{self.feed_word(exact(told[208] or feed))}")
         return self._out(blocks, exact(surface + high) if high else up)
+
+    def _pattern(self, item: gx.Item, number: int, told: dict[int, Decimal]) -> list[str]:
+        """Cycles 220 and 221: the cycle defined last at once, over and over."""
+        self.refuse_beside("a cycle", item)
+        if self.cycle not in HOLES or self.following:
+            raise self.refusal("GX215", "no cycle that is known here has been defined", item)
+        if told.keys() - {365} != {*PATTERNS[number]}:
+            raise self.refusal("GX215", f"cycle {number} lacks a parameter, or has more", item)
+        if told[301] != 1 or told.get(365) or told[204] < told[200] or not told[204]:
+            message = "a pattern at the set-up clearance: where it ends is not certain"
+            raise self.refusal("GX215", message, item, ALONE)
+        places = round_places(told) if number == 220 else row_places(told)
+        if not places:
+            raise self.refusal("GX215", "a pattern whose order is not certain", item, ALONE)
+        hole = {**self.hole, **{n: told[n] for n in (200, 203, 204)}}
+        if self.stands_at("Z", item, f"cycle {number}") != told[203] + told[204]:
+            message = "a pattern whose first hole is reached from elsewhere than Q203 + Q204"
+            raise self.refusal("GX215", message, item, "go up there in a line before")
+        blocks = []
+        for x, y in places:
+            self.place |= {"X": x, "Y": y}
+            blocks += [f"G0 X{x} Y{y}", *self._hole(item, hole)]
+        self.moved |= {"X", "Y"}
+        return blocks
 
     def _stroke(self, bottom: Decimal, feed: Decimal, dwell: Decimal) -> list[str]:
         down = f"G1 Z{exact(bottom)}{self.feed_word(exact(feed))}"

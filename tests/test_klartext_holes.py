@@ -1,0 +1,82 @@
+"""Cycles 201, 240, 220 and 221 of a TNC as moves, with the examples of the manuals.
+
+Cycle 220: TNC 640, cycles (34059x-01), p. 162; cycle 221: TNC 410, ISO, p. 257.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from heidenhain_kit import TOOLS, program, read
+
+import gcxform as gx
+
+REAM = "CYCL DEF 201 REAMING Q200=2 Q201=-15 Q206=100 Q211=0.5 Q208=250 Q203=+0 Q204=20"
+CENTRE = "CYCL DEF 240 CENTERING Q200=1 Q343=0 Q201=-2 Q344=-9 Q206=150 Q211=0 Q203=+0 Q204=20"
+ROUND = "CYCL DEF 220 POLAR Q216=50 Q217=50 Q244=80 Q245={} Q246={} Q247={} Q241={} {}"
+ROW = "CYCL DEF 221 LINES Q225=15 Q226=15 Q237=10 Q238=8 Q242=6 Q243={} Q224={} {}"
+COMMON = "Q200=2 Q203=0 Q204=20 Q301=1"
+
+
+def moves(*lines):
+    path = read(program("L X+1 Y+2 Z+20 FMAX", *lines), tools=TOOLS)
+    return path, np.round(path.end[:, :3], 4).tolist()
+
+
+def holes(pattern):
+    path, ends = moves(CENTRE, pattern)
+    return [end[:2] for end, kind in zip(ends, path.kind, strict=True) if kind == 1]
+
+
+@pytest.mark.parametrize(("out", "feed"), [("250", 250), ("0", 100)])
+def test_a_reamer_leaves_at_a_feed(out, feed):
+    path, ends = moves(REAM.replace("Q208=250", f"Q208={out}"), "CYCL CALL")
+    assert [end[2] for end in ends] == [20, 2, -15, 2, 20]
+    assert path.kind.tolist() == [0, 0, 1, 1, 0]
+    assert path.feed[2:4].tolist() == [100, feed]
+
+
+def test_a_hole_is_centred_by_its_depth():
+    path, ends = moves(CENTRE, "L X+5 FMAX M99")
+    assert [end[2] for end in ends] == [20, 20, 1, -2, 20]
+    assert path.kind.tolist() == [0, 0, 0, 1, 0]
+
+
+def test_holes_around_begin_at_the_first_angle_and_do_not_meet_it_again():
+    places = holes(ROUND.format(0, 360, 0, 8, COMMON))
+    assert len(places) == 8
+    assert places[:3] == [[90, 50], pytest.approx([78.2843, 78.2843]), [50, 90]]
+
+
+def test_holes_along_an_arc_end_at_the_last_angle():
+    assert holes(ROUND.format(0, 180, 0, 3, COMMON)) == [[90, 50], [50, 90], [10, 50]]
+    assert holes(ROUND.format(90, 0, -90, 2, COMMON)) == [[50, 90], [90, 50]]
+
+
+def test_holes_in_a_row_are_turned_about_the_first_one():
+    assert holes(ROW.format(1, 90, COMMON)) == [[15, y] for y in (15, 25, 35, 45, 55, 65)]
+
+
+def test_the_surface_is_that_of_the_pattern():
+    _, ends = moves(CENTRE, ROW.format(1, 0, "Q200=3 Q203=-10 Q204=30 Q301=1"))
+    assert [end[2] for end in ends[1:5]] == [20, -7, -12, 20]
+
+
+@pytest.mark.parametrize(
+    ("lines", "why"),
+    [
+        ((CENTRE.replace("Q343=0", "Q343=1"), "CYCL CALL"), "by the diameter"),
+        ((CENTRE + " Q395=1", "CYCL CALL"), "not known"),
+        ((REAM.replace("Q208=250", ""), "CYCL CALL"), "lacks"),
+        ((CENTRE, ROW.format(2, 0, COMMON)), "order"),
+        ((CENTRE, ROUND.format(0, 0, 0, 8, COMMON)), "order"),
+        ((CENTRE, ROUND.format(0, 360, 0, 8, COMMON.replace("Q301=1", "Q301=0"))), "where it ends"),
+        ((CENTRE, ROUND.format(0, 360, 0, 8, f"{COMMON} Q365=1")), "where it ends"),
+        ((CENTRE, "L Z+50 FMAX", ROW.format(1, 0, COMMON)), "from elsewhere"),
+        ((ROW.format(1, 0, COMMON),), "no cycle"),
+        ((CENTRE, "Q201 = -5", "CYCL CALL"), "no cycle"),
+    ],
+)
+def test_what_is_not_certain_is_refused(lines, why):
+    with pytest.raises(gx.InputError, match=why):
+        moves(*lines)
