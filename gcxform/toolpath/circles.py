@@ -61,6 +61,8 @@ def swept_anew(path: Toolpath) -> Floats:
     start = path.start
     for plane in Plane:
         rows = np.flatnonzero(path.is_arc & (path.plane == plane))
+        if not len(rows):
+            continue
         axes = np.array(plane.axes[:2])
         centre = path.centre[np.ix_(rows, axes)]
         u, v = start[np.ix_(rows, axes)] - centre, path.end[np.ix_(rows, axes)] - centre

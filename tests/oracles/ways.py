@@ -324,11 +324,13 @@ def without_stops(way: Way) -> Way:
 
 def border(centre: Point, a: Point, b: Point, near: float) -> Interval | None:
     """Return which part of a line is within `near` of a point, 0 to 1."""
-    along = [y - x for x, y in zip(a, b, strict=True)]
-    away = [x - c for x, c in zip(a, centre, strict=True)]
-    square = sum(d * d for d in along)
-    half = sum(d * w for d, w in zip(along, away, strict=True))
-    rest = sum(w * w for w in away) - near * near
+    square = half = rest = 0.0
+    for x, y, c in zip(a, b, centre, strict=True):  # it is called ten thousand times for a program
+        along, away = y - x, x - c
+        square += along * along
+        half += along * away
+        rest += away * away
+    rest -= near * near
     root = half * half - square * rest
     if root < 0.0:
         return None

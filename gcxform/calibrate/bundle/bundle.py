@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Final
 
 import numpy as np
@@ -313,13 +313,16 @@ def moved(axis: Rotary, step: Floats) -> Rotary:
     return replace(axis, direction=(x, y, z), point=(u, v, w))
 
 
+@lru_cache(64)  # a fit moves the same few axes thousands of times
 def across(axis: Rotary) -> Floats:
     """Return two unit vectors (2, 3) across an axis, near those of the machine."""
     along = np.array(axis.direction)
     near = np.eye(3)[(int(np.abs(along).argmax()) + 1) % 3]
     first = near - (near @ along) * along
     (x, y, z), (u, v, w) = axis.direction, (first / np.linalg.norm(first)).tolist()
-    return np.array([[u, v, w], [y * w - z * v, z * u - x * w, x * v - y * u]])
+    found = np.array([[u, v, w], [y * w - z * v, z * u - x * w, x * v - y * u]])
+    found.flags.writeable = False  # others are given the same
+    return found
 
 
 def _lengths(design: Floats) -> Floats:

@@ -169,6 +169,8 @@ class ArcFitter:
         uneven = np.where(high - low < 1.0, -np.inf, np.abs(last - size) + UNEVEN)
         for plane in gx.Plane:
             here = np.flatnonzero(self.path.plane[row] == plane)
+            if not len(here):
+                continue
             axes, normal = np.array(plane.axes[:2]), plane.axes[2]
             points = [point[np.ix_(here, axes)] for point in (first, second, third)]
             fitted = gx.circle_through(*points)
@@ -231,6 +233,8 @@ class ArcFitter:
         off = np.zeros(len(row))
         for plane in gx.Plane:
             here = np.flatnonzero(self.path.plane[row] == plane)
+            if not len(here):
+                continue
             a, b, normal = plane.axes
             centre = self.path.centre[row[here]][:, [a, b]]
             u, v = actual[here][:, [a, b]] - centre, wanted[here][:, [a, b]] - centre
