@@ -20,16 +20,17 @@ from cli_kit import call
 from jsonschema import Draft202012Validator
 from seeds_kit import LONG
 
+from gcxform.cli.plant.tasks import load_manifest
+from gcxform.cli.program.named_schemas import schema
 from gcxform.diagnostics import UsageError
 from gcxform.errormodel.model_file import load_model
 from gcxform.machine.file import load_machine
 from gcxform.pipeline.file import load
-from gcxform.pipeline.schema import schema
 from gcxform.plugin.registry import default_registry
 from gcxform.testing.cases import read_case
 
 ROOT = Path(__file__).parents[1]
-KINDS = ("pipeline", "machine", "model")
+KINDS = ("pipeline", "machine", "model", "manifest")
 OF_FORM = {
     *("GX402", "GX403", "GX404", "GX405", "GX406", "GX407", "GX701", "GX702", "GX703", "GX704"),
     *("GX705", "GX706", "GX707", "GX708", "GX711", "GX436", "GX450"),
@@ -68,6 +69,8 @@ def validator(kind: Any) -> Draft202012Validator:
 def kind_of(values: dict[str, Any]) -> str:
     if "kind" in values:
         return "model"
+    if "batch" in values:
+        return "manifest"
     return "pipeline" if {"pass", "input", "output", "budget"} & values.keys() else "machine"
 
 
@@ -139,7 +142,20 @@ LOADERS = {
     "pipeline": lambda path: load(path, default_registry()),
     "machine": lambda path: load_machine(path, default_registry().machines),
     "model": load_model,
+    "manifest": load_manifest,
 }
+MANIFEST = """format = 1
+[[batch]]
+name = "brackets"
+programs = ["programs/mill"]
+pipelines = ["job.toml"]
+machines = ["one.toml", "two.toml"]
+[[batch]]
+programs = ["bad.nc"]
+chain = "metric"
+dialect = "grbl"
+to = "fanuc"
+"""
 ELSEWHERE = ("model", "machine", "file", "errors", "tool-table", "subprograms", "readings")
 
 
@@ -173,7 +189,7 @@ def bases() -> dict[str, list[dict[str, Any]]]:
         if not codes and not any(f"{name} =" in text for name in ELSEWHERE):
             values = read(text)
             found[kind_of(values)].append(values)
-    return found
+    return found | {"manifest": [read(MANIFEST)]}
 
 
 def said(values: dict[str, Any], path: Path) -> set[str] | None:

@@ -5,18 +5,18 @@ from __future__ import annotations
 import json
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, Final, get_args
+from typing import Any, Final
 
 import click
 
 from gcxform.cli import VERBS
 from gcxform.cli.common.answer import answer
 from gcxform.cli.common.failures import say
-from gcxform.cli.program.named_schemas import write_schemas
-from gcxform.pipeline.schema import Kind, schema
+from gcxform.cli.program.named_schemas import KINDS as OF_FILES
+from gcxform.cli.program.named_schemas import schema, write_schemas
 
 ANSWER: Final = "answer"
-KINDS: Final = (*get_args(Kind), ANSWER)
+KINDS: Final = (*OF_FILES, ANSWER)
 FOLDER: Final = files("gcxform.cli") / "schemas"
 
 
@@ -26,8 +26,8 @@ FOLDER: Final = files("gcxform.cli") / "schemas"
 def command(words: tuple[str, ...], write: str | None) -> None:
     """Print a schema: of a kind of files, or of what verbs answer with --json.
 
-    KIND is pipeline (gcxform.toml is one), machine, model or answer. With --write, each FILE is
-    given a first line that names its schema in DIR, for editors.
+    KIND is pipeline (gcxform.toml is one), machine, model, manifest (of a batch) or answer. With
+    --write, each FILE is given a first line that names its schema in DIR, for editors.
     """
     if write is not None:
         for path in write_schemas(Path(write), words):

@@ -1,4 +1,4 @@
-"""Pipeline, machine and model files in an editor: what their loaders say, as they are saved."""
+"""TOML files of ours in an editor: what their loaders say, as they are saved."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
+from gcxform.cli.plant.tasks import load_manifest
 from gcxform.cli.program.named_schemas import kind_of
 from gcxform.diagnostics import Diagnostic, GcxformError
 from gcxform.errormodel.model_file import load_model
@@ -18,6 +19,7 @@ LOADERS: Final[dict[str, Callable[[Path], Any]]] = {
     "pipeline": lambda path: load(path, default_registry()),
     "machine": lambda path: load_machine(path, default_registry().machines),
     "model": lambda path: load_model(path, tuple(default_registry().formats.values())),
+    "manifest": load_manifest,
 }
 
 

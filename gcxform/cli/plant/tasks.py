@@ -29,6 +29,7 @@ import msgspec
 from gcxform.cli.common.request import Asked
 from gcxform.cli.plant.stores import is_url, programs_below
 from gcxform.config.keys import says
+from gcxform.config.schemas import format_schema, headed, of_toml
 from gcxform.config.toml_text import Codes, TomlText, convert, read_toml
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.system import limits
@@ -114,6 +115,13 @@ class Manifest(msgspec.Struct, forbid_unknown_fields=True):
 
     format: Annotated[int, says("1"), msgspec.Meta(ge=1, le=1)]
     batch: Annotated[list[Entry], says("lists of programs, with what is done with each")]
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON Schema of manifests."""
+    found: dict[str, Any] = of_toml(msgspec.json.schema(Manifest))
+    found["$defs"]["Manifest"]["properties"]["format"] = format_schema(1)
+    return headed("manifest", found)
 
 
 def load_manifest(path: Path) -> list[Entry]:

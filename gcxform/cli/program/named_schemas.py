@@ -14,20 +14,28 @@ import os
 import re
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, Final, get_args
+from typing import Any, Final, Literal, get_args
 
 from gcxform.cli.common.discovery import upwards
 from gcxform.cli.common.outputs import destination
+from gcxform.cli.plant import tasks
 from gcxform.config.toml_text import Codes, read_toml
+from gcxform.pipeline import schema as files
 from gcxform.pipeline.file import KEYS
-from gcxform.pipeline.schema import Kind, schema
 from gcxform.system.inputs import visit
 
 FOLDER: Final = ".gcxform"
 """The folder in which new files look for schemas, beside them or above."""
-KINDS: Final[tuple[Kind, ...]] = get_args(Kind)
+MANIFEST: Final = "manifest"
+Kind = files.Kind | Literal["manifest"]
+KINDS: Final[tuple[Kind, ...]] = (*get_args(files.Kind), MANIFEST)
 CODES: Final = Codes("GX709", "GX710", "GX701", "GX705", "GX702")
 _COMMENT = re.compile(r"\A#:schema [^\n]*\n")
+
+
+def schema(kind: Kind) -> dict[str, Any]:
+    """Return the JSON Schema of a kind of files."""
+    return tasks.schema() if kind == "manifest" else files.schema(kind)
 
 
 def file_of(kind: Kind, folder: Path) -> Path:
@@ -72,6 +80,8 @@ def kind_of(values: dict[str, Any]) -> Kind:
     """Return which kind of files one is, by its keys: each has some that no other has."""
     if "kind" in values:
         return "model"
+    if "batch" in values:
+        return "manifest"
     pipeline = values.keys() & {*KEYS} - {"format"}
     return "pipeline" if pipeline and values.keys() <= {*KEYS} else "machine"
 

@@ -16,12 +16,11 @@ from gcxform.cli.common.programs import files_of, opened
 from gcxform.cli.common.request import Asked
 from gcxform.cli.program.asking import block
 from gcxform.cli.program.filled_files import with_questions
-from gcxform.cli.program.named_schemas import comment_for
+from gcxform.cli.program.named_schemas import Kind, comment_for
 from gcxform.cli.program.survey import Programs, Survey, dialect_of
 from gcxform.machine.machine import Machine
 from gcxform.pipeline.chain_text import parse_chain
 from gcxform.pipeline.pipeline import Pipeline
-from gcxform.pipeline.schema import Kind
 from gcxform.plugin.registry import default_registry
 from gcxform.system.inputs import visit
 
