@@ -23,7 +23,52 @@ FLOWS = "tests/test_fagor_flow.py"
 LINES = "plugins/gcxform_plugins/dialects/fagor/lines.py"
 SAID = "tests/test_fagor_written.py"
 
+POLAR = "plugins/gcxform_plugins/dialects/fagor/polar.py"
+SECOND = "tests/test_fagor_reference.py"
+
 MUTATIONS = (
+    Mutation(
+        "fagor: Q420 is no Q60",
+        POLAR,
+        "if abs(angle) > TURN else angle",
+        "if abs(angle) > 4 * TURN else angle + TURN / 8 * (abs(angle) > TURN)",
+        f"{CASE}polar]",
+    ),
+    Mutation(
+        "fagor: polar steps count from zero",
+        POLAR,
+        "return before + (float(item.numbers[0]) if item is not None else 0.0)",
+        "return float(item.numbers[0]) if item is not None else before",
+        SECOND,
+    ),
+    Mutation(
+        "fagor: a coordinate and an angle are mixed up",
+        POLAR,
+        "found = step * other / by",
+        "found = step * by / other",
+        f"{CASE}polar]",
+    ),
+    Mutation(
+        "fagor: polar places are kept behind others",
+        POLAR,
+        '        elif named.keys() & {*"XYIJR"}:\n            self.polar = None',
+        '        elif named.keys() & {*"XYIJR"}:\n            pass',
+        f"{CASE}refused-polar-first]",
+    ),
+    Mutation(
+        "fagor: one axis is told behind a turn",
+        POLAR,
+        "if (mine or arc) and (len(mine) < len(self.untold) or steps or arc):",
+        "if mine and steps:",
+        f"{CASE}refused-turn-one-axis]",
+    ),
+    Mutation(
+        "fagor: turns of turned coordinates",
+        POLAR,
+        "if (self.turned and words) or self.pole != (0.0, 0.0):",
+        "if self.pole != (0.0, 0.0):",
+        f"{CASE}refused-turn-twice]",
+    ),
     Mutation(
         "fagor: what is written for it has no length behind a tool change",
         LINES,
@@ -132,7 +177,7 @@ MUTATIONS = (
     Mutation(
         "fagor: the coordinate before holds over another work offset",
         PLACES,
-        "        if not _quiet(items):",
+        "        if not quiet(items):",
         "        if not items:",
         f"{CASE}incremental-from-nowhere]",
     ),

@@ -48,13 +48,19 @@ class Blocks(gx.Translator):
         names = [code_of(item) or item.name for item in items]
         rest = names[1:] if names[0] == "N" else names
         kinds = {item.kind for item in items}
+        if "R" in rest and not {*rest} & {*"XYZ"}:
+            return False
         return kinds <= {"code", "word"} and {*rest} <= (tables.PLAIN - PLANES) | tables.PLAIN_WORDS
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
         """Return the blocks of a line. Raises InputError for what is not read."""
         self.places.arrive()
         number, items = self._without_marks(items)
-        if any(item.kind == "statement" for item in items):
+        items = self.cartesian(items)
+        preset = self.preset(items)
+        if preset is not None:
+            blocks = preset
+        elif any(item.kind == "statement" for item in items):
             blocks = [*self._statement(items)]
         else:
             blocks = [*self._block(items)]
@@ -81,6 +87,15 @@ class Blocks(gx.Translator):
         if re.match(r"%[ \t]*L", name.name) or any(item.kind != "comment" for item in before):
             self.refuse("here another program begins, or a subroutine", name)
         return items
+
+    def cartesian(self, items: Sequence[gx.Item]) -> Sequence[gx.Item]:
+        """Return the items of a block without polar words. Raises InputError."""
+        return items
+
+    def preset(self, items: Sequence[gx.Item]) -> list[str] | None:
+        """Return the blocks of what sets a pole or turns, None for other blocks."""
+        del items
+        return None
 
     # --- blocks of words ---
 

@@ -37,7 +37,13 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | helix | Z beside I and J; K beside them is a pitch: refused |
 | start and end radius | may differ by 0.01 mm, the usual value of a parameter |
 | R | an arc of less than half a circle, of more where it is negative |
-| polar words Q, R | refused |
+| polar words R, Q | about the part zero, or G30 I J; read in G17 [M 68, V02 101] |
+| Q420 | is Q60 [M 68]; in G91, and with an I, both count on from the last polar place |
+| one of them left out | is that of the last move, which must have been a polar one [V02 101] |
+| an arc with Q | about its I J, or about the pole; Q360 in G91 is a circle [V02 101] |
+| `X30 Q45` | a line at an angle, to a coordinate [M 70]; with G2 and G3 refused |
+| G73 Q I J, G73 | a turn about I J, or the part zero; none [V02 139]; of a turned one: refused |
+| behind it | both axes of the plane are told first, by a line |
 | G8, G9 | tangent arc, arc through three points: refused |
 | `G4 K2` | 2 seconds, alone in its block [post]; on an 8055 hundredths; other forms are refused |
 | G5, G7, G50, G61 | how corners are taken: G64, G61, G64, G64 of the blocks; G60 for one block |
@@ -51,7 +57,7 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | G70 | inches: refused, as no source was found for the unit of feeds |
 | G80, G98, G99 | say nothing, as all cycles are refused |
 | G92, G93, G96 | refused: another zero, a time in place of the feed, a speed that follows an axis |
-| G10 to G14, G72, G73 | mirror, scale and turn: refused |
+| G10 to G14, G72 | mirror and scale: refused |
 | G43, G44, G49 | are of the 8055: refused |
 | tool change | `T5 M6`; it runs a program of the machine: where the axes stand is not known |
 | tool length | `D1` is that of the tool in the spindle, whatever its number [post]; D0 is none |
@@ -98,9 +104,11 @@ class Fagor(gx.Dialect):
         "G95": gx.Code("feed-mode"),
         "G97": v.inert("spindle-mode", "S", act="rpm"),
         **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
-        "G61": v.inert("path", act="exact-path"),
-        "G64": v.inert("path", act="blend"),
+        "G61": v.inert("path", "PQ", "PQ", act="exact-path"),
+        "G64": v.inert("path", "PQ", "PQ", act="blend"),
         "G43": v.frame("tool-length", "length", "H"),
+        "G68": v.frame("rotation", "rotate", v.AXES + "R"),
+        "G69": v.frame("rotation", "no-rotate"),
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
         **v.ISO_M,

@@ -104,7 +104,8 @@ class Flow(Computing):
 
     def _after(self, blocks: Iterable[str]) -> Iterable[str]:
         found = [*blocks]
-        self.plainly = self.plainly and not self.decides
+        watched = self.decides or self.polar is not None or self.untold
+        self.plainly = self.plainly and not watched
         return found
 
     def flow(self, rule: str, node: Any) -> None:

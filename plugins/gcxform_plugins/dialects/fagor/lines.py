@@ -62,6 +62,8 @@ class Lines(gx.Speller):
             raise gx.UnspeakableError("something stands behind the end of the program")
         values = dict(words)
         yield from self._tooled(names, values)
+        if "G68" in names or "G69" in names:
+            raise gx.UnspeakableError("a turn is not written")
         if "G4" in names:
             yield f"G4 K{_plain(values.pop('P', '0'))}"
         said = [*self._words(words, "G4" in names)]

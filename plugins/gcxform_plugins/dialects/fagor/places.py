@@ -8,7 +8,7 @@ from decimal import Decimal
 import gcxform as gx
 from gcxform_plugins.dialects.fagor import tables as tables
 
-QUIET = tables.PLAIN | {*tables.CORNERS, "G4", "G6", "G60", "G80", "G90", "G91"}
+QUIET = tables.PLAIN | {*tables.CORNERS, "G4", "G6", "G30", "G60", "G80", "G90", "G91"}
 QUIET |= {f"M{code}" for code in (0, 1, 3, 4, 5, 7, 8, 9)}
 """Codes over which the coordinates of an axis stay what they are."""
 KINDS = {"code", "word", "incremental", "comment", "label", "colon"}
@@ -27,13 +27,13 @@ class Places:
 
     They are sums of what is written, in decimals, so that no digit is lost. `at` has those that are
     known behind what was followed; `passed` are blocks behind that, as ranges of plain lines or as
-    items.
+    items; `motion` is the code in force.
     """
 
     def __init__(self, translator: gx.Translator) -> None:
         self.translator = translator
         self.at: dict[str, Decimal] = {}
-        self.steps = False
+        self.steps, self.motion = False, ""
         self.passed: list[range | Sequence[gx.Item]] = []
         self.next = 0
 
@@ -55,7 +55,7 @@ class Places:
     def lose(self) -> None:
         """Forget all that is known."""
         self.follow()
-        self.at = {}
+        self.at, self.motion = {}, ""
 
     def of(self, items: Sequence[gx.Item], block: Sequence[gx.Item]) -> dict[str, str]:
         """Return the words to which incremental ones lead, by axis; nothing where one is unknown.
@@ -63,7 +63,7 @@ class Places:
         `block` are all items of the block.
         """
         self.follow()
-        if not _quiet(block) or not {item.name for item in items} <= self.at.keys():
+        if not quiet(block) or not {item.name for item in items} <= self.at.keys():
             return {}
         found = {item.name: self.at[item.name] + Decimal(item.numbers[0]) for item in items}
         return {axis: f"{axis}{place:f}" for axis, place in found.items()}
@@ -85,6 +85,8 @@ class Places:
         codes = {code_of(item) for item in items if item.kind == "code"}
         if codes & {"G90", "G91"}:
             self.steps = "G91" in codes
+        moves = [code for code in ("G0", "G1", "G2", "G3") if code in codes]
+        self.motion = moves[0] if moves else self.motion
         for item in items:
             if item.kind not in ("word", "incremental") or item.name not in tables.AXES:
                 continue
@@ -93,11 +95,11 @@ class Places:
                 self.at[item.name] = value
             elif item.name in self.at:
                 self.at[item.name] += value
-        if not _quiet(items):
+        if not quiet(items):
             self.at = {}
 
 
-def _quiet(items: Sequence[gx.Item]) -> bool:
+def quiet(items: Sequence[gx.Item]) -> bool:
     """Whether the coordinates before a line are those behind it, but for what it moves."""
     codes = {code_of(item) for item in items if item.kind == "code"}
     words = {item.name for item in items if item.kind in ("word", "incremental")}

@@ -44,13 +44,15 @@ FROM_HERE = re.compile(
     re.IGNORECASE,
 )
 """What changes the meaning of all words behind it, or repeats lines."""
+POLES = re.compile(r"(?<![A-Z0-9_.])G[ \t]*0*(?:30|17|18|19|5[3-9]|92|15[89])(?![0-9.])|\$", re.I)
+"""What may leave the pole elsewhere."""
 CALLS = re.compile(r"[ \t]*(?:N[0-9: \t]*)?(?:LL?[ \t]|#P?CALL|#MCALL|#EXEC)", re.IGNORECASE)
 LEAVES = re.compile(r"\$(?:GOTO|BREAK|CONTINUE)|#RET|(?<![A-Z0-9])M0*(?:2|17|29|30)(?![0-9])", re.I)
 STATED = frozenset(("G0", "G1", "G2", "G3", "G17", "G18", "G19", "G90", "G91", "G94", "G95"))
 STATE = (
     *("bars", "incremental", "following", "taken_away", "corners", "kinematics", "tool", "edge"),
     *("in_spindle", "changing", "across", "long", "known", "doubtful", "at", "calls", "counting"),
-    "gone",
+    *("gone", "pole", "polar", "plane", "turned", "untold"),
 )
 
 
@@ -191,6 +193,8 @@ class Programs(Flow):
         self.places.lose()
         self.gone = set(self.named)
         self.bars, self.plainly = {}, False
+        self.polar = None
+        self.pole = None if POLES.search(text) or CALLS.match(text) else self.pole
         opaque = CALLS.match(text) is not None or "$" in text or self.line <= self.kept_until
         opaque |= any(c[:1] == "M" and c not in tables.M_CODES for c in codes)
         if opaque or "=" in text:
@@ -229,6 +233,12 @@ class Programs(Flow):
             told = {item.name for item in items if item.kind == "word"}
             self.gone -= told if not self.incremental else set()
         return super()._relative(items, words)
+
+    def preset(self, items: Sequence[gx.Item]) -> list[str] | None:
+        """Return the blocks of what sets a pole or turns; for the same control a turn stays."""
+        if self.reading.stays and any(code_of(item) == "G73" for item in items):
+            self.refuse("G73: what the words are of changes with it")
+        return super().preset(items)
 
     def _tips(self, item: gx.Item, on: bool) -> str:
         """Return the code that follows the tip; for the same control the statement stays."""
